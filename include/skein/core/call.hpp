@@ -1,0 +1,142 @@
+#pragma once
+
+#include <coroutine>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "skein/core/call_context.hpp"
+#include "skein/core/channel.hpp"
+#include "skein/core/error.hpp"
+
+namespace skein {
+
+/// An asynchronous call and its result. Move-only; dropping it cancels the call. Each call is used
+/// once: by get(), by then(), or by co_await.
+template <class Result>
+class Call {
+  using Stored = std::conditional_t<std::is_void_v<Result>, char, Result>;
+
+ public:
+  /// `result` points into `pending`'s out struct (nullptr for void). Used by generated code.
+  Call(std::shared_ptr<PendingCall> pending, std::shared_ptr<Channel> channel, Stored* result)
+      : pending_(std::move(pending)), channel_(std::move(channel)), result_(result) {}
+  Call(Call&&) noexcept = default;
+  Call& operator=(Call&& other) noexcept {
+    if (this != &other) {
+      if (pending_) pending_->cancel();
+      pending_ = std::move(other.pending_);
+      channel_ = std::move(other.channel_);
+      result_ = other.result_;
+    }
+    return *this;
+  }
+  ~Call() {
+    if (pending_) pending_->cancel();
+  }
+
+  bool ready() const { return pending_->finished(); }
+
+  /// Waits for the end (the deadline at the latest); returns the result or throws what ended the call.
+  Result get() {
+    const auto pending = std::move(pending_);
+    pending->wait();
+    return take(*pending);
+  }
+
+  /// Tells the server that nobody waits any more; a later get() throws Cancelled.
+  void cancel() { pending_->cancel(); }
+
+  /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor.
+  template <class Continuation>
+  void then(Continuation continuation) && {
+    auto pending = pending_;
+    auto shared = std::make_shared<Call>(std::move(*this));
+    auto run = [shared, continuation = std::move(continuation)]() mutable {
+      continuation(std::move(*shared));
+    };
+    Executor& executor = shared->channel_->continuations();
+    pending->on_finished([&executor, run = std::move(run)]() mutable { executor.post(std::move(run)); });
+  }
+
+  auto operator co_await() && {
+    struct Awaiter {
+      Call call;
+      bool await_ready() const { return call.ready(); }
+      void await_suspend(std::coroutine_handle<> waiting) {
+        Executor& executor = call.channel_->continuations();
+        call.pending_->on_finished([&executor, waiting] { executor.post([waiting] { waiting.resume(); }); });
+      }
+      Result await_resume() { return call.get(); }
+    };
+    return Awaiter{std::move(*this)};
+  }
+
+ private:
+  Result take(const PendingCall& pending) const {
+    if (const auto error = pending.error()) std::rethrow_exception(error);
+    if constexpr (!std::is_void_v<Result>) return std::move(*result_);
+  }
+
+  std::shared_ptr<PendingCall> pending_;
+  std::shared_ptr<Channel> channel_;
+  Stored* result_;
+};
+
+/// What generated proxies are made of: a connection and the time limit of each call through it.
+class ProxyBase {
+ public:
+  /// The default limit of a call. There is no call without a deadline.
+  static constexpr Duration kDefaultTimeout = std::chrono::seconds(5);
+
+  /// The connection that this proxy and its copies share.
+  const std::shared_ptr<Channel>& channel() const noexcept { return channel_; }
+
+  /// Ends the connection, and the Head's session with it.
+  void disconnect() { channel_->disconnect(); }
+
+ protected:
+  ProxyBase(std::shared_ptr<Channel> channel, Duration timeout)
+      : channel_(std::move(channel)), timeout_(timeout) {}
+
+  template <class Out>
+  struct TypedCall final : PendingCall {
+    TypedCall(const OperationInfo& operation, Instant deadline, bool blocking)
+        : PendingCall(operation, &value, deadline, blocking) {}
+    Out value{};
+  };
+
+  /// The blocking call; returns the out struct or throws.
+  template <class Out, class In>
+  Out call(const OperationInfo& operation, const In& in) const {
+    auto pending = std::make_shared<TypedCall<Out>>(operation, deadline(), true);
+    channel_->start(pending, &in);
+    pending->wait();
+    if (const auto error = pending->error()) std::rethrow_exception(error);
+    return std::move(pending->value);
+  }
+
+  /// The asynchronous call; `select(out)` names the part of the out struct that is the result.
+  template <class Result, class Out, class In, class Select>
+  Call<Result> async_call(const OperationInfo& operation, const In& in, Select select) const {
+    auto pending = std::make_shared<TypedCall<Out>>(operation, deadline(), false);
+    auto* const result = select(pending->value);
+    channel_->start(pending, &in);
+    return Call<Result>(std::move(pending), channel_, result);
+  }
+
+  void set_timeout(Duration timeout) { timeout_ = timeout; }
+
+ private:
+  /// A call made while executing another never outlives the outer one's deadline.
+  Instant deadline() const {
+    const Instant own = channel_->clock().now() + timeout_;
+    const CallContext* outer = CallContext::current();
+    return outer ? std::min(own, outer->deadline()) : own;
+  }
+
+  std::shared_ptr<Channel> channel_;
+  Duration timeout_;
+};
+
+}  // namespace skein

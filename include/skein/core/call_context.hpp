@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skein/core/clock.hpp"
+#include "skein/core/guid.hpp"
+
+namespace skein {
+
+/// What a Head keeps for one connected client, from `open` to `disconnect`. Only the floor that made
+/// it knows what is inside.
+class Session {
+ public:
+  virtual ~Session() = default;
+};
+
+/// The call that the current thread is executing: who asked, until when an answer is of use, and
+/// through whom the request came. An implementation reads it by CallContext::current(); calls that it
+/// makes in turn inherit the deadline and the chain by themselves.
+class CallContext {
+ public:
+  CallContext(const Clock& clock, Instant deadline, Guid caller, std::vector<Guid> chain,
+              Session* session, const std::atomic<bool>* cancelled)
+      : clock_(clock),
+        deadline_(deadline),
+        caller_(caller),
+        chain_(std::move(chain)),
+        session_(session),
+        cancelled_(cancelled) {}
+
+  /// The innermost call on this thread, or nullptr outside of any.
+  static const CallContext* current() noexcept;
+
+  Instant deadline() const noexcept { return deadline_; }
+
+  /// Time left until the deadline; zero when it has passed.
+  Duration remaining() const { return std::max(Duration::zero(), deadline_ - clock_.now()); }
+
+  /// Whether nobody waits for the answer any more: cancelled, client gone, or deadline passed.
+  bool cancelled() const {
+    return (cancelled_ && cancelled_->load(std::memory_order_relaxed)) || clock_.now() >= deadline_;
+  }
+
+  /// Identity of the client's connection; nil for a caller in the same process.
+  const Guid& caller() const noexcept { return caller_; }
+
+  /// The services that wait for this call's answer, outermost first.
+  std::span<const Guid> chain() const noexcept { return chain_; }
+
+  /// What the Head made at `open`; nullptr for a service without a Head.
+  Session* session() const noexcept { return session_; }
+
+ private:
+  const Clock& clock_;
+  Instant deadline_;
+  Guid caller_;
+  std::vector<Guid> chain_;
+  Session* session_;
+  const std::atomic<bool>* cancelled_;
+};
+
+/// Makes a context the current one for as long as the scope lasts.
+class CallContextScope {
+ public:
+  explicit CallContextScope(const CallContext& context) noexcept;
+  ~CallContextScope();
+  CallContextScope(const CallContextScope&) = delete;
+  CallContextScope& operator=(const CallContextScope&) = delete;
+
+ private:
+  const CallContext* outer_;
+};
+
+}  // namespace skein

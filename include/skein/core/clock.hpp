@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace skein {
+
+using Duration = std::chrono::steady_clock::duration;
+using Instant = std::chrono::steady_clock::time_point;
+using TimerId = std::uint64_t;
+
+/// Where time comes from, and what wakes at a point of it. Time is an argument: only composition
+/// roots make a SystemClock; tests pass a ManualClock.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual Instant now() const = 0;
+
+  /// Runs `action` once at `when` (at once where that has passed) on the clock's own thread; it must
+  /// not block. Never 0.
+  virtual TimerId call_at(Instant when, std::function<void()> action) = 0;
+
+  /// Forgets a timer. After it has returned the action is not running and will not run, unless
+  /// called from the action itself. A timer that has run, or 0, is no error.
+  virtual void cancel(TimerId timer) = 0;
+
+  TimerId call_after(Duration delay, std::function<void()> action) {
+    return call_at(now() + delay, std::move(action));
+  }
+};
+
+/// The machine's monotonic clock, with one thread (`skein-timer`) that runs the timers.
+class SystemClock final : public Clock {
+ public:
+  SystemClock();
+  ~SystemClock() override;
+  Instant now() const override { return std::chrono::steady_clock::now(); }
+  TimerId call_at(Instant when, std::function<void()> action) override;
+  void cancel(TimerId timer) override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A clock that stands still until it is told: `advance` runs what falls due, in order, on the
+/// calling thread.
+class ManualClock final : public Clock {
+ public:
+  Instant now() const override;
+  TimerId call_at(Instant when, std::function<void()> action) override;
+  void cancel(TimerId timer) override;
+
+  /// Moves time forward; each timer sees the instant for which it was set.
+  void advance(Duration by);
+
+ private:
+  mutable std::mutex mutex_;
+  Instant now_{std::chrono::hours(1)};
+  TimerId last_ = 0;
+  std::map<std::pair<Instant, TimerId>, std::function<void()>> timers_;
+};
+
+}  // namespace skein

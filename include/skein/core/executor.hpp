@@ -1,0 +1,76 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace skein {
+
+/// Runs tasks for those who may not run them on their own thread. Every queue is bounded.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  /// Takes the task over; false, and nothing happens, where the queue is full or the executor has
+  /// stopped. Callable from any thread; never blocks.
+  virtual bool post(std::function<void()> task) = 0;
+
+  /// Runs the task on the calling thread where that keeps the executor's promise about concurrency
+  /// and no task is waiting; false, and nothing happens, otherwise.
+  virtual bool try_run_inline(const std::function<void()>& task) = 0;
+
+  /// Whether the calling thread is running one of this executor's tasks.
+  virtual bool runs_here() const noexcept = 0;
+};
+
+/// A fixed number of named threads and one bounded queue, first in, first out. With one thread it is
+/// a strand: no two tasks at once, inline ones included.
+class ThreadExecutor final : public Executor {
+ public:
+  /// `name` shows in the debugger (15 characters at most are kept).
+  explicit ThreadExecutor(std::string name, std::size_t threads = 1, std::size_t capacity = 4096);
+  /// Runs no task that has not begun; waits for those that have.
+  ~ThreadExecutor() override;
+
+  bool post(std::function<void()> task) override;
+  bool try_run_inline(const std::function<void()>& task) override;
+  bool runs_here() const noexcept override;
+
+  /// Lets tasks that have begun end, drops the others, ends the threads. Twice is no error. Not to
+  /// be called, nor the executor destroyed, from one of its own tasks.
+  void stop();
+
+ private:
+  void work(const std::string& name);
+
+  const std::size_t capacity_;
+  const std::size_t concurrency_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> tasks_;
+  std::size_t running_ = 0;
+  bool stopping_ = false;
+  std::vector<std::thread> threads_;
+};
+
+/// An executor without a thread, for tests: tasks run when the owner says so.
+class ManualExecutor final : public Executor {
+ public:
+  bool post(std::function<void()> task) override;
+  bool try_run_inline(const std::function<void()>&) override { return false; }
+  bool runs_here() const noexcept override { return running_; }
+
+  /// Runs what is queued, and what that queues, until nothing is left; returns how many ran.
+  std::size_t run_all();
+
+ private:
+  std::mutex mutex_;
+  std::deque<std::function<void()>> tasks_;
+  bool running_ = false;
+};
+
+}  // namespace skein

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skein/core/guid.hpp"
+
+/// The port to DDS: participants, writers and readers of opaque CDR samples, with the QoS that Skein
+/// uses and no vendor's name. Each implementation passes the conformance suite in test/conformance.
+namespace skein::dds {
+
+/// An instance's identity: MD5 of the key's big-endian CDR, or that CDR itself, zero-padded, where it
+/// never exceeds 16 bytes (RTPS 9.6.4.8). All zero for keyless topics.
+using KeyHash = Guid;
+
+struct Topic {
+  std::string name;
+  std::string type_name;
+  bool keyed = false;
+
+  bool operator==(const Topic&) const = default;
+};
+
+/// What writers and readers must agree upon, and what they keep. XCDR1 always.
+struct Qos {
+  bool reliable = true;
+  bool transient_local = false;
+  /// Samples kept per instance; nothing means all (bounded by `max_samples`).
+  std::optional<std::uint32_t> history_depth;
+  /// With "all": how many samples may wait before a reliable writer blocks; 0 means no limit.
+  std::uint32_t max_samples = 0;
+  /// How long a write may wait for room before it throws Overloaded.
+  std::chrono::milliseconds max_blocking{100};
+  /// Automatic liveliness: a writer not heard of for so long is reported as not alive. Nothing: never.
+  std::optional<std::chrono::milliseconds> liveliness_lease;
+  /// Only endpoints that share a partition match. Exact names, no wildcards (vendors differ); empty
+  /// means the default partition, which is called "". Fixed at creation.
+  std::vector<std::string> partitions;
+};
+
+enum class InstanceState { Alive, Disposed };
+
+/// A received sample; `cdr` is valid only during the call that delivers it.
+struct Sample {
+  /// With the 4-byte encapsulation header; empty when disposed.
+  std::span<const std::byte> cdr;
+  InstanceState state = InstanceState::Alive;
+  KeyHash key;
+  Guid writer;
+};
+
+class Reader;
+
+/// Called on the vendor's threads: must return soon, must not write, create or destroy entities.
+/// Taking samples is allowed. Calls for one entity do not overlap.
+struct ReaderListener {
+  std::function<void(Reader&)> on_data;
+  /// A writer was matched (true) or is gone (false).
+  std::function<void(const Guid& writer, bool matched)> on_matched;
+  /// A matched writer's lease expired (false) or it was heard of again (true).
+  std::function<void(const Guid& writer, bool alive)> on_liveliness;
+};
+
+struct WriterListener {
+  std::function<void(const Guid& reader, bool matched)> on_matched;
+};
+
+/// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+
+  /// Writes one sample; `cdr` starts with the encapsulation header. Throws Overloaded where there was
+  /// no room within max_blocking, Internal with the vendor's reason otherwise.
+  virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
+
+  /// Tells the readers that the instance has ended. Keyed topics only. (No vendor does this by itself
+  /// for a writer that goes, so that it reaches every reader.)
+  virtual void dispose(const KeyHash& key) = 0;
+
+  /// Waits until every matched reliable reader has acknowledged everything, or `timeout`; false then.
+  virtual bool wait_for_acknowledgments(std::chrono::milliseconds timeout) = 0;
+
+  virtual Guid guid() const = 0;
+  virtual std::vector<Guid> matched_readers() const = 0;
+};
+
+/// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
+class Reader {
+ public:
+  virtual ~Reader() = default;
+
+  /// Hands at most `limit` waiting samples to `consumer`, oldest first, and forgets them; returns how
+  /// many. Samples that are no PLAIN_CDR little- or big-endian, or shorter than the header, are counted and dropped.
+  virtual std::size_t take(const std::function<void(const Sample&)>& consumer,
+                           std::size_t limit = SIZE_MAX) = 0;
+
+  virtual Guid guid() const = 0;
+  virtual std::vector<Guid> matched_writers() const = 0;
+
+  /// Samples dropped because they were malformed, since creation.
+  virtual std::uint64_t malformed() const = 0;
+};
+
+/// Where a participant speaks.
+struct Network {
+  /// Interface names or addresses; empty means 127.0.0.1 alone, by unicast.
+  std::vector<std::string> interfaces;
+  /// On a named interface: find participants by multicast (data is unicast always).
+  bool multicast_discovery = false;
+  /// On a named interface without multicast: the hosts to ask.
+  std::vector<std::string> peers;
+  /// Greatest number of participants on each host that unicast discovery looks for.
+  std::uint32_t max_participants = 120;
+};
+
+struct ParticipantOptions {
+  /// 0 to 232.
+  std::uint32_t domain = 0;
+  std::string name;
+  Network network;
+  /// How long a participant that is not heard of stays known.
+  std::chrono::milliseconds lease{1000};
+  /// Called when another participant is found (true), or has left or its lease has expired (false);
+  /// on a vendor's thread, with the GUID's participant() part.
+  std::function<void(const Guid& participant, bool present)> on_participant;
+};
+
+/// Must outlive its writers and readers.
+class Participant {
+ public:
+  virtual ~Participant() = default;
+
+  /// Throw InvalidArgument for a topic name that is in use with another type, Internal otherwise.
+  virtual std::unique_ptr<Writer> create_writer(const Topic& topic, const Qos& qos,
+                                                WriterListener listener = {}) = 0;
+  virtual std::unique_ptr<Reader> create_reader(const Topic& topic, const Qos& qos,
+                                                ReaderListener listener = {}) = 0;
+
+  virtual Guid guid() const = 0;
+};
+
+/// One DDS implementation.
+class Vendor {
+ public:
+  virtual ~Vendor() = default;
+
+  /// `fastdds`, `cyclonedds` or `loopback`.
+  virtual std::string name() const = 0;
+
+  /// Throws InvalidArgument for a domain out of range or an unknown interface; Unavailable where the
+  /// ports are taken.
+  virtual std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) = 0;
+};
+
+/// Loads the vendor's module (once; it is never unloaded). Throws InvalidArgument with the known names
+/// for an unknown one, Unavailable with the file looked for, the places and the package to install
+/// where the module or the vendor's library is missing or of another version.
+std::shared_ptr<Vendor> load_vendor(const std::string& name);
+
+}  // namespace skein::dds

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string_view>
+
+namespace skein::profile {
+
+enum class RestartPolicy {
+  Never,      ///< A process that ended stays ended.
+  OnFailure,  ///< Started again after an exit code other than 0, a signal, or a start-up that hung.
+  Always,     ///< Started again whatever it ended with.
+};
+
+/// `never`, `on-failure`, `always`: the words of the XML.
+std::string_view to_string(RestartPolicy policy) noexcept;
+/// The policy of that word, or nothing.
+std::optional<RestartPolicy> maybe_restart_policy(std::string_view word) noexcept;
+
+/// When a process is started again, and when no more.
+///
+/// The n-th restart inside of `window` waits for `delay` × 2^(n-1), at most `max_delay`. A process
+/// that ends when it was restarted `max_restarts` times within the last `window` is given up.
+struct RestartRules {
+  RestartPolicy policy = RestartPolicy::Never;
+  std::chrono::nanoseconds delay = std::chrono::milliseconds(100);
+  std::chrono::nanoseconds max_delay = std::chrono::seconds(5);
+  int max_restarts = 5;
+  std::chrono::nanoseconds window = std::chrono::seconds(30);
+};
+
+/// What the launcher demands of one process.
+struct ProcessRules {
+  RestartRules restart;
+  std::chrono::nanoseconds ready_timeout = std::chrono::seconds(30);  ///< Start to "I am ready".
+  std::chrono::nanoseconds stop_timeout = std::chrono::seconds(3);    ///< SIGTERM to SIGKILL.
+};
+
+}  // namespace skein::profile

@@ -1,0 +1,69 @@
+#include "skein/core/channel.hpp"
+
+#include "skein/core/error.hpp"
+
+namespace skein {
+
+void PendingCall::finish(std::exception_ptr error) {
+  std::function<void()> action;
+  std::function<void()> canceller;  // dropped outside the lock: it owns parts of the lane
+  {
+    std::lock_guard lock(mutex_);
+    error_ = std::move(error);
+    finished_ = true;
+    action.swap(action_);
+    canceller.swap(canceller_);
+    changed_.notify_all();
+  }
+  if (action) action();
+}
+
+bool PendingCall::fail(std::exception_ptr error) {
+  if (!claim()) return false;
+  finish(std::move(error));
+  return true;
+}
+
+bool PendingCall::finished() const {
+  std::lock_guard lock(mutex_);
+  return finished_;
+}
+
+void PendingCall::wait() const {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return finished_; });
+}
+
+std::exception_ptr PendingCall::error() const {
+  std::lock_guard lock(mutex_);
+  return error_;
+}
+
+void PendingCall::on_finished(std::function<void()> action) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!finished_) {
+      action_ = std::move(action);
+      return;
+    }
+  }
+  action();
+}
+
+void PendingCall::set_canceller(std::function<void()> canceller) {
+  std::lock_guard lock(mutex_);
+  if (!finished_) canceller_ = std::move(canceller);
+}
+
+void PendingCall::cancel() {
+  std::function<void()> canceller;
+  {
+    std::lock_guard lock(mutex_);
+    canceller.swap(canceller_);
+  }
+  const bool first = fail(std::make_exception_ptr(
+      Cancelled("the call of " + std::string(operation_.name) + " was cancelled by its caller")));
+  if (first && canceller) canceller();
+}
+
+}  // namespace skein

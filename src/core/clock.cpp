@@ -1,0 +1,115 @@
+#include "skein/core/clock.hpp"
+
+#include <pthread.h>
+
+#include <thread>
+#include <unordered_map>
+
+namespace skein {
+
+struct SystemClock::State {
+  std::mutex mutex;
+  std::condition_variable changed;   // a timer was added before the earliest, or the end has come
+  std::condition_variable finished;  // the running action has returned
+  std::map<std::pair<Instant, TimerId>, std::function<void()>> timers;
+  std::unordered_map<TimerId, Instant> instants;
+  TimerId last = 0;
+  TimerId running = 0;
+  bool stopping = false;
+  std::thread thread;
+
+  void run() {
+    pthread_setname_np(pthread_self(), "skein-timer");
+    std::unique_lock lock(mutex);
+    while (!stopping) {
+      if (timers.empty()) {
+        changed.wait(lock);
+      } else if (const Instant due = timers.begin()->first.first;
+                 due > std::chrono::steady_clock::now()) {
+        changed.wait_until(lock, due);
+      } else {
+        run_first(lock);
+      }
+    }
+  }
+
+  void run_first(std::unique_lock<std::mutex>& lock) {
+    auto node = timers.extract(timers.begin());
+    running = node.key().second;
+    instants.erase(running);
+    lock.unlock();
+    node.mapped()();
+    node.mapped() = nullptr;
+    lock.lock();
+    running = 0;
+    finished.notify_all();
+  }
+};
+
+SystemClock::SystemClock() : state_(std::make_unique<State>()) {
+  state_->thread = std::thread([state = state_.get()] { state->run(); });
+}
+
+SystemClock::~SystemClock() {
+  {
+    std::lock_guard lock(state_->mutex);
+    state_->stopping = true;
+  }
+  state_->changed.notify_all();
+  state_->thread.join();
+}
+
+TimerId SystemClock::call_at(Instant when, std::function<void()> action) {
+  std::lock_guard lock(state_->mutex);
+  const TimerId id = ++state_->last;
+  const auto position = state_->timers.emplace(std::pair(when, id), std::move(action)).first;
+  state_->instants.emplace(id, when);
+  if (position == state_->timers.begin()) state_->changed.notify_one();
+  return id;
+}
+
+void SystemClock::cancel(TimerId timer) {
+  std::function<void()> dropped;  // destroyed outside the lock: it may own what calls back here
+  std::unique_lock lock(state_->mutex);
+  if (const auto found = state_->instants.find(timer); found != state_->instants.end()) {
+    const auto position = state_->timers.find({found->second, timer});
+    dropped = std::move(position->second);
+    state_->timers.erase(position);
+    state_->instants.erase(found);
+    lock.unlock();
+    return;
+  }
+  if (timer == 0 || state_->thread.get_id() == std::this_thread::get_id()) return;
+  state_->finished.wait(lock, [&] { return state_->running != timer; });
+}
+
+Instant ManualClock::now() const {
+  std::lock_guard lock(mutex_);
+  return now_;
+}
+
+TimerId ManualClock::call_at(Instant when, std::function<void()> action) {
+  std::lock_guard lock(mutex_);
+  timers_.emplace(std::pair(when, ++last_), std::move(action));
+  return last_;
+}
+
+void ManualClock::cancel(TimerId timer) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(timers_, [&](const auto& entry) { return entry.first.second == timer; });
+}
+
+void ManualClock::advance(Duration by) {
+  std::unique_lock lock(mutex_);
+  const Instant end = now_ + by;
+  while (!timers_.empty() && timers_.begin()->first.first <= end) {
+    auto node = timers_.extract(timers_.begin());
+    now_ = std::max(now_, node.key().first);
+    lock.unlock();
+    node.mapped()();
+    lock.lock();
+  }
+  now_ = end;
+}
+
+}  // namespace skein
