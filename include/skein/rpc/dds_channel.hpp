@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "skein/core/channel.hpp"
+#include "skein/dds/port.hpp"
+#include "skein/rpc/dds_server.hpp"
+
+namespace skein::rpc {
+
+/// The lane over DDS: one request writer into the provider's partition, one reply reader in a partition
+/// of its own. Replies are decoded on the vendor's thread straight into the caller's result.
+class DdsChannel final : public Channel {
+ public:
+  struct Options {
+    std::string strategy;  ///< See OpenRequest.
+    std::string peer;      ///< For messages.
+    Duration timeout = std::chrono::seconds(5);
+    /// Called once when the connection is lost, on `control`.
+    std::function<void()> on_lost;
+  };
+
+  /// Connects: repeats `open` until the provider answers, which proves that both directions work.
+  /// Blocks for `options.timeout` at most. Throws Unavailable where no answer came, and what the
+  /// provider's Head threw where it refused. `participant`, `control`, `continuations` and `clock`
+  /// outlive the channel. Not from a vendor's thread.
+  static std::shared_ptr<DdsChannel> open(dds::Participant& participant, Executor& control,
+                                          Executor& continuations, Clock& clock,
+                                          const DdsAddress& address, Options options);
+  ~DdsChannel() override;
+
+  void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  Clock& clock() const noexcept override;
+  Executor& continuations() const noexcept override;
+  std::string peer() const override;
+  void disconnect() override;
+
+  /// Ends pending calls as Disconnected and refuses later ones: the provider is known to be gone.
+  void provider_gone(const std::string& how);
+
+  /// Whether calls can be made: neither disconnected nor lost.
+  bool connected() const;
+
+  /// Calls without an answer yet.
+  std::size_t pending() const;
+
+ private:
+  struct State;
+  explicit DdsChannel(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace skein::rpc

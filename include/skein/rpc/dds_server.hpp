@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "skein/dds/port.hpp"
+#include "skein/rpc/service.hpp"
+
+namespace skein::rpc {
+
+/// Where a provider of a service is reached.
+struct DdsAddress {
+  /// Canonical interface name, `AE_navigator/IPlanner`; the topics are `<service>_Request` and
+  /// `<service>_Reply`.
+  std::string service;
+  /// The partition of the provider's request reader; nil means the default partition, in which peers
+  /// that are not built with Skein live.
+  Guid provider;
+
+  dds::Topic request_topic() const;
+  dds::Topic reply_topic() const;
+  std::vector<std::string> partitions() const;
+};
+
+/// Offers a Service over DDS (DDS-RPC, basic mapping). Requests are taken and decoded on the vendor's
+/// thread, executed on the service's executor and answered from there; everything that creates
+/// endpoints or refuses requests happens on `control`. Each connected client has a reply writer in a
+/// partition of its own, so a client that stops reading holds up nobody else.
+class DdsServer {
+ public:
+  struct Options {
+    /// Also serve the default partition. Off for managed interfaces.
+    bool foreign_clients = true;
+    /// What a client that states no deadline gets.
+    Duration default_deadline = std::chrono::seconds(60);
+  };
+
+  /// What has happened since the start.
+  struct Counters {
+    std::uint64_t received = 0;
+    std::uint64_t malformed = 0;     ///< Dropped: no request at all.
+    std::uint64_t refused = 0;       ///< Answered with an error before execution.
+    std::uint64_t unconnected = 0;   ///< Dropped: from a client that has no session (any more).
+    std::size_t clients = 0;         ///< Connected now, foreign ones not counted.
+  };
+
+  /// `participant`, `control` and `clock` outlive the server. Throws what the port throws.
+  DdsServer(dds::Participant& participant, Executor& control, Clock& clock,
+            std::shared_ptr<Service> service, Options options);
+  /// Ends all sessions. Not from a task of `control` or of the service's executor.
+  ~DdsServer();
+
+  Counters counters() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace skein::rpc

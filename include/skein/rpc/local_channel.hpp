@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "skein/core/channel.hpp"
+#include "skein/rpc/service.hpp"
+
+namespace skein::rpc {
+
+/// The lane within one process: typed pointers, no bytes. A blocking call runs on the caller's thread
+/// where the service's executor is idle, else it queues; an asynchronous one always queues.
+class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
+ public:
+  /// Opens a session at the service; throws what the Head throws to refuse it.
+  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service, Clock& clock,
+                                            Executor& continuations, const std::string& strategy);
+
+  void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  Clock& clock() const noexcept override { return clock_; }
+  Executor& continuations() const noexcept override { return continuations_; }
+  std::string peer() const override { return peer_; }
+  void disconnect() override { closed_ = true; }
+
+ private:
+  LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executor& continuations);
+
+  bool call_inline(Service& service, PendingCall& call, const void* in);
+  void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
+
+  std::weak_ptr<Service> service_;
+  Clock& clock_;
+  Executor& continuations_;
+  std::string peer_;
+  std::shared_ptr<Session> session_;
+  std::atomic<bool> closed_{false};
+};
+
+}  // namespace skein::rpc

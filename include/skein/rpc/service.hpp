@@ -1,0 +1,93 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skein/core/call_context.hpp"
+#include "skein/core/clock.hpp"
+#include "skein/core/executor.hpp"
+#include "skein/core/guid.hpp"
+#include "skein/core/operation.hpp"
+
+namespace skein::rpc {
+
+/// What a client asks for when it connects: the paper's `initialize()`.
+struct OpenRequest {
+  Guid client;           ///< Nil for a client in the same process.
+  std::string strategy;  ///< Selection strategy by name; empty means the provider's default.
+};
+
+/// Makes a Head's session for a new client; throws Error to refuse it.
+using SessionFactory = std::function<std::shared_ptr<Session>(const OpenRequest&)>;
+
+/// One request as the provider sees it, from whichever lane. It owns its arguments.
+struct Invocation {
+  const OperationInfo* operation = nullptr;
+  /// The in struct; freed by the operation's own TypeSupport.
+  std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
+  Guid caller;
+  Instant deadline;
+  std::vector<Guid> chain;
+  std::shared_ptr<Session> session;
+  std::atomic<bool> cancelled{false};
+  /// Called once, on the executor's thread: the out struct, or what was thrown.
+  std::function<void(const void* out, std::exception_ptr error)> respond;
+};
+
+/// A provided service, whatever lane its calls come by: the implementation and the threads that run
+/// it. Expired and cancelled invocations are dropped unexecuted.
+class Service : public std::enable_shared_from_this<Service> {
+ public:
+  struct Options {
+    /// Identity of this provider of this service; also its partition.
+    Guid id = Guid::random();
+    /// Identity of the threads: services that share one executor share it. Nil: the service's own.
+    Guid strand;
+    /// Whether one blocked call blocks all others: then calls that wait for themselves are refused.
+    bool single_threaded = true;
+    SessionFactory open;
+  };
+
+  /// `executor` and `clock` outlive the service.
+  Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock, Options options);
+
+  const InterfaceInfo& interface_info() const noexcept { return servant_->interface_info(); }
+  const Guid& id() const noexcept { return options_.id; }
+  const Guid& strand() const noexcept { return options_.strand; }
+  Executor& executor() const noexcept { return executor_; }
+  const Clock& clock() const noexcept { return clock_; }
+
+  /// A session for a new client (nullptr where the service has no Head).
+  std::shared_ptr<Session> open(const OpenRequest& request) const;
+
+  /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where the queue is
+  /// full and Unavailable where the call chain shows that it would wait for itself; respond() is not
+  /// called then.
+  void submit(std::shared_ptr<Invocation> invocation);
+
+  /// Runs the operation on the calling thread where the executor is idle; false otherwise.
+  /// The outcome is in `out` or thrown.
+  bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
+                       const Invocation& frame);
+
+  /// Throws Unavailable where a call with this chain would wait for itself.
+  void refuse_self_wait(const std::vector<Guid>& chain) const;
+
+  /// No new invocation begins after this; running ones end first unless they are this thread's.
+  void close();
+
+ private:
+  void execute(Invocation& invocation);
+  void dispatch(const OperationInfo& operation, const void* in, void* out, const Invocation& frame);
+
+  std::shared_ptr<Servant> servant_;
+  Executor& executor_;
+  const Clock& clock_;
+  Options options_;
+  std::atomic<bool> closed_{false};
+};
+
+}  // namespace skein::rpc

@@ -1,0 +1,397 @@
+#include "skein/rpc/dds_channel.hpp"
+
+#include <condition_variable>
+#include <mutex>
+#include <unordered_map>
+
+#include "skein/core/call_context.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+#include "skein/rpc/wire.hpp"
+
+namespace skein::rpc {
+namespace {
+
+using wire::RequestId;
+
+// DDS tells no one that the other side has matched, so `open` is repeated until it is answered.
+constexpr std::chrono::milliseconds kOpenInterval{20};
+constexpr std::size_t kKeptCapacity = 4 << 20;
+
+dds::Qos call_qos(std::vector<std::string> partitions) {
+  dds::Qos qos;
+  qos.partitions = std::move(partitions);
+  return qos;
+}
+
+std::vector<Guid> inherited_chain(const PendingCall& call) {
+  const CallContext* context = CallContext::current();
+  if (!context || !call.blocking()) return {};
+  return {context->chain().begin(), context->chain().end()};
+}
+
+}  // namespace
+
+struct DdsChannel::State : std::enable_shared_from_this<State> {
+  enum class Phase { Opening, Open, Lost, Closed };
+
+  struct Entry {
+    std::shared_ptr<PendingCall> call;
+    TimerId timer = 0;
+  };
+
+  State(dds::Participant& participant_, Executor& control_, Executor& continuations_, Clock& clock_,
+        DdsAddress address_, Options options_)
+      : participant(participant_),
+        control(control_),
+        continuations(continuations_),
+        clock(clock_),
+        address(std::move(address_)),
+        options(std::move(options_)) {}
+
+  dds::Participant& participant;
+  Executor& control;
+  Executor& continuations;
+  Clock& clock;
+  const DdsAddress address;
+  const Options options;
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  Phase phase = Phase::Opening;
+  std::string lost_how;
+  std::exception_ptr refusal;
+  std::size_t matched_servers = 0;
+  std::uint64_t last_number = 0;
+  std::unordered_map<std::uint64_t, Entry> entries;
+  Guid client;
+  std::shared_ptr<dds::Writer> requests;
+  std::shared_ptr<dds::Reader> replies;
+
+  // ---- opening
+
+  void create_endpoints() {
+    dds::WriterListener listener;
+    listener.on_matched = [state = weak_from_this()](const Guid&, bool matched) {
+      if (const auto self = state.lock()) self->on_server(matched);
+    };
+    auto writer = participant.create_writer(address.request_topic(), call_qos(address.partitions()),
+                                            std::move(listener));
+    {
+      std::lock_guard lock(mutex);
+      client = writer->guid();
+      requests = std::move(writer);
+    }
+    dds::ReaderListener reply_listener;
+    reply_listener.on_data = [state = weak_from_this()](dds::Reader& reader) {
+      const auto self = state.lock();
+      if (self) reader.take([&](const dds::Sample& sample) { self->on_sample(sample); });
+    };
+    std::vector<std::string> partitions{client.hex()};
+    if (address.provider.is_nil()) partitions.push_back("");
+    auto reader = participant.create_reader(address.reply_topic(), call_qos(std::move(partitions)),
+                                            std::move(reply_listener));
+    std::lock_guard lock(mutex);
+    replies = std::move(reader);
+  }
+
+  void await_open() {
+    const Instant deadline = clock.now() + options.timeout;
+    std::unique_lock lock(mutex);
+    std::size_t greeted = 0;
+    while (phase == Phase::Opening && !refusal) {
+      if (clock.now() >= deadline) {
+        throw Unavailable(options.peer + " did not answer within " +
+                          std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(
+                                             options.timeout).count()) +
+                          " ms" +
+                          (matched_servers == 0 ? ": no provider's endpoint was found on this domain"
+                                                : ": its endpoint was found, but it does not reply"));
+      }
+      if (matched_servers > 0) {
+        greeted = matched_servers;
+        lock.unlock();
+        send_open();
+        lock.lock();
+      }
+      changed.wait_for(lock, kOpenInterval, [&] {
+        return phase != Phase::Opening || refusal || matched_servers != greeted;
+      });
+    }
+    if (refusal) std::rethrow_exception(refusal);
+    if (phase != Phase::Open) throw Unavailable(options.peer + " went away while it was being connected");
+  }
+
+  void send_open() {
+    Bytes message;
+    wire::begin_request(message, {client, 0}, wire::kOpen);
+    wire::append_default_branch(message);
+    wire::append_trailer(message, wire::RequestTrailer{options.timeout, 0, {}, options.strategy});
+    requests->write(message);
+  }
+
+  // ---- on the vendor's threads
+
+  void on_server(bool matched) {
+    std::unique_lock lock(mutex);
+    matched_servers += matched ? 1 : -1;
+    changed.notify_all();
+    if (matched || matched_servers > 0 || phase != Phase::Open) return;
+    lock.unlock();
+    lose("it left, or it was not heard of for longer than its lease");
+  }
+
+  void on_sample(const dds::Sample& sample) {
+    if (sample.state != dds::InstanceState::Alive) return;
+    try {
+      const wire::ReplyHead head = wire::read_reply_head(sample.cdr);
+      if (head.related.client != client) return;
+      if (head.related.number == 0) {
+        on_opened(sample.cdr, head);
+      } else if (const auto call = remove(head.related.number)) {
+        complete(*call, sample.cdr, head);
+      }
+    } catch (const Error& error) {
+      log(LogLevel::Warning, address.service, std::string("dropped a malformed reply: ") + error.what());
+    }
+  }
+
+  void on_opened(std::span<const std::byte> message, const wire::ReplyHead& head) {
+    std::exception_ptr refused;
+    // A server that is not built with Skein does not know `open`; that it says so proves it ready.
+    const bool known = head.exception != wire::RemoteException::Ok &&
+                       head.exception != wire::RemoteException::UnknownOperation;
+    if (known) refused = error_in(message, head);
+    std::lock_guard lock(mutex);
+    if (phase == Phase::Opening) {
+      if (refused) {
+        refusal = refused;
+      } else {
+        phase = Phase::Open;
+      }
+    }
+    changed.notify_all();
+  }
+
+  void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head) {
+    if (!call.claim()) return;
+    try {
+      decode_result(call, message, head);
+      call.finish();
+    } catch (...) {
+      call.finish(std::current_exception());
+    }
+  }
+
+  void decode_result(PendingCall& call, std::span<const std::byte> message,
+                     const wire::ReplyHead& head) {
+    const OperationInfo& operation = call.operation();
+    if (head.exception != wire::RemoteException::Ok) std::rethrow_exception(error_in(message, head));
+    if (head.operation != operation.hash) {
+      throw Internal(options.peer + " answered " + std::string(operation.name) +
+                     " with the result of another operation");
+    }
+    std::size_t offset = head.result;
+    const std::uint32_t which = wire::read_discriminator(message, offset);
+    if (which == 0) {
+      operation.out->decode(call.out(), message, offset);
+      return;
+    }
+    for (const ExceptionInfo* exception : operation.raises) {
+      if (exception->hash != which) continue;
+      const std::unique_ptr<void, void (*)(void*)> value(exception->type->make(),
+                                                         exception->type->destroy);
+      exception->type->decode(value.get(), message, offset);
+      exception->raise(value.get());
+    }
+    throw Internal(options.peer + " ended " + std::string(operation.name) +
+                   " with an exception that this side's interface does not declare");
+  }
+
+  std::exception_ptr error_in(std::span<const std::byte> message, const wire::ReplyHead& head) {
+    ErrorCode code = wire::error_code_of(head.exception);
+    std::string text = "remote exception " + std::to_string(static_cast<int>(head.exception));
+    if (const auto trailer = wire::read_reply_trailer(message, head.result + 1)) {
+      code = trailer->code;
+      text = trailer->text;
+    }
+    try {
+      throw_error(code, options.peer + ": " + text);
+    } catch (...) {
+      return std::current_exception();
+    }
+  }
+
+  // ---- calls
+
+  void start(const std::shared_ptr<PendingCall>& call, const void* in) {
+    std::uint64_t number = 0;
+    try {
+      const auto writer = enter(call, number);
+      send(*writer, *call, number, in);
+    } catch (...) {
+      if (number != 0) remove(number);
+      call->fail(std::current_exception());
+      return;
+    }
+    if (call->operation().oneway && remove(number) && call->claim()) call->finish();
+  }
+
+  // The call is known before its request leaves: a reply may be here before write() returns.
+  std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call, std::uint64_t& number) {
+    std::lock_guard lock(mutex);
+    if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
+    if (phase != Phase::Open) throw Unavailable("no connection to " + options.peer + ": disconnected");
+    number = ++last_number;
+    Entry& entry = entries[number];
+    entry.call = call;
+    entry.timer = clock.call_at(call->deadline(), [state = weak_from_this(), number] {
+      if (const auto self = state.lock()) self->expire(number);
+    });
+    if (!call->blocking()) {
+      call->set_canceller([state = weak_from_this(), number] {
+        if (const auto self = state.lock()) self->abandon(number);
+      });
+    }
+    return requests;
+  }
+
+  void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in) {
+    thread_local Bytes message;
+    wire::begin_request(message, {client, number}, call.operation().hash);
+    call.operation().in->encode(in, message);
+    wire::append_trailer(message, wire::RequestTrailer{call.deadline() - clock.now(), 0,
+                                                       inherited_chain(call), {}});
+    writer.write(message);
+    if (message.capacity() > kKeptCapacity) message = Bytes();
+  }
+
+  std::shared_ptr<PendingCall> remove(std::uint64_t number) {
+    Entry entry;
+    {
+      std::lock_guard lock(mutex);
+      const auto found = entries.find(number);
+      if (found == entries.end()) return nullptr;
+      entry = std::move(found->second);
+      entries.erase(found);
+    }
+    clock.cancel(entry.timer);
+    return entry.call;
+  }
+
+  void expire(std::uint64_t number) {
+    const auto call = remove(number);
+    if (!call) return;
+    const bool first = call->fail(std::make_exception_ptr(
+        TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
+                 " before its deadline; whether it ran is unknown")));
+    if (first) tell_server(number);
+  }
+
+  void abandon(std::uint64_t number) {
+    if (remove(number)) tell_server(number);
+  }
+
+  void tell_server(std::uint64_t number) {
+    control.post([state = weak_from_this(), number] {
+      const auto self = state.lock();
+      if (!self) return;
+      std::shared_ptr<dds::Writer> writer;
+      {
+        std::lock_guard lock(self->mutex);
+        if (self->phase != Phase::Open) return;
+        writer = self->requests;
+      }
+      Bytes message;
+      wire::begin_request(message, {self->client, 0}, wire::kCancel);
+      wire::append_default_branch(message);
+      wire::append_trailer(message, wire::RequestTrailer{{}, number, {}, {}});
+      try {
+        writer->write(message);
+      } catch (const Error&) {
+        // The server will find the call expired; cancelling early is a courtesy.
+      }
+    });
+  }
+
+  // ---- ending
+
+  void lose(const std::string& how) {
+    {
+      std::lock_guard lock(mutex);
+      if (phase == Phase::Lost || phase == Phase::Closed) return;
+      phase = Phase::Lost;
+      lost_how = how;
+      changed.notify_all();
+    }
+    fail_all([&](const OperationInfo& operation) {
+      return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how + "); whether " +
+                                                  std::string(operation.name) + " ran is unknown"));
+    });
+    if (options.on_lost) control.post(options.on_lost);
+  }
+
+  void close() {
+    std::shared_ptr<dds::Writer> writer;
+    std::shared_ptr<dds::Reader> reader;
+    {
+      std::lock_guard lock(mutex);
+      if (phase == Phase::Closed) return;
+      phase = Phase::Closed;
+      writer.swap(requests);
+      reader.swap(replies);
+    }
+    fail_all([&](const OperationInfo& operation) {
+      return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
+                                               " was closed during " + std::string(operation.name)));
+    });
+  }
+
+  template <class MakeError>
+  void fail_all(MakeError make_error) {
+    std::unordered_map<std::uint64_t, Entry> failed;
+    {
+      std::lock_guard lock(mutex);
+      failed.swap(entries);
+    }
+    for (auto& [number, entry] : failed) {
+      clock.cancel(entry.timer);
+      entry.call->fail(make_error(entry.call->operation()));
+    }
+  }
+};
+
+std::shared_ptr<DdsChannel> DdsChannel::open(dds::Participant& participant, Executor& control,
+                                             Executor& continuations, Clock& clock,
+                                             const DdsAddress& address, Options options) {
+  auto state = std::make_shared<State>(participant, control, continuations, clock, address,
+                                       std::move(options));
+  std::shared_ptr<DdsChannel> channel(new DdsChannel(state));
+  state->create_endpoints();
+  state->await_open();
+  return channel;
+}
+
+DdsChannel::~DdsChannel() { state_->close(); }
+
+void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  state_->start(call, in);
+}
+
+Clock& DdsChannel::clock() const noexcept { return state_->clock; }
+Executor& DdsChannel::continuations() const noexcept { return state_->continuations; }
+std::string DdsChannel::peer() const { return state_->options.peer; }
+void DdsChannel::disconnect() { state_->close(); }
+void DdsChannel::provider_gone(const std::string& how) { state_->lose(how); }
+
+bool DdsChannel::connected() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->phase == State::Phase::Open;
+}
+
+std::size_t DdsChannel::pending() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->entries.size();
+}
+
+}  // namespace skein::rpc

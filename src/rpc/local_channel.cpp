@@ -1,0 +1,88 @@
+#include "skein/rpc/local_channel.hpp"
+
+#include "skein/core/error.hpp"
+
+namespace skein::rpc {
+namespace {
+
+std::vector<Guid> inherited_chain() {
+  const CallContext* context = CallContext::current();
+  if (!context) return {};
+  return {context->chain().begin(), context->chain().end()};
+}
+
+}  // namespace
+
+std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service, Clock& clock,
+                                                 Executor& continuations,
+                                                 const std::string& strategy) {
+  std::shared_ptr<LocalChannel> channel(new LocalChannel(service, clock, continuations));
+  const auto target = service.lock();
+  if (!target) throw Unavailable("the service has been withdrawn");
+  channel->peer_ = std::string(target->interface_info().name) + " in this process";
+  channel->session_ = target->open({Guid{}, strategy});
+  return channel;
+}
+
+LocalChannel::LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executor& continuations)
+    : service_(std::move(service)), clock_(clock), continuations_(continuations) {}
+
+void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  try {
+    const auto service = service_.lock();
+    if (closed_ || !service) {
+      throw Unavailable("no connection to " + peer_ + ": it was " +
+                        (service ? "disconnected" : "withdrawn"));
+    }
+    if (call->blocking() && call_inline(*service, *call, in)) return;
+    enqueue(*service, call, in);
+  } catch (...) {
+    call->fail(std::current_exception());
+  }
+}
+
+bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* in) {
+  Invocation frame;
+  frame.deadline = call.deadline();
+  frame.chain = inherited_chain();
+  frame.session = session_;
+  service.refuse_self_wait(frame.chain);
+  if (!service.try_call_inline(call.operation(), in, call.out(), frame)) return false;
+  if (call.claim()) call.finish();
+  return true;
+}
+
+void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
+                           const void* in) {
+  const OperationInfo& operation = call->operation();
+  auto invocation = std::make_shared<Invocation>();
+  invocation->operation = &operation;
+  invocation->in = {operation.in->make(), operation.in->destroy};
+  operation.in->assign(invocation->in.get(), in);
+  invocation->deadline = call->deadline();
+  invocation->session = session_;
+  if (call->blocking()) invocation->chain = inherited_chain();
+
+  const auto timer = std::make_shared<std::atomic<TimerId>>(0);
+  invocation->respond = [call, timer, &clock = clock_](const void* out, std::exception_ptr error) {
+    clock.cancel(timer->load());
+    if (!call->claim()) return;
+    if (!error) call->operation().out->assign(call->out(), out);
+    call->finish(error);
+  };
+  call->set_canceller([invocation] { invocation->cancelled = true; });
+  timer->store(clock_.call_at(call->deadline(), [call, invocation, peer = peer_] {
+    invocation->cancelled = true;
+    call->fail(std::make_exception_ptr(
+        TimedOut(peer + " did not answer " + std::string(call->operation().name) + " in time")));
+  }));
+  try {
+    service.submit(invocation);
+  } catch (...) {
+    clock_.cancel(timer->load());
+    throw;
+  }
+  if (operation.oneway && call->claim()) call->finish();
+}
+
+}  // namespace skein::rpc

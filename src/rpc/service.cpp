@@ -1,0 +1,88 @@
+#include "skein/rpc/service.hpp"
+
+#include <algorithm>
+
+#include "skein/core/error.hpp"
+
+namespace skein::rpc {
+
+Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock,
+                 Options options)
+    : servant_(std::move(servant)),
+      executor_(executor),
+      clock_(clock),
+      options_(std::move(options)) {
+  if (options_.strand.is_nil()) options_.strand = options_.id;
+}
+
+std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
+  return options_.open ? options_.open(request) : nullptr;
+}
+
+void Service::submit(std::shared_ptr<Invocation> invocation) {
+  refuse_self_wait(invocation->chain);
+  if (!executor_.post([self = shared_from_this(), invocation] { self->execute(*invocation); })) {
+    throw Overloaded("the queue of " + std::string(interface_info().name) +
+                     " is full; the call was not executed");
+  }
+}
+
+bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
+                              const Invocation& frame) {
+  std::exception_ptr error;
+  const bool ran = executor_.try_run_inline([&] {
+    try {
+      dispatch(operation, in, out, frame);
+    } catch (...) {
+      error = std::current_exception();
+    }
+  });
+  if (error) std::rethrow_exception(error);
+  return ran;
+}
+
+void Service::refuse_self_wait(const std::vector<Guid>& chain) const {
+  if (!options_.single_threaded) return;
+  if (std::find(chain.begin(), chain.end(), options_.strand) == chain.end()) return;
+  throw Unavailable("the call to " + std::string(interface_info().name) +
+                    " would wait for itself: the only thread that could answer it is blocked in a call "
+                    "that led to this one; make the inner call asynchronous or give the service more "
+                    "threads");
+}
+
+void Service::close() { closed_ = true; }
+
+void Service::execute(Invocation& invocation) {
+  if (closed_) {
+    invocation.respond(nullptr, std::make_exception_ptr(Unavailable(
+                                    std::string(interface_info().name) + " is being withdrawn")));
+    return;
+  }
+  if (invocation.cancelled || clock_.now() >= invocation.deadline) {
+    invocation.respond(nullptr, std::make_exception_ptr(TimedOut(
+                                    "the deadline passed before " +
+                                    std::string(interface_info().name) + " could begin; not executed")));
+    return;
+  }
+  const TypeSupport& type = *invocation.operation->out;
+  const std::unique_ptr<void, void (*)(void*)> out(type.make(), type.destroy);
+  std::exception_ptr error;
+  try {
+    dispatch(*invocation.operation, invocation.in.get(), out.get(), invocation);
+  } catch (...) {
+    error = std::current_exception();
+  }
+  invocation.respond(error ? nullptr : out.get(), error);
+}
+
+void Service::dispatch(const OperationInfo& operation, const void* in, void* out,
+                       const Invocation& frame) {
+  std::vector<Guid> chain = frame.chain;
+  chain.push_back(options_.strand);
+  const CallContext context(clock_, frame.deadline, frame.caller, std::move(chain),
+                            frame.session.get(), &frame.cancelled);
+  const CallContextScope scope(context);
+  servant_->dispatch(operation, in, out);
+}
+
+}  // namespace skein::rpc
