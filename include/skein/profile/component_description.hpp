@@ -50,7 +50,8 @@ struct InterfaceReference {
 struct ComponentDescription {
   std::string name;
   std::vector<ImplementedInterface> interfaces;
-  std::vector<InterfaceReference> dependencies;   ///< Services of others without which it cannot work.
+  std::vector<InterfaceReference>
+      dependencies;  ///< Services of others without which it cannot work.
   std::vector<InterfaceReference> subcomponents;  ///< Managed interfaces of the CSPs that it hosts.
   SourcePosition where;
 

@@ -19,8 +19,9 @@ namespace skein::profile {
 ///           <attribute name="latency" value="100"/>
 ///         </implements>
 ///       </interfaces>
-///       <dependencies> <depends>IDL:AE_flightControllerI/IFlightController</depends> </dependencies>
-///       <subcomponents> <subcomponent>IDL:AE_navigator/IPlanner</subcomponent> </subcomponents>
+///       <dependencies> <depends>IDL:AE_flightControllerI/IFlightController</depends>
+///       </dependencies> <subcomponents> <subcomponent>IDL:AE_navigator/IPlanner</subcomponent>
+///       </subcomponents>
 ///     </component>
 ///
 /// An `implements` that has neither parameters nor attributes may hold the interface as plain text.

@@ -31,7 +31,7 @@ struct DictionaryEntry {
   std::string unit;               ///< Of numbers and durations; empty for none.
   std::optional<double> minimum;  ///< Inclusive, in `unit`.
   std::optional<double> maximum;  ///< Inclusive, in `unit`.
-  std::string interface;          ///< Of a service reference: what it must implement; empty for any.
+  std::string interface;  ///< Of a service reference: what it must implement; empty for any.
   std::string documentation;
   SourcePosition where;
 };

@@ -1,0 +1,229 @@
+#include "skein/profile/check.hpp"
+
+#include <algorithm>
+
+#include "check_component.hpp"
+#include "composition.hpp"
+#include "finding_list.hpp"
+#include "repeated.hpp"
+#include "words.hpp"
+
+namespace skein::profile {
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(const MissionProfile& mission) : mission_(mission), composition_(mission) {}
+
+  std::vector<Finding> run() {
+    check_mission_peer();
+    check_loopback();
+    Repeated names("the peer");
+    for (std::size_t i = 0; i < mission_.peers.size() && !findings_.full(); ++i) {
+      names.add(mission_.peers[i].name, mission_.peers[i].where, findings_);
+      check_peer(i);
+    }
+    check_cycles();
+    return findings_.list();
+  }
+
+ private:
+  void check_mission_peer() {
+    const PeerProfile* first = nullptr;
+    for (const auto& peer : mission_.peers) {
+      if (!peer.runs_mission) continue;
+      if (first != nullptr) {
+        findings_.error(peer.where, "a second peer with role=\"mission\"",
+                        "the first is at " + to_text(first->where));
+      }
+      if (first == nullptr) first = &peer;
+      if (peer.rules.restart.policy != RestartPolicy::Never) {
+        findings_.error(peer.where,
+                        in_quotes(peer.name) + " runs the mission and would be restarted",
+                        "write restart=\"never\": its end is the mission's");
+      }
+    }
+  }
+
+  void check_loopback() {
+    const bool one_process =
+        mission_.peers.size() == 1 &&
+        std::none_of(mission_.peers[0].csps.begin(), mission_.peers[0].csps.end(),
+                     [](const CspProfile& csp) { return csp.process == CspProcess::Own; });
+    if (one_process) return;
+    for (const auto& peer : mission_.peers) {
+      if (peer.vendor != "loopback") continue;
+      findings_.warning(peer.where,
+                        in_quotes(peer.name) + " is on loopback, a network inside of one process",
+                        "other processes will not see it; write fastdds or cyclonedds");
+    }
+  }
+
+  void check_peer(std::size_t number) {
+    const auto& peer = mission_.peers[number];
+    check_needs(number);
+    Repeated names("the CSP");
+    for (const auto& csp : peer.csps) names.add(csp.name, csp.where, findings_);
+    if (peer.component) {
+      check_component(*peer.component, mission_.dictionary, findings_);
+      check_settings(peer.parameters, *peer.component, mission_.dictionary, findings_);
+      check_references(peer.parameters, peer);
+      check_subcomponents(peer);
+    }
+    for (const auto& csp : peer.csps) {
+      if (!csp.component) continue;
+      check_component(*csp.component, mission_.dictionary, findings_);
+      check_settings(csp.parameters, *csp.component, mission_.dictionary, findings_);
+      check_references(csp.parameters, peer);
+    }
+  }
+
+  void check_needs(std::size_t number) {
+    const auto& peer = mission_.peers[number];
+    for (const auto& need : composition_.needs(number)) {
+      if (findings_.full()) return;
+      if (!composition_.providers(need.interface).empty()) continue;
+      const std::string who =
+          need.csp.empty() ? in_quotes(peer.name) : in_quotes(peer.name + "/" + need.csp);
+      const std::string csp = composition_.csp_with(need.interface);
+      if (csp.empty()) {
+        findings_.error(need.where,
+                        who + " depends on " + need.interface + ", which no peer of " +
+                            in_quotes(mission_.name) + " implements",
+                        "add a peer that does; " +
+                            remedy_for(need.interface, composition_.public_interfaces()));
+      } else {
+        findings_.error(need.where,
+                        who + " depends on " + need.interface + ", which only the CSP " +
+                            in_quotes(csp) + " implements",
+                        "a CSP serves its own peer alone; depend on that peer's interface");
+      }
+    }
+  }
+
+  static bool implements(const CspProfile& csp, const std::string& interface) {
+    const auto& items = csp.component->interfaces;
+    return std::any_of(items.begin(), items.end(),
+                       [&](const ImplementedInterface& item) { return item.type == interface; });
+  }
+
+  void check_subcomponents(const PeerProfile& peer) {
+    const auto& wanted = peer.component->subcomponents;
+    const bool all_read = std::all_of(peer.csps.begin(), peer.csps.end(),
+                                      [](const CspProfile& csp) { return bool(csp.component); });
+    for (const auto& item : wanted) {
+      const bool found = std::any_of(peer.csps.begin(), peer.csps.end(), [&](const auto& csp) {
+        return csp.component && implements(csp, item.type);
+      });
+      if (found || !all_read) continue;
+      findings_.error(peer.where,
+                      in_quotes(peer.name) + " has no CSP for its subcomponent " + item.type +
+                          " (" + to_text(item.where) + ")",
+                      "add a <csp> whose component implements it");
+    }
+    for (const auto& csp : peer.csps) {
+      const bool fits = !csp.component ||
+                        std::any_of(wanted.begin(), wanted.end(),
+                                    [&](const auto& item) { return implements(csp, item.type); });
+      if (fits) continue;
+      std::vector<std::string_view> known;
+      for (const auto& item : wanted) known.push_back(item.type);
+      findings_.error(csp.where,
+                      "the CSP " + in_quotes(csp.name) + " implements no subcomponent of " +
+                          in_quotes(peer.name),
+                      known.empty() ? in_quotes(peer.component->name) + " has no subcomponents"
+                                    : "it must implement one of them: " +
+                                          remedy_for(csp.component->interfaces.empty()
+                                                         ? ""
+                                                         : csp.component->interfaces[0].type,
+                                                     known));
+    }
+  }
+
+  /// A service reference names an interface, a peer, or a CSP of the same peer.
+  void check_references(const std::vector<Setting>& settings, const PeerProfile& peer) {
+    for (const auto& setting : settings) {
+      const auto* entry = mission_.dictionary.find(EntryKind::Parameter, setting.name);
+      if (entry == nullptr || entry->type != ValueType::Service || setting.value.empty()) continue;
+      const auto known = referable_names(peer, entry->interface);
+      if (std::find(known.begin(), known.end(), setting.value) != known.end()) continue;
+      findings_.error(setting.where,
+                      in_quotes(setting.name) + " refers to " + in_quotes(setting.value) +
+                          ", which is no peer or CSP with " +
+                          (entry->interface.empty() ? "a service" : entry->interface),
+                      remedy_for(setting.value, known));
+    }
+  }
+
+  std::vector<std::string_view> referable_names(const PeerProfile& peer,
+                                                const std::string& interface) const {
+    const auto fits = [&](const ComponentDescription* component) {
+      if (component == nullptr) return true;
+      if (interface.empty()) return !component->interfaces.empty();
+      return component->find_interface(interface) != nullptr;
+    };
+    std::vector<std::string_view> names;
+    for (const auto& csp : peer.csps) {
+      if (fits(csp.component.get())) names.push_back(csp.name);
+    }
+    for (const auto& other : mission_.peers) {
+      if (fits(other.component.get())) names.push_back(other.name);
+    }
+    return names;
+  }
+
+  void check_cycles() {
+    for (const auto& cycle : dependency_cycles(composition_)) {
+      std::string way;
+      for (const std::size_t peer : cycle) way += mission_.peers[peer].name + " -> ";
+      way += mission_.peers[cycle.front()].name;
+      findings_.error(place_of_cycle(cycle), "a cycle of dependencies: " + shortened(way),
+                      "remove one of them, or add a provider outside of the cycle");
+    }
+  }
+
+  /// The dependency that leads from the first peer of the cycle to the next one.
+  SourcePosition place_of_cycle(const std::vector<std::size_t>& cycle) const {
+    const std::size_t next = cycle.size() > 1 ? cycle[1] : cycle[0];
+    for (const auto& need : composition_.needs(cycle[0])) {
+      const auto& providers = composition_.providers(need.interface);
+      if (std::find(providers.begin(), providers.end(), next) != providers.end()) return need.where;
+    }
+    return mission_.peers[cycle[0]].where;
+  }
+
+  const MissionProfile& mission_;
+  Composition composition_;
+  FindingList findings_;
+};
+
+}  // namespace
+
+std::vector<Finding> check(const MissionProfile& profile) { return Checker(profile).run(); }
+
+namespace {
+
+MissionProfile read_and_check(const std::filesystem::path& file, FindingList& findings) {
+  std::vector<Finding> of_reading;
+  auto profile = read_mission_profile(file, of_reading);
+  findings.add_all(of_reading);
+  findings.add_all(check(profile));
+  return profile;
+}
+
+}  // namespace
+
+std::vector<Finding> check_file(const std::filesystem::path& file) {
+  FindingList findings;
+  read_and_check(file, findings);
+  return findings.list();
+}
+
+MissionProfile read_checked_profile(const std::filesystem::path& file) {
+  FindingList findings;
+  auto profile = read_and_check(file, findings);
+  findings.throw_if_errors();
+  return profile;
+}
+
+}  // namespace skein::profile

@@ -1,0 +1,141 @@
+#include "dictionary_reader.hpp"
+
+#include <algorithm>
+
+#include "skein/core/interface_name.hpp"
+#include "text_file.hpp"
+#include "words.hpp"
+
+namespace skein::profile {
+namespace {
+
+const std::vector<std::string_view> kTypeWords{"integer", "real",     "boolean",
+                                               "text",    "duration", "service"};
+const std::vector<std::string_view> kTimeUnits{"ns", "us", "ms", "s", "min", "h"};
+
+bool is_number(ValueType type) {
+  return type == ValueType::Integer || type == ValueType::Real || type == ValueType::Duration;
+}
+
+std::optional<double> read_limit(const XmlElement& element, const char* name) {
+  const auto limit = element.maybe_attribute(name);
+  if (!limit) return std::nullopt;
+  DictionaryEntry number;
+  number.name = name;
+  number.type = ValueType::Real;
+  try {
+    return std::get<double>(parse_value(number, limit->value));
+  } catch (const InvalidArgument& error) {
+    element.findings().error(limit->where, error.what(), "write a plain number");
+    return std::nullopt;
+  }
+}
+
+void read_type(const XmlElement& element, DictionaryEntry& entry) {
+  const auto word = element.attribute("type");
+  if (word.value.empty()) return;
+  if (const auto type = maybe_value_type(word.value)) {
+    entry.type = *type;
+  } else {
+    element.findings().error(word.where, in_quotes(word.value) + " is no type",
+                             remedy_for(word.value, kTypeWords));
+  }
+}
+
+void read_unit_and_range(const XmlElement& element, DictionaryEntry& entry) {
+  const auto unit = element.maybe_attribute("unit");
+  entry.unit = unit ? unit->value : "";
+  entry.minimum = read_limit(element, "min");
+  entry.maximum = read_limit(element, "max");
+  auto& findings = element.findings();
+  const bool unknown_unit =
+      std::find(kTimeUnits.begin(), kTimeUnits.end(), entry.unit) == kTimeUnits.end();
+  if (entry.type == ValueType::Duration && unknown_unit) {
+    findings.error(unit ? unit->where : element.where(),
+                   "the duration " + in_quotes(entry.name) + " has " +
+                       (entry.unit.empty() ? "no unit" : "the unit " + in_quotes(entry.unit)),
+                   "write one of ns, us, ms, s, min, h");
+    entry.unit = "s";
+  }
+  if (!is_number(entry.type) && (unit || entry.minimum || entry.maximum)) {
+    findings.error(element.where(),
+                   in_quotes(entry.name) + " is a " + std::string(to_string(entry.type)) +
+                       " and has a unit or a range",
+                   "only numbers and durations have them");
+  }
+  if (entry.minimum && entry.maximum && *entry.minimum > *entry.maximum) {
+    findings.error(element.where(), "the range of " + in_quotes(entry.name) + " is empty",
+                   "exchange min and max");
+  }
+}
+
+void read_interface(const XmlElement& element, DictionaryEntry& entry) {
+  const auto interface = element.maybe_attribute("interface");
+  if (!interface) return;
+  if (entry.type != ValueType::Service) {
+    element.findings().error(interface->where, in_quotes(entry.name) + " has an interface",
+                             "only a type=\"service\" has one");
+  } else if (!is_interface_name(interface->value)) {
+    element.findings().error(interface->where,
+                             in_quotes(interface->value) + " is no interface name",
+                             "write one like IDL:AE_navigator/IPlanner");
+  } else {
+    entry.interface = canonical_interface_name(interface->value);
+  }
+}
+
+DictionaryEntry read_entry(const XmlElement& element) {
+  element.allow({"name", "type", "unit", "min", "max", "interface"}, {}, true);
+  DictionaryEntry entry;
+  entry.kind = element.name() == "attribute" ? EntryKind::Attribute : EntryKind::Parameter;
+  entry.name = element.attribute("name").value;
+  entry.where = element.where();
+  entry.documentation = element.text();
+  read_type(element, entry);
+  read_unit_and_range(element, entry);
+  read_interface(element, entry);
+  if (entry.documentation.empty()) {
+    element.findings().error(element.where(), in_quotes(entry.name) + " is not documented",
+                             "say in the element's text what it means");
+  }
+  return entry;
+}
+
+}  // namespace
+
+Dictionary read_dictionary(const XmlDocument& document, FindingList& findings) {
+  const XmlElement root(document.root(), document, findings);
+  if (root.name() != "dictionary") {
+    findings.error(root.where(), "<" + shortened(root.name()) + "> is no dictionary",
+                   "its outermost element is <dictionary>");
+    return {};
+  }
+  root.allow({}, {"attribute", "parameter"});
+  std::vector<DictionaryEntry> entries;
+  std::map<std::pair<EntryKind, std::string>, SourcePosition> seen;
+  for (const auto& child : root.children()) {
+    if (child.name() != "attribute" && child.name() != "parameter") continue;
+    entries.push_back(read_entry(child));
+    const auto& entry = entries.back();
+    const auto [first, fresh] = seen.emplace(std::pair(entry.kind, entry.name), entry.where);
+    if (!fresh) {
+      findings.error(entry.where, in_quotes(entry.name) + " is defined twice",
+                     "the first is at " + to_text(first->second));
+    }
+  }
+  return Dictionary(std::move(entries));
+}
+
+Dictionary parse_dictionary(std::string_view xml, const std::string& file) {
+  const XmlDocument document(xml, file);
+  FindingList findings;
+  auto dictionary = read_dictionary(document, findings);
+  findings.throw_if_errors();
+  return dictionary;
+}
+
+Dictionary read_dictionary(const std::filesystem::path& file) {
+  return parse_dictionary(read_text_file(file), file.string());
+}
+
+}  // namespace skein::profile

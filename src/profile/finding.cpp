@@ -1,0 +1,41 @@
+#include "skein/profile/finding.hpp"
+
+#include <algorithm>
+
+namespace skein::profile {
+
+std::string to_text(const SourcePosition& where) {
+  if (where.line == 0) return where.file;
+  return where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+}
+
+std::string to_text(const Finding& finding) {
+  const char* severity = finding.severity == Severity::Error ? ": error: " : ": warning: ";
+  std::string text = to_text(finding.where) + severity + finding.problem;
+  return finding.remedy.empty() ? text : text + "; " + finding.remedy;
+}
+
+std::string to_text(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const auto& finding : findings) text += to_text(finding) + "\n";
+  return text;
+}
+
+bool has_errors(const std::vector<Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& finding) { return finding.severity == Severity::Error; });
+}
+
+namespace {
+
+std::string without_last_break(std::string text) {
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+DescriptionError::DescriptionError(std::vector<Finding> findings)
+    : InvalidArgument(without_last_break(to_text(findings))), findings_(std::move(findings)) {}
+
+}  // namespace skein::profile

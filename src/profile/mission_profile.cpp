@@ -1,0 +1,103 @@
+#include "skein/profile/mission_profile.hpp"
+
+#include <algorithm>
+
+#include "words.hpp"
+
+namespace skein::profile {
+namespace {
+
+template <typename Items>
+auto find_named(Items& items, std::string_view name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+template <typename Items>
+std::vector<std::string_view> names_of(const Items& items) {
+  std::vector<std::string_view> names;
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
+
+template <typename Items>
+auto& demand_named(Items& items, std::string_view name, const std::string& kind) {
+  if (auto* found = find_named(items, name)) return *found;
+  throw InvalidArgument("there is no " + kind + " " + in_quotes(name) + "; " +
+                        remedy_for(name, names_of(items)));
+}
+
+void demand_parameter(const ComponentDescription& component, std::string_view name) {
+  if (component.interfaces.empty()) return;
+  std::vector<std::string_view> known;
+  for (const auto& implemented : component.interfaces) {
+    if (implemented.find_parameter(name) != nullptr) return;
+    for (const auto& parameter : implemented.required) known.push_back(parameter.name);
+    for (const auto& parameter : implemented.optional) known.push_back(parameter.name);
+  }
+  throw InvalidArgument(in_quotes(component.name) + " has no parameter " + in_quotes(name) + "; " +
+                        remedy_for(name, known));
+}
+
+template <typename Owner>
+void set_parameter(Owner& owner, const Dictionary& dictionary, const std::string& name,
+                   const std::string& value) {
+  if (owner.component) demand_parameter(*owner.component, name);
+  const auto* entry = dictionary.find(EntryKind::Parameter, name);
+  if (entry == nullptr) {
+    throw InvalidArgument("the dictionary has no parameter " + in_quotes(name) + "; " +
+                          dictionary.suggestion(EntryKind::Parameter, name));
+  }
+  parse_value(*entry, value);
+  if (auto* setting = find_named(owner.parameters, name)) {
+    setting->value = value;
+  } else {
+    owner.parameters.push_back({name, value, {"the command line", 0, 0}});
+  }
+}
+
+}  // namespace
+
+const Setting* CspProfile::find_parameter(std::string_view parameter_name) const {
+  return find_named(parameters, parameter_name);
+}
+
+const Setting* PeerProfile::find_parameter(std::string_view parameter_name) const {
+  return find_named(parameters, parameter_name);
+}
+
+const CspProfile* PeerProfile::find_csp(std::string_view csp_name) const {
+  return find_named(csps, csp_name);
+}
+
+const PeerProfile* MissionProfile::find_peer(std::string_view peer_name) const {
+  return find_named(peers, peer_name);
+}
+
+const std::vector<std::string>& known_vendors() {
+  static const std::vector<std::string> kVendors{"fastdds", "cyclonedds", "loopback"};
+  return kVendors;
+}
+
+void apply_setting(MissionProfile& profile, std::string_view assignment) {
+  const auto equals = assignment.find('=');
+  const auto dot = assignment.substr(0, equals).find('.');
+  if (equals == std::string_view::npos || dot == std::string_view::npos) {
+    throw InvalidArgument(in_quotes(assignment) +
+                          " is no setting; write PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE");
+  }
+  const auto owner = assignment.substr(0, dot);
+  const std::string parameter(assignment.substr(dot + 1, equals - dot - 1));
+  const std::string value(assignment.substr(equals + 1));
+  const auto slash = owner.find('/');
+  auto& peer = demand_named(profile.peers, owner.substr(0, slash), "peer");
+  if (slash == std::string_view::npos) {
+    set_parameter(peer, profile.dictionary, parameter, value);
+  } else {
+    auto& csp = demand_named(peer.csps, owner.substr(slash + 1), "CSP");
+    set_parameter(csp, profile.dictionary, parameter, value);
+  }
+}
+
+}  // namespace skein::profile

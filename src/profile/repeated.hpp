@@ -1,0 +1,29 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "finding_list.hpp"
+#include "words.hpp"
+
+namespace skein::profile {
+
+/// Finds names that are given twice, and says where they were given first.
+class Repeated {
+ public:
+  explicit Repeated(std::string kind) : kind_(std::move(kind)) {}
+
+  void add(const std::string& name, const SourcePosition& where, FindingList& findings) {
+    if (name.empty()) return;
+    const auto [first, fresh] = first_.emplace(name, where);
+    if (fresh) return;
+    findings.error(where, kind_ + " " + in_quotes(name) + " is there twice",
+                   "the first is at " + to_text(first->second));
+  }
+
+ private:
+  std::string kind_;
+  std::map<std::string, SourcePosition> first_;
+};
+
+}  // namespace skein::profile

@@ -1,0 +1,65 @@
+#include "text_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "skein/profile/finding.hpp"
+
+namespace skein::profile {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& problem,
+                         const std::string& remedy = {}) {
+  throw DescriptionError({Finding{Severity::Error, {file.string(), 0, 0}, problem, remedy}});
+}
+
+std::string reason() { return std::generic_category().message(errno); }
+
+class OpenFile {
+ public:
+  // O_NONBLOCK: opening a named pipe must not wait for somebody to write.
+  explicit OpenFile(const std::filesystem::path& file)
+      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  int get() const noexcept { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file) {
+  const OpenFile input(file);
+  if (input.get() < 0) refuse(file, "cannot be opened: " + reason(), "check the path");
+  struct stat status {};
+  if (::fstat(input.get(), &status) != 0) refuse(file, "cannot be examined: " + reason());
+  if (S_ISDIR(status.st_mode)) refuse(file, "is a directory", "name a file in it");
+  if (!S_ISREG(status.st_mode)) refuse(file, "is no regular file");
+  const std::string too_large = "is larger than " + std::to_string(kLargestFile >> 20) + " MiB";
+  if (static_cast<std::uintmax_t>(status.st_size) > kLargestFile) refuse(file, too_large);
+
+  // One byte more than expected tells a file that grows while it is read.
+  std::string text(static_cast<std::size_t>(status.st_size) + 1, '\0');
+  std::size_t length = 0;
+  while (length < text.size()) {
+    const auto count = ::read(input.get(), text.data() + length, text.size() - length);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse(file, "cannot be read: " + reason());
+    if (count == 0) break;
+    length += static_cast<std::size_t>(count);
+  }
+  if (length == text.size()) refuse(file, "grew while it was read", "try again");
+  text.resize(length);
+  return text;
+}
+
+}  // namespace skein::profile
