@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "skein/core/guid.hpp"
+
+namespace skein::dds {
+
+/// First in, first out, with at most `depth` items of each key: one more replaces the key's oldest.
+/// Without a depth it holds everything, and costs no more than a deque.
+template <class Item>
+class KeyedQueue {
+ public:
+  explicit KeyedQueue(std::optional<std::uint32_t> depth) : depth_(depth) {}
+
+  void push(const Guid& key, Item item) {
+    if (depth_) {
+      auto& places = places_[key];
+      if (places.size() >= *depth_) {
+        entries_[places.front() - first_].item.reset();
+        places.erase(places.begin());
+        --size_;
+      }
+      places.push_back(first_ + entries_.size());
+    }
+    entries_.push_back({key, std::move(item)});
+    ++size_;
+    if (entries_.size() > 2 * size_ + 64) compact();
+  }
+
+  /// The oldest item, or nothing.
+  std::optional<Item> pop() {
+    while (!entries_.empty()) {
+      Entry entry = std::move(entries_.front());
+      entries_.pop_front();
+      ++first_;
+      if (!entry.item) continue;
+      --size_;
+      if (depth_) forget_first_place(entry.key);
+      return std::move(entry.item);
+    }
+    return std::nullopt;
+  }
+
+  void erase(const Guid& key) {
+    for (Entry& entry : entries_) {
+      if (entry.item && entry.key == key) {
+        entry.item.reset();
+        --size_;
+      }
+    }
+    places_.erase(key);
+  }
+
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const Entry& entry : entries_) {
+      if (entry.item) visit(*entry.item);
+    }
+  }
+
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+
+ private:
+  struct Entry {
+    Guid key;
+    std::optional<Item> item;
+  };
+
+  void forget_first_place(const Guid& key) {
+    const auto found = places_.find(key);
+    found->second.erase(found->second.begin());
+    if (found->second.empty()) places_.erase(found);
+  }
+
+  /// Removes the holes that replaced items left behind.
+  void compact() {
+    std::deque<Entry> kept;
+    first_ = 0;
+    places_.clear();
+    for (Entry& entry : entries_) {
+      if (!entry.item) continue;
+      if (depth_) places_[entry.key].push_back(kept.size());
+      kept.push_back(std::move(entry));
+    }
+    entries_ = std::move(kept);
+  }
+
+  std::optional<std::uint32_t> depth_;
+  std::deque<Entry> entries_;
+  std::uint64_t first_ = 0;  // the number of entries_.front()
+  std::size_t size_ = 0;
+  std::unordered_map<Guid, std::vector<std::uint64_t>> places_;
+};
+
+}  // namespace skein::dds

@@ -1,0 +1,106 @@
+#include "entities.hpp"
+
+#include "../options_check.hpp"
+#include "../sample_format.hpp"
+
+namespace skein::dds::loopback {
+namespace {
+
+class LoopbackWriter final : public Writer {
+ public:
+  LoopbackWriter(std::shared_ptr<Hub> hub, std::shared_ptr<WriterCore> core)
+      : hub_(std::move(hub)), core_(std::move(core)) {
+    hub_->add(core_);
+  }
+  ~LoopbackWriter() override {
+    hub_->remove(core_);
+    core_->participant->topics.release(core_->topic.name, [](int) {});
+  }
+
+  void write(std::span<const std::byte> cdr, const KeyHash& key) override {
+    require_header(cdr, core_->topic.name);
+    hub_->write(*core_, cdr, core_->topic.keyed ? key : KeyHash{}, InstanceState::Alive);
+  }
+  void dispose(const KeyHash& key) override {
+    require_keyed(core_->topic);
+    hub_->write(*core_, {}, key, InstanceState::Disposed);
+  }
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
+    return hub_->wait_for_acknowledgments(*core_, timeout);
+  }
+  Guid guid() const override { return core_->guid; }
+  std::vector<Guid> matched_readers() const override { return hub_->matched_readers(*core_); }
+
+ private:
+  std::shared_ptr<Hub> hub_;
+  std::shared_ptr<WriterCore> core_;
+};
+
+class LoopbackReader final : public Reader {
+ public:
+  LoopbackReader(std::shared_ptr<Hub> hub, std::shared_ptr<ReaderCore> core)
+      : hub_(std::move(hub)), core_(std::move(core)) {
+    core_->self = this;
+    hub_->add(core_);
+  }
+  ~LoopbackReader() override {
+    hub_->remove(core_);
+    core_->participant->topics.release(core_->topic.name, [](int) {});
+  }
+
+  std::size_t take(const std::function<void(const Sample&)>& consumer, std::size_t limit) override {
+    return hub_->take(*core_, consumer, limit);
+  }
+  Guid guid() const override { return core_->guid; }
+  std::vector<Guid> matched_writers() const override { return hub_->matched_writers(*core_); }
+  std::uint64_t malformed() const override { return hub_->malformed(*core_); }
+
+ private:
+  std::shared_ptr<Hub> hub_;
+  std::shared_ptr<ReaderCore> core_;
+};
+
+// RTPS entity kinds: with key, without key.
+constexpr std::uint8_t kWriterKind = 0x02;
+constexpr std::uint8_t kReaderKind = 0x07;
+
+}  // namespace
+
+std::unique_ptr<Participant> LoopbackVendor::create_participant(const ParticipantOptions& options) {
+  check_domain(options);
+  return std::make_unique<LoopbackParticipant>(hub_, options);
+}
+
+void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, const Qos& qos,
+                                  std::uint8_t kind) {
+  check_qos(topic, qos);
+  core_->topics.acquire(topic, [] { return 0; });
+  endpoint.participant = core_;
+  endpoint.topic = topic;
+  endpoint.qos = qos;
+  endpoint.guid = core_->guid;
+  std::lock_guard lock(mutex_);
+  const std::uint32_t number = ++core_->last_entity;
+  endpoint.guid.bytes[12] = static_cast<std::uint8_t>(number >> 16);
+  endpoint.guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
+  endpoint.guid.bytes[14] = static_cast<std::uint8_t>(number);
+  endpoint.guid.bytes[15] = kind;
+}
+
+std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, const Qos& qos,
+                                                           WriterListener listener) {
+  auto core = std::make_shared<WriterCore>(qos);
+  prepare(*core, topic, qos, kWriterKind);
+  core->listener = std::move(listener);
+  return std::make_unique<LoopbackWriter>(hub_, std::move(core));
+}
+
+std::unique_ptr<Reader> LoopbackParticipant::create_reader(const Topic& topic, const Qos& qos,
+                                                           ReaderListener listener) {
+  auto core = std::make_shared<ReaderCore>(qos);
+  prepare(*core, topic, qos, kReaderKind);
+  core->listener = std::move(listener);
+  return std::make_unique<LoopbackReader>(hub_, std::move(core));
+}
+
+}  // namespace skein::dds::loopback

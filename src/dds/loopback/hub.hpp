@@ -1,0 +1,183 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "../keyed_queue.hpp"
+#include "../topic_table.hpp"
+#include "skein/core/bytes.hpp"
+#include "skein/dds/loopback.hpp"
+
+namespace skein::dds::loopback {
+
+struct Message {
+  Bytes cdr;
+  KeyHash key;
+  InstanceState state;
+  Guid writer;
+  std::uint64_t sequence;
+};
+using MessagePtr = std::shared_ptr<const Message>;
+
+/// What one participant knows of another.
+struct View {
+  bool heard = false;  // its signs of life arrive
+  bool known = false;  // found, and its lease has not expired
+  std::uint64_t generation = 0;  // outdates the timers of earlier silences
+};
+
+struct ParticipantCore {
+  Guid guid;
+  ParticipantOptions options;
+  bool paused = false;
+  bool killed = false;
+  std::uint32_t last_entity = 0;
+  std::map<Guid, View> views;
+  TopicTable<int> topics;
+};
+
+struct EndpointCore {
+  Guid guid;
+  std::shared_ptr<ParticipantCore> participant;
+  Topic topic;
+  Qos qos;
+  bool closed = false;
+};
+
+struct WriterCore : EndpointCore {
+  explicit WriterCore(const Qos& qos) : history(qos.history_depth) {}
+  WriterListener listener;
+  std::uint64_t last_sequence = 0;
+  KeyedQueue<MessagePtr> history;  // for late joiners, where the writer is transient-local
+};
+
+struct ReaderCore : EndpointCore {
+  explicit ReaderCore(const Qos& qos) : queue(qos.history_depth) {}
+  Reader* self = nullptr;
+  ReaderListener listener;
+  KeyedQueue<MessagePtr> queue;
+  bool told = false;  // an on_data is on its way
+  bool refused = false;  // something did not fit and will be asked for again
+  std::uint64_t malformed = 0;
+};
+
+struct Unacknowledged {
+  MessagePtr message;
+  bool arrived = false;
+  std::uint32_t in_flight = 0;
+  std::uint32_t attempts = 0;
+};
+
+/// A matched writer and reader. Either side may know of the match without the other.
+struct Link {
+  std::shared_ptr<WriterCore> writer;
+  std::shared_ptr<ReaderCore> reader;
+  bool writer_side = false;
+  bool reader_side = false;
+  bool alive = true;
+  bool repeating = false;  // a timer will repeat what was lost
+  std::uint64_t delivered = 0;
+  std::map<std::uint64_t, Unacknowledged> pending{};  // reliable only
+};
+
+/// The network's whole state behind one mutex. Listeners run outside it, from one queue, one at a time.
+class Hub : public std::enable_shared_from_this<Hub> {
+ public:
+  explicit Hub(Clock& clock);
+
+  std::shared_ptr<ParticipantCore> join(const ParticipantOptions& options);
+  void leave(const std::shared_ptr<ParticipantCore>& participant);
+  void add(const std::shared_ptr<WriterCore>& writer);
+  void add(const std::shared_ptr<ReaderCore>& reader);
+  void remove(const std::shared_ptr<WriterCore>& writer);
+  void remove(const std::shared_ptr<ReaderCore>& reader);
+
+  void write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
+             InstanceState state);
+  bool wait_for_acknowledgments(const WriterCore& writer, std::chrono::milliseconds timeout);
+  std::size_t take(ReaderCore& reader, const std::function<void(const Sample&)>& consumer,
+                   std::size_t limit);
+  std::uint64_t malformed(const ReaderCore& reader);
+  std::vector<Guid> matched_readers(const WriterCore& writer);
+  std::vector<Guid> matched_writers(const ReaderCore& reader);
+
+  void judge_transfers(std::function<Fate(const Transfer&)> judge);
+  void isolate(const Guid& participant);
+  void separate(const Guid& one, const Guid& other);
+  void heal();
+  void pause(const Guid& participant, bool paused);
+  void kill(const Guid& participant);
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  using LinkId = std::pair<Guid, Guid>;  // writer, reader
+
+  // Who hears and knows whom (presence.cpp).
+  bool connected(const ParticipantCore& one, const ParticipantCore& other) const;
+  void update_presence();
+  void hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed, View& view);
+  void lose_sound(ParticipantCore& observer, ParticipantCore& observed, View& view);
+  void expire_participant(const Guid& observer, const Guid& observed, std::uint64_t generation);
+  void expire_liveliness(const LinkId& id, std::uint64_t generation);
+  bool still_silent(const Guid& observer, const Guid& observed, std::uint64_t generation);
+  void forget(ParticipantCore& observer, const Guid& observed);
+  void tell_presence(ParticipantCore& observer, const Guid& observed, bool present);
+
+  // Which endpoints are matched (matching.cpp).
+  bool knows(const ParticipantCore& observer, const ParticipantCore& observed) const;
+  void match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr<ReaderCore>& reader);
+  void match_all(const ParticipantCore& one, const ParticipantCore& other);
+  void match_writer_side(Link& link);
+  void match_reader_side(Link& link);
+  void unmatch_writer_side(Link& link);
+  void unmatch_reader_side(Link& link);
+  void drop_unused_links();
+  void replay_history(Link& link);
+
+  // How samples travel (transfer.cpp).
+  bool reliable(const Link& link) const { return link.reader->qos.reliable; }
+  bool has_room(const WriterCore& writer) const;
+  void wait_for_room(WriterCore& writer, Lock& lock);
+  void enqueue(Link& link, const MessagePtr& message);
+  void send(Link& link, const MessagePtr& message, std::uint32_t attempt);
+  void arrive(const LinkId& id, const MessagePtr& message);
+  void deliver_in_order(Link& link);
+  bool accept(ReaderCore& reader, const MessagePtr& message);
+  void repeat_later(Link& link);
+  void repeat_lost(Link& link);
+  void repeat_between(const ParticipantCore& one, const ParticipantCore& other);
+
+  void post(const EndpointCore* target, std::function<void()> callback);
+  void run_callbacks(Lock& lock);
+  void wait_until_idle(const void* target, Lock& lock);
+  void after(Duration delay, std::function<void(Hub&)> action);
+
+  Clock& clock_;
+  const bool may_wait_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::function<Fate(const Transfer&)> judge_;
+  std::uint32_t last_participant_ = 0;
+  std::map<Guid, std::shared_ptr<ParticipantCore>> participants_;
+  std::map<Guid, std::shared_ptr<WriterCore>> writers_;
+  std::map<Guid, std::shared_ptr<ReaderCore>> readers_;
+  std::map<LinkId, Link> links_;
+  std::set<Guid> isolated_;
+  std::set<std::pair<Guid, Guid>> separated_;
+
+  struct Callback {
+    const void* target;
+    std::function<void()> run;
+  };
+  std::deque<Callback> callbacks_;
+  const void* running_ = nullptr;
+  std::thread::id runner_;
+  bool draining_ = false;
+};
+
+}  // namespace skein::dds::loopback

@@ -1,0 +1,30 @@
+#include "skein/dds/loopback.hpp"
+
+#include "entities.hpp"
+
+namespace skein::dds {
+
+LoopbackNetwork::LoopbackNetwork(Clock& clock) : hub_(std::make_shared<loopback::Hub>(clock)) {}
+LoopbackNetwork::~LoopbackNetwork() = default;
+
+std::shared_ptr<Vendor> LoopbackNetwork::vendor() {
+  return std::make_shared<loopback::LoopbackVendor>(hub_);
+}
+
+void LoopbackNetwork::judge_transfers(std::function<Fate(const Transfer&)> judge) {
+  hub_->judge_transfers(std::move(judge));
+}
+
+void LoopbackNetwork::isolate(const Guid& participant) { hub_->isolate(participant); }
+
+void LoopbackNetwork::separate(const Guid& one, const Guid& other) { hub_->separate(one, other); }
+
+void LoopbackNetwork::heal() { hub_->heal(); }
+
+void LoopbackNetwork::pause(const Guid& participant) { hub_->pause(participant, true); }
+
+void LoopbackNetwork::resume(const Guid& participant) { hub_->pause(participant, false); }
+
+void LoopbackNetwork::kill(const Guid& participant) { hub_->kill(participant); }
+
+}  // namespace skein::dds

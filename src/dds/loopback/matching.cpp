@@ -1,0 +1,175 @@
+#include <algorithm>
+
+#include "hub.hpp"
+
+namespace skein::dds::loopback {
+namespace {
+
+bool share_partition(const Qos& writer, const Qos& reader) {
+  const std::vector<std::string> standard{""};
+  const auto& offered = writer.partitions.empty() ? standard : writer.partitions;
+  const auto& wanted = reader.partitions.empty() ? standard : reader.partitions;
+  return std::ranges::any_of(offered, [&](const std::string& partition) {
+    return std::ranges::find(wanted, partition) != wanted.end();
+  });
+}
+
+/// What DDS calls requested against offered.
+bool compatible(const WriterCore& writer, const ReaderCore& reader) {
+  if (writer.topic != reader.topic || !share_partition(writer.qos, reader.qos)) return false;
+  if (reader.qos.reliable && !writer.qos.reliable) return false;
+  if (reader.qos.transient_local && !writer.qos.transient_local) return false;
+  if (!reader.qos.liveliness_lease) return true;
+  return writer.qos.liveliness_lease && *writer.qos.liveliness_lease <= *reader.qos.liveliness_lease;
+}
+
+}  // namespace
+
+bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed) const {
+  if (&observer == &observed) return true;
+  const auto view = observer.views.find(observed.guid);
+  return view != observer.views.end() && view->second.known;
+}
+
+void Hub::match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr<ReaderCore>& reader) {
+  if (!compatible(*writer, *reader)) return;
+  const bool by_writer = knows(*writer->participant, *reader->participant);
+  const bool by_reader = knows(*reader->participant, *writer->participant);
+  if (!by_writer && !by_reader) return;
+  Link& link = links_.try_emplace({writer->guid, reader->guid}, Link{writer, reader}).first->second;
+  const bool rematched = by_reader && !link.reader_side && link.writer_side;
+  if (by_reader && !link.reader_side) match_reader_side(link);
+  if (by_writer && !link.writer_side) {
+    match_writer_side(link);
+  } else if (rematched) {
+    replay_history(link);
+  }
+}
+
+void Hub::match_all(const ParticipantCore& one, const ParticipantCore& other) {
+  const auto between = [&](const EndpointCore& writer, const EndpointCore& reader) {
+    const ParticipantCore* writing = writer.participant.get();
+    const ParticipantCore* reading = reader.participant.get();
+    return (writing == &one && reading == &other) || (writing == &other && reading == &one);
+  };
+  for (const auto& [writer_guid, writer] : writers_) {
+    for (const auto& [reader_guid, reader] : readers_) {
+      if (between(*writer, *reader)) match(writer, reader);
+    }
+  }
+}
+
+void Hub::match_reader_side(Link& link) {
+  link.reader_side = true;
+  link.alive = true;
+  link.delivered = link.reader->qos.transient_local ? 0 : link.writer->last_sequence;
+  post(link.reader.get(), [reader = link.reader, writer = link.writer->guid] {
+    if (reader->listener.on_matched) reader->listener.on_matched(writer, true);
+  });
+}
+
+void Hub::match_writer_side(Link& link) {
+  link.writer_side = true;
+  post(link.writer.get(), [writer = link.writer, reader = link.reader->guid] {
+    if (writer->listener.on_matched) writer->listener.on_matched(reader, true);
+  });
+  replay_history(link);
+}
+
+void Hub::replay_history(Link& link) {
+  if (!link.reader->qos.transient_local) return;
+  std::vector<MessagePtr> missed;
+  link.writer->history.for_each([&](const MessagePtr& message) {
+    if (message->sequence > link.delivered) missed.push_back(message);
+  });
+  for (const MessagePtr& message : missed) enqueue(link, message);
+}
+
+void Hub::unmatch_writer_side(Link& link) {
+  if (!link.writer_side) return;
+  link.writer_side = false;
+  link.pending.clear();
+  changed_.notify_all();
+  if (link.writer->closed) return;
+  post(link.writer.get(), [writer = link.writer, reader = link.reader->guid] {
+    if (writer->listener.on_matched) writer->listener.on_matched(reader, false);
+  });
+}
+
+void Hub::unmatch_reader_side(Link& link) {
+  if (!link.reader_side) return;
+  link.reader_side = false;
+  if (link.reader->closed) return;
+  post(link.reader.get(), [reader = link.reader, writer = link.writer->guid] {
+    if (reader->listener.on_matched) reader->listener.on_matched(writer, false);
+  });
+}
+
+void Hub::drop_unused_links() {
+  std::erase_if(links_, [](const auto& entry) {
+    return !entry.second.writer_side && !entry.second.reader_side;
+  });
+}
+
+void Hub::add(const std::shared_ptr<WriterCore>& writer) {
+  Lock lock(mutex_);
+  writers_.emplace(writer->guid, writer);
+  for (const auto& [guid, reader] : readers_) match(writer, reader);
+  run_callbacks(lock);
+}
+
+void Hub::add(const std::shared_ptr<ReaderCore>& reader) {
+  Lock lock(mutex_);
+  readers_.emplace(reader->guid, reader);
+  for (const auto& [guid, writer] : writers_) match(writer, reader);
+  run_callbacks(lock);
+}
+
+void Hub::remove(const std::shared_ptr<WriterCore>& writer) {
+  Lock lock(mutex_);
+  writer->closed = true;
+  writers_.erase(writer->guid);
+  for (auto& [id, link] : links_) {
+    if (link.writer != writer) continue;
+    unmatch_writer_side(link);
+    // Unreachable readers keep the match until the participant's lease expires.
+    if (connected(*writer->participant, *link.reader->participant)) unmatch_reader_side(link);
+  }
+  drop_unused_links();
+  wait_until_idle(static_cast<const EndpointCore*>(writer.get()), lock);
+  run_callbacks(lock);
+}
+
+void Hub::remove(const std::shared_ptr<ReaderCore>& reader) {
+  Lock lock(mutex_);
+  reader->closed = true;
+  readers_.erase(reader->guid);
+  for (auto& [id, link] : links_) {
+    if (link.reader != reader) continue;
+    unmatch_reader_side(link);
+    if (connected(*reader->participant, *link.writer->participant)) unmatch_writer_side(link);
+  }
+  drop_unused_links();
+  wait_until_idle(static_cast<const EndpointCore*>(reader.get()), lock);
+  run_callbacks(lock);
+}
+
+std::vector<Guid> Hub::matched_readers(const WriterCore& writer) {
+  Lock lock(mutex_);
+  std::vector<Guid> readers;
+  for (const auto& [id, link] : links_) {
+    if (id.first == writer.guid && link.writer_side) readers.push_back(id.second);
+  }
+  return readers;
+}
+
+std::vector<Guid> Hub::matched_writers(const ReaderCore& reader) {
+  Lock lock(mutex_);
+  std::vector<Guid> writers;
+  for (const auto& [id, link] : links_) {
+    if (id.second == reader.guid && link.reader_side) writers.push_back(id.first);
+  }
+  return writers;
+}
+
+}  // namespace skein::dds::loopback

@@ -1,0 +1,122 @@
+#include "options_check.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+
+#include "skein/core/error.hpp"
+#include "skein/core/suggestion.hpp"
+
+namespace skein::dds {
+namespace {
+
+constexpr const char* kLoopbackAddress = "127.0.0.1";
+
+struct Interface {
+  std::string name;
+  std::string address;
+};
+
+std::vector<Interface> interfaces_of_this_host() {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) throw Internal("the interfaces of this host cannot be listed");
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, freeifaddrs);
+  std::vector<Interface> found;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = {};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
+    inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
+    found.push_back({entry->ifa_name, text});
+  }
+  return found;
+}
+
+std::string address_of(const std::string& wanted, const std::vector<Interface>& host) {
+  for (const Interface& interface : host) {
+    if (wanted == interface.name || wanted == interface.address) return interface.address;
+  }
+  // All of 127.0.0.0/8 is this host, whether or not an interface lists it.
+  in_addr address{};
+  if (inet_pton(AF_INET, wanted.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127) {
+    return wanted;
+  }
+  std::vector<std::string> known;
+  std::string listed;
+  for (const Interface& interface : host) {
+    known.push_back(interface.name);
+    listed += (listed.empty() ? "" : ", ") + interface.name + " (" + interface.address + ")";
+  }
+  throw InvalidArgument("this host has no interface '" + wanted + "' with an IPv4 address" +
+                        suggestion(wanted, known) + "; it has " +
+                        (listed.empty() ? "none" : listed));
+}
+
+bool is_host_name(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) || c == '.' || c == '-' || c == '_';
+  });
+}
+
+}  // namespace
+
+void check_domain(const ParticipantOptions& options) {
+  if (options.domain <= kMaxDomain) return;
+  throw InvalidArgument("domain " + std::to_string(options.domain) + " is out of range: 0 to " +
+                        std::to_string(kMaxDomain));
+}
+
+void check_options(const ParticipantOptions& options) {
+  check_domain(options);
+  const auto addresses = interface_addresses(options.network);
+  for (const std::string& peer : options.network.peers) {
+    if (!is_host_name(peer)) {
+      throw InvalidArgument("peer '" + peer + "' is neither an address nor a host's name");
+    }
+  }
+  if (options.lease < std::chrono::milliseconds(20)) {
+    throw InvalidArgument("a participant's lease of " + std::to_string(options.lease.count()) +
+                          " ms is too short: 20 ms at least");
+  }
+}
+
+std::vector<std::string> interface_addresses(const Network& network) {
+  if (network.interfaces.empty()) return {kLoopbackAddress};
+  const auto host = interfaces_of_this_host();
+  std::vector<std::string> addresses;
+  for (const std::string& wanted : network.interfaces) addresses.push_back(address_of(wanted, host));
+  return addresses;
+}
+
+bool is_loopback_only(const Network& network) {
+  return std::ranges::all_of(interface_addresses(network), [](const std::string& address) {
+    return address.starts_with("127.");
+  });
+}
+
+void check_qos(const Topic& topic, const Qos& qos) {
+  const auto refuse = [&](const std::string& why) {
+    throw InvalidArgument("topic '" + topic.name + "': " + why);
+  };
+  if (qos.history_depth && *qos.history_depth == 0) refuse("a history depth of 0 keeps nothing");
+  if (qos.max_blocking.count() < 0) refuse("max_blocking is negative");
+  if (qos.liveliness_lease && qos.liveliness_lease->count() <= 0) {
+    refuse("a liveliness lease must be longer than 0");
+  }
+  for (const std::string& partition : qos.partitions) {
+    if (partition.find_first_of("*?[]") != std::string::npos) {
+      refuse("partition '" + partition + "' has a wildcard; vendors differ in what they match");
+    }
+  }
+}
+
+void require_keyed(const Topic& topic) {
+  if (topic.keyed) return;
+  throw InvalidArgument("topic '" + topic.name + "' has no keys, so nothing of it can be disposed");
+}
+
+}  // namespace skein::dds

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "skein/dds/port.hpp"
+
+/// Checks that all back ends make alike, before a vendor sees anything. All throw InvalidArgument.
+namespace skein::dds {
+
+/// RTPS maps domains to ports; beyond 232 there are none left.
+inline constexpr std::uint32_t kMaxDomain = 232;
+
+void check_domain(const ParticipantOptions& options);
+
+/// Domain, interfaces and peers. An interface must exist on this host, by name or by address.
+void check_options(const ParticipantOptions& options);
+
+/// The IPv4 addresses of `network.interfaces`, in dotted form; 127.0.0.1 where none is named.
+std::vector<std::string> interface_addresses(const Network& network);
+
+/// Whether the network goes no further than this host's 127.0.0.1.
+bool is_loopback_only(const Network& network);
+
+void check_qos(const Topic& topic, const Qos& qos);
+
+void require_keyed(const Topic& topic);
+
+}  // namespace skein::dds

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "skein/core/error.hpp"
+#include "skein/dds/port.hpp"
+
+namespace skein::dds {
+
+/// A participant's topics in use, each with what the back end keeps for it. Thread-safe.
+template <class Handle>
+class TopicTable {
+ public:
+  /// Counts one more user of the topic; the first one's `make()` provides its handle. Throws
+  /// InvalidArgument where the name is in use with another type or keyedness.
+  template <class Make>
+  Handle acquire(const Topic& topic, Make&& make) {
+    std::lock_guard lock(mutex_);
+    if (topic.name.empty() || topic.type_name.empty()) {
+      throw InvalidArgument("a topic needs a name and a type name; got '" + topic.name + "' of type '" +
+                            topic.type_name + "'");
+    }
+    const auto found = entries_.find(topic.name);
+    if (found == entries_.end()) {
+      Handle handle = make();
+      entries_.emplace(topic.name, Entry{topic, handle, 1});
+      return handle;
+    }
+    if (found->second.topic != topic) throw InvalidArgument(conflict(found->second.topic, topic));
+    ++found->second.users;
+    return found->second.handle;
+  }
+
+  /// Counts one user less; the last one's `destroy(handle)` ends the topic.
+  template <class Destroy>
+  void release(const std::string& name, Destroy&& destroy) {
+    std::lock_guard lock(mutex_);
+    const auto found = entries_.find(name);
+    if (--found->second.users > 0) return;
+    destroy(found->second.handle);
+    entries_.erase(found);
+  }
+
+ private:
+  struct Entry {
+    Topic topic;
+    Handle handle;
+    std::size_t users;
+  };
+
+  static std::string describe(const Topic& topic) {
+    return "type '" + topic.type_name + (topic.keyed ? "' with keys" : "' without keys");
+  }
+  static std::string conflict(const Topic& old, const Topic& wanted) {
+    return "topic '" + wanted.name + "' is in use in this participant with " + describe(old) +
+           "; it cannot also have " + describe(wanted);
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace skein::dds

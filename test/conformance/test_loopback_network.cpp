@@ -1,0 +1,205 @@
+#include <catch2/catch.hpp>
+
+#include "skein/core/error.hpp"
+#include "skein/dds/loopback.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+using namespace std::chrono_literals;
+
+namespace {
+
+const Topic kTopic{"counts", "test::Count", false};
+
+/// A sample whose body is one number.
+std::vector<std::byte> number(std::uint8_t value) {
+  return {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}, std::byte{value}};
+}
+
+std::vector<int> take_all(Reader& reader) {
+  std::vector<int> values;
+  reader.take([&](const Sample& sample) { values.push_back(std::to_integer<int>(sample.cdr[4])); });
+  return values;
+}
+
+struct Peer {
+  Peer(LoopbackNetwork& network, std::chrono::milliseconds lease = 1000ms) {
+    ParticipantOptions options;
+    options.lease = lease;
+    options.on_participant = [this](const Guid&, bool present) { events.push_back(present ? '+' : '-'); };
+    participant = network.vendor()->create_participant(options);
+  }
+  std::string events;
+  std::unique_ptr<Participant> participant;
+};
+
+struct Pair {
+  explicit Pair(Qos qos = {}) {
+    writer = one.participant->create_writer(kTopic, qos);
+    ReaderListener listener;
+    listener.on_matched = [this](const Guid&, bool matched) { events += matched ? "+" : "-"; };
+    listener.on_liveliness = [this](const Guid&, bool alive) { events += alive ? "alive " : "lost "; };
+    reader = two.participant->create_reader(kTopic, qos, listener);
+  }
+  ManualClock clock;
+  LoopbackNetwork network{clock};
+  Peer one{network};
+  Peer two{network};
+  std::string events;
+  std::unique_ptr<Writer> writer;
+  std::unique_ptr<Reader> reader;
+};
+
+}  // namespace
+
+TEST_CASE("a sample is there when write returns, without any thread") {
+  Pair pair;
+  pair.writer->write(number(7));
+  CHECK(take_all(*pair.reader) == std::vector{7});
+  CHECK(pair.writer->wait_for_acknowledgments(0ms));
+}
+
+TEST_CASE("a reliable reader gets what was lost after the repeat time, in order") {
+  Pair pair;
+  pair.network.judge_transfers([](const Transfer& transfer) {
+    return transfer.sequence == 2 && transfer.attempt < 3 ? Fate::drop() : Fate::deliver();
+  });
+  for (int i = 1; i <= 3; ++i) pair.writer->write(number(static_cast<std::uint8_t>(i)));
+  CHECK(take_all(*pair.reader) == std::vector{1});
+  CHECK_FALSE(pair.writer->wait_for_acknowledgments(0ms));
+  pair.clock.advance(LoopbackNetwork::kRepeatAfter);
+  CHECK(take_all(*pair.reader).empty());
+  pair.clock.advance(LoopbackNetwork::kRepeatAfter);
+  CHECK(take_all(*pair.reader) == std::vector{2, 3});
+  CHECK(pair.writer->wait_for_acknowledgments(0ms));
+}
+
+TEST_CASE("a reliable reader sees neither duplicates nor a wrong order") {
+  Pair pair;
+  pair.network.judge_transfers([](const Transfer& transfer) {
+    return transfer.sequence == 1 ? Fate::late(5ms) : Fate::twice();
+  });
+  pair.writer->write(number(1));
+  pair.writer->write(number(2));
+  CHECK(take_all(*pair.reader).empty());
+  pair.clock.advance(5ms);
+  CHECK(take_all(*pair.reader) == std::vector{1, 2});
+}
+
+TEST_CASE("a best-effort reader loses what is dropped and what comes late") {
+  Qos qos;
+  qos.reliable = false;
+  Pair pair(qos);
+  pair.network.judge_transfers([](const Transfer& transfer) {
+    if (transfer.sequence == 1) return Fate::late(5ms);
+    return transfer.sequence == 2 ? Fate::drop() : Fate::deliver();
+  });
+  for (int i = 1; i <= 3; ++i) pair.writer->write(number(static_cast<std::uint8_t>(i)));
+  pair.clock.advance(1s);
+  CHECK(take_all(*pair.reader) == std::vector{3});
+}
+
+TEST_CASE("an isolated participant is gone after its lease and comes back with heal") {
+  Qos qos;
+  qos.liveliness_lease = 200ms;
+  Pair pair(qos);
+  CHECK(pair.two.events == "+");
+  pair.network.isolate(pair.one.participant->guid());
+  pair.clock.advance(199ms);
+  CHECK(pair.events == "+");
+  pair.clock.advance(1ms);
+  CHECK(pair.events == "+lost ");
+  pair.clock.advance(800ms);
+  CHECK(pair.two.events == "+-");
+  CHECK(pair.one.events == "+-");
+  CHECK(pair.reader->matched_writers().empty());
+  CHECK(pair.writer->matched_readers().empty());
+  pair.network.heal();
+  CHECK(pair.two.events == "+-+");
+  CHECK(pair.events == "+lost -+");
+  pair.writer->write(number(9));
+  CHECK(take_all(*pair.reader) == std::vector{9});
+}
+
+TEST_CASE("what was written during a short cut arrives with heal") {
+  Qos qos;
+  qos.liveliness_lease = 200ms;
+  Pair pair(qos);
+  pair.network.separate(pair.one.participant->guid(), pair.two.participant->guid());
+  pair.writer->write(number(1));
+  pair.clock.advance(500ms);
+  CHECK(take_all(*pair.reader).empty());
+  pair.network.heal();
+  CHECK(take_all(*pair.reader) == std::vector{1});
+  CHECK(pair.events == "+lost alive ");
+}
+
+TEST_CASE("a paused participant loses nobody, but is lost and found again") {
+  Pair pair;
+  pair.network.pause(pair.two.participant->guid());
+  pair.clock.advance(1s);
+  CHECK(pair.one.events == "+-");
+  CHECK(pair.two.events == "+");
+  pair.network.resume(pair.two.participant->guid());
+  CHECK(pair.one.events == "+-+");
+  CHECK(pair.two.events == "+");
+  pair.writer->write(number(4));
+  CHECK(take_all(*pair.reader) == std::vector{4});
+}
+
+TEST_CASE("what is sent to a paused participant waits for it") {
+  Pair pair;
+  pair.network.pause(pair.two.participant->guid());
+  pair.writer->write(number(1));
+  pair.clock.advance(900ms);
+  CHECK(take_all(*pair.reader).empty());
+  pair.network.resume(pair.two.participant->guid());
+  CHECK(take_all(*pair.reader) == std::vector{1});
+  CHECK(pair.one.events == "+");
+}
+
+TEST_CASE("a killed participant says no goodbye and never returns") {
+  Pair pair;
+  pair.network.kill(pair.one.participant->guid());
+  pair.writer.reset();
+  pair.clock.advance(999ms);
+  CHECK(pair.events == "+");
+  pair.clock.advance(1ms);
+  CHECK(pair.events == "+-");
+  CHECK(pair.two.events == "+-");
+  pair.network.heal();
+  CHECK(pair.two.events == "+-");
+}
+
+TEST_CASE("transient-local samples come back after a long cut") {
+  Qos qos;
+  qos.transient_local = true;
+  qos.history_depth = 1;
+  Pair pair(qos);
+  pair.writer->write(number(1));
+  pair.writer->write(number(2));
+  CHECK(take_all(*pair.reader) == std::vector{2});
+  pair.network.isolate(pair.one.participant->guid());
+  pair.clock.advance(2s);
+  pair.network.heal();
+  CHECK(take_all(*pair.reader) == std::vector{2});
+}
+
+TEST_CASE("a full writer refuses at once where time stands still") {
+  Qos qos;
+  qos.max_samples = 2;
+  Pair pair(qos);
+  pair.network.isolate(pair.two.participant->guid());
+  pair.writer->write(number(1));
+  pair.writer->write(number(2));
+  CHECK_THROWS_AS(pair.writer->write(number(3)), Overloaded);
+  pair.clock.advance(1s);
+  CHECK_NOTHROW(pair.writer->write(number(4)));
+}
+
+TEST_CASE("two runs see the same GUIDs") {
+  Pair first;
+  Pair second;
+  CHECK(first.writer->guid() == second.writer->guid());
+  CHECK(first.reader->guid() == second.reader->guid());
+}
