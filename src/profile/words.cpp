@@ -25,7 +25,7 @@ std::string shortened(std::string_view text) {
   return length < text.size() ? result + "..." : result;
 }
 
-std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"'; }
+std::string in_quotes(std::string_view text) { return "\"" + shortened(text) + "\""; }
 
 std::string remedy_for(std::string_view unknown, const std::vector<std::string_view>& known) {
   std::vector<std::string> comparable;

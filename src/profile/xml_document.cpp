@@ -65,7 +65,7 @@ XmlDocument::XmlDocument(std::string_view text, std::string file)
 void XmlDocument::demand_one_root() const {
   const auto second = root().next_sibling();
   if (!second) return;
-  throw DescriptionError({Finding{Severity::Error, position_of(second.name()),
+  throw DescriptionError({Finding{Severity::Error, position_of(second.name() - 1),
                                   "a second element at the top", "a file has one"}});
 }
 
@@ -76,7 +76,7 @@ SourcePosition XmlDocument::position_of(const char* place) const {
   return {file_, line, column};
 }
 
-SourcePosition XmlElement::where() const { return document_->position_of(node_.name()); }
+SourcePosition XmlElement::where() const { return document_->position_of(node_.name() - 1); }
 
 std::string XmlElement::text() const {
   std::string text;

@@ -1,0 +1,230 @@
+#include "skein/profile/check.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "profile_folder.hpp"
+
+using namespace skein::profile;
+
+namespace {
+
+const std::string kF = R"(<peer name="f" component="f.xml"/>)";
+const std::string kN = R"(<peer name="n" component="n.xml"><csp component="p.xml"/></peer>)";
+const std::string kG = R"(<peer name="g" component="g.xml" role="mission"/>)";
+
+/// A component that implements and depends on the given interfaces.
+std::string component(const std::string& name, const std::string& implements,
+                      const std::vector<std::string>& depends) {
+  std::string text = "<component name=\"" + name + "\"><interfaces><implements>" + implements +
+                     "</implements></interfaces><dependencies>";
+  for (const auto& item : depends) text += "\n<depends>" + item + "</depends>";
+  return text + "</dependencies></component>";
+}
+
+}  // namespace
+
+TEST_CASE("A complete composition has no findings") {
+  ProfileFolder folder;
+  CHECK(folder.check(kF + kN + kG) == "");
+}
+
+TEST_CASE("A dependency that nobody provides is named where it is written") {
+  ProfileFolder folder;
+  CHECK(
+      folder.check(kN) ==
+      "n.xml:5:17: error: \"n\" depends on IDL:M/IF, which no peer of \"m\" implements; add a peer "
+      "that does; did you mean 'IDL:M/IN'?\n");
+}
+
+TEST_CASE("A CSP's dependency is as good as its entity's") {
+  ProfileFolder folder;
+  folder.write("q.xml", component("Q", "M/IP", {"M/IMap"}));
+  CHECK_THAT(
+      folder.check(kF + R"(<peer name="n" component="n.xml"><csp component="q.xml"/></peer>)"),
+      Catch::Contains("q.xml:2:1: error: \"n/Q\" depends on IDL:M/IMap"));
+}
+
+TEST_CASE("Depending on another's CSP is told apart from depending on nobody") {
+  ProfileFolder folder;
+  folder.write("s.xml", component("S", "M/IS", {"M/IP"}));
+  CHECK_THAT(folder.check(kF + kN + R"(<peer name="s" component="s.xml"/>)"),
+             Catch::Contains("\"s\" depends on IDL:M/IP, which only the CSP \"n/P\" implements; a "
+                             "CSP serves its own peer alone"));
+}
+
+TEST_CASE("A CSP may depend on what another CSP of the same peer implements") {
+  ProfileFolder folder;
+  folder.write("t.xml",
+               R"(<component name="T"><interfaces><implements>M/IP</implements></interfaces>
+    <dependencies><depends>M/IP</depends></dependencies></component>)");
+  CHECK(folder.check(kF + R"(<peer name="n" component="n.xml"><csp component="p.xml"/>
+                                <csp component="t.xml"/></peer>)") == "");
+}
+
+TEST_CASE("A subcomponent without a CSP and a CSP without a subcomponent are both named") {
+  ProfileFolder folder;
+  const auto text = folder.check(
+      kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="f.xml"/></peer>)");
+  CHECK_THAT(text,
+             Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent IDL:M/IP "
+                             "(n.xml:6:18)"));
+  CHECK_THAT(text, Catch::Contains("m.xml:3:34: error: the CSP \"F\" implements no subcomponent of "
+                                   "\"n\"; it must implement one of them"));
+}
+
+TEST_CASE("Names that are given twice are named with the place of the first") {
+  ProfileFolder folder;
+  CHECK_THAT(folder.check(kF + "\n" + kF),
+             Catch::Contains(
+                 "m.xml:3:1: error: the peer \"f\" is there twice; the first is at m.xml:2:1"));
+  CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
+<csp component="p.xml"/><csp component="p.xml"/>
+<parameter name="Time limit" value="1"/><parameter name="Time limit" value="2"/></peer>)"),
+             Catch::Contains("the CSP \"P\" is there twice") &&
+                 Catch::Contains("the parameter \"Time limit\" is there twice"));
+  folder.write("d.xml", R"(<component name="D"><interfaces>
+    <implements><type>M/IF</type><attribute name="latency" value="1"/><attribute name="latency" value="1"/></implements>
+    <implements>M::IF</implements></interfaces></component>)");
+  CHECK_THAT(folder.check(R"(<peer name="d" component="d.xml"/>)"),
+             Catch::Contains("the attribute \"latency\" is there twice") &&
+                 Catch::Contains("d.xml:3:5: error: the interface \"IDL:M/IF\" is there twice"));
+}
+
+TEST_CASE("Attributes and parameters are compared with the dictionary") {
+  ProfileFolder folder;
+  const auto [inner, finding] = GENERATE(table<std::string, std::string>({
+      {R"(<attribute name="latncy" value="1"/>)",
+       "c.xml:2:1: error: the attribute \"latncy\" is unknown; did you mean 'latency'?"},
+      {R"(<attribute name="latency" value="fast"/>)",
+       "c.xml:2:1: error: \"latency\" is \"fast\", which is no duration in ms; it is defined at "
+       "dictionary.xml:2:3"},
+      {R"(<attribute name="latency" value="2 s"/>)", "\"latency\" is 2000 ms, more than 1000 ms"},
+      {R"(<optional><parameter name="Timelimit"/></optional>)",
+       "c.xml:2:11: error: the parameter \"Timelimit\" is unknown; did you mean 'Time limit'?"},
+      {R"(<required><parameter name="Time limit"><type>integer</type></parameter></required>)",
+       "the parameter \"Time limit\" is a duration, not a integer"},
+      {R"(<optional><parameter name="Planner"><type>M/IX</type></parameter></optional>)",
+       "the parameter \"Planner\" is a IDL:M/IP, not a IDL:M/IX"},
+  }));
+  folder.write("c.xml", "<component name=\"C\"><interfaces><implements><type>M/IF</type>\n" +
+                            inner + "</implements></interfaces></component>");
+  CHECK_THAT(folder.check(R"(<peer name="c" component="c.xml"/>)"), Catch::Contains(finding));
+}
+
+TEST_CASE("A profile's parameters are compared with the component and the dictionary") {
+  ProfileFolder folder;
+  const auto [parameter, finding] = GENERATE(table<std::string, std::string>({
+      {R"(name="Time limt" value="1")", "\"N\" has no parameter \"Time limt\"; did you mean"},
+      {R"(name="Time limit" value="x")", "\"Time limit\" is \"x\", which is no duration in ms"},
+      {R"(name="Time limit" value="0")", "\"Time limit\" is 0 ms, less than 1 ms"},
+      {R"(name="Planner" value="Q")",
+       "\"Planner\" refers to \"Q\", which is no peer or CSP with "
+       "IDL:M/IP; did you mean 'P'?"},
+      {R"(name="Planner" value="f")", "\"Planner\" refers to \"f\", which is no peer or CSP"},
+      {R"(name="Planner")", "<parameter> has no value"},
+  }));
+  CHECK_THAT(
+      folder.check(kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="p.xml"/>)" +
+                   "<parameter " + parameter + "/></peer>"),
+      Catch::Contains("m.xml:3:") && Catch::Contains(finding));
+}
+
+TEST_CASE("A service reference to a CSP of the peer is in order") {
+  ProfileFolder folder;
+  CHECK(folder.check(kF + R"(<peer name="n" component="n.xml"><csp component="p.xml"/>
+                             <parameter name="Planner" value="P"/></peer>)") == "");
+}
+
+TEST_CASE("A client that offers no service may be given any parameter of the dictionary") {
+  ProfileFolder folder;
+  const auto check = [&](const std::string& name) {
+    return folder.check(kF + kN + R"(<peer name="g" component="g.xml"><parameter name=")" + name +
+                        R"(" value="5"/></peer>)");
+  };
+  CHECK(check("Time limit") == "");
+  CHECK_THAT(check("Time_limit"), Catch::Contains("the parameter \"Time_limit\" is unknown"));
+}
+
+TEST_CASE("A cycle of dependencies is named once, with its way round") {
+  ProfileFolder folder;
+  folder.write("a.xml", component("A", "M/IA", {"M/IB"}));
+  folder.write("b.xml", component("B", "M/IB", {"M/IC"}));
+  folder.write("c.xml", component("C", "M/IC", {"M/IA"}));
+  const std::string ring = R"(<peer name="a" component="a.xml"/><peer name="b" component="b.xml"/>
+                              <peer name="c" component="c.xml"/>)";
+  CHECK(folder.check(ring) ==
+        "a.xml:2:1: error: a cycle of dependencies: a -> b -> c -> a; remove one of them, or add a "
+        "provider outside of the cycle\n");
+  SECTION("a peer that only leads into the cycle is not part of it") {
+    folder.write("d.xml", component("D", "M/ID", {"M/IA"}));
+    const auto text = folder.check(R"(<peer name="d" component="d.xml"/>)" + ring);
+    CHECK_THAT(text, Catch::Contains("a -> b -> c -> a") && !Catch::Contains("-> d"));
+    CHECK(std::count(text.begin(), text.end(), '\n') == 1);
+  }
+  SECTION("a provider outside of the cycle breaks it") {
+    folder.write("e.xml", component("E", "M/IC", {}));
+    CHECK(folder.check(ring + R"(<peer name="e" component="e.xml"/>)") == "");
+  }
+}
+
+TEST_CASE("Every one of several cycles is named, a peer that depends on itself too") {
+  ProfileFolder folder;
+  folder.write("s.xml", component("S", "M/IS", {"M/IS"}));
+  folder.write("a.xml", component("A", "M/IA", {"M/IB"}));
+  folder.write("b.xml", component("B", "M/IB", {"M/IA"}));
+  const auto text = folder.check(R"(<peer name="s" component="s.xml"/>
+      <peer name="a" component="a.xml"/><peer name="b" component="b.xml"/>)");
+  CHECK_THAT(text, Catch::Contains("s -> s;") && Catch::Contains("a -> b -> a;"));
+}
+
+TEST_CASE("One peer at most runs the mission, and it is not restarted") {
+  ProfileFolder folder;
+  const auto text = folder.check(kF + kN + kG + R"(
+<peer name="h" component="g.xml" role="mission" restart="always"/>)");
+  CHECK_THAT(text, Catch::Contains("m.xml:3:1: error: a second peer with role=\"mission\"") &&
+                       Catch::Contains("\"h\" runs the mission and would be restarted"));
+}
+
+TEST_CASE("Process rules for a CSP without a process are a mistake") {
+  ProfileFolder folder;
+  CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
+<csp component="p.xml" process="in" restart="always"/></peer>)"),
+             Catch::Contains("restart is for processes, and this CSP has none"));
+  CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
+<csp component="p.xml" process="inside"/></peer>)"),
+             Catch::Contains("\"inside\" is no place for a CSP"));
+}
+
+TEST_CASE("Several processes on loopback are a warning, and no reason to refuse the profile") {
+  ProfileFolder folder;
+  const auto file = folder.mission(R"(<peer name="f" component="f.xml" vendor="loopback"/>
+                                      <peer name="e" component="f.xml"/>)");
+  const auto findings = check_file(file);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == Severity::Warning);
+  CHECK_NOTHROW(read_checked_profile(file));
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" vendor="loopback"/>)") == "");
+}
+
+TEST_CASE("All mistakes of all files are found in one go") {
+  ProfileFolder folder;
+  folder.write("c.xml", R"(<component name="C"><interfaces><implements><type>M/IF</type>
+<attribute name="speed" value="1"/></implements></interfaces>
+<dependencies><depends>M/IQ</depends></dependencies></component>)");
+  const auto text = folder.check(R"(<peer name="c" component="c.xml" vendor="opendds"/>
+<peer name="n" component="n.xml"/>
+<peer name="x" component="none.xml"/>)");
+  CHECK_THAT(text, Catch::Contains("is no DDS vendor") && Catch::Contains("\"speed\" is unknown") &&
+                       Catch::Contains("depends on IDL:M/IQ") &&
+                       Catch::Contains("no CSP for its subcomponent") &&
+                       Catch::Contains("none.xml: error: cannot be opened"));
+}
+
+TEST_CASE("A component that several peers share is blamed once") {
+  ProfileFolder folder;
+  folder.write("c.xml", R"(<component name="C"><interfaces><implements><type>M/IF</type>
+<attribute name="speed" value="1"/></implements></interfaces></component>)");
+  const auto text =
+      folder.check(R"(<peer name="a" component="c.xml"/><peer name="b" component="c.xml"/>)");
+  CHECK(std::count(text.begin(), text.end(), '\n') == 1);
+}

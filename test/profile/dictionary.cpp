@@ -1,0 +1,117 @@
+#include "skein/profile/dictionary.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace skein::profile;
+using namespace std::chrono_literals;
+
+namespace {
+
+DictionaryEntry entry_of(ValueType type, std::string unit = "",
+                         std::optional<double> minimum = std::nullopt,
+                         std::optional<double> maximum = std::nullopt) {
+  DictionaryEntry entry;
+  entry.name = std::string(1, 'x');
+  entry.type = type;
+  entry.unit = std::move(unit);
+  entry.minimum = minimum;
+  entry.maximum = maximum;
+  return entry;
+}
+
+std::string findings_of(const std::string& entries) {
+  try {
+    parse_dictionary("<dictionary>" + entries + "</dictionary>", "d.xml");
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("The dictionary that is shipped can be read and knows what the paper uses") {
+  const auto dictionary = read_dictionary(SKEIN_MISSION_PROFILES "/dictionary.xml");
+  const auto* latency = dictionary.find(EntryKind::Attribute, "latency");
+  REQUIRE(latency != nullptr);
+  CHECK(std::get<std::chrono::nanoseconds>(parse_value(*latency, "100")) == 100ms);
+  const auto* planner = dictionary.find(EntryKind::Parameter, "Planner");
+  REQUIRE(planner != nullptr);
+  CHECK(planner->interface == "IDL:AE_navigator/IPlanner");
+  CHECK(dictionary.find(EntryKind::Parameter, "latency") == nullptr);
+}
+
+TEST_CASE("Values are read by their type") {
+  CHECK(std::get<std::int64_t>(parse_value(entry_of(ValueType::Integer), " -7 ")) == -7);
+  CHECK(std::get<double>(parse_value(entry_of(ValueType::Real), "2.5e3")) == 2500.0);
+  CHECK(std::get<bool>(parse_value(entry_of(ValueType::Boolean), "true")));
+  CHECK(std::get<std::string>(parse_value(entry_of(ValueType::Text), "a b")) == "a b");
+  const auto duration = entry_of(ValueType::Duration, "ms");
+  CHECK(std::get<std::chrono::nanoseconds>(parse_value(duration, "1.5 s")) == 1500ms);
+  CHECK(std::get<std::chrono::nanoseconds>(parse_value(duration, "250us")) == 250us);
+}
+
+TEST_CASE("A value of another type is refused") {
+  const auto [type, text] = GENERATE(table<ValueType, std::string>({
+      {ValueType::Integer, "1.5"},
+      {ValueType::Integer, "0x10"},
+      {ValueType::Integer, "99999999999999999999"},
+      {ValueType::Integer, ""},
+      {ValueType::Real, "1,5"},
+      {ValueType::Real, "nan"},
+      {ValueType::Real, "inf"},
+      {ValueType::Real, "1e999"},
+      {ValueType::Boolean, "yes"},
+      {ValueType::Duration, "soon"},
+      {ValueType::Duration, "-1 s"},
+      {ValueType::Duration, "5 parsec"},
+      {ValueType::Duration, "1e300 h"},
+      {ValueType::Duration, "nan"},
+  }));
+  CAPTURE(text);
+  CHECK_THROWS_AS(parse_value(entry_of(type, "ms"), text), skein::InvalidArgument);
+}
+
+TEST_CASE("A range holds its ends, and durations are compared in the unit of their entry") {
+  const auto entry = entry_of(ValueType::Duration, "ms", 10, 1000);
+  CHECK_NOTHROW(parse_value(entry, "10"));
+  CHECK_NOTHROW(parse_value(entry, "1 s"));
+  CHECK_THROWS_WITH(parse_value(entry, "9.9"), "\"x\" is 9.9 ms, less than 10 ms");
+  CHECK_THROWS_WITH(parse_value(entry, "2 s"), "\"x\" is 2000 ms, more than 1000 ms");
+}
+
+TEST_CASE("An unknown name is answered with the nearest of its kind") {
+  const auto dictionary = read_dictionary(SKEIN_MISSION_PROFILES "/dictionary.xml");
+  CHECK_THAT(dictionary.suggestion(EntryKind::Attribute, "latancy"),
+             Catch::Contains("did you mean 'latency'?"));
+  CHECK_THAT(dictionary.suggestion(EntryKind::Parameter, "Time_limit"),
+             Catch::Contains("did you mean 'Time limit'?"));
+  CHECK_THAT(dictionary.suggestion(EntryKind::Attribute, "colour of the hull"),
+             Catch::Contains("known are") && Catch::Contains("add it to the dictionary"));
+}
+
+TEST_CASE("A dictionary's own mistakes are found") {
+  const auto [entries, problem] = GENERATE(table<std::string, std::string>({
+      {R"(<attribute name="a" type="number">x</attribute>)", "\"number\" is no type"},
+      {R"(<attribute name="a" type="duration">x</attribute>)", "has no unit"},
+      {R"(<attribute name="a" type="duration" unit="m">x</attribute>)", "the unit \"m\""},
+      {R"(<attribute name="a" type="text" min="1">x</attribute>)", "has a unit or a range"},
+      {R"(<attribute name="a" type="real" min="2" max="1">x</attribute>)",
+       "range of \"a\" is empty"},
+      {R"(<attribute name="a" type="real" min="low">x</attribute>)", "\"low\", which is no real"},
+      {R"(<attribute name="a" type="real"/>)", "is not documented"},
+      {R"(<attribute type="real">x</attribute>)", "<attribute> has no name"},
+      {R"(<attribute name="a">x</attribute>)", "<attribute> has no type"},
+      {R"(<parameter name="a" type="text" interface="I">x</parameter>)", "has an interface"},
+      {R"(<parameter name="a" type="service" interface="I I">x</parameter>)", "no interface name"},
+      {R"(<entry/>)", "<entry> is unknown in <dictionary>"},
+      {R"(<attribute name="a" type="text">x</attribute><attribute name="a" type="text">y</attribute>)",
+       "\"a\" is defined twice; the first is at d.xml:1:13"},
+  }));
+  CHECK_THAT(findings_of(entries), Catch::Contains(problem));
+}
+
+TEST_CASE("An attribute and a parameter may have the same name") {
+  CHECK(findings_of(R"(<attribute name="a" type="text">x</attribute>
+                       <parameter name="a" type="real">y</parameter>)") == "");
+}

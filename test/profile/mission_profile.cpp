@@ -1,0 +1,144 @@
+#include "skein/profile/mission_profile.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "profile_folder.hpp"
+
+using namespace skein::profile;
+using namespace std::chrono_literals;
+
+TEST_CASE("The mission that is shipped reads as it is described, without a finding") {
+  const std::filesystem::path file = SKEIN_MISSION_PROFILES "/route_planning.xml";
+  CHECK(to_text(check_file(file)) == "");
+  const auto mission = read_checked_profile(file);
+  const auto* navigator = mission.find_peer("navigator");
+  REQUIRE(navigator != nullptr);
+  CHECK(navigator->vendor == "cyclonedds");
+  CHECK(navigator->system == "uav-1");
+  CHECK(navigator->component->name == "Navigator");
+  REQUIRE(navigator->csps.size() == 3);
+  REQUIRE(navigator->find_csp("AStar") != nullptr);
+  CHECK(navigator->find_csp("AStar")->process == CspProcess::InOwner);
+  REQUIRE(navigator->find_csp("RRTstar") != nullptr);
+  CHECK(navigator->find_csp("RRTstar")->process == CspProcess::Own);
+  CHECK(navigator->find_csp("RRTstar")->vendor == "cyclonedds");
+  const auto* station = mission.find_peer("ground_station");
+  REQUIRE(station != nullptr);
+  CHECK(station->runs_mission);
+  CHECK(station->plugin == "skein_ground_station");
+  CHECK(mission.find_peer("flight_controller")->vendor == "fastdds");
+}
+
+TEST_CASE("A peer without settings speaks on this host alone, is required, and is not restarted") {
+  ProfileFolder folder;
+  const auto mission =
+      read_mission_profile(folder.mission(R"(<peer name="f" component="f.xml"/>)"));
+  const auto& peer = mission.peers.at(0);
+  CHECK(peer.interface.empty());
+  CHECK(peer.host.empty());
+  CHECK(peer.required);
+  CHECK_FALSE(peer.runs_mission);
+  CHECK(peer.rules.restart.policy == RestartPolicy::Never);
+  CHECK(mission.domain == 0);
+}
+
+TEST_CASE("Restart rules are read with their units") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="f" component="f.xml" restart="always" restart_delay="50 ms"
+           max_restart_delay="2" max_restarts="3" restart_window="1 min" ready_timeout="10 s"
+           stop_timeout="500ms"/>)"));
+  const auto& rules = mission.peers.at(0).rules;
+  CHECK(rules.restart.policy == RestartPolicy::Always);
+  CHECK(rules.restart.delay == 50ms);
+  CHECK(rules.restart.max_delay == 2s);
+  CHECK(rules.restart.max_restarts == 3);
+  CHECK(rules.restart.window == 60s);
+  CHECK(rules.ready_timeout == 10s);
+  CHECK(rules.stop_timeout == 500ms);
+}
+
+TEST_CASE("What the mission says holds for every peer that does not say otherwise") {
+  ProfileFolder folder;
+  folder.write("m.xml", R"(<mission name="m" vendor="cyclonedds" system="uav" interface="lan0">
+    <peer name="a" component="f.xml"/>
+    <peer name="b" component="f.xml" vendor="fastdds" system="station"/>
+  </mission>)");
+  const auto mission = read_mission_profile(folder.path() / "m.xml");
+  CHECK(mission.peers.at(0).vendor == "cyclonedds");
+  CHECK(mission.peers.at(0).interface == "lan0");
+  CHECK(mission.peers.at(1).vendor == "fastdds");
+  CHECK(mission.peers.at(1).system == "station");
+  CHECK(mission.peers.at(1).interface == "lan0");
+}
+
+TEST_CASE("A profile's words that are unknown are answered with the nearest known ones") {
+  ProfileFolder folder;
+  const auto [attributes, finding] = GENERATE(table<std::string, std::string>({
+      {R"(vendor="fastdsd")", "\"fastdsd\" is no DDS vendor known here; did you mean 'fastdds'?"},
+      {R"(restart="on_failure")",
+       "\"on_failure\" is no restart policy; did you mean 'on-failure'?"},
+      {R"(role="boss")", "\"boss\" is no role"},
+      {R"(restrat="always")", "<peer> has no \"restrat\"; did you mean 'restart'?"},
+      {R"(required="yes")", "required is \"yes\"; write true or false"},
+      {R"(stop_timeout="0")", "stop_timeout is zero"},
+      {R"(stop_timeout="long")", "\"long\" is no length of time"},
+      {R"(max_restarts="0")", "\"max_restarts\" is 0, less than 1"},
+      {R"(restart="always" restart_window="1 s")", "do not fit into restart_window"},
+  }));
+  const std::string peer = R"(<peer name="f" component="f.xml" )" + attributes + "/>";
+  CHECK_THAT(folder.check(peer), Catch::Contains("m.xml:2:") && Catch::Contains(finding));
+}
+
+TEST_CASE("Names that would break a topic or a command line are refused") {
+  ProfileFolder folder;
+  const auto name =
+      GENERATE(as<std::string>(), "a b", "a/b", "a.b", "\xC3\xA4", "a&#10;b", std::string(65, 'a'));
+  CHECK_THAT(folder.check("<peer name=\"" + name + "\" component=\"f.xml\"/>"),
+             Catch::Contains("is no name; use letters"));
+}
+
+TEST_CASE("A domain outside of what DDS has is refused") {
+  ProfileFolder folder;
+  const auto domain = GENERATE(as<std::string>(), "-1", "233", "x", "1.0", "99999999999");
+  folder.write("m.xml", "<mission name=\"m\" domain=\"" + domain +
+                            "\"><peer name=\"f\" component=\"f.xml\"/></mission>");
+  CHECK_THAT(to_text(check_file(folder.path() / "m.xml")), Catch::Contains("is no DDS domain"));
+}
+
+TEST_CASE("A component that cannot be read is reported where it is named, and why") {
+  ProfileFolder folder;
+  folder.write("bad.xml", "<component name=\"B\">");
+  const auto text = folder.check(
+      "<peer name=\"a\" component=\"none.xml\"/>\n"
+      "<peer name=\"b\" component=\"bad.xml\"/>");
+  CHECK_THAT(text, Catch::Contains("m.xml:2:16: error: the component \"none.xml\" cannot be read"));
+  CHECK_THAT(text, Catch::Contains("none.xml: error: cannot be opened: No such file"));
+  CHECK_THAT(text, Catch::Contains("m.xml:3:16: error: the component \"bad.xml\" cannot be read"));
+  CHECK_THAT(text, Catch::Contains("bad.xml:1:20: error: malformed XML"));
+}
+
+TEST_CASE("Reading a profile with mistakes throws all of them") {
+  ProfileFolder folder;
+  const auto file = folder.mission("<peer name=\"a b\" component=\"f.xml\"/><peer/>");
+  CHECK_THROWS_WITH(read_mission_profile(file),
+                    Catch::Contains("is no name") && Catch::Contains("<peer> has no component"));
+}
+
+TEST_CASE("A setting from the command line takes the place of the profile's") {
+  ProfileFolder folder;
+  auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="n" component="n.xml"><parameter name="Time limit" value="5"/></peer>
+         <peer name="g" component="g.xml"/>)"));
+  apply_setting(mission, "n.Time limit=2 s");
+  CHECK(mission.peers[0].find_parameter("Time limit")->value == "2 s");
+  apply_setting(mission, "g.Time limit=7");
+  CHECK(mission.peers[1].find_parameter("Time limit")->value == "7");
+  CHECK_THROWS_WITH(apply_setting(mission, "m.Time limit=1"), Catch::Contains("no peer \"m\""));
+  CHECK_THROWS_WITH(apply_setting(mission, "n/x.Time limit=1"), Catch::Contains("no CSP \"x\""));
+  CHECK_THROWS_WITH(apply_setting(mission, "n.Timelimit=1"),
+                    Catch::Contains("did you mean 'Time limit'?"));
+  CHECK_THROWS_WITH(apply_setting(mission, "n.Time limit=0"), Catch::Contains("less than 1 ms"));
+  CHECK_THROWS_WITH(apply_setting(mission, "Time limit=0"),
+                    Catch::Contains("PEER.PARAMETER=VALUE"));
+}

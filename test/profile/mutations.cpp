@@ -1,0 +1,80 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "profile_folder.hpp"
+
+using namespace skein::profile;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace {
+
+std::string content_of(const std::string& name) {
+  std::ifstream file(SKEIN_MISSION_PROFILES "/" + name, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string mutated(std::string text, std::mt19937& random) {
+  const auto below = [&](std::size_t limit) { return random() % limit; };
+  for (std::size_t count = 1 + below(4); count > 0 && !text.empty(); --count) {
+    const std::size_t at = below(text.size());
+    switch (below(5)) {
+      case 0:
+        text[at] = static_cast<char>(below(256));
+        break;
+      case 1:
+        text.erase(at, 1 + below(20));
+        break;
+      case 2:
+        text.insert(at, text.substr(below(text.size()), 1 + below(60)));
+        break;
+      case 3:
+        text.insert(at, 1, "<>&\"'/=;#!?[]- "[below(15)]);
+        break;
+      default:
+        text.resize(at);
+        break;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("A mutated component or dictionary is read or refused, nothing else") {
+  const std::string seed =
+      content_of(GENERATE(as<std::string>(), "components/navigator.xml", "dictionary.xml"));
+  REQUIRE(seed.size() > 100);
+  std::mt19937 random(7);
+  for (int i = 0; i < 5000; ++i) {
+    const std::string text = mutated(seed, random);
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  }
+  SUCCEED();
+}
+
+TEST_CASE("A mutated mission is read or refused, and its refusal names a place") {
+  ProfileFolder folder;
+  const std::string seed = R"(<mission name="m" domain="3" vendor="fastdds">
+  <peer name="n" component="n.xml" restart="on-failure" max_restarts="3">
+    <csp component="p.xml" process="own"><parameter name="Time limit" value="5"/></csp>
+  </peer>
+  <peer name="f" component="f.xml"/>
+  <peer name="g" component="g.xml" role="mission"/>
+</mission>)";
+  std::mt19937 random(11);
+  int refused = 0;
+  for (int i = 0; i < 1500; ++i) {
+    folder.write("m.xml", mutated(seed, random));
+    for (const auto& finding : check_file(folder.path() / "m.xml")) {
+      REQUIRE(!finding.where.file.empty());
+      REQUIRE(!finding.problem.empty());
+      ++refused;
+    }
+  }
+  CHECK(refused > 1000);
+}
