@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <condition_variable>
 #include <utility>
 
 namespace skein {
@@ -21,60 +22,117 @@ class Entered {
 
 }  // namespace
 
+// Shared with the threads, so that one of them can be left behind.
+struct ThreadExecutor::State {
+  State(const ThreadExecutor* executor, std::size_t capacity, std::size_t concurrency)
+      : identity(executor), capacity(capacity), concurrency(concurrency) {}
+
+  const Executor* const identity;  // compared, never followed
+  const std::size_t capacity;
+  const std::size_t concurrency;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<std::function<void()>> tasks;
+  std::size_t running = 0;
+  std::size_t threads = 0;
+  bool stopping = false;
+
+  void work(const std::string& name) {
+    pthread_setname_np(pthread_self(), name.c_str());
+    const Entered here(identity);
+    std::unique_lock lock(mutex);
+    while (true) {
+      changed.wait(lock, [&] { return stopping || (!tasks.empty() && running < concurrency); });
+      if (stopping) break;
+      auto task = std::move(tasks.front());
+      tasks.pop_front();
+      ++running;
+      lock.unlock();
+      task();
+      task = nullptr;
+      lock.lock();
+      --running;
+    }
+    --threads;
+    changed.notify_all();
+  }
+
+  bool idle() const { return threads == 0 && running == 0; }
+};
+
 ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity)
-    : capacity_(capacity), concurrency_(std::max<std::size_t>(threads, 1)) {
+    : state_(std::make_shared<State>(this, capacity, std::max<std::size_t>(threads, 1))) {
   name.resize(std::min<std::size_t>(name.size(), 15));
-  for (std::size_t i = 0; i < concurrency_; ++i) {
-    threads_.emplace_back([this, name] { work(name); });
+  state_->threads = state_->concurrency;
+  for (std::size_t i = 0; i < state_->concurrency; ++i) {
+    threads_.emplace_back([state = state_, name] { state->work(name); });
   }
 }
 
 ThreadExecutor::~ThreadExecutor() { stop(); }
 
+void ThreadExecutor::request_stop() {
+  std::deque<std::function<void()>> dropped;  // destroyed outside the lock: it may own what posts here
+  std::lock_guard lock(state_->mutex);
+  state_->stopping = true;
+  dropped.swap(state_->tasks);
+  state_->changed.notify_all();
+}
+
 void ThreadExecutor::stop() {
-  std::deque<std::function<void()>> dropped;
-  std::vector<std::thread> threads;
-  {
-    std::lock_guard lock(mutex_);
-    stopping_ = true;
-    dropped.swap(tasks_);
-    threads.swap(threads_);
+  request_stop();
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
+  std::unique_lock lock(state_->mutex);
+  state_->changed.wait(lock, [&] { return state_->running == 0; });
+}
+
+bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
+  request_stop();
+  std::unique_lock lock(state_->mutex);
+  const bool ended = state_->changed.wait_for(lock, patience, [&] { return state_->idle(); });
+  lock.unlock();
+  for (std::thread& thread : threads_) {
+    if (ended) {
+      thread.join();
+    } else {
+      thread.detach();
+    }
   }
-  changed_.notify_all();
-  for (std::thread& thread : threads) thread.join();
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return running_ == 0; });
+  threads_.clear();
+  return ended;
 }
 
 bool ThreadExecutor::post(std::function<void()> task) {
   {
-    std::lock_guard lock(mutex_);
-    if (stopping_ || tasks_.size() >= capacity_) return false;
-    tasks_.push_back(std::move(task));
-    if (running_ == concurrency_) return true;  // whoever ends next looks at the queue
+    std::lock_guard lock(state_->mutex);
+    if (state_->stopping || state_->tasks.size() >= state_->capacity) return false;
+    state_->tasks.push_back(std::move(task));
+    if (state_->running == state_->concurrency) return true;  // whoever ends next looks at the queue
   }
-  changed_.notify_one();
+  state_->changed.notify_one();
   return true;
 }
 
 bool ThreadExecutor::try_run_inline(const std::function<void()>& task) {
+  const auto state = state_;
   {
-    std::lock_guard lock(mutex_);
-    if (stopping_ || !tasks_.empty() || running_ == concurrency_) return false;
-    ++running_;
+    std::lock_guard lock(state->mutex);
+    if (state->stopping || !state->tasks.empty() || state->running == state->concurrency) return false;
+    ++state->running;
   }
   struct Leave {
-    ThreadExecutor& executor;
+    State& state;
     ~Leave() {
       bool wake;
       {
-        std::lock_guard lock(executor.mutex_);
-        --executor.running_;
-        wake = executor.stopping_ || !executor.tasks_.empty();
+        std::lock_guard lock(state.mutex);
+        --state.running;
+        wake = state.stopping || !state.tasks.empty();
       }
-      if (wake) executor.changed_.notify_all();
+      if (wake) state.changed.notify_all();
     }
-  } leave{*this};
+  } leave{*state};
   const Entered here(this);
   task();
   return true;
@@ -82,26 +140,6 @@ bool ThreadExecutor::try_run_inline(const std::function<void()>& task) {
 
 bool ThreadExecutor::runs_here() const noexcept {
   return std::find(entered.begin(), entered.end(), this) != entered.end();
-}
-
-void ThreadExecutor::work(const std::string& name) {
-  pthread_setname_np(pthread_self(), name.c_str());
-  const Entered here(this);
-  std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock,
-                  [&] { return stopping_ || (!tasks_.empty() && running_ < concurrency_); });
-    if (stopping_) return;
-    auto task = std::move(tasks_.front());
-    tasks_.pop_front();
-    ++running_;
-    lock.unlock();
-    task();
-    task = nullptr;
-    lock.lock();
-    --running_;
-    if (stopping_) changed_.notify_all();
-  }
 }
 
 bool ManualExecutor::post(std::function<void()> task) {

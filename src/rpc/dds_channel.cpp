@@ -67,6 +67,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   Guid client;
   std::shared_ptr<dds::Writer> requests;
   std::shared_ptr<dds::Reader> replies;
+  std::shared_ptr<void> companion;
 
   // ---- opening
 
@@ -328,7 +329,6 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how + "); whether " +
                                                   std::string(operation.name) + " ran is unknown"));
     });
-    if (options.on_lost) control.post(options.on_lost);
   }
 
   void close() {
@@ -387,6 +387,11 @@ void DdsChannel::provider_gone(const std::string& how) { state_->lose(how); }
 bool DdsChannel::connected() const {
   std::lock_guard lock(state_->mutex);
   return state_->phase == State::Phase::Open;
+}
+
+void DdsChannel::attach(std::shared_ptr<void> companion) {
+  std::lock_guard lock(state_->mutex);
+  state_->companion = std::move(companion);
 }
 
 std::size_t DdsChannel::pending() const {

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/rpc/wire.hpp"
 
@@ -19,11 +20,6 @@ dds::Qos call_qos(std::vector<std::string> partitions) {
   dds::Qos qos;
   qos.partitions = std::move(partitions);
   return qos;
-}
-
-std::string type_name(std::string service, std::string_view suffix) {
-  for (std::size_t at; (at = service.find('/')) != std::string::npos;) service.replace(at, 1, "::");
-  return service.append(suffix);
 }
 
 void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std::string& text) {
@@ -68,13 +64,19 @@ void encode_outcome(Bytes& message, const RequestId& id, const OperationInfo& op
 
 }  // namespace
 
-dds::Topic DdsAddress::request_topic() const {
-  return {service + "_Request", type_name(service, "_Request"), false};
+namespace {
+
+dds::Topic topic_of(const std::string& service, const char* suffix) {
+  const std::string type = scoped_interface_name(service);
+  std::string name = type;
+  for (std::size_t at; (at = name.find("::")) != std::string::npos;) name.replace(at, 2, "/");
+  return {name + suffix, type + suffix, false};
 }
 
-dds::Topic DdsAddress::reply_topic() const {
-  return {service + "_Reply", type_name(service, "_Reply"), false};
-}
+}  // namespace
+
+dds::Topic DdsAddress::request_topic() const { return topic_of(service, "_Request"); }
+dds::Topic DdsAddress::reply_topic() const { return topic_of(service, "_Reply"); }
 
 std::vector<std::string> DdsAddress::partitions() const {
   return {provider.is_nil() ? std::string() : provider.hex()};

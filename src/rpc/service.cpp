@@ -6,6 +6,25 @@
 
 namespace skein::rpc {
 
+/// Notes that an invocation is inside the implementation.
+class Service::Running {
+ public:
+  Running(Service& service, Instant deadline) : service_(service) {
+    std::lock_guard lock(service_.mutex_);
+    position_ = service_.running_.insert(deadline);
+  }
+  ~Running() {
+    std::lock_guard lock(service_.mutex_);
+    service_.running_.erase(position_);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+ private:
+  Service& service_;
+  std::multiset<Instant>::iterator position_;
+};
+
 Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock,
                  Options options)
     : servant_(std::move(servant)),
@@ -82,7 +101,13 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
   const CallContext context(clock_, frame.deadline, frame.caller, std::move(chain),
                             frame.session.get(), &frame.cancelled);
   const CallContextScope scope(context);
+  const Running running(*this, frame.deadline);
   servant_->dispatch(operation, in, out);
+}
+
+bool Service::overdue() const {
+  std::lock_guard lock(mutex_);
+  return !running_.empty() && *running_.begin() <= clock_.now();
 }
 
 }  // namespace skein::rpc

@@ -88,6 +88,9 @@ class Channel {
   /// Who is at the other end, for messages: `AE_navigator/IPlanner of Navigator (uav-1)`.
   virtual std::string peer() const = 0;
 
+  /// Whether calls can be made: neither disconnected nor has the provider been lost.
+  virtual bool connected() const = 0;
+
   /// Ends the connection: pending calls end as Cancelled, later ones as Unavailable. Twice is no error.
   virtual void disconnect() = 0;
 };

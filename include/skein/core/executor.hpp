@@ -1,8 +1,9 @@
 #pragma once
 
-#include <condition_variable>
+#include <chrono>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -44,16 +45,15 @@ class ThreadExecutor final : public Executor {
   /// be called, nor the executor destroyed, from one of its own tasks.
   void stop();
 
- private:
-  void work(const std::string& name);
+  /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left to
+  /// itself for the rest of the process's life. False where that was so.
+  bool stop_or_abandon(std::chrono::milliseconds patience);
 
-  const std::size_t capacity_;
-  const std::size_t concurrency_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;
-  std::size_t running_ = 0;
-  bool stopping_ = false;
+ private:
+  struct State;
+  void request_stop();
+
+  std::shared_ptr<State> state_;
   std::vector<std::thread> threads_;
 };
 

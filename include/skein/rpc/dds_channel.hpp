@@ -18,8 +18,6 @@ class DdsChannel final : public Channel {
     std::string strategy;  ///< See OpenRequest.
     std::string peer;      ///< For messages.
     Duration timeout = std::chrono::seconds(5);
-    /// Called once when the connection is lost, on `control`.
-    std::function<void()> on_lost;
   };
 
   /// Connects: repeats `open` until the provider answers, which proves that both directions work.
@@ -35,13 +33,14 @@ class DdsChannel final : public Channel {
   Clock& clock() const noexcept override;
   Executor& continuations() const noexcept override;
   std::string peer() const override;
+  bool connected() const override;
   void disconnect() override;
 
   /// Ends pending calls as Disconnected and refuses later ones: the provider is known to be gone.
   void provider_gone(const std::string& how);
 
-  /// Whether calls can be made: neither disconnected nor lost.
-  bool connected() const;
+  /// Keeps something alive for as long as the connection (what calls provider_gone(), say).
+  void attach(std::shared_ptr<void> companion);
 
   /// Calls without an answer yet.
   std::size_t pending() const;

@@ -10,8 +10,8 @@ namespace skein::rpc {
 
 /// Where a provider of a service is reached.
 struct DdsAddress {
-  /// Canonical interface name, `AE_navigator/IPlanner`; the topics are `<service>_Request` and
-  /// `<service>_Reply`.
+  /// The interface's name in any spelling; the topics are `AE_navigator/IPlanner_Request` and
+  /// `AE_navigator/IPlanner_Reply`.
   std::string service;
   /// The partition of the provider's request reader; nil means the default partition, in which peers
   /// that are not built with Skein live.

@@ -19,6 +19,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   Clock& clock() const noexcept override { return clock_; }
   Executor& continuations() const noexcept override { return continuations_; }
   std::string peer() const override { return peer_; }
+  bool connected() const override { return !closed_ && !service_.expired(); }
   void disconnect() override { closed_ = true; }
 
  private:

@@ -3,6 +3,8 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -76,10 +78,14 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Throws Unavailable where a call with this chain would wait for itself.
   void refuse_self_wait(const std::vector<Guid>& chain) const;
 
-  /// No new invocation begins after this; running ones end first unless they are this thread's.
+  /// Whether an invocation is still inside the implementation although its deadline has passed.
+  bool overdue() const;
+
+  /// Invocations that have not begun are refused from now on.
   void close();
 
  private:
+  class Running;
   void execute(Invocation& invocation);
   void dispatch(const OperationInfo& operation, const void* in, void* out, const Invocation& frame);
 
@@ -88,6 +94,8 @@ class Service : public std::enable_shared_from_this<Service> {
   const Clock& clock_;
   Options options_;
   std::atomic<bool> closed_{false};
+  mutable std::mutex mutex_;
+  std::multiset<Instant> running_;  // deadlines
 };
 
 }  // namespace skein::rpc

@@ -1,0 +1,228 @@
+#include "skein/brokerless_discovery/table.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "discovery.idl.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
+#include "skein/core/suggestion.hpp"
+
+namespace skein::brokerless_discovery {
+namespace {
+
+Guid provider_of(const ServiceDescription& description) { return {description.provider}; }
+
+std::vector<std::string> names_of(const ServiceDescription& description) {
+  std::vector<std::string> names{description.service, description.entity};
+  names.insert(names.end(), description.bases.begin(), description.bases.end());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+bool in_system(const ServiceDescription& description, const Query& query) {
+  return !query.system || *query.system == description.system;
+}
+
+bool visible(const ServiceDescription& description, const Query& query) {
+  return description.owner.empty() || description.owner == query.asker;
+}
+
+bool wanted(const ServiceDescription& description, const Query& query) {
+  return query.provider.is_nil() || query.provider == provider_of(description);
+}
+
+void canonicalise(ServiceDescription& description) {
+  description.service = canonical_interface_name(description.service);
+  for (std::string& base : description.bases) base = canonical_interface_name(base);
+  for (std::string& part : description.subcomponents) part = canonical_interface_name(part);
+}
+
+}  // namespace
+
+const OperationInfo* missing_operation(const InterfaceInfo& client,
+                                       const ServiceDescription& provider) {
+  for (const OperationInfo& operation : client.operations) {
+    const bool known = std::any_of(
+        provider.operations.begin(), provider.operations.end(), [&](const auto& digest) {
+          return digest.hash == operation.hash && digest.signature == operation.signature;
+        });
+    if (!known) return &operation;
+  }
+  return nullptr;
+}
+
+Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {
+  if (ended_processes_.contains(description.process)) return {};
+  canonicalise(description);
+  const Guid provider = provider_of(description);
+  auto shared = std::make_shared<const ServiceDescription>(std::move(description));
+  const auto found = entries_.find(provider);
+  if (found == entries_.end()) {
+    Entry& entry = entries_[provider] = {shared, writer, false};
+    index(entry);
+    return {{Change::Kind::Added, shared}};
+  }
+  Entry& entry = found->second;
+  const bool same = *entry.description == *shared;
+  const bool was_suspect = entry.suspect;
+  unindex(entry);
+  entry = {shared, writer, false};
+  index(entry);
+  if (was_suspect) return {{Change::Kind::Trusted, shared}};
+  if (same) return {};
+  return {{Change::Kind::Updated, shared}};
+}
+
+Table::Changes Table::on_withdrawn(const Guid& provider) {
+  return remove_if([&](const Entry& entry) { return provider_of(*entry.description) == provider; },
+                   Departure::Left);
+}
+
+Table::Changes Table::on_writer_alive(const Guid& writer, bool alive) {
+  Changes changes;
+  for (auto& [provider, entry] : entries_) {
+    if (entry.writer != writer || entry.suspect == !alive) continue;
+    entry.suspect = !alive;
+    changes.push_back({alive ? Change::Kind::Trusted : Change::Kind::Suspect, entry.description});
+  }
+  return changes;
+}
+
+Table::Changes Table::on_writer_gone(const Guid& writer) {
+  return remove_if([&](const Entry& entry) { return entry.writer == writer; }, Departure::Lost);
+}
+
+Table::Changes Table::on_process_ended(const std::string& process) {
+  ended_processes_.insert(process);
+  return remove_if([&](const Entry& entry) { return entry.description->process == process; },
+                   Departure::Died);
+}
+
+Table::Changes Table::remove_if(auto predicate, Departure departure) {
+  Changes changes;
+  for (auto position = entries_.begin(); position != entries_.end();) {
+    if (!predicate(position->second)) {
+      ++position;
+      continue;
+    }
+    changes.push_back({Change::Kind::Removed, position->second.description, departure});
+    unindex(position->second);
+    position = entries_.erase(position);
+  }
+  return changes;
+}
+
+Table::Found Table::find(const Query& query) const {
+  Found found;
+  const auto* entries = named(query.name);
+  if (!entries) entries = named(resolve(query.name));
+  if (!entries) return found;
+  for (const Entry* entry : *entries) {
+    const ServiceDescription& description = *entry->description;
+    if (entry->suspect || !in_system(description, query) || !visible(description, query)) continue;
+    if (!wanted(description, query)) continue;
+    if (query.client && missing_operation(*query.client, description)) continue;
+    found.push_back(entry->description);
+  }
+  return found;
+}
+
+std::string Table::explain(const Query& query) const {
+  const std::string place = query.system ? " in system '" + *query.system + "'" : "";
+  const auto* entries = named(query.name);
+  if (!entries) entries = named(resolve(query.name));
+  std::string reason;
+  for (const Entry* entry : entries ? *entries : std::vector<const Entry*>()) {
+    const ServiceDescription& description = *entry->description;
+    const std::string who = description.entity + " (" + description.system + ")";
+    if (!wanted(description, query)) continue;
+    if (!visible(description, query)) {
+      reason = who + " is managed by " + description.owner + ", and only that entity may use it";
+    } else if (!in_system(description, query)) {
+      reason = "only " + who + " offers it; name that system to use it";
+    } else if (entry->suspect) {
+      reason = who + " has not been heard of for its lease";
+    } else if (const auto* operation = query.client ? missing_operation(*query.client, description)
+                                                    : nullptr) {
+      reason = who + " offers another version of it: operation '" + std::string(operation->name) +
+               "' is missing there or has another signature; build both sides from the same IDL";
+    }
+  }
+  if (!reason.empty()) return "no provider of '" + query.name + "'" + place + ": " + reason;
+
+  if (is_interface_name(query.name)) {
+    const std::string canonical = resolve(query.name);
+    for (const auto& [provider, entry] : entries_) {
+      const auto& parts = entry.description->subcomponents;
+      if (std::find(parts.begin(), parts.end(), canonical) != parts.end() ||
+          std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+            return short_interface_name(part) == query.name;
+          })) {
+        return "no provider of '" + query.name + "'" + place + ": it is a managed interface of " +
+               entry.description->entity + " (" + entry.description->system +
+               "), and only that entity may use it";
+      }
+    }
+  }
+  std::vector<std::string> known;
+  for (const auto& [name, list] : by_name_) known.push_back(name);
+  for (const auto& [name, list] : short_names_) known.push_back(name);
+  std::sort(known.begin(), known.end());
+  return "no provider of '" + query.name + "'" + place + ": nothing of that name is known" +
+         suggestion(query.name, known);
+}
+
+Table::Found Table::all() const {
+  Found found;
+  for (const auto& [provider, entry] : entries_) found.push_back(entry.description);
+  return found;
+}
+
+bool Table::knows_process(const std::string& process) const {
+  return std::any_of(entries_.begin(), entries_.end(), [&](const auto& entry) {
+    return entry.second.description->process == process;
+  });
+}
+
+const std::vector<const Table::Entry*>* Table::named(const std::string& name) const {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : &found->second;
+}
+
+std::string Table::resolve(const std::string& name) const {
+  if (const auto found = short_names_.find(name); found != short_names_.end()) {
+    if (found->second.size() == 1) return found->second.begin()->first;
+    std::string both;
+    for (const auto& [canonical, count] : found->second) both += (both.empty() ? "" : " and ") + canonical;
+    throw InvalidArgument("'" + name + "' is ambiguous: it may be " + both + "; write the whole name");
+  }
+  return is_interface_name(name) ? canonical_interface_name(name) : name;
+}
+
+void Table::index(const Entry& entry) {
+  for (const std::string& name : names_of(*entry.description)) {
+    auto& list = by_name_[name];
+    const auto before = [](const Entry* a, const Entry* b) {
+      return std::pair(a->description->entity, provider_of(*a->description)) <
+             std::pair(b->description->entity, provider_of(*b->description));
+    };
+    list.insert(std::upper_bound(list.begin(), list.end(), &entry, before), &entry);
+    if (name != entry.description->entity) ++short_names_[short_interface_name(name)][name];
+  }
+}
+
+void Table::unindex(const Entry& entry) {
+  for (const std::string& name : names_of(*entry.description)) {
+    const auto list = by_name_.find(name);
+    std::erase(list->second, &entry);
+    if (list->second.empty()) by_name_.erase(list);
+    if (name == entry.description->entity) continue;
+    const auto shorts = short_names_.find(short_interface_name(name));
+    if (--shorts->second[name] == 0) shorts->second.erase(name);
+    if (shorts->second.empty()) short_names_.erase(shorts);
+  }
+}
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skein/brokerless_discovery/table.hpp"
+#include "skein/core/clock.hpp"
+#include "skein/core/executor.hpp"
+#include "skein/dds/port.hpp"
+
+namespace skein::brokerless_discovery {
+
+class ProcessWatch;
+
+/// The Service Broker as one peer sees it: its copy of the table, kept up to date by DDS and by the
+/// kernel, and the peer's own descriptions, kept up to date in everybody else's. RULES.md is its
+/// contract. Thread-safe; look-ups read local memory.
+class Broker {
+ public:
+  struct Options {
+    std::string system;  ///< Letters, digits, `_`, `-` and `.`, as for `entity`.
+    std::string entity;
+    std::string vendor;  ///< For people.
+    /// How long a peer that is not heard of is trusted.
+    std::chrono::milliseconds lease{1000};
+  };
+
+  /// A description that stands until this is destroyed or withdrawn.
+  class Registration {
+   public:
+    Registration() = default;
+    explicit Registration(std::function<void()> withdraw) : withdraw_(std::move(withdraw)) {}
+    Registration(Registration&& other) noexcept { withdraw_.swap(other.withdraw_); }
+    Registration& operator=(Registration&& other) noexcept {
+      withdraw_.swap(other.withdraw_);
+      return *this;
+    }
+    ~Registration() { withdraw(); }
+    void withdraw() {
+      std::function<void()> action;
+      action.swap(withdraw_);
+      if (action) action();
+    }
+
+   private:
+    std::function<void()> withdraw_;
+  };
+
+  /// The references outlive the broker; `control` runs what must not run on vendors' threads.
+  /// Throws InvalidArgument for a name with other characters.
+  Broker(dds::Participant& participant, Clock& clock, Executor& control, ProcessWatch& watch,
+         Options options);
+  ~Broker();
+
+  const Options& options() const noexcept;
+
+  /// Registers a service of this process with everybody (or, with an `owner`, with that entity). Fills
+  /// host, process, pid and vendor, and system where empty.
+  Registration add_service(ServiceDescription description);
+
+  /// A query as this entity asks it: own system, own managed services.
+  Query query(const std::string& name) const;
+
+  /// The providers that match, possibly none. Throws InvalidArgument for an ambiguous name.
+  Table::Found find_service(const Query& query) const;
+
+  /// As find_service, but waits until there is one. Throws Unavailable with the reason when `deadline`
+  /// passes. Not from a listener.
+  Table::Found await_service(const Query& query, Instant deadline) const;
+
+  /// Why find_service gives nothing.
+  std::string explain(const Query& query) const;
+
+  /// Everything known, suspects included.
+  Table::Found all() const;
+
+  /// Calls `observer` for each change, one at a time, on `control`, until the returned registration
+  /// goes; what stands already is not repeated.
+  Registration observe(std::function<void(const Change&)> observer);
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "skein/core/guid.hpp"
+#include "skein/core/operation.hpp"
+
+namespace skein::discovery {
+struct ServiceDescription;
+}
+
+namespace skein::brokerless_discovery {
+
+using discovery::ServiceDescription;
+
+/// What a client looks for.
+struct Query {
+  /// An interface's name in any spelling, its unambiguous last part, or an entity's name.
+  std::string name;
+  /// The system to look in; nothing means any.
+  std::optional<std::string> system;
+  /// The asking entity, `system/entity`: what it owns it finds.
+  std::string asker;
+  /// The client's idea of the interface: its operations must be among the provider's. May be null.
+  const InterfaceInfo* client = nullptr;
+  /// Only this provider; nil means all.
+  Guid provider;
+};
+
+/// Why a description is no longer in the table.
+enum class Departure { Left, Lost, Died };
+
+struct Change {
+  enum class Kind { Added, Updated, Suspect, Trusted, Removed };
+  Kind kind;
+  std::shared_ptr<const ServiceDescription> description;
+  Departure departure = Departure::Left;  ///< With Removed.
+};
+
+/// The replicated table alone; its rules are in RULES.md. Not thread-safe: the Broker guards it.
+class Table {
+ public:
+  using Found = std::vector<std::shared_ptr<const ServiceDescription>>;
+  using Changes = std::vector<Change>;
+
+  /// A description arrived from `writer`. Throws InvalidArgument where its names are malformed.
+  Changes on_description(ServiceDescription description, const Guid& writer);
+  Changes on_withdrawn(const Guid& provider);
+  Changes on_writer_alive(const Guid& writer, bool alive);
+  Changes on_writer_gone(const Guid& writer);
+  Changes on_process_ended(const std::string& process);
+
+  /// Throws InvalidArgument for an ambiguous short name (R3).
+  Found find(const Query& query) const;
+
+  /// One sentence: why find() gave nothing (R9).
+  std::string explain(const Query& query) const;
+
+  /// Everything that stands, suspects included, ordered by provider.
+  Found all() const;
+
+  /// Whether some description names this process as its own.
+  bool knows_process(const std::string& process) const;
+
+ private:
+  struct Entry {
+    std::shared_ptr<const ServiceDescription> description;
+    Guid writer;
+    bool suspect = false;
+  };
+  using Entries = std::map<Guid, Entry>;
+
+  std::string resolve(const std::string& name) const;
+  const std::vector<const Entry*>* named(const std::string& name) const;
+  Changes remove_if(auto predicate, Departure departure);
+  void index(const Entry& entry);
+  void unindex(const Entry& entry);
+
+  Entries entries_;
+  /// By canonical interface name, base name and entity name; each list in the order of R8.
+  std::unordered_map<std::string, std::vector<const Entry*>> by_name_;
+  /// Last part of an interface's name to the canonical names that end so.
+  std::map<std::string, std::map<std::string, std::size_t>> short_names_;
+  std::set<std::string> ended_processes_;
+};
+
+/// The client's first operation that `provider` lacks or has with another signature; null where it
+/// understands all.
+const OperationInfo* missing_operation(const InterfaceInfo& client, const ServiceDescription& provider);
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "skein/brokerless_discovery/broker.hpp"
+#include "skein/core/call.hpp"
+#include "skein/rpc/local_directory.hpp"
+
+namespace skein {
+
+/// Where and how to connect. The defaults reach the first provider of the interface in one's own system.
+struct ConnectOptions {
+  /// An interface's or an entity's name; empty means the proxy's own interface.
+  std::string name;
+  /// Another vehicle or station; kAnySystem for whichever.
+  std::optional<std::string> system;
+  /// Only this provider, as a service reference names it; nil means any.
+  Guid provider;
+  /// The Head's selection strategy for this session; empty means the provider's default.
+  std::string strategy;
+  /// For finding a provider and opening the connection.
+  Duration timeout = std::chrono::seconds(5);
+  /// A server that is not built with Skein: no description tells of it, and it lives in the default
+  /// partition of the interface's topics.
+  bool foreign = false;
+
+  static constexpr const char* kAnySystem = "*";
+};
+
+/// The paper's connector: turns `connect(name)` into a typed proxy. Looks the name up in the Broker's
+/// local table, chooses the lane (same process or DDS), opens the session and, when a provider dies,
+/// connects to the next one. Thread-safe; connect() blocks and must not be called from a listener.
+class Connector {
+ public:
+  struct Parts {
+    dds::Participant& participant;
+    brokerless_discovery::Broker& broker;
+    std::shared_ptr<rpc::LocalDirectory> directory;
+    Executor& control;
+    Executor& continuations;
+    Clock& clock;
+  };
+
+  /// The parts outlive the connector and every connection that it made.
+  explicit Connector(const Parts& parts) : parts_(parts) {}
+
+  /// A proxy of the wanted interface, ready for calls. Throws Unavailable with the reason where there is
+  /// no provider in time, InvalidArgument for an ambiguous name, what the Head throws to refuse.
+  template <class Interface>
+  typename Interface::Proxy connect(const ConnectOptions& options = {}) {
+    return typename Interface::Proxy(open(Interface::interface_info(), options));
+  }
+
+  /// The connection without its type: each call goes to the provider connected now; a lost one is
+  /// replaced by the next at the next call.
+  std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
+
+  /// One connection to exactly this provider, without replacement.
+  std::shared_ptr<Channel> open_provider(const brokerless_discovery::ServiceDescription& provider,
+                                         const std::string& strategy, Duration timeout) const;
+
+ private:
+  std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
+                                        const ConnectOptions& options) const;
+  std::shared_ptr<Channel> open_first(const brokerless_discovery::Query& query,
+                                      const std::string& strategy, Duration timeout) const;
+
+  Parts parts_;
+};
+
+}  // namespace skein

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skein/connector/connector.hpp"
+#include "skein/dds/port.hpp"
+#include "skein/entity/head.hpp"
+#include "skein/entity/process.hpp"
+
+namespace skein {
+
+struct EntityOptions {
+  std::string name;
+  /// The vehicle or station that the entity belongs to.
+  std::string system = "default";
+  /// The DDS implementation, `dds::load_vendor("cyclonedds")`.
+  std::shared_ptr<dds::Vendor> vendor;
+  /// The mission: a DDS domain, 0 to 232.
+  std::uint32_t domain = 0;
+  /// Loopback alone by default.
+  dds::Network network;
+  /// Shared by entities that are to call each other without leaving the process; none: its own.
+  std::shared_ptr<Process> process;
+  /// How long a peer that is not heard of is trusted.
+  std::chrono::milliseconds lease{1000};
+};
+
+struct ServiceAttribute {
+  std::string name;
+  std::string value;
+};
+
+struct ServiceOptions {
+  /// What the description declares: `latency` in ms, `quality`, ...
+  std::vector<ServiceAttribute> attributes;
+  /// Threads that run this service's calls.
+  std::size_t threads = 1;
+  /// Requests that may wait for a thread before others are refused as Overloaded.
+  std::size_t queue = 1024;
+  /// The component description as XML, for those who look the service up.
+  std::string component;
+  /// Managed interfaces for which the entity keeps CSPs.
+  std::vector<std::string> subcomponents;
+};
+
+/// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that implement its
+/// public services, and CSPs that implement its managed ones. Members are thread-safe. Proxies,
+/// implementations and continuations must be done with before the entity is destroyed; what it was given
+/// to provide it releases itself.
+class Entity {
+ public:
+  /// Joins the mission. Throws what the port throws, InvalidArgument for a name that is none.
+  explicit Entity(EntityOptions options);
+  /// Withdraws everything, ends what runs, leaves.
+  ~Entity();
+
+  const EntityOptions& options() const noexcept;
+  /// `system/name`: how managed services name their owner.
+  std::string id() const;
+
+  /// Provides a public service: the Body. Clients get a session of the Head. Returns its identity.
+  template <class Interface>
+  Guid provide(std::shared_ptr<Interface> body, const ServiceOptions& options = {}) {
+    return provide(std::make_shared<typename Interface::Skeleton>(std::move(body)), options);
+  }
+  Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
+
+  /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. The owner may be this
+  /// entity: then the CSP is called without leaving the process. `name` is the CSP's own.
+  template <class Interface>
+  Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Interface> csp,
+                   const ServiceOptions& options = {}) {
+    return provide_csp(name, owner, std::make_shared<typename Interface::Skeleton>(std::move(csp)),
+                       options);
+  }
+  Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Servant> servant,
+                   const ServiceOptions& options);
+
+  /// Withdraws one service; calls that run end first. Unknown ones are no error.
+  void withdraw(const Guid& provider);
+
+  /// See Connector::connect.
+  template <class Interface>
+  typename Interface::Proxy connect(const ConnectOptions& options = {}) {
+    return connector().connect<Interface>(options);
+  }
+
+  Connector& connector() noexcept;
+  brokerless_discovery::Broker& broker() noexcept;
+  Head& head() noexcept;
+  Clock& clock() noexcept;
+  dds::Participant& participant() noexcept;
+
+ private:
+  struct Provided;
+  struct State;
+  Guid add(std::shared_ptr<Servant> servant, const ServiceOptions& options, const std::string& name,
+           const std::string& owner);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace skein

@@ -1,0 +1,111 @@
+#include "skein/connector/connector.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "discovery.idl.hpp"
+#include "failover_channel.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
+#include "skein/rpc/dds_channel.hpp"
+#include "skein/rpc/local_channel.hpp"
+
+namespace skein {
+namespace {
+
+using brokerless_discovery::Change;
+using brokerless_discovery::Query;
+using brokerless_discovery::ServiceDescription;
+
+std::string peer_name(const ServiceDescription& provider) {
+  return scoped_interface_name(provider.service) + " of " + provider.entity + " (" + provider.system + ")";
+}
+
+// How long one provider may take to answer `open` while others stand by.
+constexpr std::chrono::milliseconds kOpenPatience{1000};
+constexpr std::chrono::milliseconds kRetryPause{20};
+
+const char* ending_of(brokerless_discovery::Departure departure) {
+  switch (departure) {
+    case brokerless_discovery::Departure::Left: return "it withdrew its service";
+    case brokerless_discovery::Departure::Lost: return "it was not heard of for longer than its lease";
+    case brokerless_discovery::Departure::Died: break;
+  }
+  return "its process ended";
+}
+
+// The kernel and the Broker know of a provider's end before DDS does.
+void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::DdsChannel>& channel,
+            const Guid& provider) {
+  using brokerless_discovery::Broker;
+  auto registration = std::make_shared<Broker::Registration>(
+      broker.observe([weak = std::weak_ptr(channel), provider](const Change& change) {
+        if (change.kind != Change::Kind::Removed || change.description->provider != provider.bytes) return;
+        if (const auto gone = weak.lock()) gone->provider_gone(ending_of(change.departure));
+      }));
+  channel->attach(registration);
+}
+
+}  // namespace
+
+std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
+                                                  const std::string& strategy,
+                                                  Duration timeout) const {
+  const Guid id{provider.provider};
+  if (const auto service = parts_.directory->find(id)) {
+    return rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy);
+  }
+  rpc::DdsChannel::Options options;
+  options.strategy = strategy;
+  options.peer = peer_name(provider);
+  options.timeout = timeout;
+  auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
+                                       parts_.clock, {provider.service, id}, std::move(options));
+  follow(parts_.broker, channel, id);
+  return channel;
+}
+
+std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
+                                         const ConnectOptions& options) {
+  if (options.foreign) return open_foreign(interface, options);
+  Query query = parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
+  query.client = &interface;
+  query.provider = options.provider;
+  if (options.system) {
+    query.system = *options.system == ConnectOptions::kAnySystem ? std::nullopt : options.system;
+  }
+  const auto connect_next = [connector = *this, query, strategy = options.strategy](Duration timeout) {
+    return connector.open_first(query, strategy, timeout);
+  };
+  return std::make_shared<FailoverChannel>(connect_next(options.timeout), connect_next);
+}
+
+std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
+                                                 const ConnectOptions& options) const {
+  rpc::DdsChannel::Options dds_options;
+  dds_options.peer = "the foreign server of " + std::string(interface.name);
+  dds_options.timeout = options.timeout;
+  return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations, parts_.clock,
+                               {std::string(interface.name), Guid{}}, std::move(dds_options));
+}
+
+// The first provider, in the Broker's order, that answers.
+std::shared_ptr<Channel> Connector::open_first(const Query& query, const std::string& strategy,
+                                               Duration timeout) const {
+  const Instant deadline = parts_.clock.now() + timeout;
+  const auto left = [&] { return std::max(Duration::zero(), deadline - parts_.clock.now()); };
+  while (true) {
+    const auto providers = parts_.broker.await_service(query, deadline);
+    for (const auto& provider : providers) {
+      try {
+        const Duration patience = providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
+        return open_provider(*provider, strategy, patience);
+      } catch (const Unavailable&) {
+        if (left() == Duration::zero()) throw;
+      }
+    }
+    std::this_thread::sleep_for(kRetryPause);
+  }
+}
+
+}  // namespace skein

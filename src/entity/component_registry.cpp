@@ -1,0 +1,67 @@
+#include "skein/entity/component_registry.hpp"
+
+#include <set>
+
+#include "skein/core/error.hpp"
+#include "skein/core/shared_object.hpp"
+
+namespace skein {
+namespace {
+
+template <class Value>
+const Value* find_in(const std::map<std::string, Value>& map, const std::string& name) {
+  const auto found = map.find(name);
+  return found == map.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+void ComponentRegistry::add_body(const std::string& component, BodyFactory factory) {
+  refuse_duplicate(component);
+  bodies_[component] = std::move(factory);
+}
+
+void ComponentRegistry::add_csp(const std::string& component, CspFactory factory) {
+  refuse_duplicate(component);
+  csps_[component] = std::move(factory);
+}
+
+void ComponentRegistry::add_mission(const std::string& component, Mission mission) {
+  refuse_duplicate(component);
+  missions_[component] = std::move(mission);
+}
+
+const ComponentRegistry::BodyFactory* ComponentRegistry::find_body(const std::string& component) const {
+  return find_in(bodies_, component);
+}
+
+const ComponentRegistry::CspFactory* ComponentRegistry::find_csp(const std::string& component) const {
+  return find_in(csps_, component);
+}
+
+const ComponentRegistry::Mission* ComponentRegistry::find_mission(const std::string& component) const {
+  return find_in(missions_, component);
+}
+
+std::vector<std::string> ComponentRegistry::names() const {
+  std::set<std::string> names;
+  for (const auto& [name, factory] : bodies_) names.insert(name);
+  for (const auto& [name, factory] : csps_) names.insert(name);
+  for (const auto& [name, mission] : missions_) names.insert(name);
+  return {names.begin(), names.end()};
+}
+
+void ComponentRegistry::load_plugin(const std::string& name) {
+  const SharedObject plugin(name, "build or install the plugin '" + name + "'");
+  plugin.check_abi("skein_plugin_abi");
+  plugin.function<void(ComponentRegistry&)>("skein_register_components")(*this);
+}
+
+void ComponentRegistry::refuse_duplicate(const std::string& component) const {
+  if (find_body(component) || find_csp(component) || find_mission(component)) {
+    throw InvalidArgument("two implementations of component '" + component +
+                          "' are registered; load only one of the plugins that hold it");
+  }
+}
+
+}  // namespace skein

@@ -1,0 +1,165 @@
+#include "skein/entity/entity.hpp"
+
+#include <map>
+#include <mutex>
+
+#include "discovery.idl.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+#include "skein/rpc/dds_server.hpp"
+
+namespace skein {
+namespace {
+
+using brokerless_discovery::Broker;
+using brokerless_discovery::ServiceDescription;
+
+// A CSP that does not return within this time of the entity's end is left behind.
+constexpr std::chrono::milliseconds kStopPatience{2000};
+
+ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider,
+                            const ServiceOptions& options) {
+  ServiceDescription description;
+  description.provider = provider.bytes;
+  description.service = interface.name;
+  for (const InterfaceInfo* base : interface.bases) description.bases.emplace_back(base->name);
+  for (const OperationInfo& operation : interface.operations) {
+    description.operations.push_back({std::string(operation.name), operation.hash, operation.signature});
+  }
+  for (const ServiceAttribute& attribute : options.attributes) {
+    description.attributes.push_back({attribute.name, attribute.value});
+  }
+  description.subcomponents = options.subcomponents;
+  description.component = options.component;
+  return description;
+}
+
+}  // namespace
+
+// In the order in which it comes to be; it goes in the opposite one.
+struct Entity::Provided {
+  std::string name;
+  std::unique_ptr<ThreadExecutor> executor;
+  std::shared_ptr<rpc::Service> service;
+  std::unique_ptr<rpc::DdsServer> server;
+  Broker::Registration registration;
+
+  ~Provided() {
+    registration.withdraw();
+    server.reset();
+    service->close();
+    if (!executor->stop_or_abandon(kStopPatience)) {
+      log(LogLevel::Error, name, "a call did not return; its thread is left behind");
+      // What the stuck thread may still touch must outlive it.
+      static_cast<void>(new std::shared_ptr<rpc::Service>(service));
+      static_cast<void>(executor.release());
+    }
+  }
+};
+
+struct Entity::State {
+  explicit State(EntityOptions given)
+      : options(std::move(given)),
+        process(options.process ? options.process : std::make_shared<Process>()),
+        participant(make_participant()),
+        broker(*participant, process->clock(), control, process->watch(),
+               {options.system, options.name, options.vendor->name(), options.lease}),
+        connector({*participant, broker, process->directory(), control, continuations, process->clock()}),
+        head(connector, broker, process->directory(), process->clock()) {}
+
+  std::unique_ptr<dds::Participant> make_participant() const {
+    if (!options.vendor) {
+      throw InvalidArgument("entity '" + options.name +
+                            "' has no vendor; pass dds::load_vendor(\"fastdds\") or another");
+    }
+    dds::ParticipantOptions participant_options;
+    participant_options.domain = options.domain;
+    participant_options.name = options.system + "/" + options.name;
+    participant_options.network = options.network;
+    participant_options.lease = options.lease;
+    return options.vendor->create_participant(participant_options);
+  }
+
+  const EntityOptions options;
+  const std::shared_ptr<Process> process;
+  std::unique_ptr<dds::Participant> participant;
+  ThreadExecutor continuations{"skein-continue"};
+  ThreadExecutor control{"skein-control"};
+  Broker broker;
+  Connector connector;
+  Head head;
+  std::mutex mutex;
+  std::map<Guid, std::unique_ptr<Provided>> provided;
+};
+
+Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+
+Entity::~Entity() {
+  std::map<Guid, std::unique_ptr<Provided>> provided;
+  {
+    std::lock_guard lock(state_->mutex);
+    provided.swap(state_->provided);
+  }
+  for (const auto& [id, service] : provided) state_->process->directory()->remove(id);
+  provided.clear();
+}
+
+const EntityOptions& Entity::options() const noexcept { return state_->options; }
+std::string Entity::id() const { return state_->options.system + "/" + state_->options.name; }
+Connector& Entity::connector() noexcept { return state_->connector; }
+Broker& Entity::broker() noexcept { return state_->broker; }
+Head& Entity::head() noexcept { return state_->head; }
+Clock& Entity::clock() noexcept { return state_->process->clock(); }
+dds::Participant& Entity::participant() noexcept { return *state_->participant; }
+
+Guid Entity::provide(std::shared_ptr<Servant> servant, const ServiceOptions& options) {
+  return add(std::move(servant), options, state_->options.name, "");
+}
+
+Guid Entity::provide_csp(const std::string& name, const std::string& owner,
+                         std::shared_ptr<Servant> servant, const ServiceOptions& options) {
+  return add(std::move(servant), options, name, owner);
+}
+
+Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
+                 const std::string& name, const std::string& owner) {
+  const InterfaceInfo& interface = servant->interface_info();
+  auto provided = std::make_unique<Provided>();
+  provided->name = name;
+  provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue);
+  rpc::Service::Options service_options;
+  service_options.single_threaded = options.threads <= 1;
+  if (owner.empty()) {
+    service_options.open = [&head = state_->head](const rpc::OpenRequest& request) {
+      return head.initialize(request);
+    };
+  }
+  provided->service = std::make_shared<rpc::Service>(std::move(servant), *provided->executor,
+                                                     state_->process->clock(), service_options);
+  const Guid id = provided->service->id();
+  // An owner calls its own CSP in the process; nobody else may, so no endpoint is needed.
+  if (owner != this->id()) {
+    provided->server = std::make_unique<rpc::DdsServer>(
+        *state_->participant, state_->control, state_->process->clock(), provided->service,
+        rpc::DdsServer::Options{owner.empty()});
+  }
+  state_->process->directory()->add(provided->service);
+  ServiceDescription description = describe(interface, id, options);
+  description.entity = name;
+  description.owner = owner;
+  provided->registration = state_->broker.add_service(std::move(description));
+  std::lock_guard lock(state_->mutex);
+  state_->provided.emplace(id, std::move(provided));
+  return id;
+}
+
+void Entity::withdraw(const Guid& provider) {
+  std::unique_ptr<Provided> provided;
+  {
+    std::lock_guard lock(state_->mutex);
+    if (auto node = state_->provided.extract(provider)) provided = std::move(node.mapped());
+  }
+  state_->process->directory()->remove(provider);
+}
+
+}  // namespace skein
