@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "navigator.idl.hpp"
+#include "skein/core/clock.hpp"
+#include "skein/navigation/terrain_provider.hpp"
+
+namespace skein::navigation {
+
+/// Whether the call that this thread works for was cancelled or its deadline has passed; false
+/// outside of any call.
+bool current_call_cancelled();
+
+struct PlannerOptions {
+  /// Polled every few hundred steps at least; true ends the planning with NoRoute.
+  std::function<bool()> stop = current_call_cancelled;
+  /// Against this the Problem's time limit is measured.
+  std::function<Instant()> now = std::chrono::steady_clock::now;
+  /// Of the samplers: the same seed gives the same samples.
+  std::uint32_t seed = 1;
+  /// How long a planner that uses all of its time searches where the Problem sets no limit.
+  std::chrono::milliseconds default_time_limit{1000};
+  /// Distance between the points of the planning grid; 0 takes 1/256 of the terrain's longer side,
+  /// but never less than the distance between its posts.
+  double grid_spacing_m = 0;
+};
+
+// What every planner here promises. `plan` returns a route that satisfies the Problem in every
+// respect that `navigator.idl` names: it ends at the goal, keeps clear of zones and ground between
+// waypoints too, and climbs and turns no tighter than the limits. Otherwise it throws
+// InvalidProblem (no planner could answer) or NoRoute, with the reason: unreachable, out of time,
+// stopped. It never returns a route that is only nearly right. Routes stay near the lowest altitude
+// that ground, climb limit, start and goal allow. One planner may serve several threads at once.
+
+/// Cheapest path by A* on a grid, exposure included, drawn taut. The slowest of the three to a
+/// first answer, near the optimum, and the only one that proves that there is none: an unreachable
+/// goal is refused with the zones or mountains that enclose it.
+std::unique_ptr<AE_navigator::IPlanner> make_a_star(std::shared_ptr<TerrainProvider> terrains,
+                                                    PlannerOptions options = {});
+
+/// Two trees grown towards each other: an answer within milliseconds, often long and careless of
+/// radars. Searches on until its time is up where there is no route.
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
+                                                         PlannerOptions options = {});
+
+/// A tree that is improved for as long as there is time: the more time, the cheaper the route.
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options = {});
+
+/// The names that make_planner knows, which the routes carry too: AStar, RRTConnect, RRTstar.
+const std::vector<std::string>& planner_names();
+
+/// Makes one by its name. Throws InvalidArgument for an unknown one, with the nearest known.
+std::unique_ptr<AE_navigator::IPlanner> make_planner(const std::string& name,
+                                                     std::shared_ptr<TerrainProvider> terrains,
+                                                     PlannerOptions options = {});
+
+}  // namespace skein::navigation

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "navigator.idl.hpp"
+#include "skein/navigation/terrain.hpp"
+
+namespace skein::navigation {
+
+/// How much the radar sites of a Problem see of an aircraft.
+///
+/// The rate at a point is the sum over the sites that see it of strength * (range / r)^4, with r no
+/// less than a tenth of the range (inverse fourth power as in Zabarankin, Uryasev and Murphey,
+/// "Aircraft routing under the risk of detection", 2006); the exposure of an edge is the rate's
+/// integral along it. Const members may be called from any thread. The terrain must outlive it.
+class RadarExposure {
+ public:
+  RadarExposure(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites);
+
+  /// Metres of exposure per metre flown.
+  double rate(const AE_navigator::Position& point) const;
+
+  /// Exposure of the straight edge in metres, by Simpson's rule on pieces no longer than `step_m`.
+  double along(const AE_navigator::Position& a, const AE_navigator::Position& b,
+               double step_m = 100.0) const;
+
+  /// Exposure of all edges of a route.
+  double along(std::span<const AE_navigator::Position> waypoints) const;
+
+ private:
+  struct Antenna {
+    AE_navigator::Position position;
+    double range_m;
+    double strength;
+  };
+  bool sees(const Antenna& antenna, const AE_navigator::Position& point) const;
+
+  const Terrain& terrain_;
+  std::vector<Antenna> antennas_;
+};
+
+/// The rate of a site of that range and strength at a slant range of `distance_m` in plain view.
+double exposure_rate(double range_m, double strength, double distance_m);
+
+/// How far a straight ray that leaves horizontally is above the curved earth after `distance_m`,
+/// over an earth of 4/3 its radius (the usual allowance for refraction).
+double earth_drop_m(double distance_m);
+
+}  // namespace skein::navigation

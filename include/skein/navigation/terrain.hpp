@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace skein::navigation {
+
+/// Heights above mean sea level on a regular grid of posts, bilinear in between.
+///
+/// The frame is the one of `navigator.idl`: metres north and east of the south-west corner.
+/// Immutable, so any number of threads may read one terrain at once.
+class Terrain {
+ public:
+  /// `heights_m` holds `rows` times `columns` posts, the southernmost row first, each row from west
+  /// to east. Throws InvalidArgument for fewer than two rows or columns, a spacing that is not
+  /// greater than zero, a wrong number of posts, or a height that is not finite.
+  Terrain(std::string name, int rows, int columns, double north_spacing_m, double east_spacing_m,
+          std::vector<float> heights_m);
+
+  const std::string& name() const noexcept { return name_; }
+  int rows() const noexcept { return rows_; }
+  int columns() const noexcept { return columns_; }
+  double north_spacing_m() const noexcept { return north_spacing_m_; }
+  double east_spacing_m() const noexcept { return east_spacing_m_; }
+  double north_extent_m() const noexcept { return (rows_ - 1) * north_spacing_m_; }
+  double east_extent_m() const noexcept { return (columns_ - 1) * east_spacing_m_; }
+  float lowest_m() const noexcept { return lowest_m_; }
+  float highest_m() const noexcept { return highest_m_; }
+
+  /// All posts in the order of the constructor.
+  const std::vector<float>& heights_m() const noexcept { return heights_m_; }
+  float post_m(int row, int column) const noexcept { return heights_m_[index(row, column)]; }
+
+  bool contains(double north_m, double east_m) const noexcept;
+
+  /// Height at a point; beyond the edge it is the height of the nearest point of the edge.
+  double height_m(double north_m, double east_m) const noexcept;
+
+ private:
+  std::size_t index(int row, int column) const noexcept {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
+  std::string name_;
+  int rows_;
+  int columns_;
+  double north_spacing_m_;
+  double east_spacing_m_;
+  std::vector<float> heights_m_;
+  float lowest_m_;
+  float highest_m_;
+};
+
+/// Reads an SRTM tile: 1201 x 1201 or 3601 x 3601 big-endian 16-bit metres, the northernmost row
+/// first; the file's name, such as `N53E027.hgt`, says where its south-west corner is.
+///
+/// Connected posts without data (-32768) become as high as the highest post beside them, so that no
+/// planner takes a hole in the data for a valley. Throws InvalidArgument, naming the file, where it
+/// cannot be read, is named or sized otherwise, holds a height that no mountain on earth has, or
+/// holds no data at all.
+Terrain read_hgt(const std::filesystem::path& file);
+
+/// Invented mountains, the same for the same seed on every machine: 513 x 513 posts at 100 m,
+/// ridges of up to some 2000 m over lowlands. Its name is `synthetic:<seed>`.
+Terrain make_synthetic_terrain(std::uint32_t seed);
+
+}  // namespace skein::navigation

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "skein/navigation/terrain.hpp"
+
+namespace skein::navigation {
+
+/// Finds a terrain by the name that a Problem gives, and keeps the last few that were asked for.
+///
+/// `synthetic:<seed>` is invented; any other name is the path of an `.hgt` file, looked for as it
+/// is and then in each of the folders, in order. Thread-safe; two threads that ask for the same new
+/// name wait for one reading.
+class TerrainProvider {
+ public:
+  explicit TerrainProvider(std::vector<std::filesystem::path> folders = {});
+
+  /// Throws InvalidArgument, with the folders that were searched, where there is no such terrain,
+  /// and what read_hgt throws.
+  std::shared_ptr<const Terrain> load(const std::string& name);
+
+ private:
+  std::shared_ptr<const Terrain> read(const std::string& name) const;
+
+  std::vector<std::filesystem::path> folders_;
+  std::mutex mutex_;
+  std::list<std::shared_ptr<const Terrain>> kept_;
+};
+
+}  // namespace skein::navigation

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "flight_surface.hpp"
+#include "navigator.idl.hpp"
+#include "planning_budget.hpp"
+#include "risk_map.hpp"
+#include "skein/navigation/keep_out.hpp"
+#include "skein/navigation/terrain_provider.hpp"
+
+namespace skein::navigation {
+
+/// One Problem, checked and made ready for a search. Lives for one call of `plan`.
+class PlanningScene {
+ public:
+  /// Throws InvalidProblem, also for a terrain that is not to be had.
+  PlanningScene(TerrainProvider& terrains, const AE_navigator::Problem& problem,
+                const PlannerOptions& options);
+
+  const AE_navigator::Problem& problem() const { return problem_; }
+  const Terrain& terrain() const { return *terrain_; }
+  const PlanningBudget& budget() const { return budget_; }
+  const PlanningGrid& grid() const { return surface_.grid(); }
+  const FlightSurface& surface() const { return surface_; }
+  const std::vector<KeepOut>& keep_outs() const { return keep_outs_; }
+
+  /// Made at first use; a planner that does not care about radars never pays for it.
+  const RiskMap& risk() const;
+
+  /// The zone that a leg along the flight surface would enter, or nullptr.
+  const KeepOut* zone_across(const GroundPoint& a, const GroundPoint& b) const;
+
+  bool free(const GroundPoint& point) const {
+    return surface_.open(point) && !zone_across(point, point);
+  }
+
+  /// Whether the straight leg stays on open surface and clear of the zones.
+  bool free(const GroundPoint& a, const GroundPoint& b) const;
+
+  /// Length plus weighted exposure of a leg along the flight surface.
+  double cost(const GroundPoint& a, const GroundPoint& b) const;
+
+ private:
+  std::shared_ptr<const Terrain> terrain_;
+  const AE_navigator::Problem& problem_;
+  PlanningBudget budget_;
+  FlightSurface surface_;
+  std::vector<KeepOut> keep_outs_;
+  mutable std::optional<RiskMap> risk_;
+};
+
+}  // namespace skein::navigation

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "altitude_profile.hpp"
+#include "planning_scene.hpp"
+#include "taut_path.hpp"
+
+namespace skein::navigation {
+
+/// Makes a route of what a search has found: draws the path taut by `cost`, rounds its turns, gives
+/// it altitudes, measures it, and looks at the result once more, edge by edge. Throws Unflyable
+/// where the path has no such route, NoRoute when the budget is spent.
+///
+/// `most_points` bounds the work: the path is divided into about as many points, and the work grows
+/// with their square.
+AE_navigator::Route make_route(const PlanningScene& scene, const GroundPath& path,
+                               const LegCost& cost, int most_points, std::string planner);
+
+}  // namespace skein::navigation

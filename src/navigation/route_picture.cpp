@@ -1,0 +1,277 @@
+#include "skein/navigation/route_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "plane_geometry.hpp"
+#include "route_profiles.hpp"
+#include "skein/core/error.hpp"
+#include "terrain_shading.hpp"
+
+namespace skein::navigation {
+namespace {
+
+constexpr double kWidth = 1240;
+constexpr double kMapLeft = 62;
+constexpr double kMapTop = 78;
+constexpr double kMapSide = 820;
+constexpr double kLegendLeft = kMapLeft + kMapSide + 34;
+constexpr int kImageSide = 620;  ///< Points of the shaded map along its longer side.
+
+/// Metres to units of the picture.
+class MapScale {
+ public:
+  explicit MapScale(const Terrain& terrain)
+      : units_per_m_(kMapSide / std::max(terrain.north_extent_m(), terrain.east_extent_m())),
+        width_(terrain.east_extent_m() * units_per_m_),
+        height_(terrain.north_extent_m() * units_per_m_) {}
+  double width() const { return width_; }
+  double height() const { return height_; }
+  double x(double east_m) const { return kMapLeft + east_m * units_per_m_; }
+  double y(double north_m) const { return kMapTop + height_ - north_m * units_per_m_; }
+  double units(double metres) const { return metres * units_per_m_; }
+
+ private:
+  double units_per_m_;
+  double width_;
+  double height_;
+};
+
+/// 1, 2 or 5 times a power of ten, not more than `most`.
+double round_number(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= most) return factor * power;
+  }
+  return power;
+}
+
+void add_head(Svg& svg, const std::string& title, const Terrain& terrain, double height) {
+  svg.add(R"svg(<svg xmlns="http://www.w3.org/2000/svg"
+xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 {} {:.0f}" width="{}" height="{:.0f}">)svg",
+          kWidth, height, kWidth, height);
+  svg.add("<title>{}</title>", escaped(title));
+  svg.add(R"svg(<style>text{{font-family:"DejaVu Sans",Helvetica,Arial,sans-serif;fill:#1f2933}}
+.title{{font-size:23px;font-weight:600}}.sub{{font-size:13px;fill:#5b6770}}
+.small{{font-size:13px}}.tick{{font-size:11px;fill:#5b6770}}
+.name{{font-size:12.5px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3.2px;stroke-linejoin:round}}
+</style>)svg");
+  svg.add(R"svg(<defs><pattern id="hatch" width="9" height="9" patternUnits="userSpaceOnUse"
+patternTransform="rotate(45)"><rect width="3" height="9" fill="#a01020"/></pattern></defs>)svg");
+  svg.add(R"svg(<rect width="100%" height="100%" fill="#fcfbf8"/>)svg");
+  svg.add(R"svg(<text x="{}" y="38" class="title">{}</text>)svg", kMapLeft, escaped(title));
+  svg.add(R"svg(<text x="{}" y="60"
+class="sub">terrain {}, {:.0f} km by {:.0f} km, {:.0f} m to {:.0f} m</text>)svg",
+          kMapLeft, escaped(terrain.name()), terrain.north_extent_m() / 1000,
+          terrain.east_extent_m() / 1000, terrain.lowest_m(), terrain.highest_m());
+}
+
+void add_ground(Svg& svg, const Terrain& terrain, const AE_navigator::Problem& problem,
+                const MapScale& map) {
+  const double per_unit = kImageSide / kMapSide;
+  const Image image = shade(terrain, problem, std::max(1, static_cast<int>(map.width() * per_unit)),
+                            std::max(1, static_cast<int>(map.height() * per_unit)));
+  svg.add(R"svg(<clipPath id="map"><rect x="{}" y="{}" width="{:.1f}" height="{:.1f}"/>
+</clipPath>)svg",
+          kMapLeft, kMapTop, map.width(), map.height());
+  svg.add(R"svg(<image x="{}" y="{}" width="{:.1f}" height="{:.1f}" preserveAspectRatio="none"
+xlink:href="data:image/png;base64,{}"/>)svg",
+          kMapLeft, kMapTop, map.width(), map.height(), image.png_base64());
+}
+
+void add_frame(Svg& svg, const Terrain& terrain, const MapScale& map) {
+  svg.add(R"svg(<rect x="{}" y="{}" width="{:.1f}" height="{:.1f}" fill="none" stroke="#1f2933"
+stroke-width="1.2"/>)svg",
+          kMapLeft, kMapTop, map.width(), map.height());
+  const double step = round_number(std::max(terrain.north_extent_m(), terrain.east_extent_m()) / 4);
+  for (double metres = 0; metres <= terrain.east_extent_m(); metres += step) {
+    svg.add(R"svg(<path d="M{0:.1f} {1:.1f}v6" stroke="#1f2933"/><text x="{0:.1f}" y="{2:.1f}"
+class="tick" text-anchor="middle">{3:g} km</text>)svg",
+            map.x(metres), kMapTop + map.height(), kMapTop + map.height() + 19, metres / 1000);
+  }
+  for (double metres = 0; metres <= terrain.north_extent_m(); metres += step) {
+    svg.add(R"svg(<path d="M{0} {1:.1f}h-6" stroke="#1f2933"/><text x="{2}" y="{3:.1f}"
+class="tick" text-anchor="end">{4:g} km</text>)svg",
+            kMapLeft, map.y(metres), kMapLeft - 9, map.y(metres) + 4, metres / 1000);
+  }
+}
+
+void add_zone(Svg& svg, const AE_navigator::NoFlyZone& zone, const MapScale& map) {
+  std::string outline;
+  GroundPoint middle{0, 0};
+  for (const auto& corner : zone.outline) {
+    outline += fmt::format("{}{:.1f} {:.1f}", outline.empty() ? 'M' : 'L', map.x(corner.east_m),
+                           map.y(corner.north_m));
+    middle.north_m += corner.north_m / static_cast<double>(zone.outline.size());
+    middle.east_m += corner.east_m / static_cast<double>(zone.outline.size());
+  }
+  outline += 'Z';
+  // The margin is a stroke with round corners: a wide one in the border's colour, then what is
+  // inside.
+  const double margin = 2 * map.units(zone.margin_m);
+  const auto layer = [&](std::string_view fill, double width) {
+    svg.add(R"svg(<path d="{0}" fill="{1}" stroke="{1}" stroke-width="{2:.1f}"
+stroke-linejoin="round" stroke-linecap="round"/>)svg",
+            outline, fill, width);
+  };
+  svg.add(R"svg(<g opacity="0.6">)svg");
+  layer("#8f0d1c", margin + 2);
+  layer("#f3c6c6", std::max(0.0, margin - 2));
+  layer("url(#hatch)", std::max(0.0, margin - 2));
+  svg.add("</g>");
+  svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name" text-anchor="middle">{}</text>)svg",
+          map.x(middle.east_m), map.y(middle.north_m) + 4, escaped(zone.name));
+}
+
+void add_radar(Svg& svg, const AE_navigator::RadarSite& site, const MapScale& map) {
+  const double x = map.x(site.site.east_m);
+  const double y = map.y(site.site.north_m);
+  const double range = map.units(site.range_m);
+  svg.add(R"svg(<circle cx="{0:.1f}" cy="{1:.1f}" r="{2:.1f}" fill="none" stroke="#fff"
+stroke-opacity="0.7" stroke-width="3"/><circle cx="{0:.1f}" cy="{1:.1f}" r="{2:.1f}"
+fill="none" stroke="#7a0b23" stroke-width="1.4" stroke-dasharray="7 5"/>)svg",
+          x, y, range);
+  svg.add(R"svg(<g transform="translate({:.1f} {:.1f})" fill="none" stroke="#fff"
+stroke-width="4"><path id="r"
+d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4"/><path
+d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4" stroke="#7a0b23"
+stroke-width="1.8"/></g>)svg",
+          x, y);
+  svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name">{}</text>)svg", x + 12, y + 6,
+          escaped(site.name));
+}
+
+void add_route(Svg& svg, const AE_navigator::Route& route, std::string_view colour,
+               const MapScale& map) {
+  std::string path;
+  for (const Position& p : route.waypoints) {
+    path +=
+        fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', map.x(p.east_m), map.y(p.north_m));
+  }
+  svg.add(R"svg(<path d="{}" fill="none" stroke="#fff" stroke-opacity="0.85" stroke-width="6"
+stroke-linejoin="round" stroke-linecap="round"/>)svg",
+          path);
+  svg.add(R"svg(<path d="{}" fill="none" stroke="{}" stroke-width="3" stroke-linejoin="round"
+stroke-linecap="round"/>)svg",
+          path, colour);
+}
+
+void add_end(Svg& svg, const char* name, const Position& end, const char* fill,
+             const MapScale& map) {
+  const double x = map.x(end.east_m);
+  const double y = map.y(end.north_m);
+  svg.add(R"svg(<circle cx="{0:.1f}" cy="{1:.1f}" r="7.5" fill="{2}" stroke="#fff"
+stroke-width="2.5"/><text x="{0:.1f}" y="{3:.1f}" class="name" text-anchor="middle"
+font-size="14">{4}</text>)svg",
+          x, y, fill, y - 14, name);
+}
+
+void add_scale_and_north(Svg& svg, const Terrain& terrain, const MapScale& map) {
+  const double metres = round_number(terrain.east_extent_m() / 4);
+  const double left = kMapLeft + 18;
+  const double y = kMapTop + map.height() - 22;
+  svg.add(R"svg(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="32" rx="4" fill="#fff"
+fill-opacity="0.8"/>)svg",
+          left - 9, y - 20, map.units(metres) + 18);
+  svg.add(R"svg(<path d="M{0:.1f} {1:.1f}v5h{2:.1f}v-5" fill="none" stroke="#1f2933"
+stroke-width="2"/><text x="{3:.1f}" y="{1:.1f}" class="small"
+text-anchor="middle">{4:g} km</text>)svg",
+          left, y, map.units(metres), left + map.units(metres) / 2, metres / 1000);
+  svg.add(R"svg(<g transform="translate({:.1f} {:.1f})"><circle r="21" fill="#fff"
+fill-opacity="0.8"/><path d="M0 -16L6 7L0 3Z" fill="#1f2933"/><path d="M0 -16L-6 7L0 3Z"
+fill="#fff" stroke="#1f2933" stroke-width="1"/><text y="19" class="tick" text-anchor="middle"
+font-weight="600">N</text></g>)svg",
+          kMapLeft + map.width() - 32, kMapTop + 32);
+}
+
+double add_route_legend(Svg& svg, std::span<const PicturedRoute> routes, double y) {
+  for (std::size_t i = 0; i < routes.size(); ++i, y += 62) {
+    const AE_navigator::Route& route = routes[i].route;
+    svg.add(R"svg(<path d="M{0} {1:.0f}h26" stroke="{2}" stroke-width="4"
+stroke-linecap="round"/><text x="{3}" y="{4:.0f}" class="small" font-weight="600">{5}</text>)svg",
+            kLegendLeft, y - 4, route_colour(i), kLegendLeft + 36, y, escaped(routes[i].label));
+    svg.add(R"svg(<text x="{}" y="{:.0f}" class="sub">{:.1f} km, exposure {:.1f} km</text>)svg",
+            kLegendLeft + 36, y + 18, route.length_m / 1000, route.radar_exposure / 1000);
+    svg.add(R"svg(<text x="{}" y="{:.0f}" class="sub">{}</text>)svg", kLegendLeft + 36, y + 35,
+            drawable(route)
+                ? fmt::format("at least {:.0f} m above ground", route.lowest_height_above_ground_m)
+                : std::string("not drawn: not a route"));
+  }
+  return y;
+}
+
+void add_key(Svg& svg, const Terrain& terrain, const AE_navigator::Problem& problem, double y) {
+  svg.add(R"svg(<text x="{}" y="{:.0f}" class="small"
+font-weight="600">Ground, {:.0f} m to {:.0f} m</text>)svg",
+          kLegendLeft, y, terrain.lowest_m(), terrain.highest_m());
+  for (int i = 0; i < 48; ++i) {
+    const Colour c = height_colour(i / 47.0);
+    svg.add(R"svg(<rect x="{:.1f}" y="{:.0f}" width="5.2" height="12"
+fill="rgb({:.0f},{:.0f},{:.0f})"/>)svg",
+            kLegendLeft + 5 * i, y + 9, 255 * c.red, 255 * c.green, 255 * c.blue);
+  }
+  y += 50;
+  svg.add(R"svg(<text x="{}" y="{:.0f}" class="small"
+font-weight="600">Seen by radar, {:.0f} m above ground</text>)svg",
+          kLegendLeft, y, problem.minimum_height_above_ground_m);
+  for (int i = 0; i < 48; ++i) {
+    svg.add(R"svg(<rect x="{:.1f}" y="{:.0f}" width="5.2" height="12" fill="#c70d38"
+fill-opacity="{:.2f}"/>)svg",
+            kLegendLeft + 5 * i, y + 9, 0.6 * i / 47);
+  }
+  svg.add(R"svg(<text x="{0}" y="{1:.0f}" class="tick">hardly</text><text x="{2}" y="{1:.0f}"
+class="tick" text-anchor="end">strongly</text>)svg",
+          kLegendLeft, y + 36, kLegendLeft + 240);
+  y += 62;
+  svg.add(R"svg(<circle cx="{0}" cy="{1:.0f}" r="8" fill="none" stroke="#7a0b23"
+stroke-width="1.4" stroke-dasharray="5 3.5"/><text x="{2}" y="{3:.0f}"
+class="small">range of a radar</text>)svg",
+          kLegendLeft + 12, y - 4, kLegendLeft + 36, y);
+  y += 28;
+  svg.add(R"svg(<g opacity="0.6"><rect x="{0}" y="{1:.0f}" width="24" height="14" fill="#f3c6c6"
+stroke="#8f0d1c" stroke-width="2"/><rect x="{0}" y="{1:.0f}" width="24" height="14"
+fill="url(#hatch)"/></g><text x="{2}" y="{3:.0f}" class="small">no-fly zone</text>)svg",
+          kLegendLeft, y - 12, kLegendLeft + 36, y);
+}
+
+}  // namespace
+
+std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& problem,
+                          std::span<const PicturedRoute> routes, const std::string& title) {
+  const MapScale map(terrain);
+  const auto profiles = static_cast<double>(std::count_if(
+      routes.begin(), routes.end(), [](const auto& pictured) { return drawable(pictured.route); }));
+  const double legend_height = 62.0 * static_cast<double>(routes.size()) + 250;
+  const double below_map = kMapTop + std::max(map.height(), legend_height) + 34;
+  Svg svg;
+  add_head(svg, title, terrain, below_map + profiles * kProfileHeight + 16);
+  add_ground(svg, terrain, problem, map);
+  svg.add(R"svg(<g clip-path="url(#map)">)svg");
+  for (const auto& zone : problem.no_fly_zones) add_zone(svg, zone, map);
+  for (const auto& site : problem.radar_sites) add_radar(svg, site, map);
+  for (std::size_t i = routes.size(); i-- > 0;) {
+    if (drawable(routes[i].route)) add_route(svg, routes[i].route, route_colour(i), map);
+  }
+  add_end(svg, "Start", problem.start, "#2b8a3e", map);
+  add_end(svg, "Goal", problem.goal, "#111827", map);
+  svg.add("</g>");
+  add_scale_and_north(svg, terrain, map);
+  add_frame(svg, terrain, map);
+  const double key = add_route_legend(svg, routes, kMapTop + 16);
+  add_key(svg, terrain, problem, key + 18);
+  add_profiles(svg, terrain, problem, routes, kMapLeft, below_map, kWidth - kMapLeft - 40);
+  svg.add("</svg>");
+  return svg.take();
+}
+
+void write_route_picture(const std::filesystem::path& file, const Terrain& terrain,
+                         const AE_navigator::Problem& problem,
+                         std::span<const PicturedRoute> routes, const std::string& title) {
+  std::ofstream out(file, std::ios::binary);
+  out << route_picture(terrain, problem, routes, title);
+  out.close();
+  if (!out) throw InvalidArgument(fmt::format("{}: the picture cannot be written", file.string()));
+}
+
+}  // namespace skein::navigation

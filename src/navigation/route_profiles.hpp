@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "skein/navigation/route_picture.hpp"
+#include "svg_text.hpp"
+
+namespace skein::navigation {
+
+inline constexpr double kProfileHeight = 116;
+
+/// Draws an altitude profile for each route below each other: the ground, the flight, and a bar
+/// that shows where it is seen by radars. All have the same scales.
+void add_profiles(Svg& svg, const Terrain& terrain, const AE_navigator::Problem& problem,
+                  std::span<const PicturedRoute> routes, double left, double top, double width);
+
+/// Whether all of its numbers can be drawn.
+bool drawable(const AE_navigator::Route& route);
+
+}  // namespace skein::navigation

@@ -1,0 +1,229 @@
+// The only source that sees OMPL.
+
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/OptimizationObjective.h>
+#include <ompl/base/ScopedState.h>
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
+#include <ompl/util/Console.h>
+
+#include <mutex>
+
+#include "route_making.hpp"
+#include "skein/navigation/planners.hpp"
+
+namespace skein::navigation {
+namespace {
+
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+
+GroundPoint point_of(const ob::State* state) {
+  const auto* values = state->as<ob::RealVectorStateSpace::StateType>()->values;
+  return {values[0], values[1]};
+}
+
+/// A leg is flown along the flight surface, clear of zones and closed ground.
+class LegValidator final : public ob::MotionValidator {
+ public:
+  LegValidator(const ob::SpaceInformationPtr& space, const PlanningScene& scene)
+      : MotionValidator(space), scene_(scene) {}
+
+  bool checkMotion(const ob::State* from, const ob::State* to) const override {
+    return scene_.free(point_of(from), point_of(to));
+  }
+
+  bool checkMotion(const ob::State* from, const ob::State* to,
+                   std::pair<ob::State*, double>& last_valid) const override {
+    if (checkMotion(from, to)) return true;
+    if (last_valid.first) si_->copyState(last_valid.first, from);
+    last_valid.second = 0;
+    return false;
+  }
+
+ private:
+  const PlanningScene& scene_;
+};
+
+class RiskObjective final : public ob::OptimizationObjective {
+ public:
+  RiskObjective(const ob::SpaceInformationPtr& space, const PlanningScene& scene)
+      : OptimizationObjective(space), scene_(scene) {}
+
+  ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
+  ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
+    return ob::Cost(scene_.cost(point_of(from), point_of(to)));
+  }
+  ob::Cost motionCostHeuristic(const ob::State* from, const ob::State* to) const override {
+    return ob::Cost(si_->distance(from, to));
+  }
+
+ private:
+  const PlanningScene& scene_;
+};
+
+class SeededSampler final : public ob::RealVectorStateSampler {
+ public:
+  SeededSampler(const ob::StateSpace* space, std::uint32_t seed) : RealVectorStateSampler(space) {
+    rng_.setLocalSeed(seed);
+  }
+};
+
+/// OMPL seeds its planners from one generator for the whole process; here each has its own.
+template <class Planner>
+class Seeded final : public Planner {
+ public:
+  Seeded(const ob::SpaceInformationPtr& space, std::uint32_t seed) : Planner(space) {
+    this->rng_.setLocalSeed(seed);
+  }
+};
+
+/// One search over the map of a scene.
+class Sampling {
+ public:
+  Sampling(const PlanningScene& scene, std::uint32_t seed) : scene_(scene) {
+    auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
+    ob::RealVectorBounds bounds(2);
+    bounds.setLow(0);
+    bounds.setHigh(0, scene.terrain().north_extent_m());
+    bounds.setHigh(1, scene.terrain().east_extent_m());
+    plane->setBounds(bounds);
+    plane->setStateSamplerAllocator([seed](const ob::StateSpace* space) {
+      return std::make_shared<SeededSampler>(space, seed + 1);
+    });
+    space_ = std::make_shared<ob::SpaceInformation>(plane);
+    space_->setStateValidityChecker(
+        [&scene](const ob::State* state) { return scene.free(point_of(state)); });
+    space_->setMotionValidator(std::make_shared<LegValidator>(space_, scene));
+    space_->setup();
+    problem_ = std::make_shared<ob::ProblemDefinition>(space_);
+    problem_->setStartAndGoalStates(state_at(scene.problem().start),
+                                    state_at(scene.problem().goal));
+  }
+
+  const ob::SpaceInformationPtr& space() const { return space_; }
+  const ob::ProblemDefinitionPtr& problem() const { return problem_; }
+
+  /// Runs the planner until it has a path or `ends` holds, asked at every step: the library's own
+  /// time limits are polled late. Only a path that reaches the goal counts.
+  std::optional<GroundPath> solve(ob::Planner& planner, const std::function<bool()>& ends) const {
+    const ob::PlannerStatus status = planner.solve(ob::PlannerTerminationCondition(ends));
+    if (status != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
+    GroundPath path;
+    for (const ob::State* state :
+         problem_->getSolutionPath()->as<og::PathGeometric>()->getStates()) {
+      path.push_back(point_of(state));
+    }
+    return path;
+  }
+
+  double range_m() const {
+    return 0.12 * std::max(scene_.terrain().north_extent_m(), scene_.terrain().east_extent_m());
+  }
+
+ private:
+  ob::ScopedState<> state_at(const Position& position) const {
+    ob::ScopedState<> state(space_);
+    state[0] = position.north_m;
+    state[1] = position.east_m;
+    return state;
+  }
+
+  const PlanningScene& scene_;
+  ob::SpaceInformationPtr space_;
+  ob::ProblemDefinitionPtr problem_;
+};
+
+class SamplingPlanner : public AE_navigator::IPlanner {
+ public:
+  SamplingPlanner(std::shared_ptr<TerrainProvider> terrains, PlannerOptions options)
+      : terrains_(std::move(terrains)), options_(std::move(options)) {
+    static std::once_flag quiet;  // The library writes to standard output otherwise.
+    std::call_once(quiet, [] { ompl::msg::noOutputHandler(); });
+  }
+
+ protected:
+  std::shared_ptr<TerrainProvider> terrains_;
+  PlannerOptions options_;
+};
+
+class RrtConnectPlanner final : public SamplingPlanner {
+ public:
+  using SamplingPlanner::SamplingPlanner;
+
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
+    constexpr int kMostPoints = 60;
+    const PlanningScene scene(*terrains_, problem, options_);
+    const LegCost length = [](const GroundPoint& a, const GroundPoint& b) {
+      return distance_m(a, b);
+    };
+    const Instant end = scene.budget().search_end(0);
+    std::string unflyable;
+    // A path that cannot be flown is no answer; with other samples there may be one.
+    for (std::uint32_t attempt = 0; scene.budget().now() < end; ++attempt) {
+      const Sampling sampling(scene, options_.seed + 2 * attempt);
+      Seeded<og::RRTConnect> planner(sampling.space(), options_.seed + 2 * attempt);
+      planner.setRange(sampling.range_m());
+      planner.setProblemDefinition(sampling.problem());
+      const auto path = sampling.solve(
+          planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
+      scene.budget().require_time();
+      if (!path) break;
+      try {
+        return make_route(scene, *path, length, kMostPoints, "RRTConnect");
+      } catch (const Unflyable& reason) {
+        unflyable = reason.what();
+      }
+    }
+    scene.budget().require_time();
+    throw AE_navigator::NoRoute(unflyable.empty()
+                                    ? "no route was found within the default time limit"
+                                    : "no path that was found can be flown: " + unflyable);
+  }
+};
+
+class RrtStarPlanner final : public SamplingPlanner {
+ public:
+  using SamplingPlanner::SamplingPlanner;
+
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
+    constexpr int kMostPoints = 150;
+    const PlanningScene scene(*terrains_, problem, options_);
+    const Sampling sampling(scene, options_.seed);
+    sampling.problem()->setOptimizationObjective(
+        std::make_shared<RiskObjective>(sampling.space(), scene));
+    Seeded<og::RRTstar> planner(sampling.space(), options_.seed);
+    planner.setRange(sampling.range_m());
+    planner.setProblemDefinition(sampling.problem());
+    scene.cost(on_map(problem.start), on_map(problem.goal));
+    const Instant end = scene.budget().search_end(3);
+    const auto path = sampling.solve(
+        planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
+    scene.budget().require_time();
+    if (!path) throw AE_navigator::NoRoute("no route was found within the time to search");
+    try {
+      const auto cost = [&](const GroundPoint& a, const GroundPoint& b) {
+        return scene.cost(a, b);
+      };
+      return make_route(scene, *path, cost, kMostPoints, "RRTstar");
+    } catch (const Unflyable& reason) {
+      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what());
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
+                                                         PlannerOptions options) {
+  return std::make_unique<RrtConnectPlanner>(std::move(terrains), std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options) {
+  return std::make_unique<RrtStarPlanner>(std::move(terrains), std::move(options));
+}
+
+}  // namespace skein::navigation
