@@ -17,8 +17,12 @@ class Entity;
 /// `skein_register_components`; there is no global one.
 class ComponentRegistry {
  public:
-  /// Makes the Body of an entity: the servant that it provides.
-  using BodyFactory = std::function<std::shared_ptr<Servant>(Entity&, const ParameterValues&)>;
+  /// A Body: the public service of an entity, and how many threads run its calls.
+  struct Body {
+    std::shared_ptr<Servant> servant;
+    std::size_t threads = 1;
+  };
+  using BodyFactory = std::function<Body(Entity&, const ParameterValues&)>;
   /// Makes a CSP, which knows its managed interface and nothing of entities.
   using CspFactory = std::function<std::shared_ptr<Servant>(const ParameterValues&)>;
   /// Runs a mission to its end; the result is the mission's exit code.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "skein/entity/component_registry.hpp"
+#include "skein/profile/mission_profile.hpp"
+
+namespace skein::launch {
+
+/// Runs one process of a mission as its profile says, from the implementations in `registry` and in
+/// the plugins that the profile names: `navigator` for a peer with its in-process CSPs,
+/// `navigator/RRTstar` for a CSP with a process of its own. Joins the mission, provides what the
+/// component implements, waits for what it depends on, reports ready, and returns the exit code: the
+/// mission's for the peer that runs it, 0 when told to end by SIGTERM, SIGINT or SIGHUP.
+///
+/// Call it from main() before other threads exist: it blocks those signals for all that it starts.
+/// Throws InvalidArgument for a name that the profile or the registry does not have (with a
+/// suggestion), Unavailable where a dependency does not appear in time.
+int run_process(const profile::MissionProfile& mission, const std::string& process,
+                ComponentRegistry& registry);
+
+}  // namespace skein::launch

@@ -1,0 +1,165 @@
+#include "skein/launch/peer.hpp"
+
+#include <pthread.h>
+
+#include <csignal>
+
+#include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
+#include "skein/core/suggestion.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/launch/ready.hpp"
+#include "skein/profile/component_xml.hpp"
+
+namespace skein::launch {
+namespace {
+
+using profile::CspProfile;
+using profile::MissionProfile;
+using profile::PeerProfile;
+
+sigset_t ending_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  return signals;
+}
+
+[[noreturn]] void refuse_process(const MissionProfile& mission, const std::string& process) {
+  std::vector<std::string> names;
+  for (const PeerProfile& peer : mission.peers) {
+    names.push_back(peer.name);
+    for (const CspProfile& csp : peer.csps) {
+      if (csp.process == profile::CspProcess::Own) names.push_back(peer.name + "/" + csp.name);
+    }
+  }
+  throw InvalidArgument("mission '" + mission.name + "' has no process '" + process + "'" +
+                        suggestion(process, names));
+}
+
+EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer,
+                             const std::string& name, const std::string& vendor) {
+  EntityOptions options;
+  options.name = name;
+  options.system = peer.system;
+  options.vendor = dds::load_vendor(vendor);
+  options.domain = static_cast<std::uint32_t>(mission.domain);
+  if (!peer.interface.empty()) options.network.interfaces = {peer.interface};
+  return options;
+}
+
+ParameterValues values_of(const std::vector<profile::Setting>& settings) {
+  ParameterValues values;
+  for (const profile::Setting& setting : settings) values[setting.name] = setting.value;
+  return values;
+}
+
+// What the component's description declares of the interface that `servant` implements.
+ServiceOptions service_options(const profile::ComponentDescription& component, const Servant& servant) {
+  const auto* implemented = component.find_interface(servant.interface_info().name);
+  if (!implemented) {
+    throw InvalidArgument(profile::to_text(component.where) + ": component '" + component.name +
+                          "' does not declare " + std::string(servant.interface_info().name) +
+                          ", which its implementation provides; add it to <interfaces>");
+  }
+  ServiceOptions options;
+  for (const auto& attribute : implemented->attributes) {
+    options.attributes.push_back({attribute.name, attribute.value});
+  }
+  for (const auto& part : component.subcomponents) options.subcomponents.push_back(part.type);
+  options.component = profile::write_component(component);
+  return options;
+}
+
+template <class Factory>
+const Factory& required(const Factory* factory, const std::string& component, const char* kind,
+                        const ComponentRegistry& registry) {
+  if (factory) return *factory;
+  throw InvalidArgument("no implementation of " + std::string(kind) + " '" + component +
+                        "' is registered" + suggestion(component, registry.names()) +
+                        "; name the plugin that holds it in the profile");
+}
+
+void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp,
+                 const ComponentRegistry& registry) {
+  const auto& factory =
+      required(registry.find_csp(csp.component->name), csp.component->name, "CSP", registry);
+  auto servant = factory(values_of(csp.parameters));
+  const ServiceOptions options = service_options(*csp.component, *servant);
+  entity.provide_csp(csp.name, owner, std::move(servant), options);
+}
+
+void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
+  const auto& factory =
+      required(registry.find_body(peer.component->name), peer.component->name, "component", registry);
+  ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
+  ServiceOptions options = service_options(*peer.component, *body.servant);
+  options.threads = body.threads;
+  entity.provide(std::move(body.servant), options);
+}
+
+void await_dependencies(Entity& entity, const PeerProfile& peer) {
+  const Instant deadline =
+      entity.clock().now() + std::chrono::duration_cast<Duration>(peer.rules.ready_timeout);
+  for (const auto& dependency : peer.component->dependencies) {
+    auto query = entity.broker().query(dependency.type);
+    query.system = std::nullopt;
+    entity.broker().await_service(query, deadline);
+  }
+}
+
+int await_end() {
+  const sigset_t signals = ending_signals();
+  int signal = 0;
+  sigwait(&signals, &signal);
+  return 0;
+}
+
+void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
+  if (!plugin.empty()) registry.load_plugin(plugin);
+}
+
+int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
+            ComponentRegistry& registry) {
+  load_plugin(registry, csp.plugin);
+  Entity entity(entity_options(mission, peer, peer.name + "." + csp.name, csp.vendor));
+  provide_csp(entity, peer.system + "/" + peer.name, csp, registry);
+  report_ready();
+  return await_end();
+}
+
+int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
+  load_plugin(registry, peer.plugin);
+  Entity entity(entity_options(mission, peer, peer.name, peer.vendor));
+  for (const CspProfile& csp : peer.csps) {
+    if (csp.process == profile::CspProcess::InOwner) provide_csp(entity, entity.id(), csp, registry);
+  }
+  if (!peer.component->interfaces.empty()) provide_body(entity, peer, registry);
+  await_dependencies(entity, peer);
+  report_ready();
+  if (!peer.runs_mission) return await_end();
+  const auto& mission_function = required(registry.find_mission(peer.component->name),
+                                          peer.component->name, "mission", registry);
+  return mission_function(entity, values_of(peer.parameters));
+}
+
+}  // namespace
+
+int run_process(const MissionProfile& mission, const std::string& process,
+                ComponentRegistry& registry) {
+  const std::size_t slash = process.find('/');
+  const PeerProfile* peer = mission.find_peer(process.substr(0, slash));
+  if (!peer) refuse_process(mission, process);
+  const CspProfile* csp =
+      slash == std::string::npos ? nullptr : peer->find_csp(process.substr(slash + 1));
+  if (slash != std::string::npos && !csp) refuse_process(mission, process);
+
+  // A mission has no place at which it could notice a signal: it dies of it, as programs do.
+  if (!peer->runs_mission) {
+    const sigset_t signals = ending_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  }
+  return csp ? run_csp(mission, *peer, *csp, registry) : run_peer(mission, *peer, registry);
+}
+
+}  // namespace skein::launch
