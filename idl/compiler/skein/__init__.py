@@ -1,0 +1,50 @@
+"""omniidl back end: plain C++ types, proxies and skeletons for Skein, and flattened DDS IDL.
+
+Run as: omniidl -p<this folder's parent> -bskein -K -Wbdirectory=OUT[,name=a/x.idl][,depfile=FILE] x.idl
+"""
+
+import os
+import sys
+
+from . import analysis, builder, dependencies, errors, flattened, model, output, pragmas
+
+cpp_args = ["-D__SKEIN_IDL__"]
+usage_string = """\
+  -Wbdirectory=DIR  Where to write; default: the current directory
+  -Wbname=PATH      Name of the output below DIR, `a/x.idl`; default: the input's last part
+  -Wbdepfile=FILE   Write what the output depends on, as make and ninja read it"""
+
+
+def run(tree, arguments):
+    options = dict(argument.split("=", 1) for argument in arguments)
+    name = options.get("name", os.path.basename(tree.file()))
+    report = errors.Report()
+    built = builder.Builder(report)
+    built.build(tree)
+    if not report.refused:
+        analysis.analyse(built, report)
+    if not report.refused:
+        analysis.apply_pragmas(pragmas.collect(tree), built, report)
+    if report.refused:
+        sys.exit(1)
+    file = model.File(
+        path=tree.file(),
+        header=os.path.basename(name) + ".hpp",
+        includes=dependencies.direct_includes(tree.file()),
+        items=built.items,
+        interfaces=built.interfaces,
+        announced=built.announced(),
+    )
+    base = os.path.join(options.get("directory", "."), name)
+    stem = base.removesuffix(".idl")
+    outputs = {
+        base + ".hpp": output.header(file),
+        base + ".cpp": output.source(file),
+        stem + ".dds.idl": flattened.text(file),
+    }
+    os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
+    for path, lines in outputs.items():
+        with open(path, "w", encoding="latin-1") as stream:
+            stream.write("\n".join(lines).rstrip("\n") + "\n")
+    if "depfile" in options:
+        dependencies.write_depfile(options["depfile"], list(outputs), tree.file())

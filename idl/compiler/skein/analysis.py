@@ -1,0 +1,295 @@
+"""What the templates need to know beyond the declarations: recursion, hashes, in and out structs, clashes."""
+
+from . import hashes, model, names
+from .errors import suggestion
+
+
+def analyse(builder, report):
+    decls = [decl for decl in builder.items if not isinstance(decl, model.Forward)]
+    for decl in decls:
+        if isinstance(decl, (model.Struct, model.Union)):
+            decl.recursive = _reaches(decl, decl, set())
+    if report.refused:
+        return
+    for interface in builder._built.values():
+        if isinstance(interface, model.Interface):
+            for operation in interface.operations:
+                _complete(operation)
+    for interface in builder.interfaces:
+        _check_hashes(interface, report)
+    _check_clashes(builder, report)
+
+
+# ---- recursion
+
+
+def parts(decl):
+    """The types that a declaration is made of."""
+    if isinstance(decl, model.Struct):
+        return [member.type for member in decl.members]
+    if isinstance(decl, model.Union):
+        return [case.type for case in decl.cases] + [decl.discriminator]
+    if isinstance(decl, model.Typedef):
+        return [decl.type]
+    return []
+
+
+def _reaches(decl, goal, seen):
+    for kind in parts(decl):
+        while isinstance(kind, (model.Sequence, model.Array)):
+            kind = kind.element
+        if isinstance(kind, model.Named):
+            if kind.decl is goal:
+                return True
+            if kind.decl not in seen:
+                seen.add(kind.decl)
+                if _reaches(kind.decl, goal, seen):
+                    return True
+    return False
+
+
+# ---- operations
+
+
+def _complete(operation):
+    interface = operation.interface
+    operation.hash = hashes.name_hash(operation.name)
+    operation.signature = hashes.signature(_operation_text(operation))
+    inputs = [(p.name, p.type, not model.is_scalar(p.type)) for p in operation.parameters if p.is_in]
+    outputs = [("return_", operation.result, False)] if operation.result else []
+    outputs += [(p.name, p.type, False) for p in operation.parameters if p.is_out]
+    operation.in_struct = _struct(interface, operation, "In", inputs)
+    operation.out_struct = _struct(interface, operation, "Out", outputs)
+
+
+def _struct(interface, operation, suffix, fields):
+    name = f"{interface.scope[-1]}_{operation.name}_{suffix}"
+    taken = set()
+    kind = "request" if suffix == "In" else "reply"
+    return model.Struct(
+        place=operation.place,
+        scope=interface.modules + (name,),
+        namespace=interface.namespace,
+        cpp_name=name,
+        documentation=[f"The {kind} of {interface.idl_name}::{operation.name}."],
+        in_main_file=interface.in_main_file,
+        modules=interface.modules,
+        members=[
+            model.Member(name, names.unique(name, names.MEMBER - {"return_"}, taken), kind, operation.place, [], argument)
+            for name, kind, argument in fields
+        ],
+    )
+
+
+def _operation_text(operation):
+    parameters = ",".join(f"{p.direction} {p.name}:{_text(p.type, ())}" for p in operation.parameters)
+    raises = ",".join(sorted(f"{e.idl_name}={_declared_text(e, ())}" for e in operation.raises))
+    result = _text(operation.result, ()) if operation.result else "void"
+    oneway = "oneway " if operation.oneway else ""
+    return f"{oneway}{result} {operation.name}({parameters}) raises({raises})"
+
+
+def _text(kind, around):
+    """Canonical text: structure and member names, no type names; recursion as the distance outwards."""
+    kind = model.unaliased(kind)
+    if isinstance(kind, model.Primitive):
+        return kind.idl
+    if isinstance(kind, model.String):
+        return f"string<{kind.bound}>"
+    if isinstance(kind, model.Sequence):
+        return f"sequence<{_text(kind.element, around)},{kind.bound}>"
+    if isinstance(kind, model.Array):
+        return f"{_text(kind.element, around)}[{kind.size}]"
+    if isinstance(kind, model.Reference):
+        return f"reference<{kind.decl.idl_name}>"
+    return _declared_text(kind.decl, around)
+
+
+def _declared_text(decl, around):
+    if decl in around:
+        return f"^{len(around) - around.index(decl)}"
+    inner = around + (decl,)
+    if isinstance(decl, model.Enum):
+        return "enum{" + ",".join(idl for idl, _, _ in decl.enumerators) + "}"
+    if isinstance(decl, model.Union):
+        cases = ";".join(f"{case.labels}{case.name}:{_text(case.type, inner)}" for case in decl.cases)
+        return f"union({_text(decl.discriminator, inner)}){{{cases}}}"
+    return "struct{" + ";".join(f"{m.name}:{_text(m.type, inner)}" for m in decl.members) + "}"
+
+
+# ---- checks
+
+
+def _check_hashes(interface, report):
+    seen = {}
+    for operation in interface.all_operations():
+        other = seen.setdefault(operation.hash, operation)
+        if other is not operation:
+            report.error(operation.place, f"{operation.name} and {other.name} have the same hash; rename one of them")
+        hashes_of = {0: "success"}
+        for exception in operation.raises:
+            number = hashes.name_hash(exception.idl_name)
+            if hashes_of.setdefault(number, exception) is not exception:
+                report.error(operation.place, f"two exceptions of {operation.name} have the same hash (that of "
+                             f"{exception.idl_name}); rename one of them")  # fmt: skip
+
+
+def _check_clashes(builder, report):
+    """One C++ namespace holds what IDL keeps in several scopes."""
+    owners = {}
+
+    def claim(cpp, owner, place):
+        other = owners.setdefault(cpp, owner)
+        if other != owner:
+            report.error(place, f"the C++ name {cpp[2:]} would be both {other} and {owner}; rename one of them")
+
+    for decl in builder._built.values():
+        claim(decl.cpp, decl.idl_name, decl.place)
+        if isinstance(decl, model.Interface) and decl.defined:
+            claim(decl.cpp + "Proxy", f"the proxy of {decl.idl_name}", decl.place)
+            claim(decl.cpp + "Skeleton", f"the skeleton of {decl.idl_name}", decl.place)
+            for operation in decl.operations:
+                for struct in (operation.in_struct, operation.out_struct):
+                    claim(struct.cpp, f"{struct.cpp_name} of {decl.idl_name}::{operation.name}", operation.place)
+
+
+# ---- facts about types
+
+
+def plain_element(decl):
+    """The basic type of which a struct is one run, or None."""
+    elements = set()
+
+    def visit(kind):
+        kind = model.unaliased(kind)
+        if isinstance(kind, model.Array):
+            visit(kind.element)
+        elif isinstance(kind, model.Named) and isinstance(kind.decl, model.Struct) and not kind.decl.recursive:
+            for member in kind.decl.members:
+                visit(member.type)
+        else:
+            elements.add(kind)
+
+    if type(decl) is not model.Struct or not decl.members or any(m.argument for m in decl.members):
+        return None
+    for member in decl.members:
+        visit(member.type)
+    only = elements.pop() if len(elements) == 1 else None
+    return only if isinstance(only, model.Primitive) and only.idl != "boolean" else None
+
+
+def bounded(kind):
+    """Whether a value of this type, not counting declared types in it, must be checked for a bound."""
+    kind = model.unaliased(kind)
+    if isinstance(kind, (model.String, model.Sequence)) and kind.bound:
+        return True
+    return isinstance(kind, (model.Sequence, model.Array)) and bounded(kind.element)
+
+
+# ---- pragmas
+
+
+def apply_pragmas(pragmas, builder, report):
+    for pragma in pragmas:
+        words = pragma.text.split()
+        if words[0] == "keylist":
+            _keylist(pragma, words[1:], builder, report)
+        elif words[0] == "idempotent":
+            _idempotent(pragma, words[1:], builder, report)
+        elif hint := suggestion(words[0], ["keylist", "idempotent"]):
+            report.error(pragma.place, f"unknown pragma '{words[0]}'{hint}")
+        else:
+            report.warning(pragma.place, f"unknown pragma '{words[0]}' is passed over")
+
+
+def _lookup(pragma, name, table):
+    """What `name` means where the pragma stands: in its scope or in one around it."""
+    parts_of = tuple(part for part in name.split("::") if part)
+    for depth in range(len(pragma.scope), -1, -1):
+        if found := table.get(pragma.scope[:depth] + parts_of):
+            return found
+    return None
+
+
+def _idempotent(pragma, operations, builder, report):
+    table = {}
+    for decl in builder._built.values():
+        for operation in decl.operations if isinstance(decl, model.Interface) else []:
+            plain = operation.name.removeprefix("_get_").removeprefix("_set_")
+            for name in {plain, operation.name}:
+                table.setdefault(decl.scope + (name,), []).append(operation)
+    if not operations:
+        report.error(pragma.place, "#pragma idempotent needs the name of an operation")
+    for name in operations:
+        found = _lookup(pragma, name, table)
+        if found is None:
+            known = [scope[-1] for scope in table]
+            report.error(pragma.place, f"#pragma idempotent: no operation '{name}' here{suggestion(name, known)}")
+        for operation in found or []:
+            operation.idempotent = True
+
+
+def _keylist(pragma, words, builder, report):
+    structs = {decl.scope: decl for decl in builder._built.values() if type(decl) is model.Struct}
+    if not words:
+        return report.error(pragma.place, "#pragma keylist needs a struct and its key members")
+    struct = _lookup(pragma, words[0], structs)
+    if struct is None:
+        known = [scope[-1] for scope in structs]
+        return report.error(pragma.place, f"#pragma keylist: no struct '{words[0]}' here{suggestion(words[0], known)}")
+    for path in words[1:]:
+        key = _key_path(pragma, struct, path, report)
+        if key and key not in struct.keys:
+            struct.keys.append(key)
+    order = {id(member): index for index, member in enumerate(struct.members)}
+    struct.keys.sort(key=lambda key: order[id(key[0])])
+
+
+def _key_path(pragma, struct, path, report):
+    found = []
+    current = struct
+    for name in path.split("."):
+        member = next((m for m in current.members if m.name == name), None)
+        if member is None:
+            hint = suggestion(name, [m.name for m in current.members])
+            report.error(pragma.place, f"#pragma keylist: {current.idl_name} has no member '{name}'{hint}")
+            return None
+        found.append(member)
+        kind = model.unaliased(member.type)
+        current = kind.decl if isinstance(kind, model.Named) and isinstance(kind.decl, model.Struct) else None
+        if current is None and name is not path.split(".")[-1]:
+            report.error(pragma.place, f"#pragma keylist: '{name}' in '{path}' is no struct")
+            return None
+    if key_size(found[-1].type) is None:
+        report.error(pragma.place, f"#pragma keylist: '{path}' cannot be a key; keys are numbers, text, enumerations, "
+                     "and arrays and structs of these")  # fmt: skip
+        return None
+    return found
+
+
+UNBOUNDED = 1 << 40
+
+
+def key_size(kind, start=0):
+    """The largest offset at which a key that begins at `start` may end in CDR; None: it cannot be a key."""
+    kind = model.unaliased(kind)
+    if isinstance(kind, model.Primitive):
+        size = model.PRIMITIVES[kind.idl][1]
+        return start + -start % size + size
+    if isinstance(kind, model.String):
+        return start + -start % 4 + 4 + kind.bound + 1 if kind.bound else UNBOUNDED
+    if isinstance(kind, model.Array):
+        for _ in range(min(kind.size, 64)):
+            start = key_size(kind.element, start)
+            if start is None:
+                return None
+        return start
+    if isinstance(kind, model.Named) and isinstance(kind.decl, model.Enum):
+        return start + -start % 4 + 4
+    if isinstance(kind, model.Named) and type(kind.decl) is model.Struct and not kind.decl.recursive:
+        for member in kind.decl.members:
+            start = key_size(member.type, start)
+            if start is None:
+                return None
+        return start
+    return None

@@ -1,0 +1,39 @@
+"""The abstract class of an interface: what providers implement and proxies are."""
+
+from . import cpp, model, types_template
+
+
+def parameters(operation):
+    return ", ".join(
+        (f"{cpp.type_name(p.type)}& " if p.is_out else f"{cpp.parameter_type(p.type)} ") + p.cpp_name
+        for p in operation.parameters
+    )
+
+
+def result(operation):
+    return cpp.type_name(operation.result) if operation.result else "void"
+
+
+def definition(interface):
+    name = interface.cpp_name
+    bases = ", ".join(f"public virtual {base.cpp}" for base in interface.bases)
+    lines = cpp.documentation(interface.documentation)
+    lines += [f"class {name}{' : ' + bases if bases else ''} {{", " public:"]
+    lines += [f"  using Proxy = {interface.cpp}Proxy;", f"  using Skeleton = {interface.cpp}Skeleton;"]
+    lines += [types_template.alias(nested) for nested in interface.nested]
+    lines += ["", f"  virtual ~{name}();", "  static const ::skein::InterfaceInfo& interface_info();"]
+    for operation in interface.operations:
+        lines += ["", *cpp.documentation(operation.documentation, "  ")]
+        lines.append(f"  virtual {result(operation)} {operation.cpp_name}({parameters(operation)}) = 0;")
+    return lines + [
+        "",
+        " protected:",
+        f"  {name}() = default;",
+        f"  {name}(const {name}&) = default;",
+        f"  {name}& operator=(const {name}&) = default;",
+        "};",
+    ]
+
+
+def source(interface):
+    return [f"{interface.cpp_name}::~{interface.cpp_name}() = default;", ""]

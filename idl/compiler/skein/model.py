@@ -1,0 +1,230 @@
+"""The IDL file as the templates see it: types, declarations, and nothing of omniidl."""
+
+from dataclasses import dataclass, field
+
+# ---- types ---------------------------------------------------------------------------------------
+
+PRIMITIVES = {  # IDL: (C++, size, initial value)
+    "boolean": ("bool", 1, "false"),
+    "char": ("char", 1, "'\\0'"),
+    "octet": ("std::uint8_t", 1, "0"),
+    "short": ("std::int16_t", 2, "0"),
+    "unsigned short": ("std::uint16_t", 2, "0"),
+    "long": ("std::int32_t", 4, "0"),
+    "unsigned long": ("std::uint32_t", 4, "0"),
+    "long long": ("std::int64_t", 8, "0"),
+    "unsigned long long": ("std::uint64_t", 8, "0"),
+    "float": ("float", 4, "0"),
+    "double": ("double", 8, "0"),
+}
+
+
+@dataclass(frozen=True)
+class Primitive:
+    idl: str
+
+
+@dataclass(frozen=True)
+class String:
+    bound: int
+
+
+@dataclass(frozen=True)
+class Sequence:
+    element: object
+    bound: int
+
+
+@dataclass(frozen=True)
+class Array:
+    element: object
+    size: int
+
+
+@dataclass(frozen=True)
+class Named:
+    """A struct, union, enumeration or typedef."""
+
+    decl: object
+
+
+@dataclass(frozen=True)
+class Reference:
+    """An interface where a value is expected: a service reference."""
+
+    decl: object
+
+
+def unaliased(kind):
+    while isinstance(kind, Named) and isinstance(kind.decl, Typedef):
+        kind = kind.decl.type
+    return kind
+
+
+def is_scalar(kind):
+    """Whether the value is passed by value in C++."""
+    kind = unaliased(kind)
+    return isinstance(kind, Primitive) or (isinstance(kind, Named) and isinstance(kind.decl, Enum))
+
+
+# ---- declarations --------------------------------------------------------------------------------
+
+
+@dataclass(eq=False)
+class Declaration:
+    place: tuple  # file, line
+    scope: tuple  # IDL scoped name, as a tuple of identifiers
+    namespace: tuple  # C++ namespace
+    cpp_name: str  # C++ name in that namespace
+    documentation: list = field(default_factory=list)
+    in_main_file: bool = True
+
+    @property
+    def idl_name(self):
+        return "::".join(self.scope)
+
+    @property
+    def cpp(self):
+        return "::" + "::".join(self.namespace + (self.cpp_name,))
+
+    @property
+    def dds_name(self):
+        """Name in the flattened IDL: what an interface or a struct encloses moves out of it."""
+        return "_".join(self.scope[len(self.modules) :])
+
+    modules: tuple = ()  # the IDL modules around it
+
+
+@dataclass(eq=False)
+class Member:
+    name: str  # IDL
+    cpp_name: str
+    type: object
+    place: tuple
+    documentation: list = field(default_factory=list)
+    argument: bool = False  # of an in struct: held as skein::Argument
+    key: bool = False
+
+
+@dataclass(eq=False)
+class Struct(Declaration):
+    members: list = field(default_factory=list)
+    recursive: bool = False
+    keys: list = field(default_factory=list)  # [[member, nested member, ...], ...]
+    nested: list = field(default_factory=list)  # types declared inside
+
+
+@dataclass(eq=False)
+class Exception_(Struct):
+    pass
+
+
+@dataclass(eq=False)
+class Forward:
+    """A struct or union announced before it is defined."""
+
+    decl: Declaration
+
+
+@dataclass(eq=False)
+class Case:
+    name: str
+    cpp_name: str
+    type: object
+    labels: list  # of values; None is `default`
+    place: tuple
+    default_value: object = None
+    documentation: list = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Union(Declaration):
+    discriminator: object = None
+    cases: list = field(default_factory=list)
+    recursive: bool = False
+    nested: list = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Enum(Declaration):
+    enumerators: list = field(default_factory=list)  # (IDL name, C++ name, documentation)
+
+
+@dataclass(eq=False)
+class Typedef(Declaration):
+    type: object = None
+
+
+@dataclass(eq=False)
+class Constant(Declaration):
+    type: object = None
+    value: object = None
+
+
+@dataclass(eq=False)
+class Parameter:
+    name: str
+    cpp_name: str
+    type: object
+    direction: str  # in, out, inout
+
+    @property
+    def is_in(self):
+        return self.direction != "out"
+
+    @property
+    def is_out(self):
+        return self.direction != "in"
+
+
+@dataclass(eq=False)
+class Operation:
+    name: str  # as hashed: `plan`, `_get_x`
+    cpp_name: str
+    async_name: str
+    result: object  # None is void
+    parameters: list
+    raises: list
+    oneway: bool
+    idempotent: bool
+    documentation: list
+    place: tuple
+    interface: object
+    hash: int = 0
+    signature: int = 0
+    in_struct: Struct = None
+    out_struct: Struct = None
+
+    @property
+    def dds_member(self):
+        return "attribute" + self.name if self.name.startswith("_") else self.name
+
+
+@dataclass(eq=False)
+class Interface(Declaration):
+    bases: list = field(default_factory=list)  # direct
+    nested: list = field(default_factory=list)
+    operations: list = field(default_factory=list)  # own
+    defined: bool = True
+
+    def all_bases(self):
+        """Direct and indirect, nearest first, each once."""
+        found = []
+        level = list(self.bases)
+        while level:
+            found += [base for base in level if base not in found]
+            level = [base for one in level for base in one.bases]
+        return found
+
+    def all_operations(self):
+        return self.operations + [op for base in self.all_bases() for op in base.operations]
+
+
+@dataclass(eq=False)
+class File:
+    path: str
+    header: str  # name of the header that the source includes
+    includes: list  # as written
+    items: list  # Declarations of this file in order, what is nested before what encloses it
+    interfaces: list  # defined in this file
+    announced: list  # interfaces that this file names, defined here or not

@@ -1,0 +1,128 @@
+"""Puts the templates together: `x.idl.hpp` and `x.idl.cpp`."""
+
+import os
+
+from . import (
+    analysis,
+    cdr_template,
+    cpp,
+    interface_template,
+    json_template,
+    metadata_template,
+    model,
+    print_template,
+    proxy_template,
+    skeleton_template,
+    types_template,
+)
+
+VERSION = 1  # SKEIN_IDL_VERSION of the headers that the output is for
+
+
+def _operation_structs(interface):
+    return [s for operation in interface.operations for s in (operation.in_struct, operation.out_struct)]
+
+
+def _travelling(file):
+    """Every type that gets functions, in order; in and out structs after their interface."""
+    for item in file.items:
+        if isinstance(item, (model.Struct, model.Union, model.Enum)):
+            yield item
+        elif isinstance(item, model.Interface):
+            yield from _operation_structs(item)
+
+
+def header(file):
+    name = os.path.basename(file.path)
+    lines = [
+        f"// Generated from {name} by the IDL compiler of Skein. Do not edit.",
+        "#pragma once",
+        "",
+        "#include <array>",
+        "#include <cstdint>",
+        "#include <iosfwd>",
+        "#include <memory>",
+        "#include <string>",
+        "#include <string_view>",
+        "#include <utility>",
+        "#include <variant>",
+        "#include <vector>",
+        "",
+        '#include "skein/core/call.hpp"',
+        '#include "skein/core/operation.hpp"',
+        '#include "skein/idl/argument.hpp"',
+        '#include "skein/idl/declared_exception.hpp"',
+        '#include "skein/idl/plain_layout.hpp"',
+        '#include "skein/idl/service_reference.hpp"',
+        '#include "skein/idl/union_access.hpp"',
+        '#include "skein/idl/version.hpp"',
+        *(f'#include "{include}.hpp"' for include in file.includes),
+        "",
+        f"static_assert(SKEIN_IDL_VERSION == {VERSION},",
+        f'              "{name}.hpp was generated for other headers of Skein: build it anew");',
+        "",
+    ]
+    announced = cpp.in_namespaces(file.announced, lambda interface: [f"class {interface.cpp_name};"])
+    proxies = cpp.in_namespaces(
+        file.interfaces, lambda i: [f"class {i.cpp_name}Proxy;", f"class {i.cpp_name}Skeleton;"]
+    )
+    return lines + announced + proxies + cpp.in_namespaces(file.items, _definition) + _layouts(file)
+
+
+def _definition(item):
+    if not isinstance(item, model.Interface):
+        return types_template.definition(item)
+    lines = interface_template.definition(item) + [""]
+    for struct in _operation_structs(item):
+        lines += types_template.definition(struct) + [""]
+    return lines + proxy_template.definition(item) + [""] + skeleton_template.definition(item)
+
+
+def _layouts(file):
+    lines = []
+    for decl in _travelling(file):
+        if element := analysis.plain_element(decl):
+            kind = model.PRIMITIVES[element.idl][0]
+            lines += ["template <>", f"struct skein::idl::PlainLayout<{decl.cpp}> {{", f"  using Element = {kind};", "};"]
+    return lines
+
+
+def source(file):
+    name = os.path.basename(file.path)
+    lines = [
+        f"// Generated from {name} by the IDL compiler of Skein. Do not edit.",
+        f'#include "{file.header}"',
+        "",
+        '#include "skein/idl/key_hash.hpp"',
+        '#include "skein/idl/print.hpp"',
+        '#include "skein/idl/type_support.hpp"',
+        '#include "skein/idl/unknown_operation.hpp"',
+        "",
+    ]
+    return lines + cpp.in_namespaces(file.items, _implementation)
+
+
+def _implementation(item):
+    if isinstance(item, model.Interface):
+        lines = []
+        for struct in _operation_structs(item):
+            lines += _type(struct)
+        lines += interface_template.source(item) + metadata_template.interface_info(item)
+        return lines + proxy_template.source(item) + skeleton_template.source(item)
+    return _type(item) if isinstance(item, (model.Struct, model.Union, model.Enum)) else []
+
+
+def _type(decl):
+    private = []
+    if isinstance(decl, model.Enum):
+        private = print_template.enum_names(decl)
+    else:
+        private = cdr_template.bounds_check(decl)
+    lines = ["namespace {", "", *private, "}  // namespace", ""] if private else []
+    if isinstance(decl, model.Union):
+        lines += types_template.union_source(decl)
+    lines += print_template.functions(decl) + cdr_template.functions(decl) + cdr_template.key_hash(decl)
+    lines += json_template.functions(decl) + metadata_template.type_support(decl)
+    if isinstance(decl, model.Exception_):
+        lines += metadata_template.exception_info(decl)
+    return lines

@@ -1,0 +1,18 @@
+#include "skein/idl/unknown_operation.hpp"
+
+#include <string>
+#include <vector>
+
+#include "skein/core/error.hpp"
+#include "skein/core/suggestion.hpp"
+
+namespace skein::idl {
+
+void throw_unknown_operation(const InterfaceInfo& interface, const OperationInfo& operation) {
+  std::vector<std::string> known;
+  for (const OperationInfo& one : interface.operations) known.emplace_back(one.name);
+  throw Unimplemented(std::string(interface.name) + " has no operation '" + std::string(operation.name) +
+                      "'" + suggestion(operation.name, known));
+}
+
+}  // namespace skein::idl
