@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string_view>
+
+namespace skein::launch {
+
+/// The environment variable that names the pipe on which a process reports that it is ready.
+inline constexpr const char* kReadyVariable = "SKEIN_READY_FD";
+
+/// Tells the launcher that this process is ready: it answers calls, and what it depends on is
+/// there. Every call after the first, and any call in a process without a launcher, does nothing.
+/// Any process can do the same without this library, by writing a byte to the descriptor whose
+/// number stands in SKEIN_READY_FD (in a shell: `echo >&$SKEIN_READY_FD`). A process that does not
+/// within its ready timeout is taken for hung. Callable from any thread.
+void report_ready() noexcept;
+
+}  // namespace skein::launch

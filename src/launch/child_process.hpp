@@ -1,0 +1,60 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "descriptor.hpp"
+#include "group_guard.hpp"
+#include "skein/launch/launch_plan.hpp"
+
+namespace skein::launch {
+
+/// How a process ended, as wait(2) tells it.
+struct ExitStatus {
+  bool by_signal = false;
+  int number = 0;  ///< Exit code or signal.
+
+  bool failed() const noexcept { return by_signal || number != 0; }
+  /// 128 + N for signal N, as shells have it.
+  int exit_code() const noexcept { return by_signal ? 128 + number : number; }
+};
+
+/// `with exit code 3`, `by signal 11 (Segmentation fault)`.
+std::string to_text(const ExitStatus& status);
+
+/// A running process that leads a process group of its own.
+class ChildProcess {
+ public:
+  /// Starts the program. Throws Unavailable with the reason if it cannot be executed.
+  ChildProcess(const ChildPlan& plan, GroupGuard& guard);
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  /// Kills the group if it is still there.
+  ~ChildProcess();
+
+  pid_t id() const noexcept { return id_; }
+  /// Becomes readable when the process has ended.
+  int end_descriptor() const noexcept { return end_.get(); }
+  /// The output of the group, non-blocking.
+  Descriptor& output() noexcept { return output_; }
+  /// Where the process says that it is ready, non-blocking.
+  Descriptor& readiness() noexcept { return readiness_; }
+
+  void send(int signal) const noexcept;  ///< To the whole group.
+  /// The status if the process has ended; the rest of its group is killed and gone then.
+  std::optional<ExitStatus> collect();
+
+ private:
+  void start(const ChildPlan& plan);
+  void end_group() noexcept;
+
+  GroupGuard& guard_;
+  pid_t id_ = -1;
+  Descriptor end_;
+  Descriptor output_;
+  Descriptor readiness_;
+};
+
+}  // namespace skein::launch

@@ -1,0 +1,70 @@
+#include "group_guard.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+
+#include "wake_up.hpp"
+
+namespace skein::launch {
+namespace {
+
+constexpr std::size_t kMostGroups = 4096;
+
+/// The body of the guard. It is forked, not executed, so that it uses system calls only.
+[[noreturn]] void guard_groups(int input) {
+  // A session of its own: what is sent to the launcher's terminal or group must not end the guard.
+  ::setsid();
+  ::prctl(PR_SET_NAME, "skein-guard");
+  sigset_t all;
+  sigfillset(&all);
+  sigprocmask(SIG_SETMASK, &all, nullptr);
+  ::dup2(input, 0);
+  ::close_range(1, ~0U, 0);
+
+  static std::array<pid_t, kMostGroups> groups;
+  std::size_t count = 0;
+  pid_t message = 0;
+  while (true) {
+    const auto size = ::read(0, &message, sizeof message);
+    if (size < 0 && errno == EINTR) continue;
+    if (size != sizeof message) break;
+    if (message > 0 && count < kMostGroups) groups[count++] = message;
+    if (message < 0) {
+      count = static_cast<std::size_t>(
+          std::remove(groups.begin(), groups.begin() + count, -message) - groups.begin());
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) ::kill(-groups[i], SIGKILL);
+  ::_exit(0);
+}
+
+}  // namespace
+
+GroupGuard::GroupGuard() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("a pipe");
+  const Descriptor input(ends[0]);
+  groups_ = Descriptor(ends[1]);
+  guard_ = ::fork();
+  if (guard_ < 0) throw_system_error("its guard process");
+  if (guard_ == 0) guard_groups(input.get());
+}
+
+GroupGuard::~GroupGuard() {
+  groups_.reset();
+  while (::waitpid(guard_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+void GroupGuard::send(pid_t message) noexcept {
+  while (::write(groups_.get(), &message, sizeof message) < 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace skein::launch

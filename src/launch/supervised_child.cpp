@@ -1,0 +1,124 @@
+#include "supervised_child.hpp"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+
+namespace skein::launch {
+namespace {
+
+// A pipe holds 64 KiB: what the process wrote before its end comes with the first reads.
+constexpr int kReadsAtOnce = 16;
+
+}  // namespace
+
+std::string seconds_text(std::chrono::nanoseconds time) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f s", std::chrono::duration<double>(time).count());
+  return text.data();
+}
+
+void SupervisedChild::report(const std::string& text) const {
+  options_.on_event({plan_.name, machine_.state(), text});
+}
+
+void SupervisedChild::perform(ChildAction action, Time now) {
+  switch (action) {
+    case ChildAction::None:
+      break;
+    case ChildAction::Spawn:
+      spawn(now);
+      break;
+    case ChildAction::Terminate:
+      if (process_) process_->send(SIGTERM);
+      break;
+    case ChildAction::Kill:
+      if (process_) process_->send(SIGKILL);
+      break;
+  }
+}
+
+void SupervisedChild::spawn(Time now) {
+  try {
+    process_ = std::make_unique<ChildProcess>(plan_, guard_);
+    started_ = now;
+    hung_at_start_ = false;
+    report("started as process " + std::to_string(process_->id()));
+  } catch (const Error& error) {
+    loss_ = plan_.name + " could not be started: " + error.what();
+    machine_.spawn_failed(now);
+    report(error.what());
+  }
+}
+
+void SupervisedChild::stop(Time now) {
+  const auto action = machine_.stop(now);
+  perform(action, now);
+  if (action == ChildAction::Kill) report("killed");
+}
+
+void SupervisedChild::tick(Time now) {
+  const auto before = machine_.state();
+  const auto action = machine_.tick(now);
+  if (action == ChildAction::Kill) {
+    hung_at_start_ = before == ChildState::Starting;
+    report(hung_at_start_
+               ? "is not ready after " + seconds_text(plan_.rules.ready_timeout) + ": killed"
+               : "did not end within " + seconds_text(plan_.rules.stop_timeout) + ": killed");
+  }
+  perform(action, now);
+}
+
+void SupervisedChild::read_output() {
+  if (!process_) return;
+  std::array<char, 16 * 1024> buffer;
+  for (int i = 0; i < kReadsAtOnce; ++i) {
+    const auto size = ::read(process_->output().get(), buffer.data(), buffer.size());
+    if (size == 0) process_->output().reset();  // The group closed it; it may live on.
+    if (size <= 0) return;
+    lines_.add({buffer.data(), static_cast<std::size_t>(size)},
+               [&](std::string_view line) { options_.on_output(plan_.name, line); });
+  }
+}
+
+void SupervisedChild::read_readiness(Time now) {
+  if (!process_ || !process_->readiness().is_open()) return;
+  std::array<char, 16> buffer;
+  const auto size = ::read(process_->readiness().get(), buffer.data(), buffer.size());
+  if (size < 0) return;
+  process_->readiness().reset();
+  if (size == 0 || machine_.state() != ChildState::Starting) return;
+  machine_.ready(now);
+  report("ready after " + seconds_text(now - started_));
+}
+
+void SupervisedChild::collect(Time now) {
+  if (!process_) return;
+  // What the child said before its end counts, though its end may be seen first.
+  read_readiness(now);
+  const auto status = process_->collect();
+  if (!status) return;
+  read_output();
+  lines_.finish([&](std::string_view line) { options_.on_output(plan_.name, line); });
+  process_.reset();
+  last_status_ = status;
+  machine_.exited(status->failed(), now);
+  if (machine_.state() == ChildState::Lost) {
+    loss_ = plan_.name + (hung_at_start_ ? " did not become ready" : " ended " + to_text(*status)) +
+            (machine_.restarts() > 0
+                 ? ", given up after " + std::to_string(machine_.restarts()) + " restarts"
+                 : "");
+  }
+  report("ended " + to_text(*status) + next_step());
+}
+
+std::string SupervisedChild::next_step() const {
+  if (machine_.state() == ChildState::Lost && machine_.restarts() > 0) {
+    return "; given up after " + std::to_string(machine_.restarts()) + " restarts";
+  }
+  if (machine_.state() != ChildState::Waiting) return "";
+  return "; restart number " + std::to_string(machine_.restarts() + 1) + " follows";
+}
+
+}  // namespace skein::launch

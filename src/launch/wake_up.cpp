@@ -1,0 +1,55 @@
+#include "wake_up.hpp"
+
+#include <sys/eventfd.h>
+#include <sys/signalfd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <string>
+#include <system_error>
+
+#include "skein/core/error.hpp"
+
+namespace skein::launch {
+
+void throw_system_error(const char* what) {
+  throw Unavailable(std::string("the launcher cannot make ") + what + ": " +
+                    std::generic_category().message(errno));
+}
+
+StopRequest::StopRequest() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!event_.is_open()) throw_system_error("an event descriptor");
+}
+
+void StopRequest::raise() noexcept {
+  const std::uint64_t one = 1;
+  // Fails only when it was raised 2^64 - 2 times already, which wakes up just as well.
+  [[maybe_unused]] const auto written = ::write(event_.get(), &one, sizeof one);
+}
+
+bool StopRequest::take() noexcept {
+  std::uint64_t count = 0;
+  return ::read(event_.get(), &count, sizeof count) == sizeof count;
+}
+
+SignalReader::SignalReader(bool enabled) {
+  if (!enabled) return;
+  sigset_t wanted;
+  sigemptyset(&wanted);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
+  signals_ = Descriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
+  if (!signals_.is_open()) throw_system_error("a signal descriptor");
+  pthread_sigmask(SIG_BLOCK, &wanted, &before_);
+}
+
+SignalReader::~SignalReader() {
+  if (signals_.is_open()) pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+int SignalReader::take() noexcept {
+  signalfd_siginfo information{};
+  const auto size = ::read(signals_.get(), &information, sizeof information);
+  return size == sizeof information ? static_cast<int>(information.ssi_signo) : 0;
+}
+
+}  // namespace skein::launch

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <csignal>
+
+#include "descriptor.hpp"
+
+namespace skein::launch {
+
+/// Throws Unavailable with what the operating system refused and why (errno).
+[[noreturn]] void throw_system_error(const char* what);
+
+/// Wakes up a poll() from any thread or signal handler.
+class StopRequest {
+ public:
+  StopRequest();
+  void raise() noexcept;
+  bool take() noexcept;  ///< Whether it was raised since the last time.
+  int descriptor() const noexcept { return event_.get(); }
+
+ private:
+  Descriptor event_;
+};
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP are read from a descriptor instead of ending the
+/// process; afterwards everything is as before, signals that came in between and were not read
+/// included.
+class SignalReader {
+ public:
+  explicit SignalReader(bool enabled);
+  SignalReader(const SignalReader&) = delete;
+  SignalReader& operator=(const SignalReader&) = delete;
+  ~SignalReader();
+  int take() noexcept;  ///< The next signal's number, or 0.
+  int descriptor() const noexcept { return signals_.get(); }
+
+ private:
+  sigset_t before_{};
+  Descriptor signals_;
+};
+
+}  // namespace skein::launch

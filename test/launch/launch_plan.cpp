@@ -1,0 +1,64 @@
+#include "skein/launch/launch_plan.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "profile_folder.hpp"
+
+using namespace skein::launch;
+using namespace skein::profile;
+
+namespace {
+
+std::vector<std::string> argv_of(const PeerProfile& peer, const CspProfile* csp) {
+  return {"skein", "peer", "a profile.xml", csp ? peer.name + "/" + csp->name : peer.name};
+}
+
+std::vector<std::string> names_of(const LaunchPlan& plan) {
+  std::vector<std::string> names;
+  for (const auto& child : plan.children) names.push_back(child.name);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("Every peer and every CSP with a process of its own becomes one child") {
+  const auto mission = read_checked_profile(SKEIN_MISSION_PROFILES "/route_planning.xml");
+  const auto plan = make_launch_plan(mission, argv_of);
+  CHECK(names_of(plan) == std::vector<std::string>{"navigator", "navigator/RRTConnect",
+                                                   "navigator/RRTstar", "flight_controller",
+                                                   "ground_station"});
+  CHECK(plan.children[1].argv.back() == "navigator/RRTConnect");
+  CHECK_FALSE(plan.children[1].required);
+  CHECK(plan.children[0].required);
+  CHECK(plan.children[4].runs_mission);
+  CHECK(plan.elsewhere.empty());
+}
+
+TEST_CASE("Peers of other hosts are named, not started") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(R"(
+      <peer name="a" component="f.xml" host="alpha"/><peer name="b" component="f.xml" host="beta"/>
+      <peer name="c" component="f.xml"/><peer name="d" component="f.xml" host="localhost"/>)"));
+  const auto plan = make_launch_plan(mission, argv_of, "alpha");
+  CHECK(names_of(plan) == std::vector<std::string>{"a", "c", "d"});
+  CHECK(plan.elsewhere == std::vector<std::string>{"b on beta"});
+}
+
+TEST_CASE("The text of a plan shows commands that a shell would run, and every rule") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="f" component="f.xml" restart="on-failure"/>
+         <peer name="g" component="g.xml" host="beta" role="mission"/>)"));
+  auto plan = make_launch_plan(mission, argv_of, "alpha");
+  plan.children[0].environment = {{"LEVEL", "it's"}};
+  CHECK(to_text(plan) ==
+        "mission \"m\": 1 processes here, all started at once\n\n"
+        "f\n"
+        "  run:   LEVEL='it'\\''s' skein peer 'a profile.xml' f\n"
+        "  ready: within 30 s\n"
+        "  rules: restart on-failure after 0.1 s, doubling up to 5 s, given up after 5 in 30 s\n"
+        "  stop:  SIGTERM, after 3 s SIGKILL\n"
+        "  end:   its loss ends the mission\n"
+        "\nnot started here:\n"
+        "  g on beta\n");
+}
