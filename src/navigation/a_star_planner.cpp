@@ -6,7 +6,7 @@
 namespace skein::navigation {
 namespace {
 
-constexpr int kMostPoints = 150;
+constexpr int kMostPoints = 100;
 
 class AStarPlanner final : public AE_navigator::IPlanner {
  public:
@@ -15,27 +15,39 @@ class AStarPlanner final : public AE_navigator::IPlanner {
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
     const PlanningScene scene(*terrains_, problem, options_);
-    const SurfaceGraph graph(scene);
+    try {
+      return plan_on(scene, Berth::Least);
+    } catch (const Unflyable& reason) {
+      return plan_wider(scene, reason.what());
+    }
+  }
+
+ private:
+  AE_navigator::Route plan_on(const PlanningScene& scene, Berth berth) const {
+    const SurfaceGraph graph(scene, berth);
     const SearchResult found = find_cheapest_path(graph, graph.start(), graph.goal(),
                                                   [&] { return scene.budget().spent(); });
     if (found.end == SearchEnd::Unreachable) {
+      if (berth == Berth::ForTurns) throw Unflyable("there is no room for turns");
       throw AE_navigator::NoRoute(graph.explain_separation());
     }
     scene.budget().require_time();
     GroundPath path;
     for (const int node : found.path.nodes) path.push_back(graph.point(node));
+    const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
+    return make_route(scene, path, cost, kMostPoints, "AStar");
+  }
+
+  /// The cheapest path has bends too tight for the aircraft; with room for turns there may be
+  /// another.
+  AE_navigator::Route plan_wider(const PlanningScene& scene, const std::string& why_not) const {
     try {
-      const auto cost = [&](const GroundPoint& a, const GroundPoint& b) {
-        return scene.cost(a, b);
-      };
-      return make_route(scene, path, cost, kMostPoints, "AStar");
-    } catch (const Unflyable& reason) {
-      throw AE_navigator::NoRoute(std::string("the cheapest path cannot be flown: ") +
-                                  reason.what());
+      return plan_on(scene, Berth::ForTurns);
+    } catch (const Unflyable&) {
+      throw AE_navigator::NoRoute("the cheapest path cannot be flown: " + why_not);
     }
   }
 
- private:
   std::shared_ptr<TerrainProvider> terrains_;
   PlannerOptions options_;
 };

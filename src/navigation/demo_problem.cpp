@@ -31,10 +31,25 @@ class Placing {
 
   void add_radar(Problem& problem, std::string name, double north, double east,
                  double range) const {
-    problem.radar_sites.push_back({std::move(name), point(north, east), 20, metres(range), 1});
+    problem.radar_sites.push_back({std::move(name), hill_near(north, east), 20, metres(range), 1});
   }
 
  private:
+  /// The highest post within a few kilometres: radars stand where they see far.
+  GroundPoint hill_near(double north, double east) const {
+    constexpr double kAround = 0.02;
+    GroundPoint best = point(north, east);
+    for (double n = north - kAround; n <= north + kAround; n += 0.002) {
+      for (double e = east - kAround; e <= east + kAround; e += 0.002) {
+        const GroundPoint p = point(n, e);
+        if (terrain_.height_m(p.north_m, p.east_m) > terrain_.height_m(best.north_m, best.east_m)) {
+          best = p;
+        }
+      }
+    }
+    return best;
+  }
+
   const Terrain& terrain_;
   double shorter_m_;
 };
@@ -49,7 +64,7 @@ Problem demo_problem(const Terrain& terrain) {
   Problem problem;
   problem.terrain = terrain.name();
   problem.start = place.above_ground(0.08, 0.10, 250);
-  problem.goal = place.above_ground(0.91, 0.90, 250);
+  problem.goal = place.above_ground(0.88, 0.91, 250);
   problem.no_fly_zones = {
       {"City", {place.point(0.36, 0.33)}, place.metres(0.07), kFloor_m, kCeiling_m},
       {"Reserve",
@@ -59,15 +74,15 @@ Problem demo_problem(const Terrain& terrain) {
        kFloor_m,
        kCeiling_m},
       {"Corridor",
-       {place.point(0.62, 0.12), place.point(0.86, 0.30)},
+       {place.point(0.60, 0.14), place.point(0.84, 0.34)},
        place.metres(0.025),
        kFloor_m,
        kCeiling_m},
   };
   place.add_radar(problem, "Alpha", 0.30, 0.62, 0.16);
-  place.add_radar(problem, "Bravo", 0.56, 0.36, 0.14);
-  place.add_radar(problem, "Charlie", 0.50, 0.84, 0.14);
-  place.add_radar(problem, "Delta", 0.83, 0.62, 0.15);
+  place.add_radar(problem, "Bravo", 0.54, 0.38, 0.15);
+  place.add_radar(problem, "Charlie", 0.48, 0.86, 0.14);
+  place.add_radar(problem, "Delta", 0.80, 0.60, 0.13);
   problem.minimum_height_above_ground_m = 120;
   problem.limits = {60, 12, 30, terrain.highest_m() + 500.0};
   problem.exposure_weight = 1;

@@ -46,9 +46,16 @@ FlightSurface::FlightSurface(const Terrain& terrain, const AE_navigator::Problem
 }
 
 bool FlightSurface::open(const GroundPoint& point) const {
-  const auto node = static_cast<std::size_t>(grid_.cell(point).south_west);
-  const auto north = node + static_cast<std::size_t>(grid_.columns());
-  return open_[node] && open_[node + 1] && open_[north] && open_[north + 1];
+  constexpr double kOnLine = 1e-6;
+  const PlanningGrid::Cell at = grid_.cell(point);
+  for (const int rows : {0, 1}) {
+    if ((rows ? at.north : 1 - at.north) < kOnLine) continue;
+    for (const int columns : {0, 1}) {
+      if ((columns ? at.east : 1 - at.east) < kOnLine) continue;
+      if (!open(at.south_west + rows * grid_.columns() + columns)) return false;
+    }
+  }
+  return true;
 }
 
 void FlightSurface::clear_the_ground(const Terrain& terrain, double height_m) {

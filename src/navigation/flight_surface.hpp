@@ -25,7 +25,7 @@ class FlightSurface {
   double altitude_m(int node) const { return altitude_m_[static_cast<std::size_t>(node)]; }
   const std::vector<float>& altitudes_m() const { return altitude_m_; }
 
-  /// Whether all nodes of the point's cell are open.
+  /// Whether all nodes of the point's cell are open; on a line between two nodes only they count.
   bool open(const GroundPoint& point) const;
   double altitude_m(const GroundPoint& point) const {
     return grid_.interpolate(altitude_m_, point);

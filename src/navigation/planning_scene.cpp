@@ -12,6 +12,9 @@ namespace {
 /// Metres that planners keep from a zone beyond what the Problem asks, for rounding and for taste.
 constexpr double kBuffer_m = 20;
 
+/// A turn of 60 degrees comes this share of its radius closer than its corner.
+constexpr double kOfTurnRadius = 0.16;
+
 std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
                                           const AE_navigator::Problem& problem) {
   try {
@@ -24,11 +27,12 @@ std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
 }
 
 /// The buffer must not swallow a start or goal that is close to a zone, but outside.
-double buffer_for(const AE_navigator::NoFlyZone& zone, const AE_navigator::Problem& problem) {
+double buffer_for(const AE_navigator::NoFlyZone& zone, const AE_navigator::Problem& problem,
+                  double wanted_m) {
   const KeepOut exact(zone, 0);
   const double nearest =
       std::min(exact.distance_m(on_map(problem.start)), exact.distance_m(on_map(problem.goal)));
-  return nearest > 0 ? std::min(kBuffer_m, nearest / 2) : kBuffer_m;
+  return nearest > 0 ? std::min(wanted_m, nearest / 2) : kBuffer_m;
 }
 
 }  // namespace
@@ -40,7 +44,12 @@ PlanningScene::PlanningScene(TerrainProvider& terrains, const AE_navigator::Prob
       budget_(options, problem.time_limit_ms),
       surface_(*terrain_, problem, PlanningGrid(*terrain_, options.grid_spacing_m)) {
   for (const auto& zone : problem.no_fly_zones) {
-    keep_outs_.emplace_back(zone, buffer_for(zone, problem));
+    for (const Berth berth : {Berth::Least, Berth::ForTurns}) {
+      const double turns =
+          berth == Berth::ForTurns ? kOfTurnRadius * turn_radius_m(problem.limits) : 0;
+      keep_outs_[berth == Berth::ForTurns].emplace_back(
+          zone, buffer_for(zone, problem, kBuffer_m + turns));
+    }
   }
 }
 
@@ -49,8 +58,9 @@ const RiskMap& PlanningScene::risk() const {
   return *risk_;
 }
 
-const KeepOut* PlanningScene::zone_across(const GroundPoint& a, const GroundPoint& b) const {
-  for (const KeepOut& zone : keep_outs_) {
+const KeepOut* PlanningScene::zone_across(const GroundPoint& a, const GroundPoint& b,
+                                          Berth berth) const {
+  for (const KeepOut& zone : keep_outs(berth)) {
     if (!zone.crossed_on_map(a, b)) continue;
     // The final route flies no higher than the surface, but maybe lower: only passing below counts.
     const int pieces =
@@ -63,13 +73,13 @@ const KeepOut* PlanningScene::zone_across(const GroundPoint& a, const GroundPoin
   return nullptr;
 }
 
-bool PlanningScene::free(const GroundPoint& a, const GroundPoint& b) const {
+bool PlanningScene::free(const GroundPoint& a, const GroundPoint& b, Berth berth) const {
   const int pieces =
       std::max(1, static_cast<int>(std::ceil(2 * distance_m(a, b) / grid().spacing_m())));
   for (int i = 0; i <= pieces; ++i) {
     if (!surface_.open(between(a, b, static_cast<double>(i) / pieces))) return false;
   }
-  return !zone_across(a, b);
+  return !zone_across(a, b, berth);
 }
 
 double PlanningScene::cost(const GroundPoint& a, const GroundPoint& b) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,6 +14,11 @@
 
 namespace skein::navigation {
 
+/// How wide a berth a search gives to the zones: as little as is safe, or so much that a turn
+/// around the corner of a zone, which flies inside of the corner of its path, stays clear of the
+/// zone too.
+enum class Berth { Least, ForTurns };
+
 /// One Problem, checked and made ready for a search. Lives for one call of `plan`.
 class PlanningScene {
  public:
@@ -25,20 +31,22 @@ class PlanningScene {
   const PlanningBudget& budget() const { return budget_; }
   const PlanningGrid& grid() const { return surface_.grid(); }
   const FlightSurface& surface() const { return surface_; }
-  const std::vector<KeepOut>& keep_outs() const { return keep_outs_; }
+  const std::vector<KeepOut>& keep_outs(Berth berth) const {
+    return keep_outs_[berth == Berth::ForTurns];
+  }
 
   /// Made at first use; a planner that does not care about radars never pays for it.
   const RiskMap& risk() const;
 
   /// The zone that a leg along the flight surface would enter, or nullptr.
-  const KeepOut* zone_across(const GroundPoint& a, const GroundPoint& b) const;
+  const KeepOut* zone_across(const GroundPoint& a, const GroundPoint& b, Berth berth) const;
 
-  bool free(const GroundPoint& point) const {
-    return surface_.open(point) && !zone_across(point, point);
+  bool free(const GroundPoint& point, Berth berth) const {
+    return surface_.open(point) && !zone_across(point, point, berth);
   }
 
   /// Whether the straight leg stays on open surface and clear of the zones.
-  bool free(const GroundPoint& a, const GroundPoint& b) const;
+  bool free(const GroundPoint& a, const GroundPoint& b, Berth berth) const;
 
   /// Length plus weighted exposure of a leg along the flight surface.
   double cost(const GroundPoint& a, const GroundPoint& b) const;
@@ -48,7 +56,7 @@ class PlanningScene {
   const AE_navigator::Problem& problem_;
   PlanningBudget budget_;
   FlightSurface surface_;
-  std::vector<KeepOut> keep_outs_;
+  std::array<std::vector<KeepOut>, 2> keep_outs_;
   mutable std::optional<RiskMap> risk_;
 };
 

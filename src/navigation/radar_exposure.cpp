@@ -15,7 +15,7 @@ double distance_3d_m(const Position& a, const Position& b) {
 }  // namespace
 
 double exposure_rate(double range_m, double strength, double distance_m) {
-  const double ratio = range_m / std::max(distance_m, range_m / 10);
+  const double ratio = range_m / std::max(distance_m, range_m / 4);
   return strength * ratio * ratio * ratio * ratio;
 }
 
@@ -38,7 +38,7 @@ bool RadarExposure::sees(const Antenna& antenna, const Position& point) const {
   const GroundPoint from = on_map(antenna.position);
   const GroundPoint to = on_map(point);
   const double distance = distance_m(from, to);
-  const double step = 0.5 * std::min(terrain_.north_spacing_m(), terrain_.east_spacing_m());
+  const double step = std::min(terrain_.north_spacing_m(), terrain_.east_spacing_m());
   const int steps = static_cast<int>(distance / step);
   const double drop = earth_drop_m(distance);
   const double highest = terrain_.highest_m();

@@ -97,14 +97,21 @@ class="tick" text-anchor="end">{4:g} km</text>)svg",
   }
 }
 
+GroundPoint middle(const AE_navigator::NoFlyZone& zone) {
+  GroundPoint sum{0, 0};
+  for (const auto& corner : zone.outline) {
+    sum.north_m += corner.north_m;
+    sum.east_m += corner.east_m;
+  }
+  const auto count = static_cast<double>(zone.outline.size());
+  return {sum.north_m / count, sum.east_m / count};
+}
+
 void add_zone(Svg& svg, const AE_navigator::NoFlyZone& zone, const MapScale& map) {
   std::string outline;
-  GroundPoint middle{0, 0};
   for (const auto& corner : zone.outline) {
     outline += fmt::format("{}{:.1f} {:.1f}", outline.empty() ? 'M' : 'L', map.x(corner.east_m),
                            map.y(corner.north_m));
-    middle.north_m += corner.north_m / static_cast<double>(zone.outline.size());
-    middle.east_m += corner.east_m / static_cast<double>(zone.outline.size());
   }
   outline += 'Z';
   // The margin is a stroke with round corners: a wide one in the border's colour, then what is
@@ -120,8 +127,6 @@ stroke-linejoin="round" stroke-linecap="round"/>)svg",
   layer("#f3c6c6", std::max(0.0, margin - 2));
   layer("url(#hatch)", std::max(0.0, margin - 2));
   svg.add("</g>");
-  svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name" text-anchor="middle">{}</text>)svg",
-          map.x(middle.east_m), map.y(middle.north_m) + 4, escaped(zone.name));
 }
 
 void add_radar(Svg& svg, const AE_navigator::RadarSite& site, const MapScale& map) {
@@ -133,13 +138,24 @@ stroke-opacity="0.7" stroke-width="3"/><circle cx="{0:.1f}" cy="{1:.1f}" r="{2:.
 fill="none" stroke="#7a0b23" stroke-width="1.4" stroke-dasharray="7 5"/>)svg",
           x, y, range);
   svg.add(R"svg(<g transform="translate({:.1f} {:.1f})" fill="none" stroke="#fff"
-stroke-width="4"><path id="r"
+stroke-width="4"><path
 d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4"/><path
 d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4" stroke="#7a0b23"
 stroke-width="1.8"/></g>)svg",
           x, y);
-  svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name">{}</text>)svg", x + 12, y + 6,
-          escaped(site.name));
+}
+
+/// Above all else on the map, so that no route hides them.
+void add_names(Svg& svg, const AE_navigator::Problem& problem, const MapScale& map) {
+  for (const auto& zone : problem.no_fly_zones) {
+    const GroundPoint at = middle(zone);
+    svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name" text-anchor="middle">{}</text>)svg",
+            map.x(at.east_m), map.y(at.north_m) + 4, escaped(zone.name));
+  }
+  for (const auto& site : problem.radar_sites) {
+    svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name">{}</text>)svg",
+            map.x(site.site.east_m) + 12, map.y(site.site.north_m) + 6, escaped(site.name));
+  }
 }
 
 void add_route(Svg& svg, const AE_navigator::Route& route, std::string_view colour,
@@ -253,6 +269,7 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
   for (std::size_t i = routes.size(); i-- > 0;) {
     if (drawable(routes[i].route)) add_route(svg, routes[i].route, route_colour(i), map);
   }
+  add_names(svg, problem, map);
   add_end(svg, "Start", problem.start, "#2b8a3e", map);
   add_end(svg, "Goal", problem.goal, "#111827", map);
   svg.add("</g>");

@@ -66,7 +66,7 @@ void add_profile(Svg& svg, const Terrain& terrain, const RadarExposure& exposure
     if (const double strength = tint(exposure.rate(here)); strength > 0 && i < kSamples) {
       svg.add(R"svg(<rect x="{:.1f}" y="{:.1f}" width="{:.2f}" height="{}" fill="#c70d38"
 fill-opacity="{:.2f}"/>)svg",
-              x, bottom + 3, scales.x(route.length_m() / kSamples) - scales.left + 0.1, kBar,
+              x, bottom + 3, scales.x(route.length_m() / kSamples) - scales.left, kBar,
               0.25 + 0.75 * strength);
     }
   }

@@ -28,11 +28,11 @@ GroundPoint point_of(const ob::State* state) {
 /// A leg is flown along the flight surface, clear of zones and closed ground.
 class LegValidator final : public ob::MotionValidator {
  public:
-  LegValidator(const ob::SpaceInformationPtr& space, const PlanningScene& scene)
-      : MotionValidator(space), scene_(scene) {}
+  LegValidator(const ob::SpaceInformationPtr& space, const PlanningScene& scene, Berth berth)
+      : MotionValidator(space), scene_(scene), berth_(berth) {}
 
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
-    return scene_.free(point_of(from), point_of(to));
+    return scene_.free(point_of(from), point_of(to), berth_);
   }
 
   bool checkMotion(const ob::State* from, const ob::State* to,
@@ -45,6 +45,7 @@ class LegValidator final : public ob::MotionValidator {
 
  private:
   const PlanningScene& scene_;
+  Berth berth_;
 };
 
 class RiskObjective final : public ob::OptimizationObjective {
@@ -83,7 +84,7 @@ class Seeded final : public Planner {
 /// One search over the map of a scene.
 class Sampling {
  public:
-  Sampling(const PlanningScene& scene, std::uint32_t seed) : scene_(scene) {
+  Sampling(const PlanningScene& scene, std::uint32_t seed, Berth berth) : scene_(scene) {
     auto plane = std::make_shared<ob::RealVectorStateSpace>(2);
     ob::RealVectorBounds bounds(2);
     bounds.setLow(0);
@@ -95,8 +96,8 @@ class Sampling {
     });
     space_ = std::make_shared<ob::SpaceInformation>(plane);
     space_->setStateValidityChecker(
-        [&scene](const ob::State* state) { return scene.free(point_of(state)); });
-    space_->setMotionValidator(std::make_shared<LegValidator>(space_, scene));
+        [&scene, berth](const ob::State* state) { return scene.free(point_of(state), berth); });
+    space_->setMotionValidator(std::make_shared<LegValidator>(space_, scene, berth));
     space_->setup();
     problem_ = std::make_shared<ob::ProblemDefinition>(space_);
     problem_->setStartAndGoalStates(state_at(scene.problem().start),
@@ -163,7 +164,9 @@ class RrtConnectPlanner final : public SamplingPlanner {
     std::string unflyable;
     // A path that cannot be flown is no answer; with other samples there may be one.
     for (std::uint32_t attempt = 0; scene.budget().now() < end; ++attempt) {
-      const Sampling sampling(scene, options_.seed + 2 * attempt);
+      // Every other time as close to the zones as is allowed: a gap may be that narrow.
+      const Berth berth = attempt % 2 == 0 ? Berth::ForTurns : Berth::Least;
+      const Sampling sampling(scene, options_.seed + 2 * attempt, berth);
       Seeded<og::RRTConnect> planner(sampling.space(), options_.seed + 2 * attempt);
       planner.setRange(sampling.range_m());
       planner.setProblemDefinition(sampling.problem());
@@ -189,16 +192,16 @@ class RrtStarPlanner final : public SamplingPlanner {
   using SamplingPlanner::SamplingPlanner;
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    constexpr int kMostPoints = 150;
+    constexpr int kMostPoints = 100;
     const PlanningScene scene(*terrains_, problem, options_);
-    const Sampling sampling(scene, options_.seed);
+    const Sampling sampling(scene, options_.seed, Berth::ForTurns);
     sampling.problem()->setOptimizationObjective(
         std::make_shared<RiskObjective>(sampling.space(), scene));
     Seeded<og::RRTstar> planner(sampling.space(), options_.seed);
     planner.setRange(sampling.range_m());
     planner.setProblemDefinition(sampling.problem());
     scene.cost(on_map(problem.start), on_map(problem.goal));
-    const Instant end = scene.budget().search_end(3);
+    const Instant end = scene.budget().search_end(6);
     const auto path = sampling.solve(
         planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
     scene.budget().require_time();

@@ -18,8 +18,9 @@ constexpr double kAround = 2.6;
 
 }  // namespace
 
-SurfaceGraph::SurfaceGraph(const PlanningScene& scene)
+SurfaceGraph::SurfaceGraph(const PlanningScene& scene, Berth berth)
     : scene_(scene),
+      berth_(berth),
       near_zone_(static_cast<std::size_t>(scene.grid().size()), 0),
       risky_(scene.problem().exposure_weight > 0 && !scene.problem().radar_sites.empty()) {
   const int kMoves[][2] = {{1, 0}, {1, 1}, {2, 1}, {3, 1}, {3, 2}};
@@ -52,10 +53,10 @@ SurfaceGraph::SurfaceGraph(const PlanningScene& scene)
   const double near = kLongestMove * scene.grid().spacing_m();
   for (int node = 0; node < scene.grid().size(); ++node) {
     const GroundPoint point = scene.grid().point(node);
-    for (const KeepOut& zone : scene.keep_outs()) {
+    for (const KeepOut& zone : scene.keep_outs(berth)) {
       char& mark = near_zone_[static_cast<std::size_t>(node)];
       if (mark < 2 && zone.distance_m(point) <= near) {
-        mark = scene.zone_across(point, point) ? 2 : 1;
+        mark = scene.zone_across(point, point, berth) ? 2 : 1;
       }
     }
   }
@@ -98,7 +99,7 @@ int SurfaceGraph::follow(int node, const Move& move) const {
     if (!scene_.surface().open(grid.node(row + rows, column + columns))) return -1;
   }
   if (near_zone_[static_cast<std::size_t>(node)] &&
-      scene_.zone_across(grid.point(node), grid.point(to))) {
+      scene_.zone_across(grid.point(node), grid.point(to), berth_)) {
     return -1;
   }
   return to;
@@ -115,14 +116,14 @@ std::vector<int> SurfaceGraph::nodes_around(int end) const {
       if (!grid.has(row, column)) continue;
       const int node = grid.node(row, column);
       if (distance_m(middle, grid.point(node)) > kAround * grid.spacing_m()) continue;
-      if (scene_.surface().open(node) && !scene_.zone_across(middle, grid.point(node))) {
+      if (scene_.surface().open(node) && !scene_.zone_across(middle, grid.point(node), berth_)) {
         result.push_back(node);
       }
     }
   }
   const int other = end == start() ? goal() : start();
   if (distance_m(middle, point(other)) <= kAround * grid.spacing_m() &&
-      !scene_.zone_across(middle, point(other))) {
+      !scene_.zone_across(middle, point(other), berth_)) {
     result.push_back(other);
   }
   return result;
@@ -149,7 +150,7 @@ SurfaceGraph::Region SurfaceGraph::region_around(int end) const {
       const int column = grid.column(middle) + move.columns;
       if (!grid.has(row, column)) continue;
       const int to = grid.node(row, column);
-      if (const KeepOut* zone = scene_.zone_across(point(node), grid.point(to))) {
+      if (const KeepOut* zone = scene_.zone_across(point(node), grid.point(to), berth_)) {
         region.zones.insert(zone->name());
       } else if (!scene_.surface().open(to)) {
         region.ground = true;

@@ -15,7 +15,7 @@ namespace skein::navigation {
 /// move passes a closed node or cuts a zone's corner.
 class SurfaceGraph {
  public:
-  explicit SurfaceGraph(const PlanningScene& scene);
+  SurfaceGraph(const PlanningScene& scene, Berth berth);
 
   int start() const { return scene_.grid().size(); }
   int goal() const { return scene_.grid().size() + 1; }
@@ -68,6 +68,7 @@ class SurfaceGraph {
   Region region_around(int end) const;
 
   const PlanningScene& scene_;
+  Berth berth_;
   std::vector<Move> moves_;
   std::vector<char> near_zone_;             ///< 0 far from all, 1 near one, 2 inside one.
   std::array<std::vector<int>, 2> around_;  ///< Neighbours of start and of goal.

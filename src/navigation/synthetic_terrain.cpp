@@ -42,7 +42,7 @@ class Noise {
   double ridged(double x, double y, int octaves) const {
     double sum = 0;
     double weight = 1;
-    for (double amplitude = 0.55; octaves > 0; --octaves, amplitude *= 0.45, x *= 2.1, y *= 2.1) {
+    for (double amplitude = 0.55; octaves > 0; --octaves, amplitude *= 0.5, x *= 2.1, y *= 2.1) {
       const double crest = 1 - std::min(1.0, 1.9 * std::abs((*this)(x, y + octaves * 31.7)));
       const double value = crest * crest * weight;
       sum += amplitude * value;
@@ -89,7 +89,7 @@ Terrain make_synthetic_terrain(std::uint32_t seed) {
       const double y = y_km + 3.0 * warp.rolling(x_km / 16 + 50, y_km / 16 + 50, 3);
       const double mountains = smooth_step(-0.35, 0.4, massif.rolling(x / 26, y / 26, 2));
       const double height = 260 + 190 * hill.rolling(x / 13, y / 13, 4) +
-                            mountains * 1750 * ridge.ridged(x / 15, y / 15, 5);
+                            mountains * 1750 * ridge.ridged(x / 15, y / 15, 6);
       heights.push_back(static_cast<float>(std::round(std::max(0.0, height) * 16) / 16));
     }
   }

@@ -67,7 +67,7 @@ class TautPath {
     for (std::size_t before = 0; before < from; ++before) {
       least = std::min(least, arrivals_.cost(before, from));
     }
-    if (least == kInfinity || !scene_.free(path_[from], path_[to])) return;
+    if (least == kInfinity || !scene_.free(path_[from], path_[to], Berth::Least)) return;
     arrivals_.leg_m(from, to) = static_cast<float>(distance_m(path_[from], path_[to]));
     double best = from == 0 ? 0 : kInfinity;
     for (std::size_t before = 0; before < from; ++before) {
@@ -88,7 +88,7 @@ class TautPath {
     if (tangent > 0.5 * std::min(before, after)) return false;
     if (tangent < 1) return true;
     return scene_.free(between(path_[b], path_[a], tangent / before),
-                       between(path_[b], path_[c], tangent / after));
+                       between(path_[b], path_[c], tangent / after), Berth::Least);
   }
 
   GroundPath walk_back(std::size_t from, std::size_t to) {

@@ -40,9 +40,9 @@ Colour height_colour(double share) {
 }
 
 double tint(double exposure_rate) {
-  constexpr double kLeast = 0.02;
+  constexpr double kLeast = 0.05;
   if (exposure_rate <= kLeast) return 0;
-  return std::min(1.0, std::log(exposure_rate / kLeast) / std::log(100 / kLeast));
+  return std::min(1.0, std::log(exposure_rate / kLeast) / std::log(60 / kLeast));
 }
 
 Image shade(const Terrain& terrain, const AE_navigator::Problem& problem, int width, int height) {

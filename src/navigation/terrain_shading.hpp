@@ -13,7 +13,7 @@ Image shade(const Terrain& terrain, const AE_navigator::Problem& problem, int wi
 /// The colour of a height, from the lowlands of a terrain to its summits.
 Colour height_colour(double share);
 
-/// How strongly an exposure rate is tinted, 0 to 1: from a fiftieth of a radar's strength upwards,
+/// How strongly an exposure rate is tinted, 0 to 1: from a twentieth of a radar's strength upwards,
 /// by the logarithm.
 double tint(double exposure_rate);
 

@@ -11,7 +11,7 @@ namespace skein::navigation {
 /// How much the radar sites of a Problem see of an aircraft.
 ///
 /// The rate at a point is the sum over the sites that see it of strength * (range / r)^4, with r no
-/// less than a tenth of the range (inverse fourth power as in Zabarankin, Uryasev and Murphey,
+/// less than a quarter of the range (inverse fourth power as in Zabarankin, Uryasev and Murphey,
 /// "Aircraft routing under the risk of detection", 2006); the exposure of an edge is the rate's
 /// integral along it. Const members may be called from any thread. The terrain must outlive it.
 class RadarExposure {
@@ -23,7 +23,7 @@ class RadarExposure {
 
   /// Exposure of the straight edge in metres, by Simpson's rule on pieces no longer than `step_m`.
   double along(const AE_navigator::Position& a, const AE_navigator::Position& b,
-               double step_m = 100.0) const;
+               double step_m = 200.0) const;
 
   /// Exposure of all edges of a route.
   double along(std::span<const AE_navigator::Position> waypoints) const;

@@ -51,7 +51,7 @@ double exposure(const HeightGrid& ground, const AE_navigator::RadarSite& site, c
     const double range = std::sqrt(std::pow(here.north_m - antenna.north_m, 2) +
                                    std::pow(here.east_m - antenna.east_m, 2) +
                                    std::pow(here.altitude_m - antenna.altitude_m, 2));
-    sum += site.strength * std::pow(site.range_m / std::max(range, 0.1 * site.range_m), 4);
+    sum += site.strength * std::pow(site.range_m / std::max(range, 0.25 * site.range_m), 4);
   }
   return sum * length / pieces;
 }
