@@ -8,6 +8,9 @@ namespace skein::dds {
 /// RTPS maps domains to ports; beyond 232 there are none left.
 inline constexpr std::uint32_t kMaxDomain = 232;
 
+/// So many participants of one domain have ports on one host.
+inline constexpr std::uint32_t kMaxParticipants = 120;
+
 void check_domain(const ParticipantOptions& options);
 
 /// Domain, interfaces and peers. An interface must exist on this host, by name or by address.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <span>
 #include <string>
 
@@ -17,6 +18,27 @@ constexpr std::size_t padded(std::size_t size) { return (size + 3) & ~std::size_
 /// Whether a payload is PLAIN_CDR of either byte order (XCDR1 without parameter lists).
 inline bool is_plain_cdr(std::span<const std::byte> cdr) {
   return cdr.size() >= kHeaderSize && cdr[0] == std::byte{0} && cdr[1] <= std::byte{1};
+}
+
+/// The header's last two bits say how many bytes of padding follow the body (DDS-XTypes 7.6.3.1.2):
+/// so a sample's true length survives the trip. Foreign writers may leave them zero.
+inline void mark_padding(std::byte* message, std::size_t size) {
+  message[3] = (message[3] & std::byte{0xFC}) | static_cast<std::byte>(padded(size) - size);
+  for (std::size_t i = size; i < padded(size); ++i) message[i] = std::byte{0};
+}
+
+/// Copies a sample to a buffer of padded(size) bytes, ready for the wire.
+inline void copy_padded(std::span<const std::byte> cdr, std::byte* to) {
+  std::memcpy(to, cdr.data(), cdr.size());
+  mark_padding(to, cdr.size());
+}
+
+/// The sample without padding and without the mark, as it was before copy_padded().
+inline std::span<const std::byte> without_padding(std::byte* message, std::size_t size) {
+  const auto padding = std::to_integer<std::size_t>(message[3] & std::byte{0x03});
+  if (size % 4 != 0 || size < kHeaderSize + padding) return {message, size};
+  message[3] &= std::byte{0xFC};
+  return {message, size - padding};
 }
 
 /// Refuses what has no room for a header; a header of another kind is the reader's affair.

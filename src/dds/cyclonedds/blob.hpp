@@ -1,0 +1,56 @@
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "skein/dds/port.hpp"
+
+namespace skein::dds::cyclonedds {
+
+/// An opaque sample in Cyclone's terms: bytes as they travel, and a key hash as the instance's whole
+/// identity. Cyclone counts references to it; the bytes follow the object in the same allocation.
+struct Blob : ddsi_serdata {
+  KeyHash key_hash;
+  std::uint32_t size;  // a multiple of 4, as on the wire
+  bool has_key;
+
+  std::byte* bytes() noexcept { return reinterpret_cast<std::byte*>(this + 1); }
+  const std::byte* bytes() const noexcept { return reinterpret_cast<const std::byte*>(this + 1); }
+
+  /// With one reference, which the caller owns, and its bytes not yet set.
+  static Blob* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size);
+
+  /// The key decides the hash that Cyclone looks instances up by: it must be set before use.
+  void set_key(const KeyHash& key) noexcept;
+};
+
+/// One reference to a blob.
+class BlobReference {
+ public:
+  explicit BlobReference(Blob* blob) noexcept
+      : blob_(static_cast<Blob*>(ddsi_serdata_ref(blob))) {}
+  BlobReference(BlobReference&& other) noexcept : blob_(std::exchange(other.blob_, nullptr)) {}
+  BlobReference& operator=(BlobReference&& other) noexcept {
+    std::swap(blob_, other.blob_);
+    return *this;
+  }
+  ~BlobReference() {
+    if (blob_ != nullptr) ddsi_serdata_unref(blob_);
+  }
+  Blob& operator*() const noexcept { return *blob_; }
+  Blob* operator->() const noexcept { return blob_; }
+
+ private:
+  Blob* blob_;
+};
+
+/// The only type of this back end: named as the topic says, without description, XCDR1. Ownership goes
+/// to Cyclone with dds_create_topic_sertype().
+ddsi_sertype* make_blob_type(const Topic& topic);
+
+}  // namespace skein::dds::cyclonedds

@@ -1,0 +1,73 @@
+#include "configuration.hpp"
+
+#include <algorithm>
+
+#include "../options_check.hpp"
+
+namespace skein::dds::cyclonedds {
+namespace {
+
+std::string element(const std::string& name, const std::string& value) {
+  return "<" + name + ">" + value + "</" + name + ">";
+}
+
+/// "best effort": a `min` would refuse to start on a stock host, which caps buffers at 208 KiB.
+constexpr const char* kSocketBuffers =
+    "<SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>";
+
+/// On loopback nothing is gained by small packets: 1 MiB takes half the time with the largest that
+/// UDP carries. On a LAN Cyclone's own sizes keep to the network's frames.
+constexpr const char* kLargePackets =
+    "<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>63000 B</FragmentSize>"
+    "<MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize>";
+
+std::string general(const ParticipantOptions& options,
+                    const std::vector<std::string>& addresses) {
+  const bool multicast = options.network.multicast_discovery;
+  std::string interfaces;
+  for (const std::string& address : addresses) {
+    interfaces += "<NetworkInterface address=\"" + address + "\" multicast=\"" +
+                  (multicast ? "true" : "false") + "\"/>";
+  }
+  // Never "true": data multicast aborts Debian's Fast DDS at the other end.
+  return element("General", element("Interfaces", interfaces) +
+                                element("AllowMulticast", multicast ? "spdp" : "false") +
+                                (is_loopback_only(options.network) ? kLargePackets : ""));
+}
+
+std::string discovery(const ParticipantOptions& options,
+                      const std::vector<std::string>& addresses) {
+  std::string peers;
+  for (const auto& list : {addresses, options.network.peers}) {
+    for (const std::string& peer : list) peers += "<Peer Address=\"" + peer + "\"/>";
+  }
+  const auto highest = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;
+  return element("Discovery",
+                 element("ExternalDomainId", std::to_string(options.domain)) +
+                     element("ParticipantIndex", "auto") +
+                     element("MaxAutoParticipantIndex", std::to_string(highest)) +
+                     element("LeaseDuration", std::to_string(options.lease.count()) + " ms") +
+                     element("Peers", peers));
+}
+
+/// GenerateKeyhash: Fast DDS cannot tell an instance's identity otherwise.
+/// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops a
+/// writer in the middle of a mebibyte.
+/// HeartbeatInterval: a lost last sample is noticed, and an acknowledgment asked for, after so long.
+std::string internal() {
+  return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
+                                 element("Watermarks", element("WhcHigh", "4 MiB") +
+                                                           element("WhcHighInit", "1 MiB")) +
+                                 element("HeartbeatInterval", "25 ms"));
+}
+
+}  // namespace
+
+std::string configuration(const ParticipantOptions& options) {
+  const auto addresses = interface_addresses(options.network);
+  return element("CycloneDDS",
+                 "<Domain Id=\"any\">" + general(options, addresses) +
+                     discovery(options, addresses) + internal() + "</Domain>");
+}
+
+}  // namespace skein::dds::cyclonedds

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <mutex>
+#include <set>
+
+#include "../topic_table.hpp"
+#include "entity.hpp"
+
+struct ddsi_sertype;
+
+namespace skein::dds::cyclonedds {
+
+/// A topic in use: Cyclone's entity, and the type that its samples refer to.
+struct TopicHandle {
+  dds_entity_t entity;
+  const ddsi_sertype* type;
+};
+
+/// One participant in a Cyclone domain of its own, so that several in one process are as independent
+/// as in several. Its threads are Cyclone's; each domain has its own.
+class CycloneParticipant final : public Participant {
+ public:
+  explicit CycloneParticipant(const ParticipantOptions& options);
+  ~CycloneParticipant() override;
+
+  std::unique_ptr<Writer> create_writer(const Topic& topic, const Qos& qos,
+                                        WriterListener listener) override;
+  std::unique_ptr<Reader> create_reader(const Topic& topic, const Qos& qos,
+                                        ReaderListener listener) override;
+  Guid guid() const override { return guid_; }
+
+  dds_entity_t handle() const noexcept { return participant_.handle(); }
+  TopicHandle acquire_topic(const Topic& topic);
+  void release_topic(const std::string& name);
+
+ private:
+  void watch_participants();
+  void take_presence();
+
+  ParticipantOptions options_;
+  Entity domain_;
+  Entity participant_;
+  Guid guid_;
+  TopicTable<TopicHandle> topics_;
+  std::mutex presence_;  // one call of on_participant at a time
+  std::set<Guid> present_;
+  Entity watcher_;  // reads who is there; goes first
+};
+
+}  // namespace skein::dds::cyclonedds

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "matches.hpp"
+#include "participant.hpp"
+#include "sample_queue.hpp"
+
+namespace skein::dds::cyclonedds {
+
+class CycloneReader final : public Reader {
+ public:
+  CycloneReader(CycloneParticipant& participant, const Topic& topic, const Qos& qos,
+                ReaderListener listener);
+  ~CycloneReader() override;
+
+  std::size_t take(const std::function<void(const Sample&)>& consumer, std::size_t limit) override {
+    return queue_.take(consumer, limit);
+  }
+  Guid guid() const override { return guid_; }
+  std::vector<Guid> matched_writers() const override { return matches_.current(); }
+  std::uint64_t malformed() const override { return queue_.malformed(); }
+
+ private:
+  Entity make(const Topic& topic, const Qos& qos);
+  void data_available();
+  void liveliness_changed(const dds_liveliness_changed_status_t& status);
+
+  CycloneParticipant& participant_;
+  const Topic topic_;
+  const TopicHandle handle_;
+  const ReaderListener listener_;
+  SampleQueue queue_;
+  Matches matches_;
+  std::atomic<bool> made_{false};
+  std::mutex data_;  // one on_data at a time
+  dds_entity_t reader_handle_ = 0;
+  Guid guid_;
+  Entity reader_;  // goes first: its listeners use the rest
+};
+
+}  // namespace skein::dds::cyclonedds

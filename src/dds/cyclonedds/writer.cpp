@@ -1,0 +1,104 @@
+#include "writer.hpp"
+
+#include "../options_check.hpp"
+#include "../sample_format.hpp"
+#include "blob.hpp"
+#include "identity.hpp"
+
+namespace skein::dds::cyclonedds {
+
+CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic, const Qos& qos,
+                             WriterListener listener)
+    : participant_(participant),
+      topic_(topic),
+      qos_(qos),
+      handle_(participant.acquire_topic(topic)),
+      matches_(
+          [this](dds_instance_handle_t* handles, std::size_t room) {
+            return dds_get_matched_subscriptions(writer_handle_, handles, room);
+          },
+          [this](dds_instance_handle_t peer) {
+            auto* data = dds_get_matched_subscription_data(writer_handle_, peer);
+            if (data == nullptr) return Guid{};
+            const Guid guid = to_guid(data->key);
+            dds_builtintopic_free_endpoint(data);
+            return guid;
+          },
+          std::move(listener.on_matched)) {
+  try {
+    writer_ = make();
+  } catch (...) {
+    participant_.release_topic(topic_.name);
+    throw;
+  }
+  writer_handle_ = writer_.handle();
+  guid_ = writer_.guid();
+  matches_.update();
+}
+
+CycloneWriter::~CycloneWriter() {
+  writer_.reset();
+  participant_.release_topic(topic_.name);
+}
+
+Entity CycloneWriter::make() {
+  const QosSet qos(qos_);
+  dds_listener_t* listener = dds_create_listener(this);
+  dds_lset_publication_matched(
+      listener, [](dds_entity_t, dds_publication_matched_status_t, void* self) {
+        static_cast<CycloneWriter*>(self)->matches_.update();
+      });
+  const dds_entity_t writer =
+      dds_create_writer(participant_.handle(), handle_.entity, qos.get(), listener);
+  dds_delete_listener(listener);
+  return Entity(check(writer, "topic '" + topic_.name + "': a writer cannot be created"));
+}
+
+void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
+  require_header(cdr, topic_.name);
+  wait_for_room();
+  Blob* blob = Blob::make(handle_.type, SDK_DATA, padded(cdr.size()));
+  copy_padded(cdr, blob->bytes());
+  blob->set_key(topic_.keyed ? key : KeyHash{});
+  check_written(dds_writecdr(writer_.handle(), blob));
+}
+
+void CycloneWriter::dispose(const KeyHash& key) {
+  require_keyed(topic_);
+  // The payload is the key, for peers that look there; its hash travels beside it.
+  Blob* blob = Blob::make(handle_.type, SDK_KEY, kHeaderSize + key.bytes.size());
+  const std::byte header[kHeaderSize] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  std::memcpy(blob->bytes(), header, kHeaderSize);
+  std::memcpy(blob->bytes() + kHeaderSize, key.bytes.data(), key.bytes.size());
+  blob->set_key(key);
+  blob->statusinfo = 1;  // disposed; dds_forwardcdr() keeps it, dds_writecdr() does not
+  blob->timestamp.v = dds_time();
+  check_written(dds_forwardcdr(writer_.handle(), blob));
+}
+
+/// Cyclone itself bounds only the bytes that wait for acknowledgment, so every max_samples writes all
+/// that was written must have been acknowledged.
+void CycloneWriter::wait_for_room() {
+  if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
+  if (written_.fetch_add(1) < qos_.max_samples) return;
+  if (!wait_for_acknowledgments(qos_.max_blocking)) check_written(DDS_RETCODE_TIMEOUT);
+  written_ = 1;
+}
+
+void CycloneWriter::check_written(dds_return_t code) {
+  if (code == DDS_RETCODE_TIMEOUT) {
+    throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +
+                     std::to_string(qos_.max_blocking.count()) +
+                     " ms; a matched reader has stopped acknowledging");
+  }
+  check(code, "topic '" + topic_.name + "': a sample cannot be written");
+}
+
+bool CycloneWriter::wait_for_acknowledgments(std::chrono::milliseconds timeout) {
+  const dds_return_t code = dds_wait_for_acks(writer_.handle(), DDS_MSECS(timeout.count()));
+  if (code == DDS_RETCODE_TIMEOUT) return false;
+  check(code, "topic '" + topic_.name + "': acknowledgments cannot be awaited");
+  return true;
+}
+
+}  // namespace skein::dds::cyclonedds

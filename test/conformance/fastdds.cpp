@@ -1,0 +1,3 @@
+#include "wire.hpp"
+
+const skein::dds::conformance::Pairing skein::dds::conformance::kPairing{"fastdds", "fastdds"};

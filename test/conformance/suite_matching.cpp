@@ -1,0 +1,148 @@
+#include <catch2/catch.hpp>
+
+#include "wire.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+using namespace skein::dds::conformance;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+
+using Events = std::vector<std::pair<Guid, bool>>;
+
+TEST_CASE("both sides call an endpoint by the same GUID") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  const Guid writer = outbox.writer().guid();
+  const Guid reader = inbox.reader().guid();
+  CHECK(writer.participant() == wire.writing->guid());
+  CHECK(reader.participant() == wire.reading->guid());
+  CHECK(writer != reader);
+  REQUIRE(eventually([&] { return !outbox.matches().empty() && !inbox.matches().empty(); }));
+  CHECK(outbox.matches() == Events{{reader, true}});
+  CHECK(inbox.matches() == Events{{writer, true}});
+}
+
+TEST_CASE("a writer that goes is told to its readers") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  const Guid writer = outbox.writer().guid();
+  outbox.close();
+  REQUIRE(eventually([&] { return inbox.matches().size() == 2; }));
+  CHECK(inbox.matches() == Events{{writer, true}, {writer, false}});
+  CHECK(inbox.reader().matched_writers().empty());
+}
+
+TEST_CASE("a reader that goes is told to its writers") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  const Guid reader = inbox.reader().guid();
+  inbox.close();
+  REQUIRE(eventually([&] { return outbox.matches().size() == 2; }));
+  CHECK(outbox.matches() == Events{{reader, true}, {reader, false}});
+  CHECK(outbox.writer().matched_readers().empty());
+}
+
+TEST_CASE("endpoints that come later match too, on either side") {
+  Wire wire;
+  Outbox early(*wire.writing, keyless("one"), keep_all());
+  Inbox early_inbox(*wire.reading, keyless("one"), keep_all());
+  REQUIRE(matched(early, early_inbox));
+  Inbox waiting(*wire.reading, keyless("two"), keep_all());
+  Outbox late(*wire.writing, keyless("two"), keep_all());
+  CHECK(matched(late, waiting));
+  Outbox another(*wire.writing, keyless("two"), keep_all());
+  CHECK(matched(another, waiting));
+}
+
+TEST_CASE("a partition is matched exactly") {
+  Wire wire;
+  const std::string id = "0123456789abcdef0123456789abcdef";
+  Qos own = keep_all();
+  own.partitions = {id};
+  Qos server = keep_all();
+  server.partitions = {"", id};
+  Qos neighbour = keep_all();
+  neighbour.partitions = {"0123456789abcdef0123456789abcdee"};
+  Qos upper = keep_all();
+  upper.partitions = {"0123456789ABCDEF0123456789ABCDEF"};
+
+  Inbox to_server(*wire.reading, keyless(), server);
+  Inbox to_neighbour(*wire.reading, keyless(), neighbour);
+  Inbox to_upper(*wire.reading, keyless(), upper);
+  Inbox to_all(*wire.reading, keyless(), keep_all());
+  Outbox direct(*wire.writing, keyless(), own);
+  Outbox broadcast(*wire.writing, keyless(), keep_all());
+  REQUIRE(matched(direct, to_server));
+  REQUIRE(matched(broadcast, to_server));
+  REQUIRE(matched(broadcast, to_all));
+
+  direct.writer().write(make_number(1));
+  broadcast.writer().write(make_number(2));
+  REQUIRE(eventually([&] { return to_server.count() == 2; }));
+  REQUIRE(eventually([&] { return to_all.count() == 1; }));
+  CHECK(numbers(to_all.received()) == std::vector<std::uint32_t>{2});
+  CHECK(direct.writer().matched_readers() == std::vector{to_server.reader().guid()});
+  CHECK(to_neighbour.reader().matched_writers().empty());
+  CHECK(to_upper.reader().matched_writers().empty());
+  CHECK(to_neighbour.count() == 0);
+  CHECK(to_upper.count() == 0);
+}
+
+TEST_CASE("no partition and the partition with the empty name are the same") {
+  Wire wire;
+  Qos named = keep_all();
+  named.partitions = {""};
+  Outbox outbox(*wire.writing, keyless("a"), named);
+  Inbox inbox(*wire.reading, keyless("a"), keep_all());
+  CHECK(matched(outbox, inbox));
+  Outbox plain(*wire.writing, keyless("b"), keep_all());
+  Inbox named_inbox(*wire.reading, keyless("b"), named);
+  CHECK(matched(plain, named_inbox));
+}
+
+TEST_CASE("sharing one of several partitions is enough") {
+  Wire wire;
+  Qos writing = keep_all();
+  writing.partitions = {"a", "b"};
+  Qos reading = keep_all();
+  reading.partitions = {"b", "c"};
+  Outbox outbox(*wire.writing, keyless(), writing);
+  Inbox inbox(*wire.reading, keyless(), reading);
+  REQUIRE(matched(outbox, inbox));
+  outbox.writer().write(make_number(5));
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+}
+
+TEST_CASE("topics of one name and different types do not match") {
+  Wire wire;
+  Outbox outbox(*wire.writing, {"same", "test::One", false}, keep_all());
+  Inbox inbox(*wire.reading, {"same", "test::Other", false}, keep_all());
+  Outbox other(*wire.writing, keyless(), keep_all());
+  Inbox other_inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(other, other_inbox));
+  CHECK(outbox.writer().matched_readers().empty());
+  CHECK(inbox.reader().matched_writers().empty());
+}
+
+TEST_CASE("a topic name that is in use with another type is refused") {
+  Wire wire;
+  const auto writer = wire.writing->create_writer({"taken", "test::One", false}, keep_all());
+  CHECK_THROWS_WITH(wire.writing->create_reader({"taken", "test::Other", false}, keep_all()),
+                    Catch::Contains("taken") && Catch::Contains("test::One") &&
+                        Catch::Contains("test::Other"));
+  CHECK_THROWS_AS(wire.writing->create_writer({"taken", "test::One", true}, keep_all()),
+                  InvalidArgument);
+}
+
+TEST_CASE("a topic name is free again when its last user has gone") {
+  Wire wire;
+  wire.writing->create_writer({"reused", "test::One", false}, keep_all());
+  CHECK_NOTHROW(wire.writing->create_writer({"reused", "test::Other", false}, keep_all()));
+}
