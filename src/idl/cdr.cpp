@@ -117,6 +117,9 @@ struct CdrReader::State {
 
   std::size_t position() const { return cdr.getSerializedDataLength(); }
 
+  /// Fast CDR aligns by what it read last, which a jump over a string does not change.
+  void align(std::size_t alignment) { cdr.jump(padding(position(), alignment)); }
+
   FastBuffer buffer;
   Cdr cdr;
   std::size_t size;
@@ -128,6 +131,7 @@ std::size_t CdrReader::remaining() const noexcept { return state_.size - state_.
 template <Primitive T>
 T CdrReader::read() {
   if (remaining() < padding(state_.position(), sizeof(T)) + sizeof(T)) fail("the message ends here");
+  state_.align(sizeof(T));
   if constexpr (std::is_same_v<T, bool>) {
     std::uint8_t value;
     state_.cdr.deserialize(value);
@@ -148,6 +152,7 @@ void CdrReader::read_array(T* values, std::size_t count) {
     fail(std::to_string(count) + " elements do not fit into the " + std::to_string(remaining()) +
          " bytes that are left");
   }
+  state_.align(sizeof(T));
   if constexpr (std::is_same_v<T, bool>) {
     for (std::size_t i = 0; i < count; ++i) values[i] = read<bool>();
   } else {
