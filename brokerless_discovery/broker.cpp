@@ -7,7 +7,7 @@
 #include <map>
 #include <mutex>
 
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
@@ -293,7 +293,7 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
   try {
     state_->changed.wait(lock, [&] {
       found = state_->table.find(query);
-      return late || !found.empty();
+      return late || !found.empty() || state_->clock.now() >= deadline;
     });
     if (found.empty()) reason = state_->table.explain(query);
   } catch (...) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/suggestion.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
 #include "failover_channel.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"

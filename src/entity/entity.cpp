@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
 #include "skein/rpc/dds_server.hpp"

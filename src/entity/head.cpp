@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/suggestion.hpp"

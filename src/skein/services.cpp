@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "commands.hpp"
-#include "discovery.idl.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/entity/entity.hpp"
 
 namespace skein::command {

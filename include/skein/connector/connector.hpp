@@ -13,13 +13,13 @@ namespace skein {
 /// Where and how to connect. The defaults reach the first provider of the interface in one's own system.
 struct ConnectOptions {
   /// An interface's or an entity's name; empty means the proxy's own interface.
-  std::string name;
+  std::string name{};
   /// Another vehicle or station; kAnySystem for whichever.
-  std::optional<std::string> system;
+  std::optional<std::string> system{};
   /// Only this provider, as a service reference names it; nil means any.
-  Guid provider;
+  Guid provider{};
   /// The Head's selection strategy for this session; empty means the provider's default.
-  std::string strategy;
+  std::string strategy{};
   /// For finding a provider and opening the connection.
   Duration timeout = std::chrono::seconds(5);
   /// A server that is not built with Skein: no description tells of it, and it lives in the default

@@ -12,17 +12,17 @@
 namespace skein {
 
 struct EntityOptions {
-  std::string name;
+  std::string name{};
   /// The vehicle or station that the entity belongs to.
   std::string system = "default";
   /// The DDS implementation, `dds::load_vendor("cyclonedds")`.
-  std::shared_ptr<dds::Vendor> vendor;
+  std::shared_ptr<dds::Vendor> vendor{};
   /// The mission: a DDS domain, 0 to 232.
   std::uint32_t domain = 0;
   /// Loopback alone by default.
-  dds::Network network;
+  dds::Network network{};
   /// Shared by entities that are to call each other without leaving the process; none: its own.
-  std::shared_ptr<Process> process;
+  std::shared_ptr<Process> process{};
   /// How long a peer that is not heard of is trusted.
   std::chrono::milliseconds lease{1000};
 };
@@ -34,15 +34,15 @@ struct ServiceAttribute {
 
 struct ServiceOptions {
   /// What the description declares: `latency` in ms, `quality`, ...
-  std::vector<ServiceAttribute> attributes;
+  std::vector<ServiceAttribute> attributes{};
   /// Threads that run this service's calls.
   std::size_t threads = 1;
   /// Requests that may wait for a thread before others are refused as Overloaded.
   std::size_t queue = 1024;
   /// The component description as XML, for those who look the service up.
-  std::string component;
+  std::string component{};
   /// Managed interfaces for which the entity keeps CSPs.
-  std::vector<std::string> subcomponents;
+  std::vector<std::string> subcomponents{};
 };
 
 /// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that implement its
@@ -63,7 +63,7 @@ class Entity {
   /// Provides a public service: the Body. Clients get a session of the Head. Returns its identity.
   template <class Interface>
   Guid provide(std::shared_ptr<Interface> body, const ServiceOptions& options = {}) {
-    return provide(std::make_shared<typename Interface::Skeleton>(std::move(body)), options);
+    return provide(skeleton_of(std::move(body)), options);
   }
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
@@ -72,8 +72,7 @@ class Entity {
   template <class Interface>
   Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Interface> csp,
                    const ServiceOptions& options = {}) {
-    return provide_csp(name, owner, std::make_shared<typename Interface::Skeleton>(std::move(csp)),
-                       options);
+    return provide_csp(name, owner, skeleton_of(std::move(csp)), options);
   }
   Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Servant> servant,
                    const ServiceOptions& options);
@@ -96,6 +95,11 @@ class Entity {
  private:
   struct Provided;
   struct State;
+
+  template <class Interface>
+  static std::shared_ptr<Servant> skeleton_of(std::shared_ptr<Interface> implementation) {
+    return std::make_shared<typename Interface::Skeleton>(std::move(implementation));
+  }
   Guid add(std::shared_ptr<Servant> servant, const ServiceOptions& options, const std::string& name,
            const std::string& owner);
   std::unique_ptr<State> state_;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "skein/discovery.idl.hpp"
+#include "skein/core/guid.hpp"
+
+namespace skein::test {
+
+inline Guid guid(std::uint8_t number) {
+  Guid guid;
+  guid.bytes[0] = number;
+  return guid;
+}
+
+/// A provider of `service` by `entity` in system `uav-1`; the number is its identity.
+inline discovery::ServiceDescription description(std::uint8_t number, const std::string& service,
+                                                 const std::string& entity) {
+  discovery::ServiceDescription description;
+  description.provider = guid(number).bytes;
+  description.service = service;
+  description.entity = entity;
+  description.system = "uav-1";
+  description.process = "skein/process-of-" + entity;
+  return description;
+}
+
+}  // namespace skein::test

@@ -1,0 +1,227 @@
+#include "skein/brokerless_discovery/table.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "descriptions.hpp"
+#include "skein/core/error.hpp"
+
+using namespace skein;
+using namespace skein::brokerless_discovery;
+using skein::test::description;
+using skein::test::guid;
+
+namespace {
+
+const Guid kWriter = guid(200);
+const Guid kOtherWriter = guid(201);
+
+Query query(const std::string& name) {
+  Query query;
+  query.name = name;
+  query.system = "uav-1";
+  query.asker = "uav-1/tester";
+  return query;
+}
+
+std::vector<std::string> entities(const Table& table, const Query& query) {
+  std::vector<std::string> names;
+  for (const auto& found : table.find(query)) names.push_back(found->entity);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a description is found by its interface, its bases and its entity", "[R1]") {
+  Table table;
+  auto navigator = description(1, "A/INavigator", "navigator");
+  navigator.bases = {"A/IService"};
+  table.on_description(navigator, kWriter);
+  CHECK(entities(table, query("A/INavigator")) == Names{"navigator"});
+  CHECK(entities(table, query("A/IService")) == Names{"navigator"});
+  CHECK(entities(table, query("navigator")) == Names{"navigator"});
+  CHECK(entities(table, query("A/IOther")).empty());
+}
+
+TEST_CASE("all spellings of an interface's name are one", "[R2]") {
+  Table table;
+  table.on_description(description(1, "IDL:A/INavigator:1.0", "navigator"), kWriter);
+  for (const char* spelling : {"IDL:A/INavigator", "A/INavigator", "A::INavigator", "IDL:A/INavigator:1.0"}) {
+    CAPTURE(spelling);
+    CHECK(entities(table, query(spelling)) == Names{"navigator"});
+  }
+}
+
+TEST_CASE("an interface's last part is enough where it is unambiguous", "[R3]") {
+  Table table;
+  table.on_description(description(1, "A/IPlanner", "one"), kWriter);
+  CHECK(entities(table, query("IPlanner")) == Names{"one"});
+
+  table.on_description(description(2, "B/IPlanner", "two"), kWriter);
+  CHECK_THROWS_WITH(table.find(query("IPlanner")), Catch::Contains("ambiguous") &&
+                                                       Catch::Contains("A/IPlanner") &&
+                                                       Catch::Contains("B/IPlanner"));
+  CHECK(entities(table, query("B/IPlanner")) == Names{"two"});
+
+  table.on_withdrawn(guid(1));
+  CHECK(entities(table, query("IPlanner")) == Names{"two"});
+}
+
+TEST_CASE("a later description of the same provider replaces the earlier one", "[R4]") {
+  Table table;
+  CHECK(table.on_description(description(1, "A/I", "old"), kWriter).at(0).kind == Change::Kind::Added);
+  CHECK(table.on_description(description(1, "A/I", "new"), kWriter).at(0).kind == Change::Kind::Updated);
+  CHECK(entities(table, query("A/I")) == Names{"new"});
+  CHECK(table.find(query("old")).empty());
+  CHECK(table.on_description(description(1, "A/I", "new"), kWriter).empty());
+}
+
+TEST_CASE("a look-up stays in its own system unless told otherwise", "[R5]") {
+  Table table;
+  auto other = description(1, "A/I", "far");
+  other.system = "uav-2";
+  table.on_description(other, kWriter);
+  table.on_description(description(2, "A/I", "near"), kWriter);
+  CHECK(entities(table, query("A/I")) == Names{"near"});
+  Query there = query("A/I");
+  there.system = "uav-2";
+  CHECK(entities(table, there) == Names{"far"});
+  there.system = std::nullopt;
+  CHECK(entities(table, there) == Names{"far", "near"});
+}
+
+TEST_CASE("a managed service is found by its owner and by nobody else", "[R6]") {
+  Table table;
+  auto csp = description(1, "A/IPlanner", "AStar");
+  csp.owner = "uav-1/navigator";
+  table.on_description(csp, kWriter);
+  CHECK(entities(table, query("A/IPlanner")).empty());
+  CHECK_THAT(table.explain(query("A/IPlanner")), Catch::Contains("managed by uav-1/navigator"));
+  Query owner = query("A/IPlanner");
+  owner.asker = "uav-1/navigator";
+  CHECK(entities(table, owner) == Names{"AStar"});
+}
+
+TEST_CASE("a stranger is told whose a managed interface is even without its description", "[R6][R9]") {
+  Table table;
+  auto navigator = description(1, "A/INavigator", "navigator");
+  navigator.subcomponents = {"IDL:A/IPlanner"};
+  table.on_description(navigator, kWriter);
+  CHECK_THAT(table.explain(query("A/IPlanner")),
+             Catch::Contains("managed interface of navigator") && Catch::Contains("only that entity"));
+  CHECK_THAT(table.explain(query("IPlanner")), Catch::Contains("managed interface of navigator"));
+}
+
+TEST_CASE("a provider that lacks one of the client's operations is not offered", "[R7]") {
+  const OperationInfo wanted[] = {{"plan", 11, 1000, false, false, nullptr, nullptr, {}, ""}};
+  const InterfaceInfo client{"A/IPlanner", {}, wanted, ""};
+  Query asked = query("A/IPlanner");
+  asked.client = &client;
+  Table table;
+  auto provider = description(1, "A/IPlanner", "planner");
+
+  SECTION("no such operation") {}
+  SECTION("another signature") { provider.operations = {{"plan", 11, 1001}}; }
+  table.on_description(provider, kWriter);
+  CHECK(entities(table, asked).empty());
+  CHECK_THAT(table.explain(asked), Catch::Contains("another version") && Catch::Contains("'plan'"));
+
+  provider.operations = {{"plan", 11, 1000}, {"newer", 12, 7}};
+  table.on_description(provider, kWriter);
+  CHECK(entities(table, asked) == Names{"planner"});
+}
+
+TEST_CASE("what is found comes by entity, then by provider, in whatever order it came", "[R8]") {
+  Table table;
+  table.on_description(description(3, "A/I", "b"), kWriter);
+  table.on_description(description(2, "A/I", "c"), kWriter);
+  table.on_description(description(9, "A/I", "a"), kWriter);
+  table.on_description(description(1, "A/I", "b"), kWriter);
+  CHECK(entities(table, query("A/I")) == Names{"a", "b", "b", "c"});
+  CHECK(Guid{table.find(query("A/I")).at(1)->provider} == guid(1));
+}
+
+TEST_CASE("where nothing is found the reason is given", "[R9]") {
+  Table table;
+  table.on_description(description(1, "A/INavigator", "navigator"), kWriter);
+
+  CHECK_THAT(table.explain(query("A/INavigater")),
+             Catch::Contains("nothing of that name") && Catch::Contains("INavigator"));
+  CHECK_THAT(table.explain(query("navigater")), Catch::Contains("did you mean 'navigator'"));
+
+  Query elsewhere = query("A/INavigator");
+  elsewhere.system = "uav-7";
+  CHECK_THAT(table.explain(elsewhere), Catch::Contains("only navigator (uav-1) offers it"));
+
+  table.on_writer_alive(kWriter, false);
+  CHECK_THAT(table.explain(query("A/INavigator")), Catch::Contains("has not been heard of"));
+}
+
+TEST_CASE("a withdrawn description goes at once", "[R10]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  const auto changes = table.on_withdrawn(guid(1));
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].kind == Change::Kind::Removed);
+  CHECK(changes[0].departure == Departure::Left);
+  CHECK(table.find(query("A/I")).empty());
+  CHECK(table.on_withdrawn(guid(1)).empty());
+}
+
+TEST_CASE("a provider whose lease expired is kept but not offered", "[R11]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  table.on_description(description(2, "A/I", "two"), kOtherWriter);
+  CHECK(table.on_writer_alive(kWriter, false).at(0).kind == Change::Kind::Suspect);
+  CHECK(entities(table, query("A/I")) == Names{"two"});
+  CHECK(table.all().size() == 2);
+  CHECK(table.on_writer_alive(kWriter, false).empty());
+}
+
+TEST_CASE("a suspect provider that is heard of again is offered again", "[R12]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  table.on_writer_alive(kWriter, false);
+  SECTION("its writer is alive again") {
+    CHECK(table.on_writer_alive(kWriter, true).at(0).kind == Change::Kind::Trusted);
+  }
+  SECTION("it describes itself again") {
+    CHECK(table.on_description(description(1, "A/I", "one"), kWriter).at(0).kind == Change::Kind::Trusted);
+  }
+  CHECK(entities(table, query("A/I")) == Names{"one"});
+}
+
+TEST_CASE("when a writer is gone for good so are its descriptions", "[R13]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  table.on_description(description(2, "A/J", "one"), kWriter);
+  table.on_description(description(3, "A/I", "two"), kOtherWriter);
+  const auto changes = table.on_writer_gone(kWriter);
+  REQUIRE(changes.size() == 2);
+  CHECK(changes[0].departure == Departure::Lost);
+  CHECK(entities(table, query("A/I")) == Names{"two"});
+}
+
+TEST_CASE("when a process has ended so have all its descriptions", "[R14]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  table.on_description(description(2, "A/I", "two"), kOtherWriter);
+  const auto changes = table.on_process_ended("skein/process-of-one");
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].departure == Departure::Died);
+  CHECK(entities(table, query("A/I")) == Names{"two"});
+}
+
+TEST_CASE("a description that arrives after its process's death is not believed", "[R15]") {
+  Table table;
+  table.on_process_ended("skein/process-of-one");
+  CHECK(table.on_description(description(1, "A/I", "one"), kWriter).empty());
+  CHECK(table.all().empty());
+}
+
+TEST_CASE("a description with a malformed interface name is refused") {
+  Table table;
+  CHECK_THROWS_AS(table.on_description(description(1, "A//I", "one"), kWriter), InvalidArgument);
+  CHECK(table.all().empty());
+}

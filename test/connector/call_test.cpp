@@ -1,0 +1,258 @@
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "../tools/eventually.hpp"
+#include "echo_service.hpp"
+#include "pairing.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::DivisionByZero;
+using ::test::Echo;
+using ::test::LouderEcho;
+
+namespace {
+
+/// A server with an Echo and a connected client, each an entity of its own.
+struct Pair {
+  explicit Pair(const ServiceOptions& options = {})
+      : server(make_server()), client(make_client()), service(std::make_shared<EchoService>()) {
+    id = server->provide<LouderEcho>(service, options);
+    echo.emplace(client->connect<Echo>());
+  }
+  ~Pair() { echo.reset(); }
+
+  std::unique_ptr<Entity> server;
+  std::unique_ptr<Entity> client;
+  std::shared_ptr<EchoService> service;
+  Guid id;
+  std::optional<Echo::Proxy> echo;
+};
+
+ServiceOptions threads(std::size_t count) {
+  ServiceOptions options;
+  options.threads = count;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a call brings its result back") {
+  Pair pair;
+  CHECK(pair.echo->echo("hello") == "hello");
+  CHECK(pair.echo->echo("") == "");
+  std::int32_t remainder = 0;
+  CHECK(pair.echo->divide(17, 5, remainder) == 3);
+  CHECK(remainder == 2);
+  pair.echo->label("other");
+  CHECK(pair.echo->label() == "other");
+}
+
+TEST_CASE("payloads of every size arrive unchanged") {
+  Pair pair;
+  for (const std::size_t size : {0u, 1u, 3u, 63u, 1024u, 65'537u, 1'048'576u, 4'194'305u}) {
+    std::vector<std::uint8_t> content(size);
+    for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<std::uint8_t>(i * 31 + i / 257);
+    CAPTURE(size);
+    CHECK(pair.echo->within(30s).echo_octets(content) == content);
+  }
+}
+
+TEST_CASE("an exception that the interface declares arrives as its own type") {
+  Pair pair;
+  std::int32_t remainder;
+  try {
+    pair.echo->divide(9, 0, remainder);
+    FAIL("no exception");
+  } catch (const DivisionByZero& exception) {
+    CHECK(exception.dividend == 9);
+  }
+}
+
+TEST_CASE("whatever else an implementation throws arrives as an error with its text") {
+  Pair pair;
+  CHECK_THROWS_AS(pair.echo->fail("overloaded"), Overloaded);
+  CHECK_THROWS_WITH(pair.echo->fail("overloaded"), Catch::Contains("no room for this one"));
+  CHECK_THROWS_AS(pair.echo->fail("standard"), Internal);
+  CHECK_THROWS_WITH(pair.echo->fail("standard"), Catch::Contains("something broke"));
+  CHECK_THROWS_AS(pair.echo->fail("undeclared"), Internal);
+  CHECK_THROWS_WITH(pair.echo->fail("undeclared"), Catch::Contains("does not declare"));
+  CHECK_THROWS_AS(pair.echo->fail("number"), Internal);
+  CHECK(pair.echo->echo("still alive") == "still alive");
+}
+
+TEST_CASE("calls from several threads do not disturb each other") {
+  Pair pair(threads(4));
+  std::vector<std::thread> callers;
+  std::atomic<int> right = 0;
+  for (int caller = 0; caller < 8; ++caller) {
+    callers.emplace_back([&, caller] {
+      for (int i = 0; i < 50; ++i) {
+        const std::string text = std::to_string(caller) + ":" + std::to_string(i);
+        right += pair.echo->within(30s).echo(text) == text;
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  CHECK(right == 400);
+  CHECK(pair.service->calls == 400);
+}
+
+TEST_CASE("a service with one thread is never inside two calls at once, one with more may be") {
+  Pair one;
+  Pair four(threads(4));
+  const auto call_all = [](Echo::Proxy& echo) {
+    std::vector<Call<bool>> calls;
+    for (int i = 0; i < 4; ++i) calls.push_back(echo.within(30s).async_wait(20));
+    for (auto& call : calls) CHECK(call.get());
+  };
+  auto many = four.client->connect<Echo>({.provider = four.id});
+  call_all(many);
+  CHECK(four.service->overlapped);
+  auto single = one.client->connect<Echo>({.provider = one.id});
+  call_all(single);
+  CHECK_FALSE(one.service->overlapped);
+}
+
+TEST_CASE("a call that is not answered in time ends as TimedOut and the server learns of it") {
+  Pair pair;
+  CHECK_THROWS_AS(pair.echo->within(50ms).wait(20'000), TimedOut);
+  CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
+  CHECK(pair.echo->echo("next") == "next");
+}
+
+TEST_CASE("a call that waits behind others until its deadline is never executed") {
+  Pair pair;
+  auto long_one = pair.echo->within(30s).async_wait(300);
+  const auto before = [&] { return pair.service->inside == 1; };
+  REQUIRE(eventually(before));
+  CHECK_THROWS_AS(pair.echo->within(20ms).echo("too late"), TimedOut);
+  CHECK(long_one.get());
+  CHECK(pair.echo->echo("in time") == "in time");
+  CHECK(pair.service->calls == 2);
+}
+
+TEST_CASE("dropping an asynchronous call cancels it at the server") {
+  Pair pair;
+  {
+    const auto dropped = pair.echo->within(60s).async_wait(60'000);
+    REQUIRE(eventually([&] { return pair.service->inside == 1; }));
+  }
+  CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
+}
+
+TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
+  Pair pair;
+  CHECK(pair.echo->async_echo("later").get() == "later");
+
+  std::atomic<bool> continued = false;
+  pair.echo->async_echo("then").then([&](Call<std::string> call) { continued = call.get() == "then"; });
+  CHECK(eventually([&] { return continued.load(); }));
+
+  auto cancelled = pair.echo->within(60s).async_wait(60'000);
+  cancelled.cancel();
+  CHECK_THROWS_AS(cancelled.get(), Cancelled);
+}
+
+TEST_CASE("oneway calls are executed in order without an answer") {
+  Pair pair;
+  for (int i = 0; i < 20; ++i) pair.echo->note("n");
+  CHECK(eventually([&] { return pair.echo->noted() == 20; }));
+}
+
+TEST_CASE("calls beyond a service's queue are refused as Overloaded, and none of them is executed") {
+  ServiceOptions options;
+  options.queue = 2;
+  Pair pair(options);
+  auto running = pair.echo->within(60s).async_wait(60'000);
+  REQUIRE(eventually([&] { return pair.service->inside == 1; }));
+  std::vector<Call<std::string>> calls;
+  for (int i = 0; i < 6; ++i) calls.push_back(pair.echo->within(30s).async_echo("x"));
+  REQUIRE(eventually([&] { return calls[2].ready() && calls[3].ready() && calls[4].ready() && calls[5].ready(); }));
+  for (int i = 2; i < 6; ++i) CHECK_THROWS_AS(calls[i].get(), Overloaded);
+  running.cancel();
+  for (int i = 0; i < 2; ++i) CHECK(calls[i].get() == "x");
+  CHECK(pair.service->calls == 3);
+}
+
+TEST_CASE("connecting by interface, entity and base finds the provider; what is not there gives the reason") {
+  Pair pair;
+  CHECK(pair.client->connect<LouderEcho>().shout("hey") == "HEY");
+  CHECK(pair.client->connect<Echo>({.name = "server"}).echo("x") == "x");
+  CHECK(pair.client->connect<Echo>({.name = "test::LouderEcho"}).echo("x") == "x");
+  CHECK_THROWS_AS(pair.client->connect<Echo>({.name = "sever", .timeout = 50ms}), Unavailable);
+  CHECK_THROWS_WITH(pair.client->connect<Echo>({.name = "sever", .timeout = 50ms}),
+                    Catch::Contains("did you mean 'server'"));
+  CHECK_THROWS_WITH(pair.client->connect<Echo>({.system = "uav-9", .timeout = 50ms}),
+                    Catch::Contains("system 'uav-9'"));
+}
+
+TEST_CASE("a client with another version of the interface is told which operation differs") {
+  Pair pair;
+  CHECK_THROWS_WITH(pair.client->connect<changed::Echo>({.name = "test::Echo", .timeout = 50ms}),
+                    Catch::Contains("another version") && Catch::Contains("'echo'"));
+}
+
+TEST_CASE("a session with an unknown selection strategy is refused with the known ones") {
+  Pair pair;
+  CHECK_THROWS_WITH(pair.client->connect<Echo>({.strategy = "declard", .timeout = 5s}),
+                    Catch::Contains("unknown selection strategy") && Catch::Contains("did you mean 'declared'"));
+  CHECK(pair.client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
+}
+
+TEST_CASE("a disconnected proxy refuses calls") {
+  Pair pair;
+  pair.echo->disconnect();
+  CHECK_THROWS_AS(pair.echo->echo("x"), Unavailable);
+}
+
+TEST_CASE("a managed service is closed to strangers") {
+  Pair pair;
+  pair.server->provide_csp<Echo>("hidden", "uav-1/owner", std::make_shared<EchoService>());
+  CHECK_THROWS_AS(pair.client->connect<Echo>({.name = "hidden", .timeout = 100ms}), Unavailable);
+
+  const auto owner = make_entity("owner", Pairing::get().client);
+  CHECK(owner->connect<Echo>({.name = "hidden"}).echo("mine") == "mine");
+}
+
+TEST_CASE("within one process a call stays in it and runs on the caller's thread") {
+  const auto process = std::make_shared<Process>();
+  const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
+  const auto client = make_entity("client", Pairing::get().client, "uav-1", process);
+  struct Where : EchoService {
+    std::string echo(const std::string&) override {
+      ran_on = std::this_thread::get_id();
+      return "";
+    }
+    std::thread::id ran_on;
+  };
+  const auto service = std::make_shared<Where>();
+  server->provide<LouderEcho>(service);
+  auto echo = client->connect<Echo>();
+  echo.echo("x");
+  CHECK(service->ran_on == std::this_thread::get_id());
+  std::int32_t remainder;
+  CHECK_THROWS_AS(echo.divide(1, 0, remainder), DivisionByZero);
+  CHECK_THROWS_AS(echo.within(30ms).async_wait(5'000).get(), TimedOut);
+}
+
+TEST_CASE("a call that would wait for itself is refused with the reason") {
+  struct Recursive : EchoService {
+    std::string echo(const std::string& text) override { return self->echo(text); }
+    std::optional<Echo::Proxy> self;
+  };
+  const auto server = make_server();
+  const auto service = std::make_shared<Recursive>();
+  server->provide<LouderEcho>(service);
+  SECTION("within the process") { service->self.emplace(server->connect<Echo>()); }
+  SECTION("through another process's view") {
+    const auto client = make_client();
+    service->self.emplace(client->connect<Echo>());
+    CHECK_THROWS_WITH(service->self->echo("x"), Catch::Contains("wait for itself"));
+    service->self.reset();
+    return;
+  }
+  CHECK_THROWS_WITH(service->self->echo("x"), Catch::Contains("wait for itself"));
+  service->self.reset();
+}

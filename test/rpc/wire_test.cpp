@@ -1,0 +1,121 @@
+#include "skein/rpc/wire.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+using namespace skein;
+using namespace skein::rpc;
+using namespace std::chrono_literals;
+
+namespace {
+
+const wire::RequestId kId{*Guid::from_hex("000102030405060708090a0b0c0d0e0f"), 0x1'0000'0007};
+
+Bytes a_request() {
+  Bytes message;
+  wire::begin_request(message, kId, wire::kOpen);
+  wire::append_default_branch(message);
+  wire::append_trailer(message, wire::RequestTrailer{1500ms, 42, {Guid::random(), Guid::random()}, "declared"});
+  return message;
+}
+
+std::string hex(const Bytes& message, std::size_t first, std::size_t count) {
+  std::string text;
+  for (std::size_t i = first; i < first + count; ++i) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    text += kDigits[std::to_integer<int>(message.data()[i]) >> 4];
+    text += kDigits[std::to_integer<int>(message.data()[i]) & 15];
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a request begins as DDS-RPC's basic mapping says") {
+  const Bytes message = a_request();
+  CHECK(hex(message, 0, 4) == "00010000");                              // PLAIN_CDR, little-endian
+  CHECK(hex(message, 4, 16) == "000102030405060708090a0b0c0d0e0f");     // writer GUID
+  CHECK(hex(message, 20, 8) == "0100000007000000");                     // sequence number: high, low
+  CHECK(hex(message, 28, 8) == "0100000000000000");                     // instance name "", padding
+  CHECK(hex(message, 36, 4) == "6f70656e");                             // discriminator
+}
+
+TEST_CASE("a request's head and trailer are read as they were written") {
+  const Bytes message = a_request();
+  const auto head = wire::read_request_head(message);
+  CHECK(head.id == kId);
+  CHECK(head.instance.empty());
+  CHECK(head.operation == wire::kOpen);
+  const auto trailer = wire::read_request_trailer(message, head.body + 1);
+  REQUIRE(trailer);
+  CHECK(trailer->remaining == 1500ms);
+  CHECK(trailer->target == 42);
+  CHECK(trailer->chain.size() == 2);
+  CHECK(trailer->strategy == "declared");
+}
+
+TEST_CASE("a reply's head and trailer are read as they were written") {
+  Bytes message;
+  wire::begin_reply(message, kId, wire::RemoteException::OutOfResources, 0);
+  wire::append_default_branch(message);
+  wire::append_trailer(message, wire::ReplyTrailer{ErrorCode::Overloaded, "full"});
+  const auto head = wire::read_reply_head(message);
+  CHECK(head.related == kId);
+  CHECK(head.exception == wire::RemoteException::OutOfResources);
+  const auto trailer = wire::read_reply_trailer(message, head.result + 1);
+  REQUIRE(trailer);
+  CHECK(trailer->code == ErrorCode::Overloaded);
+  CHECK(trailer->text == "full");
+}
+
+TEST_CASE("a message without a trailer comes from a peer that is not built with Skein") {
+  Bytes message;
+  wire::begin_request(message, kId, 7);
+  wire::append_default_branch(message);
+  CHECK_FALSE(wire::read_request_trailer(message, message.size()));
+}
+
+TEST_CASE("a big-endian request is understood") {
+  std::vector<std::uint8_t> bytes{0, 0, 0, 0};
+  for (std::uint8_t i = 0; i < 16; ++i) bytes.push_back(i);
+  for (const std::uint8_t byte : {0, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0, 1, 0, 0, 0, 0, 0x12, 0x34, 0x56, 0x78}) {
+    bytes.push_back(byte);
+  }
+  const auto head = wire::read_request_head(std::as_bytes(std::span(bytes)));
+  CHECK(head.id == kId);
+  CHECK(head.operation == 0x12345678);
+}
+
+TEST_CASE("no truncation and no mutation of a message does more than throw InvalidArgument") {
+  const Bytes whole = a_request();
+  const auto read = [](std::span<const std::byte> message) {
+    try {
+      const auto head = wire::read_request_head(message);
+      wire::read_request_trailer(message, std::min(head.body + 1, message.size()));
+    } catch (const InvalidArgument&) {
+      return false;
+    }
+    return true;
+  };
+  REQUIRE(read(whole));
+  for (std::size_t size = 0; size < wire::read_request_head(whole).body; ++size) {
+    CAPTURE(size);
+    CHECK_FALSE(read(std::span<const std::byte>(whole).first(size)));
+  }
+  std::mt19937 random(1);
+  for (int round = 0; round < 20'000; ++round) {
+    Bytes mutated{std::span<const std::byte>(whole)};
+    for (int change = 0; change < 4; ++change) {
+      mutated.data()[random() % mutated.size()] = static_cast<std::byte>(random());
+    }
+    mutated.resize(1 + random() % mutated.size());
+    read(mutated);
+  }
+}
+
+TEST_CASE("a length of 4 GB is refused before anything is allocated") {
+  Bytes message = a_request();
+  const std::uint32_t huge = 0xFFFFFFFF;
+  std::memcpy(message.data() + 28, &huge, 4);
+  CHECK_THROWS_AS(wire::read_request_head(message), InvalidArgument);
+}
