@@ -35,7 +35,7 @@ function(skein_add_idl)
     file(MAKE_DIRECTORY ${folder})
     add_custom_command(
       OUTPUT ${output}.hpp ${output}.cpp ${flattened}
-      COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${SKEIN_OMNIIDL} -p${SKEIN_IDL_ROOT}/compiler -bskein -K -nc
+      COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${SKEIN_OMNIIDL} -p${SKEIN_IDL_ROOT}/compiler -bskein
               ${flags} -Wbdirectory=${directory},name=${name},depfile=${output}.d ${path}
       DEPENDS ${path}
       DEPFILE ${output}.d

@@ -1,12 +1,19 @@
 """omniidl back end: plain C++ types, proxies and skeletons for Skein, and flattened DDS IDL.
 
-Run as: omniidl -p<this folder's parent> -bskein -K -Wbdirectory=OUT[,name=a/x.idl][,depfile=FILE] x.idl
+Run as: omniidl -p<this folder's parent> -bskein -Wbdirectory=OUT[,name=a/x.idl][,depfile=FILE] x.idl
 """
 
 import os
 import sys
 
+import _omniidl
+
 from . import analysis, builder, dependencies, errors, flattened, model, output, pragmas
+
+# omniidl loads a back end before it parses. Comments before declarations are documentation, and
+# `in Problem problem` is what everybody writes.
+_omniidl.keepComments(1)
+_omniidl.caseSensitive()
 
 cpp_args = ["-D__SKEIN_IDL__"]
 usage_string = """\

@@ -248,16 +248,22 @@ def _keylist(pragma, words, builder, report):
 def _key_path(pragma, struct, path, report):
     found = []
     current = struct
-    for name in path.split("."):
+    parts_of = path.split(".")
+    for depth, name in enumerate(parts_of, 1):
         member = next((m for m in current.members if m.name == name), None)
         if member is None:
             hint = suggestion(name, [m.name for m in current.members])
             report.error(pragma.place, f"#pragma keylist: {current.idl_name} has no member '{name}'{hint}")
             return None
+        if found:
+            member.key = True
+            if not current.in_main_file:
+                report.warning(pragma.place, f"{current.idl_name} is of another file, whose flattened IDL does not show that "
+                               f"'{name}' is a key; the key hash is right")  # fmt: skip
         found.append(member)
         kind = model.unaliased(member.type)
         current = kind.decl if isinstance(kind, model.Named) and isinstance(kind.decl, model.Struct) else None
-        if current is None and name is not path.split(".")[-1]:
+        if current is None and depth < len(parts_of):
             report.error(pragma.place, f"#pragma keylist: '{name}' in '{path}' is no struct")
             return None
     if key_size(found[-1].type) is None:

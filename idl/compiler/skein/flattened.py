@@ -4,115 +4,40 @@ import os
 
 from . import hashes, model
 
-# Words that idlc or fastddsgen reserve beyond those of the IDL that omniidl reads.
-_RESERVED = frozenset(
-    """abstract any attribute bitfield bitmask bitset boolean case char component connector const consumes context
-    custom default double eventtype exception emits enum factory false finder fixed float getraises getter home import
-    in inout int8 int16 int32 int64 interface local long manages map mirrorport module multiple native object octet
-    oneway out port porttype primarykey private provides public publishes raises readonly sequence setraises setter
-    short string struct supports switch true truncatable typedef typeid typename typeprefix uint8 uint16 uint32 uint64
-    union unsigned uses valuebase valuetype void wchar wstring""".split()
+# What idlc reserves in any case of letters, and what fastddsgen reserves as it stands.
+_IDLC = frozenset(
+    """any bitfield bitmask bitset boolean case char const default double enum false fixed float int8 int16 int32 int64
+    long map module native octet sequence short string struct switch true typedef uint8 uint16 uint32 uint64 union
+    unsigned void wchar wstring""".split()
+)
+_FASTDDSGEN = frozenset(
+    """abstract attribute component connector consumes context custom emits eventtype exception factory finder getraises
+    home import in inout interface local manages mirrorport multiple object Object oneway out port porttype primarykey
+    private provides public publishes raises readonly setraises setter supports truncatable typeid typename typeprefix
+    uses valuebase ValueBase valuetype""".split()
 )
 
 
 def _identifier(name):
-    return "_" + name if name.lower() in _RESERVED else name
+    return "_" + name if name.lower() in _IDLC or name in _FASTDDSGEN else name
 
 
-def text(file):
-    lines = [
-        f"// Generated from {os.path.basename(file.path)} by the IDL compiler of Skein. Do not edit.",
-        "// The same types and services for DDS without Skein: idlc and fastddsgen -cs read this.",
-        *(f'#include "{include.removesuffix(".idl")}.dds.idl"' for include in file.includes),
-    ]
-    if any(_uses_reference(item) for item in file.items):
-        lines.append('#include "service_reference.idl"')
-    if file.interfaces:
-        lines.append('#include "dds_rpc.idl"')
-    lines.append("")
-    opened = ()
-    for item in file.items:
-        body = _declaration(item)
-        if not body:
-            continue
-        modules = item.decl.modules if isinstance(item, model.Forward) else item.modules
-        if modules != opened:
-            lines += _close(opened) + [f"module {_identifier(module)} {{" for module in modules]
-            opened = modules
-        lines += body
-    return lines + _close(opened)
-
-
-def _close(modules):
-    return ["};" for _ in modules] + ([""] if modules else [])
+def _is_reference(kind):
+    while isinstance(kind, (model.Sequence, model.Array)):
+        kind = kind.element
+    return isinstance(kind, model.Reference)
 
 
 def _uses_reference(item):
-    def inside(kind):
-        while isinstance(kind, (model.Sequence, model.Array)):
-            kind = kind.element
-        return isinstance(kind, model.Reference)
-
     if isinstance(item, model.Struct):
-        return any(inside(member.type) for member in item.members)
+        return any(_is_reference(member.type) for member in item.members)
     if isinstance(item, model.Union):
-        return any(inside(case.type) for case in item.cases)
+        return any(_is_reference(case.type) for case in item.cases)
     if isinstance(item, model.Typedef):
-        return inside(item.type)
+        return _is_reference(item.type)
     if isinstance(item, model.Interface):
         return any(_uses_reference(s) for op in item.operations for s in (op.in_struct, op.out_struct))
     return False
-
-
-def _scoped(decl):
-    return "::" + "::".join([_identifier(module) for module in decl.modules] + [_identifier(decl.dds_name)])
-
-
-def _type(kind):
-    if isinstance(kind, model.Primitive):
-        return kind.idl
-    if isinstance(kind, model.String):
-        return f"string<{kind.bound}>" if kind.bound else "string"
-    if isinstance(kind, model.Sequence):
-        bound = f", {kind.bound}" if kind.bound else ""
-        return f"sequence<{_type(kind.element)}{bound}>"
-    if isinstance(kind, model.Reference):
-        return "::skein::ServiceReference"
-    return _scoped(kind.decl)
-
-
-def _declarator(kind, name):
-    sizes = ""
-    while isinstance(kind, model.Array):
-        sizes += f"[{kind.size}]"
-        kind = kind.element
-    return f"{_type(kind)} {_identifier(name)}{sizes};"
-
-
-def _declaration(item):
-    emit = {
-        model.Constant: _constant,
-        model.Typedef: lambda d: [f"typedef {_declarator(d.type, d.dds_name)}"],
-        model.Enum: _enum,
-        model.Struct: _struct,
-        model.Exception_: _struct,
-        model.Union: _union,
-        model.Interface: _interface,
-    }
-    return emit.get(type(item), lambda _: [])(item)
-
-
-def _value(kind, value):
-    kind = model.unaliased(kind)
-    if isinstance(kind, model.Named):
-        return "::" + "::".join([*kind.decl.modules, _identifier(value)])
-    if isinstance(kind, model.String):
-        return '"' + "".join(_escaped(c, '"') for c in value) + '"'
-    if kind.idl == "char":
-        return "'" + _escaped(value, "'") + "'"
-    if kind.idl == "boolean":
-        return "TRUE" if value else "FALSE"
-    return repr(value)
 
 
 def _escaped(character, quote):
@@ -121,62 +46,152 @@ def _escaped(character, quote):
     return character if 0x20 <= ord(character) < 0x7F else f"\\x{ord(character) & 0xFF:02x}"
 
 
-def _constant(decl):
-    return [f"const {_type(decl.type)} {_identifier(decl.dds_name)} = {_value(decl.type, decl.value)};"]
+def text(file):
+    lines = [
+        f"// Generated from {os.path.basename(file.path)} by the IDL compiler of Skein. Do not edit.",
+        "// The same types and services for DDS without Skein, as idlc -fcase-sensitive and fastddsgen -cs read them.",
+        *(f'#include "{include.removesuffix(".idl")}.dds.idl"' for include in file.includes),
+    ]
+    if any(_uses_reference(item) for item in file.items):
+        lines.append('#include "service_reference.idl"')
+    if file.interfaces:
+        lines.append('#include "dds_rpc.idl"')
+    lines.append("")
+    opened = ()
+    announced = [item.decl for item in file.items if isinstance(item, model.Forward)]
+    for item in file.items:
+        if item.modules != opened:
+            lines += _close(opened) + [f"module {_identifier(module)} {{" for module in item.modules]
+            opened = item.modules
+        if getattr(item, "recursive", False) and item not in announced:
+            lines += _Writer(item.modules).declaration(model.Forward(item))
+        lines += _Writer(item.modules).declaration(item)
+    return lines + _close(opened)
 
 
-def _enum(decl):
-    return [f"enum {_identifier(decl.dds_name)} {{ {', '.join(_identifier(idl) for idl, _, _ in decl.enumerators)} }};"]
+def _close(modules):
+    return ["};" for _ in modules] + ([""] if modules else [])
 
 
-def _struct(decl):
-    keys = {id(member) for key in decl.keys for member in key} | {id(m) for m in decl.members if m.key}
-    members = [f"  {'@key ' if id(m) in keys else ''}{_declarator(m.type, m.name)}" for m in decl.members]
-    return [f"struct {_identifier(decl.dds_name)} {{", *(members or ["  octet dummy;"]), "};"]
+class _Writer:
+    """Writes declarations of one module. fastddsgen reads no leading `::` and finds no outer module by its name, and
+    idlc takes a module's own name inside it for a clash: so names are relative, as short as they can be."""
 
+    def __init__(self, modules):
+        self.modules = modules
 
-def _union(decl):
-    lines = [f"union {_identifier(decl.dds_name)} switch ({_type(decl.discriminator)}) {{"]
-    for case in decl.cases:
-        for label in case.labels:
-            lines.append("  default:" if label is None else f"  case {_value(decl.discriminator, label)}:")
-        lines.append(f"    {_declarator(case.type, case.name)}")
-    return lines + ["};"]
+    def declaration(self, item):
+        emit = {
+            model.Constant: self._constant,
+            model.Forward: self._forward,
+            model.Typedef: self._typedef,
+            model.Enum: self._enum,
+            model.Struct: self._struct,
+            model.Exception_: self._struct,
+            model.Union: self._union,
+            model.Interface: self._interface,
+        }
+        return emit[type(item)](item)
 
+    def _relative(self, modules, name):
+        common = len(os.path.commonprefix([modules, self.modules]))
+        return "::".join([_identifier(part) for part in modules[common:]] + [_identifier(name)])
 
-def _interface(interface):
-    name = interface.dds_name
-    lines = []
-    for operation in interface.operations:
-        lines += _operation(operation, name)
-    operations = interface.all_operations()
-    lines += [f"union {name}_Call switch (long) {{", "  default:", "    ::dds::rpc::UnknownOperation unknownOp;"]
-    for operation in operations:
-        lines += [f"  case {_hash(operation)}:", f"    {_scoped(operation.in_struct)} {_identifier(operation.dds_member)};"]
-    lines += ["};", f"struct {name}_Request {{", "  ::dds::rpc::RequestHeader header;", f"  {name}_Call data;", "};"]
-    lines += [f"union {name}_Return switch (long) {{", "  default:", "    ::dds::rpc::UnknownOperation unknownOp;"]
-    for operation in operations:
-        if not operation.oneway:
-            result = _scoped(operation.out_struct).removesuffix("_Out") + "_Result"
-            lines += [f"  case {_hash(operation)}:", f"    {result} {_identifier(operation.dds_member)};"]
-    return lines + ["};", f"struct {name}_Reply {{", "  ::dds::rpc::ReplyHeader header;", f"  {name}_Return data;", "};"]
+    def _scoped(self, decl):
+        return self._relative(decl.modules, decl.dds_name)
 
+    def _type(self, kind):
+        if isinstance(kind, model.Primitive):
+            return kind.idl
+        if isinstance(kind, model.String):
+            return f"string<{kind.bound}>" if kind.bound else "string"
+        if isinstance(kind, model.Sequence):
+            bound = f", {kind.bound}" if kind.bound else ""
+            return f"sequence<{self._type(kind.element)}{bound}>"
+        if isinstance(kind, model.Reference):
+            return self._relative(("skein",), "ServiceReference")
+        return self._scoped(kind.decl)
 
-def _hash(operation):
-    return _scoped(operation.in_struct).removesuffix("_In") + "_Hash"
+    def _declarator(self, kind, name):
+        sizes = ""
+        while isinstance(kind, model.Array):
+            sizes += f"[{kind.size}]"
+            kind = kind.element
+        return f"{self._type(kind)} {_identifier(name)}{sizes};"
 
+    def _value(self, kind, value):
+        kind = model.unaliased(kind)
+        if isinstance(kind, model.Named):
+            return self._relative(kind.decl.modules, value)
+        if isinstance(kind, model.String):
+            return f'"{value}"'
+        if kind.idl == "char":
+            return "'" + _escaped(value, "'") + "'"
+        if kind.idl == "boolean":
+            return "TRUE" if value else "FALSE"
+        return repr(value)
 
-def _operation(operation, interface):
-    name = f"{interface}_{operation.name}"
-    lines = [f"const long {name}_Hash = {hashes.signed(operation.hash)};"]
-    lines += _struct(operation.in_struct)
-    if operation.oneway:
-        return lines
-    lines += _struct(operation.out_struct)
-    lines += [f"union {name}_Result switch (long) {{", "  default:", "    ::dds::rpc::UnknownException unknownEx;"]
-    lines += ["  case 0:", f"    {name}_Out result;"]
-    for exception in operation.raises:
-        number = hashes.signed(hashes.name_hash(exception.idl_name))
-        member = exception.dds_name[0].lower() + exception.dds_name[1:] + "_ex"
-        lines += [f"  case {number}:", f"    {_scoped(exception)} {_identifier(member)};"]
-    return lines + ["};"]
+    def _forward(self, item):
+        kind = "struct" if isinstance(item.decl, model.Struct) else "union"
+        return [f"{kind} {_identifier(item.decl.dds_name)};"]
+
+    def _constant(self, decl):
+        if isinstance(decl.value, str) and any(_escaped(c, '"') != c for c in decl.value):
+            return [f"// The constant {decl.dds_name} is left out: fastddsgen reads no escapes in text."]
+        return [f"const {self._type(decl.type)} {_identifier(decl.dds_name)} = {self._value(decl.type, decl.value)};"]
+
+    def _typedef(self, decl):
+        return [f"typedef {self._declarator(decl.type, decl.dds_name)}"]
+
+    def _enum(self, decl):
+        names = ", ".join(_identifier(idl) for idl, _, _ in decl.enumerators)
+        return [f"enum {_identifier(decl.dds_name)} {{ {names} }};"]
+
+    def _struct(self, decl):
+        keys = {id(key[0]) for key in decl.keys}
+        members = [f"  {'@key ' if m.key or id(m) in keys else ''}{self._declarator(m.type, m.name)}" for m in decl.members]
+        return [f"struct {_identifier(decl.dds_name)} {{", *(members or ["  octet dummy;"]), "};"]
+
+    def _union(self, decl):
+        lines = [f"union {_identifier(decl.dds_name)} switch ({self._type(decl.discriminator)}) {{"]
+        for case in decl.cases:
+            for label in case.labels:
+                selected = "default" if label is None else f"case {self._value(decl.discriminator, label)}"
+                lines.append(f"  {selected}:")
+            lines.append(f"    {self._declarator(case.type, case.name)}")
+        return lines + ["};"]
+
+    def _interface(self, interface):
+        name = interface.dds_name
+        operations = interface.all_operations()
+        answered = [operation for operation in operations if not operation.oneway]
+        lines = [line for operation in interface.operations for line in self._operation(operation, name)]
+        lines += self._choice(f"{name}_Call", [(op, self._scoped(op.in_struct)) for op in operations])
+        lines += [f"struct {name}_Request {{", "  dds::rpc::RequestHeader header;", f"  {name}_Call data;", "};"]
+        lines += self._choice(f"{name}_Return", [(op, self._named(op, "Result")) for op in answered])
+        return lines + [f"struct {name}_Reply {{", "  dds::rpc::ReplyHeader header;", f"  {name}_Return data;", "};"]
+
+    def _choice(self, name, alternatives):
+        """A union over operations."""
+        lines = [f"union {name} switch (long) {{", "  default:", "    dds::rpc::UnknownOperation unknownOp;"]
+        for operation, kind in alternatives:
+            lines += [f"  case {self._named(operation, 'Hash')}:", f"    {kind} {_identifier(operation.dds_member)};"]
+        return lines + ["};"]
+
+    def _named(self, operation, suffix):
+        return self._scoped(operation.in_struct).removesuffix("In") + suffix
+
+    def _operation(self, operation, interface):
+        name = f"{interface}_{operation.name}"
+        lines = [f"const long {name}_Hash = {hashes.signed(operation.hash)};"]
+        lines += self._struct(operation.in_struct)
+        if operation.oneway:
+            return lines
+        lines += self._struct(operation.out_struct)
+        lines += [f"union {name}_Result switch (long) {{", "  default:", "    dds::rpc::UnknownException unknownEx;"]
+        lines += ["  case 0:", f"    {name}_Out result;"]
+        for exception in operation.raises:
+            number = hashes.signed(hashes.name_hash(exception.idl_name))
+            member = exception.dds_name[0].lower() + exception.dds_name[1:] + "_ex"
+            lines += [f"  case {number}:", f"    {self._scoped(exception)} {_identifier(member)};"]
+        return lines + ["};"]

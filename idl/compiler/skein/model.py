@@ -125,6 +125,14 @@ class Forward:
 
     decl: Declaration
 
+    @property
+    def namespace(self):
+        return self.decl.namespace
+
+    @property
+    def modules(self):
+        return self.decl.modules
+
 
 @dataclass(eq=False)
 class Case:
@@ -212,7 +220,7 @@ class Interface(Declaration):
         found = []
         level = list(self.bases)
         while level:
-            found += [base for base in level if base not in found]
+            found += [base for base in dict.fromkeys(level) if base not in found]
             level = [base for one in level for base in one.bases]
         return found
 

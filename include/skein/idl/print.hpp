@@ -34,6 +34,11 @@ void print(std::ostream& stream, const T& value) {
 
 inline void print(std::ostream& stream, const std::string& value) { print_text(stream, value); }
 
+template <class T, std::size_t kSize>
+void print(std::ostream& stream, const std::array<T, kSize>& values);
+template <class T>
+void print(std::ostream& stream, const std::vector<T>& values);
+
 template <class Values>
 void print_elements(std::ostream& stream, const Values& values) {
   std::size_t printed = 0;
