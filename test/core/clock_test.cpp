@@ -1,0 +1,83 @@
+#include "skein/core/clock.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "../tools/eventually.hpp"
+
+using namespace skein;
+using namespace std::chrono_literals;
+using skein::test::eventually;
+
+TEST_CASE("a manual clock stands still until it is told") {
+  ManualClock clock;
+  const Instant begin = clock.now();
+  CHECK(clock.now() == begin);
+  clock.advance(3s);
+  CHECK(clock.now() == begin + 3s);
+}
+
+TEST_CASE("a manual clock runs timers in the order of their instants, each at its own") {
+  ManualClock clock;
+  const Instant begin = clock.now();
+  std::vector<Duration> seen;
+  clock.call_after(2s, [&] { seen.push_back(clock.now() - begin); });
+  clock.call_after(1s, [&] {
+    seen.push_back(clock.now() - begin);
+    clock.call_after(500ms, [&] { seen.push_back(clock.now() - begin); });
+  });
+  clock.advance(10s);
+  CHECK(seen == std::vector<Duration>{1s, 1500ms, 2s});
+}
+
+TEST_CASE("a cancelled timer does not run") {
+  ManualClock clock;
+  int ran = 0;
+  const TimerId timer = clock.call_after(1s, [&] { ++ran; });
+  clock.cancel(timer);
+  clock.cancel(timer);
+  clock.cancel(0);
+  clock.advance(2s);
+  CHECK(ran == 0);
+}
+
+TEST_CASE("the system clock runs timers, earlier ones first even when set later") {
+  SystemClock clock;
+  std::atomic<int> order = 0;
+  std::atomic<int> late = 0;
+  std::atomic<int> soon = 0;
+  clock.call_after(60ms, [&] { late = ++order; });
+  clock.call_after(1ms, [&] { soon = ++order; });
+  REQUIRE(eventually([&] { return order == 2; }));
+  CHECK(soon == 1);
+  CHECK(late == 2);
+}
+
+TEST_CASE("after cancel has returned a timer's action is over, also when it was running") {
+  SystemClock clock;
+  std::atomic<bool> entered = false;
+  std::atomic<bool> release = false;
+  std::atomic<bool> left = false;
+  const TimerId timer = clock.call_after(0ms, [&] {
+    entered = true;
+    while (!release) {
+    }
+    left = true;
+  });
+  REQUIRE(eventually([&] { return entered.load(); }));
+  release = true;
+  clock.cancel(timer);
+  CHECK(left);
+}
+
+TEST_CASE("a timer may cancel itself") {
+  SystemClock clock;
+  std::atomic<TimerId> timer = 0;
+  std::atomic<bool> done = false;
+  timer = clock.call_after(20ms, [&] {
+    clock.cancel(timer);
+    done = true;
+  });
+  CHECK(eventually([&] { return done.load(); }));
+}

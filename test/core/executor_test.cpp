@@ -1,0 +1,131 @@
+#include "skein/core/executor.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <thread>
+
+#include "../tools/eventually.hpp"
+
+using namespace skein;
+using namespace std::chrono_literals;
+using skein::test::eventually;
+
+namespace {
+
+/// Holds up the executor's thread until opened.
+class Gate {
+ public:
+  explicit Gate(Executor& executor) {
+    executor.post([this] {
+      closed_ = true;
+      while (!open_) std::this_thread::yield();
+    });
+    REQUIRE(eventually([&] { return closed_.load(); }));
+  }
+  ~Gate() { open(); }
+  void open() { open_ = true; }
+
+ private:
+  std::atomic<bool> closed_{false};
+  std::atomic<bool> open_{false};
+};
+
+}  // namespace
+
+TEST_CASE("one thread runs tasks one after the other in order") {
+  std::vector<int> seen;
+  {
+    ThreadExecutor executor("test");
+    std::atomic<int> done = 0;
+    for (int i = 0; i < 100; ++i) {
+      executor.post([&, i] {
+        seen.push_back(i);
+        ++done;
+      });
+    }
+    REQUIRE(eventually([&] { return done == 100; }));
+  }
+  REQUIRE(seen.size() == 100);
+  CHECK(std::is_sorted(seen.begin(), seen.end()));
+}
+
+TEST_CASE("a full queue refuses tasks and keeps what it has") {
+  ThreadExecutor executor("test", 1, 2);
+  std::atomic<int> ran = 0;
+  Gate gate(executor);
+  CHECK(executor.post([&] { ++ran; }));
+  CHECK(executor.post([&] { ++ran; }));
+  CHECK_FALSE(executor.post([&] { ++ran; }));
+  gate.open();
+  CHECK(eventually([&] { return ran == 2; }));
+}
+
+TEST_CASE("an idle executor runs a task on the calling thread, a busy one does not") {
+  ThreadExecutor executor("test");
+  std::thread::id ran_on;
+  CHECK(executor.try_run_inline([&] {
+    ran_on = std::this_thread::get_id();
+    CHECK(executor.runs_here());
+    CHECK_FALSE(executor.try_run_inline([] {}));
+  }));
+  CHECK(ran_on == std::this_thread::get_id());
+  CHECK_FALSE(executor.runs_here());
+  Gate gate(executor);
+  CHECK_FALSE(executor.try_run_inline([] {}));
+}
+
+TEST_CASE("a task that is posted while one runs inline runs afterwards") {
+  ThreadExecutor executor("test");
+  std::atomic<bool> ran = false;
+  std::atomic<bool> overlapped = false;
+  executor.try_run_inline([&] {
+    executor.post([&] { ran = true; });
+    std::this_thread::yield();
+    overlapped = ran.load();
+  });
+  CHECK(eventually([&] { return ran.load(); }));
+  CHECK_FALSE(overlapped);
+}
+
+TEST_CASE("stopping drops what has not begun and releases what it held") {
+  auto executor = std::make_unique<ThreadExecutor>("test");
+  auto held = std::make_shared<int>(1);
+  const std::weak_ptr<int> watched = held;
+  auto gate = std::make_unique<Gate>(*executor);
+  executor->post([held = std::move(held)] { FAIL("dropped tasks do not run"); });
+  std::thread opener([&] {
+    eventually([&] { return watched.expired(); });
+    gate->open();
+  });
+  executor->stop();
+  opener.join();
+  CHECK(watched.expired());
+  CHECK_FALSE(executor->post([] {}));
+}
+
+TEST_CASE("a thread that is stuck is left behind in bounded time") {
+  static std::atomic<bool> open = false;
+  ThreadExecutor executor("test");
+  std::atomic<bool> inside = false;
+  executor.post([&] {
+    inside = true;
+    while (!open) std::this_thread::yield();
+  });
+  REQUIRE(eventually([&] { return inside.load(); }));
+  CHECK_FALSE(executor.stop_or_abandon(10ms));
+  open = true;
+}
+
+TEST_CASE("a manual executor runs its tasks, and what they queue, when told") {
+  ManualExecutor executor;
+  int ran = 0;
+  executor.post([&] {
+    ++ran;
+    executor.post([&] { ++ran; });
+  });
+  CHECK(ran == 0);
+  CHECK(executor.run_all() == 2);
+  CHECK(ran == 2);
+}
