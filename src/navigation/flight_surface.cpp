@@ -43,16 +43,17 @@ FlightSurface::FlightSurface(const Terrain& terrain, const AE_navigator::Problem
   touch(problem.start, slope);
   touch(problem.goal, slope);
   limit_slope(slope);
+  leave_room(problem);
 }
 
-bool FlightSurface::open(const GroundPoint& point) const {
+bool FlightSurface::open(const GroundPoint& point, Berth berth) const {
   constexpr double kOnLine = 1e-6;
   const PlanningGrid::Cell at = grid_.cell(point);
   for (const int rows : {0, 1}) {
     if ((rows ? at.north : 1 - at.north) < kOnLine) continue;
     for (const int columns : {0, 1}) {
       if ((columns ? at.east : 1 - at.east) < kOnLine) continue;
-      if (!open(at.south_west + rows * grid_.columns() + columns)) return false;
+      if (!open(at.south_west + rows * grid_.columns() + columns, berth)) return false;
     }
   }
   return true;
@@ -91,6 +92,24 @@ void FlightSurface::touch(const AE_navigator::Position& end, double slope) {
     const double below = slope * distance_m(grid_.point(node), on_map(end));
     float& altitude = altitude_m_[static_cast<std::size_t>(node)];
     altitude = std::max(altitude, static_cast<float>(end.altitude_m - below));
+  }
+}
+
+void FlightSurface::leave_room(const AE_navigator::Problem& problem) {
+  roomy_ = open_;
+  for (int node = 0; node < grid_.size(); ++node) {
+    if (open_[static_cast<std::size_t>(node)]) continue;
+    for (int row = grid_.row(node) - 1; row <= grid_.row(node) + 1; ++row) {
+      for (int column = grid_.column(node) - 1; column <= grid_.column(node) + 1; ++column) {
+        if (!grid_.has(row, column)) continue;
+        const int beside = grid_.node(row, column);
+        const double to_end = std::min(distance_m(grid_.point(beside), on_map(problem.start)),
+                                       distance_m(grid_.point(beside), on_map(problem.goal)));
+        if (to_end > kFreeAround * grid_.spacing_m()) {
+          roomy_[static_cast<std::size_t>(beside)] = false;
+        }
+      }
+    }
   }
 }
 

@@ -77,7 +77,7 @@ bool PlanningScene::free(const GroundPoint& a, const GroundPoint& b, Berth berth
   const int pieces =
       std::max(1, static_cast<int>(std::ceil(2 * distance_m(a, b) / grid().spacing_m())));
   for (int i = 0; i <= pieces; ++i) {
-    if (!surface_.open(between(a, b, static_cast<double>(i) / pieces))) return false;
+    if (!surface_.open(between(a, b, static_cast<double>(i) / pieces), berth)) return false;
   }
   return !zone_across(a, b, berth);
 }

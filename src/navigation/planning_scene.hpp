@@ -14,11 +14,6 @@
 
 namespace skein::navigation {
 
-/// How wide a berth a search gives to the zones: as little as is safe, or so much that a turn
-/// around the corner of a zone, which flies inside of the corner of its path, stays clear of the
-/// zone too.
-enum class Berth { Least, ForTurns };
-
 /// One Problem, checked and made ready for a search. Lives for one call of `plan`.
 class PlanningScene {
  public:
@@ -42,7 +37,7 @@ class PlanningScene {
   const KeepOut* zone_across(const GroundPoint& a, const GroundPoint& b, Berth berth) const;
 
   bool free(const GroundPoint& point, Berth berth) const {
-    return surface_.open(point) && !zone_across(point, point, berth);
+    return surface_.open(point, berth) && !zone_across(point, point, berth);
   }
 
   /// Whether the straight leg stays on open surface and clear of the zones.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "plane_geometry.hpp"
+#include "skein/navigation/ground_clearance.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -11,6 +12,13 @@ namespace {
 double distance_3d_m(const Position& a, const Position& b) {
   return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
 }
+
+/// Within this many ranges of a site its shadows matter: rays are followed exactly, not post by
+/// post.
+constexpr double kNear = 2;
+
+constexpr double kFarStep_m = 200;
+constexpr double kNearStep_m = 40;
 
 }  // namespace
 
@@ -25,7 +33,7 @@ double earth_drop_m(double distance_m) {
 }
 
 RadarExposure::RadarExposure(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites)
-    : terrain_(terrain) {
+    : terrain_(terrain), ceilings_(terrain) {
   for (const auto& site : sites) {
     const double ground = terrain.height_m(site.site.north_m, site.site.east_m);
     antennas_.push_back({{site.site.north_m, site.site.east_m, ground + site.mast_height_m},
@@ -35,43 +43,67 @@ RadarExposure::RadarExposure(const Terrain& terrain, std::span<const AE_navigato
 }
 
 bool RadarExposure::sees(const Antenna& antenna, const Position& point) const {
-  const GroundPoint from = on_map(antenna.position);
-  const GroundPoint to = on_map(point);
-  const double distance = distance_m(from, to);
-  const double step = std::min(terrain_.north_spacing_m(), terrain_.east_spacing_m());
-  const int steps = static_cast<int>(distance / step);
+  const double distance = distance_m(on_map(antenna.position), on_map(point));
   const double drop = earth_drop_m(distance);
-  const double highest = terrain_.highest_m();
+  const auto ray = [&](double share) {
+    Position at = between(antenna.position, point, share);
+    at.altitude_m += earth_drop_m(share * distance) - share * drop;
+    return at;
+  };
+  const bool near = distance < kNear * antenna.range_m;
+  const int pieces = static_cast<int>(distance / ceilings_.block_m()) + 1;
   // From the aircraft inwards: what hides it is mostly near it.
-  for (int i = steps; i > 0; --i) {
-    const double share = static_cast<double>(i) / (steps + 1);
-    const double ray = std::lerp(antenna.position.altitude_m, point.altitude_m - drop, share) +
-                       earth_drop_m(share * distance);
-    if (ray > highest) continue;
-    const GroundPoint below = between(from, to, share);
-    if (terrain_.height_m(below.north_m, below.east_m) > ray) return false;
+  Position outer = point;
+  for (int piece = pieces - 1; piece >= 0; --piece) {
+    const Position inner = ray(static_cast<double>(piece) / pieces);
+    if (std::min(inner.altitude_m, outer.altitude_m) < ceilings_.above(inner, outer) &&
+        hides(inner, outer, near)) {
+      return false;
+    }
+    outer = inner;
   }
   return true;
 }
 
+/// Whether the ground reaches up to the piece of a ray; its inner end, the antenna maybe, is left
+/// out where posts are sampled.
+bool RadarExposure::hides(const Position& inner, const Position& outer, bool exactly) const {
+  if (exactly) return ground_clearance(terrain_, inner, outer).lowest_m < 0;
+  constexpr int kSamples = TerrainCeilings::kPosts;
+  for (int i = 1; i <= kSamples; ++i) {
+    const Position at = between(inner, outer, static_cast<double>(i) / kSamples);
+    if (terrain_.height_m(at.north_m, at.east_m) > at.altitude_m) return true;
+  }
+  return false;
+}
+
+double RadarExposure::rate(const Antenna& antenna, const Position& point) const {
+  if (!sees(antenna, point)) return 0;
+  return exposure_rate(antenna.range_m, antenna.strength, distance_3d_m(antenna.position, point));
+}
+
 double RadarExposure::rate(const Position& point) const {
   double sum = 0;
-  for (const Antenna& antenna : antennas_) {
-    if (!sees(antenna, point)) continue;
-    sum += exposure_rate(antenna.range_m, antenna.strength, distance_3d_m(antenna.position, point));
-  }
+  for (const Antenna& antenna : antennas_) sum += rate(antenna, point);
   return sum;
 }
 
-double RadarExposure::along(const Position& a, const Position& b, double step_m) const {
-  if (antennas_.empty()) return 0;
+double RadarExposure::along(const Antenna& antenna, const Position& a, const Position& b) const {
   const double length = distance_3d_m(a, b);
-  const int pieces = std::max(1, static_cast<int>(std::ceil(length / step_m)));
-  double sum = rate(a) + rate(b);
+  const double nearest = distance_m(on_map(antenna.position), on_map(a), on_map(b));
+  const double step = nearest < kNear * antenna.range_m ? kNearStep_m : kFarStep_m;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(length / step)));
+  double sum = rate(antenna, a) + rate(antenna, b);
   for (int i = 1; i < 2 * pieces; ++i) {
-    sum += (i % 2 == 1 ? 4 : 2) * rate(between(a, b, i / (2.0 * pieces)));
+    sum += (i % 2 == 1 ? 4 : 2) * rate(antenna, between(a, b, i / (2.0 * pieces)));
   }
   return sum * length / (6 * pieces);
+}
+
+double RadarExposure::along(const Position& a, const Position& b) const {
+  double sum = 0;
+  for (const Antenna& antenna : antennas_) sum += along(antenna, a, b);
+  return sum;
 }
 
 double RadarExposure::along(std::span<const Position> waypoints) const {

@@ -24,8 +24,9 @@ GroundPath flyable_path(const PlanningScene& scene, const GroundPath& path, cons
   // A little wider than the limit, so that the tangents of the arc are within it too.
   const double radius = 1.03 * turn_radius_m(scene.problem().limits);
   const double step = std::max(scene.grid().spacing_m(), length_m(path) / most_points);
-  for (const double finer : {1.0, 0.5}) {
-    if (const auto taut = pull_taut(scene, divide(path, finer * step), cost, radius)) {
+  for (const double finer : {1.0, 0.6}) {
+    const GroundPath points = divide(thin(scene, path, finer * step), finer * step);
+    if (const auto taut = pull_taut(scene, points, cost, radius)) {
       return round_corners(*taut, radius);
     }
   }

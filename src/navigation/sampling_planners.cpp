@@ -155,7 +155,7 @@ class RrtConnectPlanner final : public SamplingPlanner {
   using SamplingPlanner::SamplingPlanner;
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    constexpr int kMostPoints = 60;
+    constexpr int kMostPoints = 45;
     const PlanningScene scene(*terrains_, problem, options_);
     const LegCost length = [](const GroundPoint& a, const GroundPoint& b) {
       return distance_m(a, b);
@@ -201,7 +201,7 @@ class RrtStarPlanner final : public SamplingPlanner {
     planner.setRange(sampling.range_m());
     planner.setProblemDefinition(sampling.problem());
     scene.cost(on_map(problem.start), on_map(problem.goal));
-    const Instant end = scene.budget().search_end(6);
+    const Instant end = scene.budget().search_end(10);
     const auto path = sampling.solve(
         planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
     scene.budget().require_time();

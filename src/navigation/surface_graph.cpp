@@ -96,7 +96,7 @@ int SurfaceGraph::follow(int node, const Move& move) const {
   const int to = grid.node(row + move.rows, column + move.columns);
   if (blocked_by_zone(to)) return -1;
   for (const auto& [rows, columns] : move.passed) {
-    if (!scene_.surface().open(grid.node(row + rows, column + columns))) return -1;
+    if (!scene_.surface().open(grid.node(row + rows, column + columns), berth_)) return -1;
   }
   if (near_zone_[static_cast<std::size_t>(node)] &&
       scene_.zone_across(grid.point(node), grid.point(to), berth_)) {
@@ -116,7 +116,8 @@ std::vector<int> SurfaceGraph::nodes_around(int end) const {
       if (!grid.has(row, column)) continue;
       const int node = grid.node(row, column);
       if (distance_m(middle, grid.point(node)) > kAround * grid.spacing_m()) continue;
-      if (scene_.surface().open(node) && !scene_.zone_across(middle, grid.point(node), berth_)) {
+      if (scene_.surface().open(node, berth_) &&
+          !scene_.zone_across(middle, grid.point(node), berth_)) {
         result.push_back(node);
       }
     }
@@ -152,7 +153,7 @@ SurfaceGraph::Region SurfaceGraph::region_around(int end) const {
       const int to = grid.node(row, column);
       if (const KeepOut* zone = scene_.zone_across(point(node), grid.point(to), berth_)) {
         region.zones.insert(zone->name());
-      } else if (!scene_.surface().open(to)) {
+      } else if (!scene_.surface().open(to, berth_)) {
         region.ground = true;
       }
     }

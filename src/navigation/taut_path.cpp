@@ -125,6 +125,18 @@ GroundPath divide(const GroundPath& path, double longest_m) {
   return divided;
 }
 
+GroundPath thin(const PlanningScene& scene, const GroundPath& path, double step_m) {
+  GroundPath thinned{path.front()};
+  for (std::size_t next = 1; next < path.size(); ++next) {
+    while (next + 1 < path.size() && distance_m(thinned.back(), path[next + 1]) <= step_m &&
+           scene.free(thinned.back(), path[next + 1], Berth::Least)) {
+      ++next;
+    }
+    thinned.push_back(path[next]);
+  }
+  return thinned;
+}
+
 std::optional<GroundPath> pull_taut(const PlanningScene& scene, const GroundPath& path,
                                     const LegCost& cost, double turn_radius_m) {
   return TautPath(scene, path, cost, turn_radius_m).find();

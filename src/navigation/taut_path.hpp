@@ -15,6 +15,9 @@ using LegCost = std::function<double(const GroundPoint&, const GroundPoint&)>;
 /// Inserts points into long legs, so that none is longer than `longest_m`.
 GroundPath divide(const GroundPath& path, double longest_m);
 
+/// Leaves out points that are closer together than `step_m`, where the leg past them is free.
+GroundPath thin(const PlanningScene& scene, const GroundPath& path, double step_m);
+
 /// The cheapest way to fly from the first point of `path` to its last by straight legs between some
 /// of its points, with a turn of radius `turn_radius_m` fitting at each; nothing where there is
 /// none. Exact over all choices of points: dynamic programming over pairs of them. Throws NoRoute

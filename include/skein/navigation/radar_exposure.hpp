@@ -5,6 +5,7 @@
 
 #include "navigator.idl.hpp"
 #include "skein/navigation/terrain.hpp"
+#include "skein/navigation/terrain_ceilings.hpp"
 
 namespace skein::navigation {
 
@@ -21,9 +22,9 @@ class RadarExposure {
   /// Metres of exposure per metre flown.
   double rate(const AE_navigator::Position& point) const;
 
-  /// Exposure of the straight edge in metres, by Simpson's rule on pieces no longer than `step_m`.
-  double along(const AE_navigator::Position& a, const AE_navigator::Position& b,
-               double step_m = 200.0) const;
+  /// Exposure of the straight edge in metres, by Simpson's rule on pieces of 40 m within two ranges
+  /// of a site, where the edges of shadows matter, and of 200 m elsewhere.
+  double along(const AE_navigator::Position& a, const AE_navigator::Position& b) const;
 
   /// Exposure of all edges of a route.
   double along(std::span<const AE_navigator::Position> waypoints) const;
@@ -35,8 +36,14 @@ class RadarExposure {
     double strength;
   };
   bool sees(const Antenna& antenna, const AE_navigator::Position& point) const;
+  bool hides(const AE_navigator::Position& inner, const AE_navigator::Position& outer,
+             bool exactly) const;
+  double rate(const Antenna& antenna, const AE_navigator::Position& point) const;
+  double along(const Antenna& antenna, const AE_navigator::Position& a,
+               const AE_navigator::Position& b) const;
 
   const Terrain& terrain_;
+  TerrainCeilings ceilings_;
   std::vector<Antenna> antennas_;
 };
 

@@ -8,7 +8,8 @@ namespace {
 
 using AE_navigator::Position;
 
-/// Looks from the antenna to the aircraft in steps of a quarter of a post.
+/// Looks from the antenna to the aircraft in steps of a quarter of a post, and more closely at the
+/// hill that the antenna stands on.
 bool in_view(const HeightGrid& ground, const Position& antenna, const Position& aircraft) {
   constexpr double kTwiceEarth_m = 2 * 6371008.8 * 4 / 3;
   const double north = aircraft.north_m - antenna.north_m;
@@ -18,7 +19,8 @@ bool in_view(const HeightGrid& ground, const Position& antenna, const Position& 
   // Over a curved earth, a ray at a share t of the way is lower than the straight line between the
   // two altitudes by t (1 - t) d^2 / 2R.
   const double bulge = distance * distance / kTwiceEarth_m;
-  for (double along = step; along < distance; along += step) {
+  constexpr double kHill_m = 3000;
+  for (double along = step / 5; along < distance; along += along < kHill_m ? step / 5 : step) {
     const double t = along / distance;
     const double ray =
         antenna.altitude_m + t * (aircraft.altitude_m - antenna.altitude_m) - t * (1 - t) * bulge;
