@@ -15,7 +15,7 @@ from . import analysis, builder, dependencies, errors, flattened, model, output,
 _omniidl.keepComments(1)
 _omniidl.caseSensitive()
 
-cpp_args = ["-D__SKEIN_IDL__"]
+cpp_args = ["-C", "-D__SKEIN_IDL__"]  # keep comments
 usage_string = """\
   -Wbdirectory=DIR  Where to write; default: the current directory
   -Wbname=PATH      Name of the output below DIR, `a/x.idl`; default: the input's last part

@@ -14,7 +14,7 @@ MACROS = frozenset("NULL EOF errno assert stdin stdout stderr NAN INFINITY HUGE_
 NAMESPACE = KEYWORDS | MACROS | {"std", "to_string", "type_support", "key_hash", "hash_value"}
 MEMBER = KEYWORDS | MACROS
 EXCEPTION_MEMBER = MEMBER | {"info", "value", "what", "text", "exception_info"}
-UNION_MEMBER = MEMBER | {"discriminator", "select", "discriminator_", "value_"}
+UNION_MEMBER = MEMBER | {"discriminator", "select", "tag_", "held_", "index_of"}
 PARAMETER = KEYWORDS | MACROS | {"in", "out"}
 OPERATION = MEMBER | {
     "Proxy", "Skeleton", "interface_info", "channel", "disconnect", "within", "dispatch", "call", "async_call",

@@ -120,7 +120,7 @@ def _union(decl):
         f"  /// Holds `{decl.cases[0].name}`, in its initial value.",
         f"  {name}() {{ select({first}); }}",
         "",
-        f"  {kind} discriminator() const noexcept {{ return discriminator_; }}",
+        f"  {kind} discriminator() const noexcept {{ return tag_; }}",
         "  /// Sets the discriminator; where it selects another member than before, that one gets its initial value.",
         f"  void select({kind} discriminator);",
     ]
@@ -134,8 +134,8 @@ def _union(decl):
         " private:",
         f"  static std::size_t index_of({kind} discriminator) noexcept;",
         "",
-        f"  {kind} discriminator_{{}};",
-        f"  std::variant<{alternatives}> value_;",
+        f"  {kind} tag_{{}};",
+        f"  std::variant<{alternatives}> held_;",
         "};",
     ] + functions(decl)
 
@@ -148,16 +148,16 @@ def _first_label(case, decl):
 def _case(decl, case, index, kind):
     value = cpp.type_name(case.type)
     name = case.cpp_name
-    access = f'::skein::idl::union_member<{index}>(value_, "{decl.idl_name}", "{case.name}")'
+    access = f'::skein::idl::union_member<{index}>(held_, "{decl.idl_name}", "{case.name}")'
     lines = cpp.documentation(case.documentation, "  ") + [
-        f"  bool holds_{name}() const noexcept {{ return value_.index() == {index}; }}",
+        f"  bool holds_{name}() const noexcept {{ return held_.index() == {index}; }}",
         f"  const {value}& {name}() const {{ return {access}; }}",
         f"  {value}& {name}() {{ return {access}; }}",
     ]
-    assign = f"value_.template emplace<{index}>(std::move(value));"
+    assign = f"held_.template emplace<{index}>(std::move(value));"
     lines += [
         f"  void {name}({value} value) {{",
-        f"    discriminator_ = {_first_label(case, decl)};",
+        f"    tag_ = {_first_label(case, decl)};",
         f"    {assign}",
         "  }",
     ]
@@ -166,7 +166,7 @@ def _case(decl, case, index, kind):
             f"  void {name}({value} value, {kind} discriminator) {{",
             f"    if (index_of(discriminator) != {index}) "
             f'::skein::idl::throw_not_selected("{decl.idl_name}", "{case.name}");',
-            "    discriminator_ = discriminator;",
+            "    tag_ = discriminator;",
             f"    {assign}",
             "  }",
         ]
@@ -179,13 +179,13 @@ def union_source(decl):
     lines = [
         f"void {decl.cpp_name}::select({kind} discriminator) {{",
         "  const std::size_t index = index_of(discriminator);",
-        "  discriminator_ = discriminator;",
-        "  if (index == value_.index()) return;",
+        "  tag_ = discriminator;",
+        "  if (index == held_.index()) return;",
         "  switch (index) {",
     ]
     for index, _ in enumerate(decl.cases, 1):
-        lines.append(f"    case {index}: value_.emplace<{index}>(); break;")
-    lines += ["    default: value_.emplace<0>(); break;", "  }", "}", ""]
+        lines.append(f"    case {index}: held_.emplace<{index}>(); break;")
+    lines += ["    default: held_.emplace<0>(); break;", "  }", "}", ""]
     lines += [f"std::size_t {decl.cpp_name}::index_of({kind} discriminator) noexcept {{"]
     default = 0
     tests = []
