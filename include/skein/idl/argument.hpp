@@ -1,8 +1,8 @@
 #pragma once
 
 #include <concepts>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace skein {
 
@@ -15,8 +15,8 @@ class Argument {
   Argument() = default;
   template <class U>
     requires std::convertible_to<U, T> && (!std::same_as<std::remove_cvref_t<U>, Argument>)
-  Argument(U&& value) : held_(std::in_place_index<0>, std::forward<U>(value)) {}
-  Argument(const Argument& other) : held_(std::in_place_index<0>, other.get()) {}
+  Argument(U&& value) : own_(std::forward<U>(value)) {}
+  Argument(const Argument& other) : own_(other.get()) {}
   Argument(Argument&&) noexcept = default;
   Argument& operator=(const Argument& other) {
     if (this != &other) own() = other.get();
@@ -26,23 +26,20 @@ class Argument {
 
   /// Refers to `value` without copying it.
   static Argument borrow(const T& value) {
-    Argument argument(Borrowed{});
-    argument.held_.template emplace<1>(&value);
+    Argument argument;
+    argument.borrowed_ = &value;
     return argument;
   }
 
-  const T& get() const noexcept {
-    const T* const* borrowed = std::get_if<1>(&held_);
-    return borrowed ? **borrowed : *std::get_if<0>(&held_);
-  }
+  const T& get() const noexcept { return borrowed_ ? *borrowed_ : own_; }
   operator const T&() const noexcept { return get(); }
   const T& operator*() const noexcept { return get(); }
   const T* operator->() const noexcept { return &get(); }
 
   /// The value as one that belongs to this object; what was borrowed is forgotten, not copied.
-  T& own() {
-    if (T* owned = std::get_if<0>(&held_)) return *owned;
-    return held_.template emplace<0>();
+  T& own() noexcept {
+    borrowed_ = nullptr;
+    return own_;
   }
 
   friend bool operator==(const Argument& left, const Argument& right) {
@@ -50,10 +47,8 @@ class Argument {
   }
 
  private:
-  struct Borrowed {};
-  explicit Argument(Borrowed) noexcept : held_(std::in_place_index<1>, nullptr) {}
-
-  std::variant<T, const T*> held_;
+  T own_{};
+  const T* borrowed_ = nullptr;
 };
 
 }  // namespace skein
