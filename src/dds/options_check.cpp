@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <netdb.h>
 
 #include <algorithm>
 #include <cctype>
@@ -89,6 +90,26 @@ std::vector<std::string> interface_addresses(const Network& network) {
   const auto host = interfaces_of_this_host();
   std::vector<std::string> addresses;
   for (const std::string& wanted : network.interfaces) addresses.push_back(address_of(wanted, host));
+  return addresses;
+}
+
+std::vector<std::string> host_addresses(const std::string& host) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_INET;
+  wanted.ai_socktype = SOCK_DGRAM;
+  addrinfo* list = nullptr;
+  const int failure = getaddrinfo(host.c_str(), nullptr, &wanted, &list);
+  if (failure != 0) {
+    throw InvalidArgument("peer '" + host + "' has no IPv4 address: " + gai_strerror(failure));
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
+  std::vector<std::string> addresses;
+  for (const addrinfo* entry = list; entry != nullptr; entry = entry->ai_next) {
+    char text[INET_ADDRSTRLEN] = {};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ai_addr);
+    inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
+    addresses.emplace_back(text);
+  }
   return addresses;
 }
 

@@ -19,6 +19,9 @@ void check_options(const ParticipantOptions& options);
 /// The IPv4 addresses of `network.interfaces`, in dotted form; 127.0.0.1 where none is named.
 std::vector<std::string> interface_addresses(const Network& network);
 
+/// The IPv4 addresses of a host, in dotted form; throws InvalidArgument where there are none.
+std::vector<std::string> host_addresses(const std::string& host);
+
 /// Whether the network goes no further than this host's 127.0.0.1.
 bool is_loopback_only(const Network& network);
 

@@ -1,0 +1,166 @@
+#include "attributes.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include <algorithm>
+
+#include "../options_check.hpp"
+
+namespace skein::dds::fastdds {
+namespace {
+
+using namespace std::chrono_literals;
+namespace policies = eprosima::fastdds::dds;
+
+constexpr std::uint32_t kSocketBuffer = 4u << 20;
+constexpr auto kAnnouncementPeriod = 250ms;
+constexpr auto kHeartbeatPeriod = 100ms;
+
+eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
+  return {static_cast<std::int32_t>(time.count() / 1000),
+          static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
+}
+
+rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
+  rtps::Locator_t result;
+  result.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(result, address);
+  result.port = port;
+  return result;
+}
+
+// RTPS 9.6.1: where a domain's participants listen.
+std::uint32_t domain_port(std::uint32_t domain) { return 7400 + 250 * domain; }
+constexpr std::uint32_t kDiscoveryOffset = 10;
+constexpr std::uint32_t kUserOffset = 11;
+
+template <class EndpointQos>
+void fill_common(EndpointQos& endpoint, const Qos& qos) {
+  endpoint.m_reliability.kind = qos.reliable ? eprosima::fastrtps::RELIABLE_RELIABILITY_QOS
+                                             : eprosima::fastrtps::BEST_EFFORT_RELIABILITY_QOS;
+  endpoint.m_durability.kind = qos.transient_local ? eprosima::fastrtps::TRANSIENT_LOCAL_DURABILITY_QOS
+                                                   : eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
+  for (const std::string& name : qos.partitions) endpoint.m_partition.push_back(name.c_str());
+  if (qos.liveliness_lease) {
+    endpoint.m_liveliness.lease_duration = duration(*qos.liveliness_lease);
+    endpoint.m_liveliness.announcement_period = duration(*qos.liveliness_lease * 2 / 5);
+  }
+  endpoint.data_sharing.off();
+}
+
+void fill_endpoint(rtps::EndpointAttributes& endpoint, const Topic& topic, const Qos& qos) {
+  endpoint.topicKind = topic.keyed ? rtps::WITH_KEY : rtps::NO_KEY;
+  endpoint.reliabilityKind = qos.reliable ? rtps::RELIABLE : rtps::BEST_EFFORT;
+  endpoint.durabilityKind = qos.transient_local ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
+  policies::DataSharingQosPolicy off;
+  off.off();
+  endpoint.set_data_sharing_configuration(off);
+}
+
+}  // namespace
+
+std::shared_ptr<StartupTransportDescriptor> make_transport(const Network& network) {
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = interface_addresses(network);
+  // The kernel gives what it may; with 208 KiB a mebibyte takes three times as long.
+  udp->sendBufferSize = kSocketBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
+  udp->maxInitialPeersRange = std::clamp(network.max_participants, 1u, kMaxParticipants);
+  return std::make_shared<StartupTransportDescriptor>(std::move(udp));
+}
+
+rtps::RTPSParticipantAttributes participant_attributes(
+    const ParticipantOptions& options,
+    const std::shared_ptr<StartupTransportDescriptor>& transport) {
+  rtps::RTPSParticipantAttributes attributes;
+  attributes.setName(options.name.c_str());
+  attributes.useBuiltinTransports = false;  // they listen everywhere, and bring shared memory
+  attributes.userTransports.push_back(transport);
+
+  auto& builtin = attributes.builtin;
+  auto& discovery = builtin.discovery_config;
+  discovery.leaseDuration = duration(options.lease);
+  // An announcement may be lost: it is repeated before the lease is half over, and often enough for a
+  // peer that was not listening yet.
+  discovery.leaseDuration_announcementperiod =
+      duration(std::min<std::chrono::milliseconds>(kAnnouncementPeriod, options.lease * 2 / 5));
+  discovery.initial_announcements = {5, duration(10ms)};
+  builtin.avoid_builtin_multicast = true;
+  builtin.mutation_tries = kMaxParticipants;
+
+  // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over all
+  // domains of the process and soon listens where no peer looks.
+  const std::uint32_t base = domain_port(options.domain);
+  for (const std::string& address : interface_addresses(options.network)) {
+    builtin.metatrafficUnicastLocatorList.push_back(locator(address, base + kDiscoveryOffset));
+    attributes.defaultUnicastLocatorList.push_back(locator(address, base + kUserOffset));
+    builtin.initialPeersList.push_back(locator(address, 0));
+  }
+  for (const std::string& peer : options.network.peers) {
+    for (const std::string& address : host_addresses(peer)) {
+      builtin.initialPeersList.push_back(locator(address, 0));
+    }
+  }
+  if (options.network.multicast_discovery) {
+    const auto group = locator("239.255.0.1", base);
+    builtin.metatrafficMulticastLocatorList.push_back(group);
+    builtin.initialPeersList.push_back(group);
+  }
+  return attributes;
+}
+
+rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
+  rtps::WriterAttributes attributes;
+  fill_endpoint(attributes.endpoint, topic, qos);
+  // With 3 s, the default, a late joiner on Cyclone waits that long for the past.
+  attributes.times.heartbeatPeriod = duration(kHeartbeatPeriod);
+  attributes.times.nackResponseDelay = duration(0ms);
+  attributes.mode = rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
+  if (qos.liveliness_lease) {
+    attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
+    attributes.liveliness_announcement_period = duration(*qos.liveliness_lease * 2 / 5);
+  }
+  return attributes;
+}
+
+rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos) {
+  rtps::ReaderAttributes attributes;
+  fill_endpoint(attributes.endpoint, topic, qos);
+  attributes.times.initialAcknackDelay = duration(10ms);
+  attributes.times.heartbeatResponseDelay = duration(5ms);
+  if (qos.liveliness_lease) attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
+  return attributes;
+}
+
+rtps::HistoryAttributes history_attributes() {
+  // Not a dynamic policy: with one, a disposal of 0 bytes blocks a reader for ever. 0: no limit.
+  constexpr std::uint32_t kFirstPayload = 512;
+  constexpr std::int32_t kFirstSamples = 4;
+  return {rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, kFirstPayload, kFirstSamples, 0};
+}
+
+eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic) {
+  eprosima::fastrtps::TopicAttributes attributes(topic.name.c_str(), topic.type_name.c_str(),
+                                                 topic.keyed ? rtps::WITH_KEY : rtps::NO_KEY);
+  // Cyclone refuses endpoints whose type Fast DDS describes (PID 75).
+  attributes.auto_fill_type_object = false;
+  attributes.auto_fill_type_information = false;
+  return attributes;
+}
+
+eprosima::fastrtps::WriterQos writer_qos(const Qos& qos) {
+  eprosima::fastrtps::WriterQos result;
+  fill_common(result, qos);
+  result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
+  return result;
+}
+
+eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
+  eprosima::fastrtps::ReaderQos result;
+  fill_common(result, qos);
+  result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
+  return result;
+}
+
+}  // namespace skein::dds::fastdds

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <fastdds/rtps/attributes/HistoryAttributes.h>
+#include <fastdds/rtps/attributes/ReaderAttributes.h>
+#include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
+#include <fastdds/rtps/attributes/WriterAttributes.h>
+#include <fastrtps/attributes/TopicAttributes.h>
+#include <fastrtps/qos/ReaderQos.h>
+#include <fastrtps/qos/WriterQos.h>
+
+#include <memory>
+
+#include "skein/dds/port.hpp"
+#include "transport.hpp"
+
+/// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands there.
+namespace skein::dds::fastdds {
+
+rtps::RTPSParticipantAttributes participant_attributes(
+    const ParticipantOptions& options, const std::shared_ptr<StartupTransportDescriptor>& transport);
+
+/// UDP alone, on the network's interfaces alone.
+std::shared_ptr<StartupTransportDescriptor> make_transport(const Network& network);
+
+rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos);
+rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos);
+rtps::HistoryAttributes history_attributes();
+eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic);
+eprosima::fastrtps::WriterQos writer_qos(const Qos& qos);
+eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos);
+
+}  // namespace skein::dds::fastdds

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "skein/core/guid.hpp"
+
+namespace skein::dds::fastdds {
+
+/// The thread on which a participant tells of matches, liveliness and participants. Fast DDS reports
+/// them with its own locks held; a listener that waits for a lock whose holder creates an endpoint
+/// would then never end.
+class EventThread {
+ public:
+  EventThread();
+  ~EventThread();
+  void post(std::function<void()> event);
+
+ private:
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> events_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+/// Who is matched with one endpoint, and whom to tell. Kept alive by the events on their way.
+class EndpointEvents : public std::enable_shared_from_this<EndpointEvents> {
+ public:
+  using Told = std::function<void(const Guid& peer, bool)>;
+
+  EndpointEvents(EventThread& thread, Told on_matched, Told on_liveliness = {});
+
+  void matched(const Guid& peer, bool now);
+  void alive(const Guid& peer, bool now);
+  std::vector<Guid> peers() const;
+
+  /// Waits for a running listener; none runs afterwards.
+  void close();
+
+ private:
+  void tell(const Told& listener, const Guid& peer, bool now);
+
+  EventThread& thread_;
+  const Told on_matched_;
+  const Told on_liveliness_;
+  mutable std::mutex mutex_;
+  std::set<Guid> peers_;
+  std::set<Guid> silent_;
+  std::mutex telling_;
+  bool closed_ = false;  // under telling_
+};
+
+}  // namespace skein::dds::fastdds

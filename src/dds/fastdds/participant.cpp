@@ -1,0 +1,73 @@
+#include "participant.hpp"
+
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+
+#include "../options_check.hpp"
+#include "attributes.hpp"
+#include "identity.hpp"
+#include "reader.hpp"
+#include "skein/core/error.hpp"
+#include "writer.hpp"
+
+namespace skein::dds::fastdds {
+namespace {
+
+[[noreturn]] void throw_no_participant(const ParticipantOptions& options) {
+  throw Unavailable("no participant in domain " + std::to_string(options.domain) +
+                    ": Fast DDS found no free port; end other participants or use another domain");
+}
+
+}  // namespace
+
+FastParticipant::FastParticipant(const ParticipantOptions& options) : options_(options) {
+  check_options(options);
+  const auto transport = make_transport(options.network);
+  participant_ = rtps::RTPSDomain::createParticipant(
+      options.domain, participant_attributes(options, transport), this);
+  if (participant_ == nullptr) throw_no_participant(options);
+  if (participant_->getRTPSParticipantAttributes().builtin.metatrafficUnicastLocatorList.empty()) {
+    rtps::RTPSDomain::removeRTPSParticipant(participant_);
+    throw_no_participant(options);
+  }
+  guid_ = to_guid(participant_->getGuid()).participant();
+  *transport->open = true;
+}
+
+FastParticipant::~FastParticipant() { rtps::RTPSDomain::removeRTPSParticipant(participant_); }
+
+void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
+                                             rtps::ParticipantDiscoveryInfo&& info) {
+  using Info = rtps::ParticipantDiscoveryInfo;
+  if (!options_.on_participant || info.status == Info::CHANGED_QOS_PARTICIPANT) return;
+  const bool present = info.status == Info::DISCOVERED_PARTICIPANT;
+  const Guid guid = to_guid(info.info.m_guid).participant();
+  {
+    std::lock_guard lock(mutex_);
+    if (present ? !present_.insert(guid).second : present_.erase(guid) == 0) return;
+  }
+  events_.post([this, guid, present] { options_.on_participant(guid, present); });
+}
+
+void FastParticipant::acquire_topic(const Topic& topic) {
+  topics_.acquire(topic, [] { return 0; });
+}
+
+void FastParticipant::release_topic(const std::string& name) {
+  topics_.release(name, [](int) {});
+}
+
+std::unique_ptr<Writer> FastParticipant::create_writer(const Topic& topic, const Qos& qos,
+                                                       WriterListener listener) {
+  check_qos(topic, qos);
+  return std::make_unique<FastWriter>(*this, topic, qos, std::move(listener));
+}
+
+std::unique_ptr<Reader> FastParticipant::create_reader(const Topic& topic, const Qos& qos,
+                                                       ReaderListener listener) {
+  check_qos(topic, qos);
+  return std::make_unique<FastReader>(*this, topic, qos, std::move(listener));
+}
+
+}  // namespace skein::dds::fastdds

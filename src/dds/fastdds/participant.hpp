@@ -1,0 +1,53 @@
+#pragma once
+
+#include <fastdds/rtps/participant/RTPSParticipantListener.h>
+
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include "../topic_table.hpp"
+#include "events.hpp"
+#include "skein/dds/port.hpp"
+
+namespace eprosima::fastrtps::rtps {
+class RTPSParticipant;
+}
+
+namespace skein::dds::fastdds {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+/// A participant on Fast DDS's RTPS layer. The DDS layer above it would add copies and locks for what
+/// this port does not have, and it is the one that reads files and environment: profiles, discovery
+/// servers, statistics. Here nothing does.
+class FastParticipant final : public Participant, private rtps::RTPSParticipantListener {
+ public:
+  explicit FastParticipant(const ParticipantOptions& options);
+  ~FastParticipant() override;
+
+  std::unique_ptr<Writer> create_writer(const Topic& topic, const Qos& qos,
+                                        WriterListener listener) override;
+  std::unique_ptr<Reader> create_reader(const Topic& topic, const Qos& qos,
+                                        ReaderListener listener) override;
+  Guid guid() const override { return guid_; }
+
+  rtps::RTPSParticipant* rtps_participant() const noexcept { return participant_; }
+  EventThread& events() noexcept { return events_; }
+  void acquire_topic(const Topic& topic);
+  void release_topic(const std::string& name);
+
+ private:
+  void onParticipantDiscovery(rtps::RTPSParticipant* participant,
+                              rtps::ParticipantDiscoveryInfo&& info) override;
+
+  const ParticipantOptions options_;
+  TopicTable<int> topics_;
+  std::mutex mutex_;
+  std::set<Guid> present_;
+  EventThread events_;
+  rtps::RTPSParticipant* participant_ = nullptr;
+  Guid guid_;
+};
+
+}  // namespace skein::dds::fastdds

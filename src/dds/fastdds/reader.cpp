@@ -1,0 +1,119 @@
+#include "reader.hpp"
+
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+
+#include "../sample_format.hpp"
+#include "attributes.hpp"
+#include "identity.hpp"
+#include "skein/core/error.hpp"
+
+namespace skein::dds::fastdds {
+namespace {
+
+/// Buffers kept for the next samples, so that a steady flow allocates nothing.
+constexpr std::size_t kMaxSpares = 4;
+
+}  // namespace
+
+FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Qos& qos,
+                       dds::ReaderListener listener)
+    : participant_(participant),
+      topic_(topic),
+      on_data_(std::move(listener.on_data)),
+      events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched),
+                                               std::move(listener.on_liveliness))),
+      history_(history_attributes()),
+      queue_(qos.history_depth) {
+  participant_.acquire_topic(topic);
+  auto attributes = reader_attributes(topic, qos);
+  reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes, &history_,
+                                               this);
+  if (reader_ == nullptr) {
+    participant_.release_topic(topic_.name);
+    throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
+  }
+  guid_ = to_guid(reader_->getGuid());
+  participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic), reader_qos(qos));
+}
+
+FastReader::~FastReader() {
+  reader_->setListener(nullptr);  // waits for on_data
+  rtps::RTPSDomain::removeRTPSReader(reader_);
+  events_->close();
+  participant_.release_topic(topic_.name);
+}
+
+void FastReader::onReaderMatched(rtps::RTPSReader*,
+                                 const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
+  events_->matched(to_guid(status.last_publication_handle), status.current_count_change > 0);
+}
+
+void FastReader::on_liveliness_changed(
+    rtps::RTPSReader*, const eprosima::fastdds::dds::LivelinessChangedStatus& status) {
+  const Guid writer = to_guid(status.last_publication_handle);
+  if (status.not_alive_count_change > 0) {
+    events_->alive(writer, false);
+  } else if (status.alive_count_change > 0) {
+    events_->alive(writer, true);
+  }
+}
+
+/// Called with the RTPS reader's mutex held.
+void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChange_t* const change) {
+  const bool stored = store(*change);
+  history_.remove_change(const_cast<rtps::CacheChange_t*>(change));
+  if (stored && on_data_) on_data_(*this);
+}
+
+bool FastReader::store(const rtps::CacheChange_t& change) {
+  if (change.kind == rtps::NOT_ALIVE_UNREGISTERED) return false;
+  const bool alive = change.kind == rtps::ALIVE;
+  const auto& payload = change.serializedPayload;
+  const std::span received(reinterpret_cast<const std::byte*>(payload.data), payload.length);
+  if ((alive && !is_plain_cdr(received)) || (topic_.keyed && !change.instanceHandle.isDefined())) {
+    malformed_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  Item item{spare_buffer(), alive ? InstanceState::Alive : InstanceState::Disposed,
+            topic_.keyed ? to_guid(change.instanceHandle) : KeyHash{}, to_guid(change.writerGUID)};
+  if (alive) item.cdr.append(received);
+  const KeyHash key = item.key;
+  std::lock_guard lock(mutex_);
+  queue_.push(key, std::move(item));
+  return true;
+}
+
+std::optional<FastReader::Item> FastReader::pop() {
+  std::lock_guard lock(mutex_);
+  return queue_.pop();
+}
+
+Bytes FastReader::spare_buffer() {
+  std::lock_guard lock(mutex_);
+  if (spares_.empty()) return {};
+  Bytes buffer = std::move(spares_.back());
+  spares_.pop_back();
+  return buffer;
+}
+
+void FastReader::give_back(Bytes buffer) {
+  buffer.clear();
+  std::lock_guard lock(mutex_);
+  if (spares_.size() < kMaxSpares) spares_.push_back(std::move(buffer));
+}
+
+std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer, std::size_t limit) {
+  std::size_t taken = 0;
+  for (; taken < limit; ++taken) {
+    std::optional<Item> item = pop();
+    if (!item) break;
+    std::span<const std::byte> cdr;
+    if (item->state == InstanceState::Alive) cdr = without_padding(item->cdr.data(), item->cdr.size());
+    consumer({cdr, item->state, item->key, item->writer});
+    give_back(std::move(item->cdr));
+  }
+  return taken;
+}
+
+}  // namespace skein::dds::fastdds

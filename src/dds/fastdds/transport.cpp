@@ -1,0 +1,91 @@
+#include "transport.hpp"
+
+#include <cstring>
+
+namespace skein::dds::fastdds {
+namespace {
+
+constexpr std::size_t kMessageHeader = 20;
+constexpr std::size_t kSubmessageHeader = 4;
+constexpr unsigned char kAckNack = 0x06;
+constexpr unsigned char kLittleEndian = 0x01;
+constexpr unsigned char kFinal = 0x02;
+
+std::uint32_t get(const unsigned char* at, bool little) {
+  return little ? at[0] | at[1] << 8 | at[2] << 16 | static_cast<std::uint32_t>(at[3]) << 24
+                : at[3] | at[2] << 8 | at[1] << 16 | static_cast<std::uint32_t>(at[0]) << 24;
+}
+
+void put(unsigned char* at, std::uint32_t value, bool little) {
+  for (int i = 0; i < 4; ++i) at[little ? i : 3 - i] = static_cast<unsigned char>(value >> (8 * i));
+}
+
+/// Body: reader and writer id, base (high, low), number of bits, bits, count.
+void repair(unsigned char* submessage, std::size_t body_size) {
+  unsigned char& flags = submessage[1];
+  const bool little = (flags & kLittleEndian) != 0;
+  unsigned char* body = submessage + kSubmessageHeader;
+  if (body_size < 24) return;
+  const std::uint32_t bits = get(body + 16, little);
+  if (bits > 256) return;
+  const std::size_t count_at = 20 + (bits + 31) / 32 * 4;
+  if (count_at + 4 > body_size) return;
+  const std::uint32_t count = get(body + count_at, little);
+  put(body + count_at, count + 1, little);
+  const bool first = count == 0 && bits == 0 && get(body + 8, little) == 0 && get(body + 12, little) == 1;
+  if (!first) return;
+  put(body + 12, 0, little);
+  flags &= static_cast<unsigned char>(~kFinal);
+}
+
+class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport {
+ public:
+  explicit StartupTransport(const StartupTransportDescriptor& descriptor)
+      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+
+  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
+    return &descriptor_;
+  }
+
+  bool send(rtps::SenderResource* sender, const rtps::octet* message, std::uint32_t size,
+            rtps::LocatorsIterator* first, rtps::LocatorsIterator* last,
+            const std::chrono::steady_clock::time_point& limit) override {
+    // "Sent" although dropped: a failure would only be logged.
+    if (!descriptor_.open->load(std::memory_order_relaxed)) return true;
+    return sender->send(message, size, first, last, limit);
+  }
+
+  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next, const rtps::octet* message,
+               std::uint32_t size, const rtps::Locator_t& local,
+               const rtps::Locator_t& remote) override {
+    // The buffer is the receiving socket's own, which nobody reads before `next`.
+    repair_first_acknack(const_cast<rtps::octet*>(message), size);
+    next->OnDataReceived(message, size, local, remote);
+  }
+
+ private:
+  StartupTransportDescriptor descriptor_;
+};
+
+}  // namespace
+
+void repair_first_acknack(unsigned char* message, std::size_t size) {
+  constexpr unsigned char kCyclone[] = {0x01, 0x10};
+  if (size < kMessageHeader || std::memcmp(message, "RTPS", 4) != 0) return;
+  if (std::memcmp(message + 6, kCyclone, sizeof kCyclone) != 0) return;
+  for (std::size_t at = kMessageHeader; at + kSubmessageHeader <= size;) {
+    unsigned char* submessage = message + at;
+    const bool little = (submessage[1] & kLittleEndian) != 0;
+    std::size_t body = little ? submessage[2] | submessage[3] << 8 : submessage[3] | submessage[2] << 8;
+    const std::size_t left = size - at - kSubmessageHeader;
+    if (body == 0 || body > left) body = left;  // the last submessage may leave its length out
+    if (submessage[0] == kAckNack) repair(submessage, body);
+    at += kSubmessageHeader + body;
+  }
+}
+
+eprosima::fastdds::rtps::TransportInterface* StartupTransportDescriptor::create_transport() const {
+  return new StartupTransport(*this);
+}
+
+}  // namespace skein::dds::fastdds

@@ -1,0 +1,151 @@
+#include "writer.hpp"
+
+#include <fastdds/rtps/RTPSDomain.h>
+#include <fastdds/rtps/participant/RTPSParticipant.h>
+
+#include <algorithm>
+
+#include "../options_check.hpp"
+#include "../sample_format.hpp"
+#include "attributes.hpp"
+#include "identity.hpp"
+#include "skein/core/error.hpp"
+
+namespace skein::dds::fastdds {
+namespace {
+
+/// Sends the key hash beside the sample. Left to itself, Fast DDS sends it with disposals only, as its
+/// own readers compute it from the data.
+void attach_key(rtps::CacheChange_t& change, const KeyHash& key) {
+  constexpr rtps::octet kKeyHashParameter[] = {0x70, 0x00, 0x10, 0x00};  // id and length
+  constexpr std::uint32_t kSize = sizeof kKeyHashParameter + sizeof key.bytes;
+  change.inline_qos.reserve(kSize);
+  std::memcpy(change.inline_qos.data, kKeyHashParameter, sizeof kKeyHashParameter);
+  std::memcpy(change.inline_qos.data + sizeof kKeyHashParameter, key.bytes.data(), key.bytes.size());
+  change.inline_qos.length = kSize;
+}
+
+}  // namespace
+
+FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Qos& qos,
+                       dds::WriterListener listener)
+    : participant_(participant),
+      topic_(topic),
+      qos_(qos),
+      events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched))),
+      history_(history_attributes()) {
+  participant_.acquire_topic(topic);
+  auto attributes = writer_attributes(topic, qos);
+  writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes, &history_,
+                                               this);
+  if (writer_ == nullptr) {
+    participant_.release_topic(topic_.name);
+    throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a writer");
+  }
+  guid_ = to_guid(writer_->getGuid());
+  participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic), writer_qos(qos));
+}
+
+FastWriter::~FastWriter() {
+  rtps::RTPSDomain::removeRTPSWriter(writer_);
+  events_->close();
+  participant_.release_topic(topic_.name);
+}
+
+void FastWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
+  require_header(cdr, topic_.name);
+  Lock lock(writer_->getMutex());
+  wait_for_room(lock);
+  auto* change = make_change(padded(cdr.size()), rtps::ALIVE, key);
+  copy_padded(cdr, reinterpret_cast<std::byte*>(change->serializedPayload.data));
+  change->serializedPayload.length = static_cast<std::uint32_t>(padded(cdr.size()));
+  if (topic_.keyed) attach_key(*change, key);
+  remember(change, key);
+  send(change);
+}
+
+void FastWriter::dispose(const KeyHash& key) {
+  require_keyed(topic_);
+  Lock lock(writer_->getMutex());
+  wait_for_room(lock);
+  auto* change = make_change(kHeaderSize, rtps::NOT_ALIVE_DISPOSED, key);
+  if (qos_.transient_local) drop_all(key);
+  remember(change, key);
+  send(change);
+}
+
+rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_t kind,
+                                             const KeyHash& key) {
+  const auto room = static_cast<std::uint32_t>(size);
+  auto* change = topic_.keyed ? writer_->new_change([room] { return room; }, kind, to_handle(key))
+                              : writer_->new_change([room] { return room; }, kind);
+  if (change != nullptr) {
+    change->inline_qos.length = 0;  // changes are used again
+    return change;
+  }
+  throw Internal("topic '" + topic_.name + "': Fast DDS has no memory for a sample of " +
+                 std::to_string(size) + " bytes");
+}
+
+void FastWriter::wait_for_room(Lock& lock) {
+  if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
+  const auto has_room = [&] { return history_.getHistorySize() < qos_.max_samples; };
+  if (room_.wait_for(lock, qos_.max_blocking, has_room)) return;
+  throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +
+                   std::to_string(qos_.max_blocking.count()) + " ms; " +
+                   std::to_string(qos_.max_samples) + " wait for a matched reader's acknowledgment");
+}
+
+/// Before it is sent: it may be acknowledged, and gone, while it is being sent.
+void FastWriter::remember(rtps::CacheChange_t* change, const KeyHash& key) {
+  if (!qos_.history_depth && !qos_.transient_local) return;
+  Changes& changes = instances_[topic_.keyed ? key : KeyHash{}];
+  if (qos_.history_depth && changes.size() >= *qos_.history_depth) {
+    history_.remove_change(changes.front());
+    changes.erase(changes.begin());
+  }
+  changes.push_back(change);
+}
+
+void FastWriter::send(rtps::CacheChange_t* change) {
+  history_.add_change(change);
+  // Best effort is over when it has been sent, and nothing reports that.
+  if (!qos_.reliable && !qos_.transient_local) drop(change);
+}
+
+void FastWriter::drop(rtps::CacheChange_t* change) {
+  const KeyHash key = topic_.keyed ? to_guid(change->instanceHandle) : KeyHash{};
+  if (const auto found = instances_.find(key); found != instances_.end()) {
+    std::erase(found->second, change);
+    if (found->second.empty()) instances_.erase(found);
+  }
+  history_.remove_change(change);
+}
+
+void FastWriter::drop_all(const KeyHash& key) {
+  const auto found = instances_.find(key);
+  if (found == instances_.end()) return;
+  for (auto* change : found->second) history_.remove_change(change);
+  instances_.erase(found);
+}
+
+void FastWriter::onWriterMatched(rtps::RTPSWriter*,
+                                 const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
+  events_->matched(to_guid(status.last_subscription_handle), status.current_count_change > 0);
+}
+
+/// Called with the writer's mutex held.
+void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChange_t* change) {
+  if (!qos_.reliable) return;
+  // Late joiners need what is alive; that an instance has ended, they need not know.
+  if (qos_.transient_local && change->kind == rtps::ALIVE) return;
+  drop(change);
+  room_.notify_all();
+}
+
+bool FastWriter::wait_for_acknowledgments(std::chrono::milliseconds timeout) {
+  return writer_->wait_for_all_acked({static_cast<std::int32_t>(timeout.count() / 1000),
+                                      static_cast<std::uint32_t>(timeout.count() % 1000 * 1'000'000)});
+}
+
+}  // namespace skein::dds::fastdds

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <fastdds/rtps/history/WriterHistory.h>
+#include <fastdds/rtps/writer/RTPSWriter.h>
+#include <fastdds/rtps/writer/WriterListener.h>
+
+#include <condition_variable>
+#include <unordered_map>
+
+#include "participant.hpp"
+
+namespace skein::dds::fastdds {
+
+/// A writer on Fast DDS's RTPS layer, with the history that our QoS promises: its content is guarded
+/// by the RTPS writer's own mutex, under which Fast DDS also reports acknowledgments.
+class FastWriter final : public Writer, private rtps::WriterListener {
+ public:
+  FastWriter(FastParticipant& participant, const Topic& topic, const Qos& qos,
+             dds::WriterListener listener);
+  ~FastWriter() override;
+
+  void write(std::span<const std::byte> cdr, const KeyHash& key) override;
+  void dispose(const KeyHash& key) override;
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override;
+  Guid guid() const override { return guid_; }
+  std::vector<Guid> matched_readers() const override { return events_->peers(); }
+
+ private:
+  using Lock = std::unique_lock<eprosima::fastrtps::RecursiveTimedMutex>;
+  using Changes = std::vector<rtps::CacheChange_t*>;
+
+  void onWriterMatched(rtps::RTPSWriter*, rtps::MatchingInfo&) override {}
+  void onWriterMatched(rtps::RTPSWriter* writer,
+                       const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+  void onWriterChangeReceivedByAll(rtps::RTPSWriter* writer, rtps::CacheChange_t* change) override;
+
+  rtps::CacheChange_t* make_change(std::size_t size, rtps::ChangeKind_t kind, const KeyHash& key);
+  void wait_for_room(Lock& lock);
+  void remember(rtps::CacheChange_t* change, const KeyHash& key);
+  void send(rtps::CacheChange_t* change);
+  void drop(rtps::CacheChange_t* change);
+  void drop_all(const KeyHash& key);
+
+  FastParticipant& participant_;
+  const Topic topic_;
+  const Qos qos_;
+  const std::shared_ptr<EndpointEvents> events_;
+  rtps::WriterHistory history_;
+  /// Of each instance, oldest first, where a depth bounds them or late joiners get them.
+  std::unordered_map<Guid, Changes> instances_;
+  std::condition_variable_any room_;
+  rtps::RTPSWriter* writer_ = nullptr;
+  Guid guid_;
+};
+
+}  // namespace skein::dds::fastdds
