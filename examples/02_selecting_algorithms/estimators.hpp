@@ -8,8 +8,8 @@ class MeanPower : public battery::IEstimator {
   double endurance_min(const battery::Plan& plan) override;
 };
 
-/// Discharges a model of the battery second by second, which loses more the harder it is drawn from, for a
-/// thousand guesses of the wind; returns what nine out of ten of them reach.
+/// Discharges a model of the battery second by second, which loses more the harder it is drawn
+/// from, for a thousand guesses of the wind; returns what nine out of ten of them reach.
 class Discharge : public battery::IEstimator {
  public:
   double endurance_min(const battery::Plan& plan) override;

@@ -1,4 +1,5 @@
-// An entity with two algorithms for one task. Which of them runs, its Head decides by the time that the caller gives.
+// An entity with two algorithms for one task. Which of them runs, its Head decides by the time that
+// the caller gives.
 #include <cstdio>
 
 #include "estimators.hpp"
@@ -13,9 +14,12 @@ class BatteryBody : public battery::IBattery {
   explicit BatteryBody(skein::Head& head) : head_(head) {}
 
   double endurance_min(const battery::Plan& plan, std::string& estimated_by) override {
-    if (plan.power_w.empty()) throw skein::InvalidArgument("a plan needs the power of one minute at least");
+    if (plan.power_w.empty())
+      throw skein::InvalidArgument("a plan needs the power of one minute at least");
     skein::Task<battery::IEstimator, double> task;
-    task.run = [&](battery::IEstimator::Proxy& csp, skein::Duration) { return csp.endurance_min(plan); };
+    task.run = [&](battery::IEstimator::Proxy& csp, skein::Duration) {
+      return csp.endurance_min(plan);
+    };
     task.evaluate = [](const double& minutes) {
       return minutes > 0 ? std::nullopt : std::optional<std::string>("no battery lasts so short");
     };
@@ -50,6 +54,7 @@ int main(int argc, char** argv) {
   for (const auto time : {100ms, 5000ms}) {
     std::string estimated_by;
     const double minutes = battery.within(time).endurance_min(plan, estimated_by);
-    std::printf("with %lld ms: %.1f min (%s)\n", static_cast<long long>(time.count()), minutes, estimated_by.c_str());
+    std::printf("with %lld ms: %.1f min (%s)\n", static_cast<long long>(time.count()), minutes,
+                estimated_by.c_str());
   }
 }
