@@ -29,7 +29,7 @@ class AStarPlanner final : public AE_navigator::IPlanner {
                                                   [&] { return scene.budget().spent(); });
     if (found.end == SearchEnd::Unreachable) {
       if (berth == Berth::ForTurns) throw Unflyable("there is no room for turns");
-      throw AE_navigator::NoRoute(graph.explain_separation());
+      throw AE_navigator::NoRoute(graph.explain_separation(), true);
     }
     scene.budget().require_time();
     GroundPath path;
@@ -44,7 +44,7 @@ class AStarPlanner final : public AE_navigator::IPlanner {
     try {
       return plan_on(scene, Berth::ForTurns);
     } catch (const Unflyable&) {
-      throw AE_navigator::NoRoute("the cheapest path cannot be flown: " + why_not);
+      throw AE_navigator::NoRoute("the cheapest path cannot be flown: " + why_not, false);
     }
   }
 

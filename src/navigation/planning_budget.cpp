@@ -19,10 +19,11 @@ PlanningBudget::PlanningBudget(const PlannerOptions& options, std::uint32_t time
 }
 
 void PlanningBudget::require_time() const {
-  if (stopped()) throw AE_navigator::NoRoute("the planning was stopped before it found a route");
+  if (stopped()) throw AE_navigator::NoRoute("the planning was stopped before it found a route", false);
   if (late()) {
     throw AE_navigator::NoRoute(
-        fmt::format("no route was found within the time limit of {} ms", time_limit_ms_));
+        fmt::format("no route was found within the time limit of {} ms", time_limit_ms_),
+        false);
   }
 }
 

@@ -183,7 +183,8 @@ class RrtConnectPlanner final : public SamplingPlanner {
     scene.budget().require_time();
     throw AE_navigator::NoRoute(unflyable.empty()
                                     ? "no route was found within the default time limit"
-                                    : "no path that was found can be flown: " + unflyable);
+                                    : "no path that was found can be flown: " + unflyable,
+                                false);
   }
 };
 
@@ -205,14 +206,14 @@ class RrtStarPlanner final : public SamplingPlanner {
     const auto path = sampling.solve(
         planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
     scene.budget().require_time();
-    if (!path) throw AE_navigator::NoRoute("no route was found within the time to search");
+    if (!path) throw AE_navigator::NoRoute("no route was found within the time to search", false);
     try {
       const auto cost = [&](const GroundPoint& a, const GroundPoint& b) {
         return scene.cost(a, b);
       };
       return make_route(scene, *path, cost, kMostPoints, "RRTstar");
     } catch (const Unflyable& reason) {
-      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what());
+      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(), false);
     }
   }
 };
