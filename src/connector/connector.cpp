@@ -80,6 +80,16 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
   return std::make_shared<FailoverChannel>(connect_next(options.timeout), connect_next);
 }
 
+ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions options) {
+  if (reference.is_nil()) {
+    throw InvalidArgument("the reference to " + reference.interface_name + " is nil: it names no provider");
+  }
+  options.name = reference.interface_name;
+  options.provider = reference.provider;
+  options.system = ConnectOptions::kAnySystem;
+  return options;
+}
+
 std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
                                                  const ConnectOptions& options) const {
   rpc::DdsChannel::Options dds_options;

@@ -201,6 +201,31 @@ TEST_CASE("a session with an unknown selection strategy is refused with the know
   CHECK(pair.client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
 }
 
+TEST_CASE("a service reference can be returned, passed on and connected to") {
+  struct Introducer : ::test::Introducer {
+    explicit Introducer(Entity& own) : entity(own) {}
+    Reference<Echo> introduce() override { return introduced; }
+    std::string ask(const Reference<Echo>& whom, const std::string& text) override {
+      return entity.connect(whom).echo(text);
+    }
+    Entity& entity;
+    Reference<Echo> introduced;
+  };
+  const auto server = make_server();
+  const auto introducer = std::make_shared<Introducer>(*server);
+  server->provide<::test::Introducer>(introducer);
+  const auto other = make_entity("other", Pairing::get().client, "uav-2");
+  introducer->introduced = other->reference<Echo>(other->provide<LouderEcho>(std::make_shared<EchoService>()));
+  const auto client = make_client();
+  auto proxy = client->connect<::test::Introducer>();
+
+  const Reference<Echo> reference = proxy.introduce();
+  CHECK(reference == introducer->introduced);
+  CHECK(client->connect(reference).echo("by reference") == "by reference");
+  CHECK(proxy.ask(reference, "passed on") == "passed on");
+  CHECK_THROWS_AS(client->connect(Reference<Echo>()), InvalidArgument);
+}
+
 TEST_CASE("a disconnected proxy refuses calls") {
   Pair pair;
   pair.echo->disconnect();

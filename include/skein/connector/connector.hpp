@@ -6,6 +6,7 @@
 
 #include "skein/brokerless_discovery/broker.hpp"
 #include "skein/core/call.hpp"
+#include "skein/idl/service_reference.hpp"
 #include "skein/rpc/local_directory.hpp"
 
 namespace skein {
@@ -53,6 +54,13 @@ class Connector {
     return typename Interface::Proxy(open(Interface::interface_info(), options));
   }
 
+  /// The same for a service reference that came as a parameter or a result: exactly that provider, in
+  /// whichever system. Throws InvalidArgument for a nil reference.
+  template <class Interface>
+  typename Interface::Proxy connect(const Reference<Interface>& reference, ConnectOptions options = {}) {
+    return typename Interface::Proxy(open(Interface::interface_info(), to(reference, std::move(options))));
+  }
+
   /// The connection without its type: each call goes to the provider connected now; a lost one is
   /// replaced by the next at the next call.
   std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
@@ -62,6 +70,7 @@ class Connector {
                                          const std::string& strategy, Duration timeout) const;
 
  private:
+  static ConnectOptions to(const ServiceReference& reference, ConnectOptions options);
   std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
                                         const ConnectOptions& options) const;
   std::shared_ptr<Channel> open_first(const brokerless_discovery::Query& query,

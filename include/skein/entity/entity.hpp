@@ -86,6 +86,17 @@ class Entity {
     return connector().connect<Interface>(options);
   }
 
+  template <class Interface>
+  typename Interface::Proxy connect(const Reference<Interface>& reference, const ConnectOptions& options = {}) {
+    return connector().connect(reference, options);
+  }
+
+  /// A reference to a service that this entity provides, to be passed to others.
+  template <class Interface>
+  Reference<Interface> reference(const Guid& provider) const {
+    return Reference<Interface>({std::string(Interface::interface_info().name), provider, options().name});
+  }
+
   Connector& connector() noexcept;
   brokerless_discovery::Broker& broker() noexcept;
   Head& head() noexcept;
