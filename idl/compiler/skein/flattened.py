@@ -41,9 +41,10 @@ def _uses_reference(item):
 
 
 def _escaped(character, quote):
+    """Octal, because idlc 0.10 takes a hexadecimal escape for a zero."""
     if character in (quote, "\\"):
         return "\\" + character
-    return character if 0x20 <= ord(character) < 0x7F else f"\\x{ord(character) & 0xFF:02x}"
+    return character if 0x20 <= ord(character) < 0x7F else f"\\{ord(character) & 0xFF:03o}"
 
 
 def text(file):
