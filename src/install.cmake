@@ -1,0 +1,35 @@
+# What `cmake --install` lays down beside the vendors' modules (src/dds) and the IDL compiler (src/idl), and how
+# find_package(skein) finds it. Include it after the targets are made.
+include(CMakePackageConfigHelpers)
+
+set(skein_package ${CMAKE_INSTALL_LIBDIR}/cmake/skein)
+
+# Exported as skein::skein, skein::navigation, …
+set_target_properties(skein_navigation_idl PROPERTIES EXPORT_NAME navigation_idl)
+set_target_properties(skein_navigation PROPERTIES EXPORT_NAME navigation)
+set_target_properties(skein_route_checker PROPERTIES EXPORT_NAME route_checker)
+set(skein_libraries skein skein_navigation_idl skein_navigation skein_route_checker)
+set_target_properties(${skein_libraries} PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
+
+install(TARGETS ${skein_libraries} EXPORT skeinTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT skeinTargets NAMESPACE skein:: DESTINATION ${skein_package})
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/skein DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+foreach(target skein_broker skein_navigation_idl)
+  get_target_property(generated ${target} SKEIN_IDL_DIRECTORY)
+  install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.idl.hpp")
+endforeach()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl/navigation DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/idl)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/mission_profiles DESTINATION ${CMAKE_INSTALL_DATADIR}/skein)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(skein_idl_function ${CMAKE_INSTALL_DATADIR}/skein/idl/cmake/SkeinIdl.cmake)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/skeinConfig.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/skeinConfig.cmake
+  INSTALL_DESTINATION ${skein_package} PATH_VARS skein_idl_function)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/skeinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/skeinConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/skeinConfigVersion.cmake
+  DESTINATION ${skein_package})
