@@ -16,11 +16,7 @@ FailoverChannel::FailoverChannel(std::shared_ptr<Channel> first, ConnectNext con
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   if (const auto channel = current()) return channel->start(call, in);
   if (call->blocking()) {
-    try {
-      reconnect(call->deadline())->start(call, in);
-    } catch (...) {
-      call->fail(std::current_exception());
-    }
+    call->attempt([&] { reconnect(call->deadline())->start(call, in); });
     return;
   }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
@@ -28,11 +24,7 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
   const std::shared_ptr<void> copy(type.make(), type.destroy);
   type.assign(copy.get(), in);
   const bool posted = continuations_.post([self = shared_from_this(), call, copy] {
-    try {
-      self->reconnect(call->deadline())->start(call, copy.get());
-    } catch (...) {
-      call->fail(std::current_exception());
-    }
+    call->attempt([&] { self->reconnect(call->deadline())->start(call, copy.get()); });
   });
   if (!posted) {
     call->fail(std::make_exception_ptr(Overloaded("too many calls wait for a new provider")));

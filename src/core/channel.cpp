@@ -1,5 +1,7 @@
 #include "skein/core/channel.hpp"
 
+#include <utility>
+
 #include "skein/core/error.hpp"
 
 namespace skein {
@@ -34,9 +36,9 @@ void PendingCall::wait() const {
   changed_.wait(lock, [&] { return finished_; });
 }
 
-std::exception_ptr PendingCall::error() const {
+std::exception_ptr PendingCall::take_error() {
   std::lock_guard lock(mutex_);
-  return error_;
+  return std::exchange(error_, nullptr);
 }
 
 void PendingCall::on_finished(std::function<void()> action) {

@@ -63,6 +63,14 @@ bool is_host_name(const std::string& text) {
   });
 }
 
+/// What Cyclone takes; other vendors take more.
+bool is_topic_name(const std::string& name) {
+  return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+         !name.starts_with("DCPS") && std::ranges::all_of(name, [](unsigned char c) {
+           return std::isalnum(c) || c == '_' || c == '/';
+         });
+}
+
 }  // namespace
 
 void check_domain(const ParticipantOptions& options) {
@@ -123,6 +131,10 @@ void check_qos(const Topic& topic, const Qos& qos) {
   const auto refuse = [&](const std::string& why) {
     throw InvalidArgument("topic '" + topic.name + "': " + why);
   };
+  if (!is_topic_name(topic.name)) {
+    refuse("a topic's name has letters, digits, '_' and '/', and does not begin with a digit or 'DCPS'");
+  }
+  if (topic.type_name.empty()) refuse("a topic needs a type's name");
   if (qos.history_depth && *qos.history_depth == 0) refuse("a history depth of 0 keeps nothing");
   if (qos.max_blocking.count() < 0) refuse("max_blocking is negative");
   if (qos.liveliness_lease && qos.liveliness_lease->count() <= 0) {

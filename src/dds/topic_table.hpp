@@ -18,10 +18,6 @@ class TopicTable {
   template <class Make>
   Handle acquire(const Topic& topic, Make&& make) {
     std::lock_guard lock(mutex_);
-    if (topic.name.empty() || topic.type_name.empty()) {
-      throw InvalidArgument("a topic needs a name and a type name; got '" + topic.name + "' of type '" +
-                            topic.type_name + "'");
-    }
     const auto found = entries_.find(topic.name);
     if (found == entries_.end()) {
       Handle handle = make();

@@ -55,7 +55,8 @@ ParameterValues values_of(const std::vector<profile::Setting>& settings) {
 }
 
 // What the component's description declares of the interface that `servant` implements.
-ServiceOptions service_options(const profile::ComponentDescription& component, const Servant& servant) {
+ServiceOptions service_options(const profile::ComponentDescription& component,
+                               const Servant& servant) {
   const auto* implemented = component.find_interface(servant.interface_info().name);
   if (!implemented) {
     throw InvalidArgument(profile::to_text(component.where) + ": component '" + component.name +
@@ -90,8 +91,8 @@ void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp
 }
 
 void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
-  const auto& factory =
-      required(registry.find_body(peer.component->name), peer.component->name, "component", registry);
+  const auto& factory = required(registry.find_body(peer.component->name), peer.component->name,
+                                 "component", registry);
   ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
   ServiceOptions options = service_options(*peer.component, *body.servant);
   options.threads = body.threads;
@@ -132,7 +133,8 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   load_plugin(registry, peer.plugin);
   Entity entity(entity_options(mission, peer, peer.name, peer.vendor));
   for (const CspProfile& csp : peer.csps) {
-    if (csp.process == profile::CspProcess::InOwner) provide_csp(entity, entity.id(), csp, registry);
+    if (csp.process == profile::CspProcess::InOwner)
+      provide_csp(entity, entity.id(), csp, registry);
   }
   if (!peer.component->interfaces.empty()) provide_body(entity, peer, registry);
   await_dependencies(entity, peer);

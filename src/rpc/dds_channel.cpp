@@ -176,12 +176,13 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head) {
     if (!call.claim()) return;
+    std::exception_ptr error;
     try {
       decode_result(call, message, head);
-      call.finish();
     } catch (...) {
-      call.finish(std::current_exception());
+      error = std::current_exception();
     }
+    call.finish(std::move(error));
   }
 
   void decode_result(PendingCall& call, std::span<const std::byte> message,
@@ -227,15 +228,14 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) {
     std::uint64_t number = 0;
-    try {
+    bool sent = false;
+    call->attempt([&] {
       const auto writer = enter(call, number);
       send(*writer, *call, number, in);
-    } catch (...) {
-      if (number != 0) remove(number);
-      call->fail(std::current_exception());
-      return;
-    }
-    if (call->operation().oneway && remove(number) && call->claim()) call->finish();
+      sent = true;
+    });
+    if (!sent || call->operation().oneway) remove(number);
+    if (sent && call->operation().oneway && call->claim()) call->finish();
   }
 
   // The call is known before its request leaves: a reply may be here before write() returns.

@@ -28,7 +28,7 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executo
     : service_(std::move(service)), clock_(clock), continuations_(continuations) {}
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
-  try {
+  call->attempt([&] {
     const auto service = service_.lock();
     if (closed_ || !service) {
       throw Unavailable("no connection to " + peer_ + ": it was " +
@@ -36,9 +36,7 @@ void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* i
     }
     if (call->blocking() && call_inline(*service, *call, in)) return;
     enqueue(*service, call, in);
-  } catch (...) {
-    call->fail(std::current_exception());
-  }
+  });
 }
 
 bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* in) {
@@ -68,7 +66,7 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
     clock.cancel(timer->load());
     if (!call->claim()) return;
     if (!error) call->operation().out->assign(call->out(), out);
-    call->finish(error);
+    call->finish(std::move(error));
   };
   call->set_canceller([invocation] { invocation->cancelled = true; });
   timer->store(clock_.call_at(call->deadline(), [call, invocation, peer = peer_] {

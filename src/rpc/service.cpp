@@ -91,7 +91,8 @@ void Service::execute(Invocation& invocation) {
   } catch (...) {
     error = std::current_exception();
   }
-  invocation.respond(error ? nullptr : out.get(), error);
+  const void* const result = error ? nullptr : out.get();
+  invocation.respond(result, std::move(error));
 }
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,

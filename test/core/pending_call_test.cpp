@@ -40,13 +40,13 @@ TEST_CASE("a call's continuation runs once, whether set before or after the end"
   REQUIRE(early->claim());
   early->finish();
   CHECK(ran == 1);
-  CHECK_FALSE(early->error());
+  CHECK_FALSE(early->take_error());
 
   const auto late = a_call();
   late->fail(std::make_exception_ptr(Disconnected("gone")));
   late->on_finished([&] { ++ran; });
   CHECK(ran == 2);
-  CHECK_THROWS_AS(std::rethrow_exception(late->error()), Disconnected);
+  CHECK_THROWS_AS(std::rethrow_exception(late->take_error()), Disconnected);
 }
 
 TEST_CASE("cancelling tells the lane once, and not after the end") {
@@ -56,7 +56,7 @@ TEST_CASE("cancelling tells the lane once, and not after the end") {
   call->cancel();
   call->cancel();
   CHECK(told == 1);
-  CHECK_THROWS_AS(std::rethrow_exception(call->error()), Cancelled);
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Cancelled);
 
   const auto ended = a_call();
   ended->set_canceller([&] { ++told; });
@@ -64,7 +64,7 @@ TEST_CASE("cancelling tells the lane once, and not after the end") {
   ended->finish();
   ended->cancel();
   CHECK(told == 1);
-  CHECK_FALSE(ended->error());
+  CHECK_FALSE(ended->take_error());
 }
 
 TEST_CASE("errors travel by number and come back as their own class") {

@@ -25,7 +25,8 @@ usage_string = """\
 def run(tree, arguments):
     options = dict(argument.split("=", 1) for argument in arguments)
     name = options.get("name", os.path.basename(tree.file()))
-    report = errors.Report()
+    includes = dependencies.Includes(tree.file())
+    report = errors.Report(includes.resolve)
     built = builder.Builder(report)
     built.build(tree)
     if not report.refused:
@@ -37,7 +38,7 @@ def run(tree, arguments):
     file = model.File(
         path=tree.file(),
         header=os.path.basename(name) + ".hpp",
-        includes=dependencies.direct_includes(tree.file()),
+        includes=_usable(includes.direct, tree.file(), built.broken, report),
         items=built.items,
         interfaces=built.interfaces,
         announced=built.announced(),
@@ -54,4 +55,12 @@ def run(tree, arguments):
         with open(path, "w", encoding="latin-1") as stream:
             stream.write("\n".join(lines).rstrip("\n") + "\n")
     if "depfile" in options:
-        dependencies.write_depfile(options["depfile"], list(outputs), tree.file())
+        includes.write_depfile(options["depfile"], list(outputs))
+
+
+def _usable(names, path, broken, report):
+    """Without included files that have no output, because they were refused; nothing of them is used."""
+    for name in set(names) & broken.keys():
+        cause = report.where(broken[name])
+        report.warning((path, 1), f"'{name}' cannot be compiled, see {cause}; nothing of it is used, and it is left out")
+    return [name for name in names if name not in broken]

@@ -12,7 +12,7 @@ def analyse(builder, report):
     if report.refused:
         return
     for interface in builder._built.values():
-        if isinstance(interface, model.Interface):
+        if isinstance(interface, model.Interface) and interface.place[0] not in builder.broken:
             for operation in interface.operations:
                 _complete(operation)
     for interface in builder.interfaces:
@@ -145,7 +145,7 @@ def _check_clashes(builder, report):
 
     for decl in builder._built.values():
         claim(decl.cpp, decl.idl_name, decl.place)
-        if isinstance(decl, model.Interface) and decl.defined:
+        if isinstance(decl, model.Interface) and decl.defined and decl.place[0] not in builder.broken:
             claim(decl.cpp + "Proxy", f"the proxy of {decl.idl_name}", decl.place)
             claim(decl.cpp + "Skeleton", f"the skeleton of {decl.idl_name}", decl.place)
             for operation in decl.operations:

@@ -42,10 +42,11 @@ class Builder(idlvisitor.AstVisitor):
         self.items = []
         self.interfaces = []
         self._built = {}  # scoped name -> Declaration
-        self._unsupported = {}  # scoped name -> reason
+        self._unsupported = {}  # scoped name -> where the cause stands
         self._modules = ()
         self._outer = []  # enclosing structs, unions, interfaces
-        self._place = ("", 0)
+        self._cause = None  # place of the last refusal
+        self.broken = {}  # file -> place of its first refusal
 
     def build(self, tree):
         for decl in tree.declarations():
@@ -56,9 +57,6 @@ class Builder(idlvisitor.AstVisitor):
         return [decl for decl in self._built.values() if isinstance(decl, model.Interface)]
 
     # ---- places and names
-
-    def _error(self, node, reason):
-        self.report.error((node.file(), node.line()), reason)
 
     def _declare(self, kind, node, **fields):
         scope = tuple(node.scopedName())
@@ -86,9 +84,27 @@ class Builder(idlvisitor.AstVisitor):
 
     def _refuse(self, node, reason):
         """Refuses a declaration; uses of it are refused as well."""
-        self._unsupported[tuple(node.scopedName())] = reason
+        self._error(node, reason)
+        self._unsupported[tuple(node.scopedName())] = self._cause
+
+    def _error(self, node, reason):
+        self._fail(node, reason, (node.file(), node.line()))
+
+    def _fail(self, node, reason, cause):
+        """Of an included file, only what is used matters; it has no output that could be included, though."""
+        self._cause = cause
+        self.broken.setdefault(node.file(), cause)
         if node.mainFile():
-            self._error(node, reason)
+            self.report.error((node.file(), node.line()), reason)
+
+    def _find(self, node, scope, use):
+        """The declaration that `node` uses; None, and an error, where it was refused or lies in a refused file."""
+        decl = self._built.get(scope)
+        if decl and (decl.place[0] == node.file() or decl.place[0] not in self.broken):
+            return decl
+        cause = self._unsupported.get(scope) or self.broken[decl.place[0]]
+        self._fail(node, f"{'::'.join(scope)} cannot {use}, see {self.report.where(cause)}", cause)
+        return None
 
     # ---- types
 
@@ -110,28 +126,24 @@ class Builder(idlvisitor.AstVisitor):
             return element and model.Sequence(element, kind.bound())
         if isinstance(kind, idltype.Declared):
             return self._declared_type(node, kind)
-        return self._unsupported_type(node, _REFUSED[code])
+        return self._error(node, _REFUSED[code])
 
     def _declared_type(self, node, kind):
         scope = tuple(kind.scopedName())
         if scope in (("CORBA", "Object"), ("Object",)):
-            return self._unsupported_type(node, _OBJECT)
+            return self._error(node, _OBJECT)
         if scope == ("CORBA", "ValueBase"):
-            return self._unsupported_type(node, _VALUE_BASE)
+            return self._error(node, _VALUE_BASE)
         if scope in self._unsupported:
-            return self._unsupported_type(node, f"{'::'.join(scope)} cannot be used: {self._unsupported[scope]}")
+            return self._find(node, scope, "be used")
         if kind.kind() in _REFUSED:
-            return self._unsupported_type(node, _REFUSED[kind.kind()])
+            return self._error(node, _REFUSED[kind.kind()])
         if kind.kind() == idltype.tk_objref:
-            return model.Reference(self._interface(kind.decl()))
-        decl = self._built.get(scope)
+            self._interface(kind.decl())
+            decl = self._find(node, scope, "be used")
+            return decl and model.Reference(decl)
+        decl = self._find(node, scope, "be used")
         return decl and model.Named(decl)
-
-    def _unsupported_type(self, node, reason):
-        if node.mainFile():
-            self._error(node, reason)
-        self._reason = reason
-        return None
 
     def _interface(self, node):
         """The interface, which may be only forward-declared so far."""
@@ -173,12 +185,7 @@ class Builder(idlvisitor.AstVisitor):
         interface.defined = True
         for base in node.inherits():
             scope = tuple(base.scopedName())
-            built = self._built.get(scope)
-            if isinstance(built, model.Typedef):
-                built = model.unaliased(model.Named(built)).decl
-            if built is None:
-                self._error(node, f"{'::'.join(scope)} cannot be a base: {self._unsupported.get(scope)}")
-            else:
+            if built := self._find(node, scope, "be a base"):
                 interface.bases.append(built)
         self._contents(node, interface)
         if interface.in_main_file:
@@ -203,14 +210,8 @@ class Builder(idlvisitor.AstVisitor):
         return names.unique("async_" + name, names.OPERATION, set(plain))
 
     def _raises(self, node, exceptions):
-        found = []
-        for exception in exceptions:
-            scope = tuple(exception.scopedName())
-            if scope in self._built:
-                found.append(self._built[scope])
-            elif node.mainFile():
-                self._error(node, f"{'::'.join(scope)} cannot be raised: {self._unsupported.get(scope)}")
-        return found
+        found = [self._find(node, tuple(exception.scopedName()), "be raised") for exception in exceptions]
+        return [exception for exception in found if exception]
 
     def _operation(self, node, interface, taken, plain):
         if node.contexts():
@@ -278,7 +279,7 @@ class Builder(idlvisitor.AstVisitor):
 
     def _refuse_use(self, node):
         """`node` is of a type that was refused a moment ago."""
-        self._unsupported[tuple(node.scopedName())] = self._reason
+        self._unsupported[tuple(node.scopedName())] = self._cause
 
     def _constructed(self, node, kind):
         """A type that is declared where it is used."""

@@ -5,10 +5,12 @@ import sys
 
 
 class Report:
-    """Collects findings; a file with a single refusal gets no output at all."""
+    """Says findings at once; a file with a single refusal gets no output at all. `resolve` makes paths of the names
+    that the preprocessor gives to included files."""
 
-    def __init__(self):
+    def __init__(self, resolve):
         self.refused = False
+        self._resolve = resolve
         self._said = set()
 
     def error(self, place, reason):
@@ -18,8 +20,11 @@ class Report:
     def warning(self, place, reason):
         self._say(place, "warning", reason)
 
+    def where(self, place):
+        return f"{self._resolve(place[0])}:{place[1]}"
+
     def _say(self, place, kind, reason):
-        line = f"{place[0]}:{place[1]}: {kind}: {reason}"
+        line = f"{self.where(place)}: {kind}: {reason}"
         if line not in self._said:
             self._said.add(line)
             sys.stderr.write(line + "\n")

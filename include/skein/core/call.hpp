@@ -73,8 +73,8 @@ class Call {
   }
 
  private:
-  Result take(const PendingCall& pending) const {
-    if (const auto error = pending.error()) std::rethrow_exception(error);
+  Result take(PendingCall& pending) const {
+    if (auto error = pending.take_error()) std::rethrow_exception(std::move(error));
     if constexpr (!std::is_void_v<Result>) return std::move(*result_);
   }
 
@@ -112,7 +112,7 @@ class ProxyBase {
     auto pending = std::make_shared<TypedCall<Out>>(operation, deadline(), true);
     channel_->start(pending, &in);
     pending->wait();
-    if (const auto error = pending->error()) std::rethrow_exception(error);
+    if (auto error = pending->take_error()) std::rethrow_exception(std::move(error));
     return std::move(pending->value);
   }
 

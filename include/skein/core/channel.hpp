@@ -43,8 +43,21 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   /// Blocks until finished; the lane guarantees that this happens at the latest at the deadline.
   void wait() const;
 
-  /// The error that ended the call; null after a success. Only once finished.
-  std::exception_ptr error() const;
+  /// The error that ended the call, handed over (not copied: an exception shared by two threads would
+  /// be released by whichever lets go last); null after a success. Only once finished.
+  std::exception_ptr take_error();
+
+  /// Runs `action`; what it throws ends the call.
+  template <class Action>
+  void attempt(Action&& action) {
+    std::exception_ptr error;
+    try {
+      action();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    if (error) fail(std::move(error));
+  }
 
   /// Runs `action` once the call is finished, at once where it is already; on the thread that finishes
   /// it, which may be a vendor's: it must neither block nor run user code. One action at most.

@@ -41,7 +41,8 @@ std::string discovery(const ParticipantOptions& options,
   for (const auto& list : {addresses, options.network.peers}) {
     for (const std::string& peer : list) peers += "<Peer Address=\"" + peer + "\"/>";
   }
-  const auto highest = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;
+  // One more than the highest index: Cyclone 0.10 reports the last one as taken after taking it.
+  const auto highest = std::clamp(options.network.max_participants, 1u, kMaxParticipants);
   return element("Discovery",
                  element("ExternalDomainId", std::to_string(options.domain)) +
                      element("ParticipantIndex", "auto") +

@@ -87,7 +87,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
       duration(std::min<std::chrono::milliseconds>(kAnnouncementPeriod, options.lease * 2 / 5));
   discovery.initial_announcements = {5, duration(10ms)};
   builtin.avoid_builtin_multicast = true;
-  builtin.mutation_tries = kMaxParticipants;
+  builtin.mutation_tries = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;
 
   // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over all
   // domains of the process and soon listens where no peer looks.

@@ -24,15 +24,18 @@ namespace {
 FastParticipant::FastParticipant(const ParticipantOptions& options) : options_(options) {
   check_options(options);
   const auto transport = make_transport(options.network);
-  participant_ = rtps::RTPSDomain::createParticipant(
-      options.domain, participant_attributes(options, transport), this);
+  const auto attributes = participant_attributes(options, transport);
+  participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
-  if (participant_->getRTPSParticipantAttributes().builtin.metatrafficUnicastLocatorList.empty()) {
+  // Without a port Fast DDS goes on, deaf.
+  const auto needed = attributes.builtin.metatrafficUnicastLocatorList.size() +
+                      attributes.defaultUnicastLocatorList.size();
+  if (transport->state->ports < needed) {
     rtps::RTPSDomain::removeRTPSParticipant(participant_);
     throw_no_participant(options);
   }
   guid_ = to_guid(participant_->getGuid()).participant();
-  *transport->open = true;
+  transport->state->open = true;
 }
 
 FastParticipant::~FastParticipant() { rtps::RTPSDomain::removeRTPSParticipant(participant_); }

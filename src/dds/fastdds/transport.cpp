@@ -47,11 +47,19 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return &descriptor_;
   }
 
+  bool OpenInputChannel(const rtps::Locator_t& locator,
+                        eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t max_size) override {
+    const bool opened = ChainingTransport::OpenInputChannel(locator, receiver, max_size);
+    if (opened) ++descriptor_.state->ports;
+    return opened;
+  }
+
   bool send(rtps::SenderResource* sender, const rtps::octet* message, std::uint32_t size,
             rtps::LocatorsIterator* first, rtps::LocatorsIterator* last,
             const std::chrono::steady_clock::time_point& limit) override {
     // "Sent" although dropped: a failure would only be logged.
-    if (!descriptor_.open->load(std::memory_order_relaxed)) return true;
+    if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
     return sender->send(message, size, first, last, limit);
   }
 

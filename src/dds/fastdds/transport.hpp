@@ -22,13 +22,15 @@ namespace rtps = eprosima::fastrtps::rtps;
 struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   explicit StartupTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> udp)
-      : ChainingTransportDescriptor(std::move(udp)),
-        open(std::make_shared<std::atomic<bool>>(false)) {}
+      : ChainingTransportDescriptor(std::move(udp)), state(std::make_shared<State>()) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
-  /// True lets messages out.
-  std::shared_ptr<std::atomic<bool>> open;
+  struct State {
+    std::atomic<bool> open{false};      // lets messages out
+    std::atomic<std::uint32_t> ports{0};  // on which it listens
+  };
+  std::shared_ptr<State> state;
 };
 
 /// Changes the ACKNACKs of an RTPS message from Cyclone DDS as described above; others are untouched.

@@ -67,7 +67,7 @@ constexpr std::uint8_t kReaderKind = 0x07;
 }  // namespace
 
 std::unique_ptr<Participant> LoopbackVendor::create_participant(const ParticipantOptions& options) {
-  check_domain(options);
+  check_options(options);
   return std::make_unique<LoopbackParticipant>(hub_, options);
 }
 
