@@ -1,0 +1,62 @@
+#include <cstdio>
+#include <map>
+
+#include "calls/benchmarks.hpp"
+#include "harness/turns.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr const char* kClaim = "process start to first reply";
+constexpr std::uint32_t kSeed = 11;
+
+struct Starter {
+  Configuration configuration;
+  std::vector<double> samples{};
+  std::string skipped{};
+
+  void start_once() {
+    if (!skipped.empty()) return;
+    try {
+      samples.push_back(Running(configuration).first_reply_us);
+    } catch (const Skipped& reason) {
+      skipped = reason.what();
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<Comparison> compare_cold_starts(Configurations& configurations, std::size_t starts) {
+  std::map<std::string, Starter> starters;
+  std::vector<std::function<void()>> turns;
+  for (const auto& [server, client] : vendor_pairs()) {
+    for (auto& made : {configurations.skein(server, client), configurations.raw(server, client)}) {
+      Starter& starter = starters.emplace(made.name, Starter{made}).first->second;
+      turns.push_back([&starter] { starter.start_once(); });
+    }
+  }
+  take_turns(starts, std::move(turns), kSeed, [&](std::size_t round) {
+    std::fprintf(stderr, "\rcold starts: round %zu of %zu ", round + 1, starts);
+  });
+  std::fputc('\n', stderr);
+
+  std::vector<Comparison> comparisons;
+  for (const auto& [server, client] : vendor_pairs()) {
+    const std::string pair = server == client ? server : server + "-" + client;
+    const Starter& own = starters.at("skein " + pair);
+    const Starter& raw = starters.at("raw " + pair);
+    Comparison comparison{kClaim, own.configuration.name, raw.configuration.name};
+    comparison.parameters["provider"] = "already up";
+    comparison.goal_p50 = 1.2;
+    comparison.skipped = !own.skipped.empty() ? own.skipped : raw.skipped;
+    if (comparison.skipped.empty()) {
+      comparison.samples = own.samples;
+      comparison.rival_samples = raw.samples;
+    }
+    comparisons.push_back(std::move(comparison));
+  }
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks

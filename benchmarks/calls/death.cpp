@@ -1,0 +1,122 @@
+#include <cstdio>
+#include <map>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "calls/benchmarks.hpp"
+#include "harness/private_network.hpp"
+#include "harness/turns.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr const char* kToldClaim = "provider killed to caller told";
+constexpr const char* kGoneClaim = "provider killed to its description gone";
+constexpr std::uint32_t kSeed = 13;
+/// What EntityOptions has by default.
+constexpr double kLeaseUs = 1'000'000;
+
+struct Limit {
+  std::string name;
+  double time_us;
+};
+
+struct Victim {
+  Configuration configuration;
+  std::vector<double> told_us{};
+  std::vector<double> gone_us{};
+  std::string skipped{};
+
+  void kill_once(const TwoHosts* hosts, std::mt19937& random) {
+    if (!skipped.empty()) return;
+    try {
+      kill_provider(hosts, random);
+    } catch (const Skipped& reason) {
+      skipped = reason.what();
+    }
+  }
+
+ private:
+  void kill_provider(const TwoHosts* hosts, std::mt19937& random) {
+    Running running(configuration, hosts ? hosts->first().network : -1,
+                    hosts ? hosts->second().network : -1);
+    running.client.send("hold");
+    running.client.receive();
+    running.client.send("told");
+    // At a random phase of heartbeats and announcements, with the caller already waiting.
+    std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 400));
+    const Instant killed = running.server.kill();
+    std::istringstream words(running.client.receive());
+    std::string title;
+    long long told_ns = 0, gone_ns = 0;
+    words >> title >> told_ns >> gone_ns;
+    const auto killed_ns = std::chrono::nanoseconds(killed.time_since_epoch()).count();
+    told_us.push_back(static_cast<double>(told_ns - killed_ns) / 1000);
+    gone_us.push_back(static_cast<double>(gone_ns - killed_ns) / 1000);
+  }
+};
+
+Comparison comparison_of(const char* claim, const Victim& victim, const std::vector<double>& samples,
+                         const Limit& limit, const std::string& where) {
+  Comparison comparison{claim, victim.configuration.name, limit.name, {{"where", where}}};
+  comparison.goal_p50 = comparison.goal_p99 = 1.0;
+  comparison.skipped = victim.skipped;
+  if (victim.skipped.empty()) {
+    comparison.samples = samples;
+    comparison.rival_samples = {limit.time_us};
+  }
+  return comparison;
+}
+
+std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t kills,
+                                       const TwoHosts* hosts, const Limit& limit,
+                                       const std::string& where) {
+  std::mt19937 random(kSeed);
+  std::vector<std::function<void()>> turns;
+  for (Victim& victim : victims) {
+    turns.push_back([&] { victim.kill_once(hosts, random); });
+  }
+  take_turns(kills, std::move(turns), kSeed, [&](std::size_t round) {
+    std::fprintf(stderr, "\rproviders killed, %s: round %zu of %zu ", where.c_str(), round + 1, kills);
+  });
+  std::fputc('\n', stderr);
+  std::vector<Comparison> comparisons;
+  for (const Victim& victim : victims) {
+    comparisons.push_back(comparison_of(kToldClaim, victim, victim.told_us, limit, where));
+    comparisons.push_back(comparison_of(kGoneClaim, victim, victim.gone_us, limit, where));
+  }
+  return comparisons;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations, std::size_t kills) {
+  std::vector<Victim> victims;
+  for (const auto& [server, client] : vendor_pairs()) {
+    victims.push_back({configurations.skein(server, client, 2)});
+  }
+  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", 20'000}, "one host");
+}
+
+std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
+                                                    std::size_t kills) {
+  std::optional<TwoHosts> hosts;
+  std::string skipped;
+  try {
+    hosts.emplace();
+  } catch (const Skipped& reason) {
+    skipped = reason.what();
+  }
+  const Place first = hosts ? Place{hosts->first().address, hosts->second().address} : Place{};
+  const Place second{first.peer, first.interface};
+  std::vector<Victim> victims;
+  for (const auto& [server, client] : vendor_pairs()) {
+    victims.push_back({configurations.skein(server, client, 2, first, second)});
+    victims.back().skipped = skipped;
+  }
+  return compare_deaths(std::move(victims), kills, hosts ? &*hosts : nullptr,
+                        {"limit lease + 50 ms", kLeaseUs + 50'000}, "across two hosts");
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace skein::benchmarks {
+
+/// One process of a Skein configuration.
+struct SkeinPeer {
+  std::string role;  ///< `server` or `client`.
+  std::string vendor;
+  std::uint32_t domain = 0;
+  std::size_t threads = 1;
+  std::string interface;  ///< Empty: loopback.
+  std::string peer;       ///< Address of the other host, with `interface`.
+};
+
+/// Serves, or calls and obeys. Besides `call` a client knows `hold` (starts a call that does not return;
+/// answers `holding` when the provider is at it) and `told` (waits for that call's end and for the
+/// provider's description to go; answers with the times of both, in ns).
+int run_skein_peer(const SkeinPeer& peer);
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "skein/core/clock.hpp"
+
+namespace skein::benchmarks {
+
+/// What a child says instead of `ready` where something is not installed: not an error.
+class Skipped : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A process of a measured configuration, which obeys lines on its standard input and answers with
+/// lines on its standard output. It ends with this object, and with the process that made it.
+class Child {
+ public:
+  static constexpr std::chrono::milliseconds kPatience{30'000};
+
+  /// `network` is an open network namespace for the child, -1 for this process's own. Throws Skipped
+  /// where the program does not exist, Internal where it cannot be started.
+  explicit Child(std::vector<std::string> command, int network = -1);
+  Child(Child&& other) noexcept;
+  Child& operator=(Child&&) = delete;
+  /// Closes the child's input, at which it ends; kills it where it does not.
+  ~Child();
+
+  /// Just before the process was made; on the clock that all processes of a host share.
+  Instant started() const noexcept { return started_; }
+
+  void send(const std::string& line);
+
+  /// The next line, without its end. Throws Skipped where it says so (`skipped REASON`), Internal where
+  /// the child has ended, says `failed REASON`, or is silent for longer than `patience`.
+  std::string receive(std::chrono::milliseconds patience = kPatience);
+
+  /// SIGKILL. Returns the instant just before.
+  Instant kill();
+
+ private:
+  void reap() noexcept;
+
+  std::vector<std::string> command_;
+  Instant started_;
+  pid_t pid_ = -1;
+  int input_ = -1;
+  int output_ = -1;
+  std::string received_;
+};
+
+}  // namespace skein::benchmarks

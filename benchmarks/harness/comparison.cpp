@@ -1,0 +1,56 @@
+#include "harness/comparison.hpp"
+
+#include <fstream>
+
+#include "skein/core/error.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+using nlohmann::json;
+
+void put_times(json& object, const std::string& prefix, const Summary& summary) {
+  const auto put = [&](const char* name, double time_us) {
+    object[prefix + name] = summary.samples == 0 ? json(nullptr) : json(time_us);
+  };
+  put("p50_us", summary.p50);
+  put("p90_us", summary.p90);
+  put("p95_us", summary.p95);
+  put("p99_us", summary.p99);
+  put("p999_us", summary.p999);
+}
+
+json ratio(double subject, double rival) {
+  return subject > 0 && rival > 0 ? json(subject / rival) : json(nullptr);
+}
+
+}  // namespace
+
+json to_json(const Comparison& comparison) {
+  const Summary own = comparison.summary();
+  const Summary rival = comparison.rival_summary();
+  json object{{"claim", comparison.claim},
+              {"subject", comparison.subject},
+              {"rival", comparison.rival},
+              {"parameters", comparison.parameters},
+              {"samples", own.samples},
+              {"rival_samples", rival.samples}};
+  put_times(object, "", own);
+  put_times(object, "rival_", rival);
+  object["ratio_p50"] = ratio(own.p50, rival.p50);
+  object["ratio_p99"] = ratio(own.p99, rival.p99);
+  if (comparison.goal_p50) object["goal_p50"] = *comparison.goal_p50;
+  if (comparison.goal_p99) object["goal_p99"] = *comparison.goal_p99;
+  if (!comparison.skipped.empty()) object["skipped"] = comparison.skipped;
+  return object;
+}
+
+void write_results(const std::vector<Comparison>& comparisons, const std::string& path) {
+  json all = json::array();
+  for (const Comparison& comparison : comparisons) all.push_back(to_json(comparison));
+  std::ofstream file(path);
+  file << all.dump(2) << '\n';
+  if (!file.flush()) throw Internal(path + " cannot be written; is its folder there and writable?");
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,105 @@
+#include "harness/private_network.hpp"
+
+#include <fcntl.h>
+#include <net/if.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "harness/child.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+bool raise_loopback() {
+  const int socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  request.ifr_flags = IFF_UP;
+  const bool up = socket_ >= 0 && ioctl(socket_, SIOCSIFFLAGS, &request) == 0;
+  close(socket_);
+  return up;
+}
+
+void map_to_root(uid_t user, gid_t group) {
+  std::ofstream("/proc/self/setgroups") << "deny";
+  std::ofstream("/proc/self/uid_map") << "0 " << user << " 1";
+  std::ofstream("/proc/self/gid_map") << "0 " << group << " 1";
+}
+
+int open_network() { return open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC); }
+
+// A network namespace that lives as long as the descriptor; this thread returns to its own.
+int make_network() {
+  const int own = open_network();
+  int made = -1;
+  if (unshare(CLONE_NEWNET) == 0) {
+    raise_loopback();
+    made = open_network();
+    setns(own, CLONE_NEWNET);
+  }
+  close(own);
+  if (made < 0) throw Skipped("no network namespaces can be made here (run as root)");
+  return made;
+}
+
+void run_ip(std::vector<std::string> arguments, int network = -1) {
+  arguments.insert(arguments.begin(), "ip");
+  const pid_t pid = fork();
+  if (pid == 0) {
+    if (network >= 0 && setns(network, CLONE_NEWNET) != 0) _exit(126);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    execvp("ip", words.data());
+    _exit(127);
+  }
+  int status = 1;
+  waitpid(pid, &status, 0);
+  if (status == 0) return;
+  std::string text;
+  for (const std::string& argument : arguments) text += argument + " ";
+  throw Skipped("'" + text + "' failed; it needs iproute2 and the right to make interfaces");
+}
+
+std::string path_of(int network) {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(network);
+}
+
+}  // namespace
+
+std::string enter_private_network() {
+  const uid_t user = geteuid();
+  const gid_t group = getegid();
+  if (unshare(CLONE_NEWNET) != 0) {
+    if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) {
+      return "network namespaces are not allowed here; other traffic on loopback may disturb";
+    }
+    map_to_root(user, group);
+  }
+  return raise_loopback() ? "" : "loopback cannot be switched on";
+}
+
+TwoHosts::TwoHosts() {
+  first_.network = make_network();
+  second_.network = make_network();
+  run_ip({"link", "add", "skein0", "netns", path_of(first_.network), "type", "veth", "peer", "name",
+          "skein1", "netns", path_of(second_.network)});
+  run_ip({"address", "add", first_.address + "/24", "dev", "skein0"}, first_.network);
+  run_ip({"address", "add", second_.address + "/24", "dev", "skein1"}, second_.network);
+  run_ip({"link", "set", "skein0", "up"}, first_.network);
+  run_ip({"link", "set", "skein1", "up"}, second_.network);
+}
+
+TwoHosts::~TwoHosts() {
+  close(first_.network);
+  close(second_.network);
+}
+
+}  // namespace skein::benchmarks

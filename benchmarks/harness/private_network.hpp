@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+namespace skein::benchmarks {
+
+/// Moves this process into a network of its own that has nothing but loopback, so that a run neither
+/// disturbs others nor is disturbed. Before any thread exists. Returns what stood in the way, or "".
+std::string enter_private_network();
+
+/// Two hosts for this kernel: network namespaces with one cable (veth) between them. They vanish with
+/// this object.
+class TwoHosts {
+ public:
+  /// Throws Skipped where the kernel or the rights do not allow it or `ip` is not installed.
+  TwoHosts();
+  ~TwoHosts();
+  TwoHosts(const TwoHosts&) = delete;
+  TwoHosts& operator=(const TwoHosts&) = delete;
+
+  struct Host {
+    int network = -1;
+    std::string address;
+  };
+  const Host& first() const noexcept { return first_; }
+  const Host& second() const noexcept { return second_; }
+
+ private:
+  Host first_{-1, "10.77.0.1"};
+  Host second_{-1, "10.77.0.2"};
+};
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,181 @@
+// A call written with Cyclone DDS's own API, in the way that a careful user writes one, with the
+// transport of Skein's back end: no code of the user's on Cyclone's threads but a notification.
+
+#include <condition_variable>
+#include <cstring>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "raw/cyclonedds_sample.hpp"
+#include "raw/main.hpp"
+#include "raw/message.hpp"
+
+namespace skein::benchmarks::raw {
+namespace {
+
+constexpr const char* kConfiguration =
+    "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
+    "<NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
+    "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65000 B</MaxMessageSize>"
+    "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize></General>"
+    "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+    "<MaxAutoParticipantIndex>3</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
+    "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
+    "<Internal><SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>"
+    "<Watermarks><WhcHigh>4 MiB</WhcHigh><WhcHighInit>1 MiB</WhcHighInit></Watermarks>"
+    "<HeartbeatInterval>25 ms</HeartbeatInterval></Internal></Domain></CycloneDDS>";
+
+dds_entity_t check(dds_return_t code) {
+  if (code < 0) throw Internal(std::string("Cyclone DDS says '") + dds_strretcode(-code) + "'");
+  return code;
+}
+
+class Participant {
+ public:
+  explicit Participant(std::uint32_t domain) : qos_(dds_create_qos()) {
+    check(dds_create_domain(domain, kConfiguration));
+    participant_ = check(dds_create_participant(domain, nullptr, nullptr));
+    dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
+    dds_qset_data_representation(qos_, 1, &representation);
+    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+    dds_qset_history(qos_, DDS_HISTORY_KEEP_ALL, 0);
+  }
+  ~Participant() {
+    dds_delete(participant_);
+    dds_delete_qos(qos_);
+  }
+
+  struct Topic {
+    dds_entity_t entity;
+    const ddsi_sertype* type;
+  };
+  Topic topic(const char* name) {
+    ddsi_sertype* type = make_type(kType);
+    const dds_entity_t entity =
+        check(dds_create_topic_sertype(participant_, name, &type, qos_, nullptr, nullptr));
+    return {entity, type};
+  }
+  dds_entity_t writer(const Topic& topic) {
+    return check(dds_create_writer(participant_, topic.entity, qos_, nullptr));
+  }
+  dds_entity_t reader(const Topic& topic, const dds_listener_t* listener = nullptr) {
+    return check(dds_create_reader(participant_, topic.entity, qos_, listener));
+  }
+  dds_entity_t waitset() { return check(dds_create_waitset(participant_)); }
+
+ private:
+  dds_entity_t participant_ = 0;
+  dds_qos_t* qos_;
+};
+
+void write(dds_entity_t writer, const ddsi_sertype* type, const Outgoing& message) {
+  Sample* sample = Sample::make(type, encoded_size(message));
+  encode(message, sample->bytes());
+  check(dds_writecdr(writer, sample));
+}
+
+/// False where nothing waits.
+bool take(dds_entity_t reader, Message& message) {
+  ddsi_serdata* data = nullptr;
+  dds_sample_info_t info;
+  if (dds_takecdr(reader, &data, 1, &info, DDS_ANY_STATE) <= 0) return false;
+  auto* sample = static_cast<Sample*>(data);
+  if (info.valid_data) decode(message, sample->bytes(), sample->size);
+  ddsi_serdata_unref(data);
+  return true;
+}
+
+void serve(Participant& participant, const std::atomic<bool>& ending) {
+  const auto request_topic = participant.topic(kRequestTopic);
+  const auto reply_topic = participant.topic(kReplyTopic);
+  const dds_entity_t requests = participant.reader(request_topic);
+  const dds_entity_t replies = participant.writer(reply_topic);
+  const dds_entity_t waiting = participant.waitset();
+  const dds_entity_t condition = check(dds_create_readcondition(requests, DDS_ANY_STATE));
+  check(dds_waitset_attach(waiting, condition, 0));
+  while (!ending) {
+    dds_attach_t active;
+    dds_waitset_wait(waiting, &active, 1, DDS_MSECS(100));
+    Message request;
+    while (take(requests, request)) {
+      const Content result = echo(request.content);
+      write(replies, reply_topic.type, {request.head, &result});
+    }
+  }
+}
+
+void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
+  Participant participant(domain);
+  std::atomic<bool> ending{false};
+  std::thread thread([&] { serve(participant, ending); });
+  meanwhile();
+  ending = true;
+  thread.join();
+}
+
+class Client {
+ public:
+  explicit Client(std::uint32_t domain)
+      : participant_(domain),
+        request_topic_(participant_.topic(kRequestTopic)),
+        requests_(participant_.writer(request_topic_)) {
+    dds_listener_t* listener = dds_create_listener(this);
+    dds_lset_data_available(listener, [](dds_entity_t, void* self) {
+      static_cast<Client*>(self)->data_available();
+    });
+    replies_ = participant_.reader(participant_.topic(kReplyTopic), listener);
+    dds_delete_listener(listener);
+    dds_guid_t guid;
+    check(dds_get_guid(requests_, &guid));
+    std::memcpy(id_.data(), guid.v, id_.size());
+  }
+
+  std::optional<Content> call(const Content& content, std::chrono::milliseconds patience) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    write(requests_, request_topic_.type, {{id_, ++number_}, &content});
+    std::unique_lock lock(mutex_);
+    while (changed_.wait_until(lock, end, [&] { return arrived_; })) {
+      arrived_ = false;
+      lock.unlock();
+      Message reply;
+      while (take(replies_, reply)) {
+        if (reply.head.client == id_ && reply.head.number == number_) return std::move(reply.content);
+      }
+      lock.lock();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void data_available() {
+    std::lock_guard lock(mutex_);
+    arrived_ = true;
+    changed_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool arrived_ = false;
+  ClientId id_{};
+  std::uint32_t number_ = 0;
+  Participant participant_;
+  Participant::Topic request_topic_;
+  dds_entity_t requests_ = 0;
+  dds_entity_t replies_ = 0;
+};
+
+void client(std::uint32_t domain) {
+  Client client(domain);
+  run_raw_client([&](const Content& content, std::chrono::milliseconds patience) {
+    return client.call(content, patience);
+  });
+}
+
+}  // namespace
+}  // namespace skein::benchmarks::raw
+
+int main(int argc, char** argv) {
+  using namespace skein::benchmarks::raw;
+  return raw_main(argc, argv, server, client);
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/comparison.hpp"
+
+/// The parts of the report, as HTML.
+namespace skein::benchmarks {
+
+using Comparisons = std::vector<const Comparison*>;
+
+/// `1 KiB`.
+std::string size_text(std::size_t size_bytes);
+
+/// Verdicts in words: every comparison beyond its goal, and what was skipped.
+std::string verdict_section(const std::vector<Comparison>& comparisons);
+
+/// Latency by size, ratios and tails of one claim.
+std::string section_by_size(const std::string& claim, const Comparisons& comparisons);
+
+/// Every measured time of one claim as a dot.
+std::string section_of_times(const std::string& claim, const Comparisons& comparisons);
+
+std::string table_of(const Comparisons& comparisons);
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,98 @@
+// Measures Skein beside its rivals and writes results.json and report.html.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <cstdio>
+
+#include "calls/benchmarks.hpp"
+#include "calls/skein_peer.hpp"
+#include "harness/private_network.hpp"
+#include "report/report.hpp"
+#include "skein/core/error.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+struct Plan {
+  CallPlan calls;
+  std::size_t cold_starts;
+  std::size_t kills_on_one_host;
+  std::size_t kills_across_hosts;
+};
+
+Plan full_plan() {
+  return {{{{64, 400}, {1024, 400}, {65'536, 120}, {1'048'576, 40}}, 40}, 25, 20, 6};
+}
+
+/// Shows that everything runs; its figures mean nothing.
+Plan quick_plan() { return {{{{64, 5}, {1024, 5}, {65'536, 5}, {1'048'576, 3}}, 1}, 1, 1, 1}; }
+
+void append(std::vector<Comparison>& all, std::vector<Comparison> more) {
+  for (Comparison& comparison : more) all.push_back(std::move(comparison));
+}
+
+void print_summary(const std::vector<Comparison>& comparisons) {
+  std::printf("%-32s %-28s %-26s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us", "p99 us",
+              "p50 x", "p99 x");
+  for (const Comparison& comparison : comparisons) {
+    if (!comparison.goal_p50) continue;
+    const auto& parameters = comparison.parameters;
+    const std::string claim =
+        comparison.claim +
+        (parameters.contains("size_bytes") ? ", " + parameters["size_bytes"].dump() + " B" : "");
+    if (!comparison.skipped.empty()) {
+      std::printf("%-32.32s %-28s skipped: %s\n", claim.c_str(), comparison.subject.c_str(),
+                  comparison.skipped.c_str());
+      continue;
+    }
+    const Summary own = comparison.summary(), rival = comparison.rival_summary();
+    std::printf("%-32.32s %-28s %-26s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(),
+                comparison.subject.c_str(), comparison.rival.c_str(), own.p50, own.p99,
+                own.p50 / rival.p50, own.p99 / rival.p99);
+  }
+}
+
+void run(const std::string& output, bool quick) {
+  RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
+  facts.remarks.push_back(enter_private_network());
+  std::filesystem::create_directories(output);
+  const Plan plan = quick ? quick_plan() : full_plan();
+  Configurations configurations(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+  std::vector<Comparison> comparisons = compare_calls(configurations, plan.calls);
+  append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
+  append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
+  append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
+  write_results(comparisons, output + "/results.json");
+  write_report(comparisons, facts, output + "/report.html");
+  print_summary(comparisons);
+  std::printf("%s/report.html, %s/results.json\n", output.c_str(), output.c_str());
+}
+
+}  // namespace
+}  // namespace skein::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace skein::benchmarks;
+  CLI::App app("Skein beside its rivals, in one interleaved run");
+  std::string output = "bench";
+  bool quick = false;
+  app.add_option("--output", output, "Folder for results.json and report.html");
+  app.add_flag("--quick", quick, "A smoke test of a few seconds");
+  SkeinPeer peer;
+  CLI::App* as_peer = app.add_subcommand("peer", "One process of a measured configuration")->group("");
+  as_peer->add_option("--role", peer.role)->required();
+  as_peer->add_option("--vendor", peer.vendor)->required();
+  as_peer->add_option("--domain", peer.domain)->required();
+  as_peer->add_option("--threads", peer.threads);
+  as_peer->add_option("--interface", peer.interface);
+  as_peer->add_option("--peer", peer.peer);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (*as_peer) return run_skein_peer(peer);
+    run(output, quick);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "skein_bench: %s\n", error.what());
+    return 1;
+  }
+}
