@@ -88,7 +88,7 @@ class _Writer:
             model.Typedef: self._typedef,
             model.Enum: self._enum,
             model.Struct: self._struct,
-            model.Exception_: self._struct,
+            model.Exception_: self._exception,
             model.Union: self._union,
             model.Interface: self._interface,
         }
@@ -153,6 +153,10 @@ class _Writer:
         members = [f"  {'@key ' if m.key or id(m) in keys else ''}{self._declarator(m.type, m.name)}" for m in decl.members]
         return [f"struct {_identifier(decl.dds_name)} {{", *(members or ["  octet dummy;"]), "};"]
 
+    def _exception(self, decl):
+        number = hashes.signed(hashes.name_hash(decl.idl_name))
+        return [f"const long {decl.dds_name}_Ex_Hash = {number};", *self._struct(decl)]
+
     def _union(self, decl):
         lines = [f"union {_identifier(decl.dds_name)} switch ({self._type(decl.discriminator)}) {{"]
         for case in decl.cases:
@@ -192,7 +196,7 @@ class _Writer:
         lines += [f"union {name}_Result switch (long) {{", "  default:", "    dds::rpc::UnknownException unknownEx;"]
         lines += ["  case 0:", f"    {name}_Out result;"]
         for exception in operation.raises:
-            number = hashes.signed(hashes.name_hash(exception.idl_name))
             member = exception.dds_name[0].lower() + exception.dds_name[1:] + "_ex"
+            number = self._relative(exception.modules, f"{exception.dds_name}_Ex_Hash")
             lines += [f"  case {number}:", f"    {self._scoped(exception)} {_identifier(member)};"]
         return lines + ["};"]
