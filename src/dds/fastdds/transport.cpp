@@ -51,7 +51,8 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
                         eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_size) override {
     const bool opened = ChainingTransport::OpenInputChannel(locator, receiver, max_size);
-    if (opened) ++descriptor_.state->ports;
+    // It also says "opened" when asked a second time for a port that was taken.
+    if (opened && IsInputChannelOpen(locator)) ++descriptor_.state->ports;
     return opened;
   }
 

@@ -1,0 +1,108 @@
+#include <catch2/catch.hpp>
+
+#include "wire.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+using namespace skein::dds::conformance;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+using Catch::Contains;
+
+TEST_CASE("a sample in another encoding is counted and dropped, the next one arrives") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  auto parameter_list = make_number(1);
+  parameter_list[1] = std::byte{0x03};
+  auto xcdr2 = make_number(2);
+  xcdr2[1] = std::byte{0x07};
+  auto nonsense = make_number(3);
+  nonsense[0] = std::byte{0xFF};
+  outbox.writer().write(parameter_list);
+  outbox.writer().write(xcdr2);
+  outbox.writer().write(nonsense);
+  outbox.writer().write(make_number(4));
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  CHECK(numbers(inbox.received()) == std::vector<std::uint32_t>{4});
+  CHECK(inbox.reader().malformed() == 3);
+}
+
+TEST_CASE("a sample without room for its header is refused by the writer") {
+  Wire wire;
+  const auto writer = wire.writing->create_writer(keyless(), keep_all());
+  const std::vector<std::byte> three(3);
+  CHECK_THROWS_AS(writer->write(three), InvalidArgument);
+  CHECK_THROWS_AS(writer->write({}), InvalidArgument);
+}
+
+TEST_CASE("a domain beyond the last one is refused") {
+  ParticipantOptions options;
+  options.domain = 233;
+  CHECK_THROWS_WITH(load_vendor(kPairing.writing)->create_participant(options),
+                    Contains("233") && Contains("232"));
+}
+
+TEST_CASE("an unknown interface is refused with the known ones") {
+  ParticipantOptions options;
+  options.network.interfaces = {"lo0"};
+  CHECK_THROWS_WITH(load_vendor(kPairing.writing)->create_participant(options),
+                    Contains("lo0") && Contains("did you mean 'lo'") && Contains("127.0.0.1"));
+  options.network.interfaces = {"192.0.2.77"};
+  CHECK_THROWS_AS(load_vendor(kPairing.writing)->create_participant(options), InvalidArgument);
+}
+
+TEST_CASE("a peer that is no host's name is refused") {
+  ParticipantOptions options;
+  options.network.peers = {"\"/><Tracing/>"};
+  CHECK_THROWS_AS(load_vendor(kPairing.writing)->create_participant(options), InvalidArgument);
+}
+
+TEST_CASE("names and settings that a vendor could not honour are refused by all") {
+  Wire wire;
+  CHECK_THROWS_WITH(wire.writing->create_writer({"a:b", "T", false}, keep_all()), Contains("a:b"));
+  CHECK_THROWS_AS(wire.writing->create_writer({"7up", "T", false}, keep_all()), InvalidArgument);
+  CHECK_THROWS_AS(wire.writing->create_writer({"", "T", false}, keep_all()), InvalidArgument);
+  CHECK_THROWS_AS(wire.writing->create_writer({"t", "", false}, keep_all()), InvalidArgument);
+  Qos qos;
+  qos.partitions = {"unit_*"};
+  CHECK_THROWS_WITH(wire.writing->create_reader(keyless(), qos), Contains("unit_*"));
+  qos = {};
+  qos.history_depth = 0;
+  CHECK_THROWS_AS(wire.writing->create_reader(keyless(), qos), InvalidArgument);
+}
+
+TEST_CASE("a bounded writer is not held up by readers that acknowledge nothing by contract") {
+  Wire wire;
+  Qos bounded = keep_all();
+  bounded.max_samples = 4;
+  bounded.max_blocking = 2s;
+  Qos best_effort;
+  best_effort.reliable = false;
+  Outbox outbox(*wire.writing, keyless(), bounded);
+  Inbox inbox(*wire.reading, keyless(), best_effort);
+  REQUIRE(matched(outbox, inbox));
+  for (std::uint32_t i = 0; i < 100; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
+}
+
+TEST_CASE("a bounded writer goes on as its readers acknowledge") {
+  Wire wire;
+  Qos bounded = keep_all();
+  bounded.max_samples = 4;
+  bounded.max_blocking = 10s;
+  Outbox outbox(*wire.writing, keyless(), bounded);
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  for (std::uint32_t i = 0; i < 40; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
+  CHECK(eventually([&] { return inbox.count() == 40; }));
+}
+
+TEST_CASE("a bounded writer without readers never waits") {
+  Wire wire;
+  Qos bounded = keep_all();
+  bounded.max_samples = 2;
+  Outbox outbox(*wire.writing, keyless(), bounded);
+  for (std::uint32_t i = 0; i < 20; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
+  CHECK(outbox.writer().wait_for_acknowledgments(1s));
+}

@@ -1,0 +1,246 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "child.hpp"
+#include "wire.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+using namespace skein::dds::conformance;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr const char* kPeer = "skein_conformance_peer";
+
+Child start(const std::string& role, std::uint32_t domain, const std::string& lease_ms,
+            std::vector<std::string> environment = {}, const std::string& directory = ".") {
+  const std::string& vendor = role == "write" ? kPairing.writing : kPairing.reading;
+  return Child(kPeer, {role, vendor, std::to_string(domain), lease_ms}, std::move(environment),
+               directory);
+}
+
+/// The GUID that the peer says first.
+Guid endpoint(Child& peer) {
+  const std::string line = peer.read();
+  const auto guid = Guid::from_hex(line.substr(line.find(' ') + 1));
+  REQUIRE(guid);
+  return *guid;
+}
+
+Qos watched_state() {
+  Qos qos = last_state();
+  qos.liveliness_lease = 300ms;
+  return qos;
+}
+
+bool told_last(const std::vector<std::pair<Guid, bool>>& events, const Guid& guid, bool what) {
+  return !events.empty() && events.back() == std::pair{guid, what};
+}
+
+}  // namespace
+
+TEST_CASE("a killed process loses its liveliness, then its place") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain);
+  Inbox inbox(*participant, keyed(), watched_state());
+  Child peer = start("write", domain, "1000");
+  const Guid writer = endpoint(peer);
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  CHECK(inbox.received()[0].writer == writer);
+  peer.signal(SIGKILL);
+  REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
+  REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
+  CHECK(inbox.count() == 1);
+  CHECK(inbox.reader().matched_writers().empty());
+}
+
+TEST_CASE("a process that is stopped shortly is silent, and alive again when it writes") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain);
+  Inbox inbox(*participant, keyed(), watched_state());
+  Child peer = start("write", domain, "60000");
+  const Guid writer = endpoint(peer);
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  peer.signal(SIGSTOP);
+  REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
+  CHECK(inbox.reader().matched_writers() == std::vector{writer});
+  peer.signal(SIGCONT);
+  peer.send("write");
+  REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, true); }));
+  REQUIRE(eventually([&] { return inbox.count() == 2; }));
+}
+
+TEST_CASE("a process that is stopped beyond its lease is found again, and heard") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain, 1s);
+  Inbox inbox(*participant, keyed(), watched_state());
+  Child peer = start("write", domain, "1000");
+  const Guid writer = endpoint(peer);
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  peer.signal(SIGSTOP);
+  REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
+  peer.signal(SIGCONT);
+  REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, true); }));
+  peer.send("write");
+  REQUIRE(peer.read() == "wrote 1");
+  REQUIRE(eventually([&] {
+    const auto received = inbox.received();
+    return to_number(received.back().cdr) == 1;
+  }));
+}
+
+TEST_CASE("a process that ends in order is gone at once") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain, 60s);
+  Inbox inbox(*participant, keyed(), last_state());
+  Child peer = start("write", domain, "60000");
+  const Guid writer = endpoint(peer);
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  CHECK(peer.finish() == 0);
+  CHECK(eventually([&] { return told_last(inbox.matches(), writer, false); }));
+  CHECK(inbox.liveliness().empty());
+}
+
+TEST_CASE("a stopped reader makes a bounded writer refuse, not hang, and nothing written is lost") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.writing, domain, 60s);
+  Qos qos = keep_all();
+  qos.max_samples = 8;
+  qos.max_blocking = 100ms;
+  Outbox outbox(*participant, keyless(), qos);
+  Child peer = start("read", domain, "60000");
+  const Guid reader = endpoint(peer);
+  REQUIRE(eventually([&] { return outbox.writer().matched_readers() == std::vector{reader}; }));
+  // The reader must have matched too, or the first samples are not for it.
+  std::uint32_t written = 0;
+  REQUIRE(eventually([&] {
+    outbox.writer().write(make_number(0));
+    ++written;
+    peer.send("count");
+    return peer.read() != "count 0";
+  }));
+  REQUIRE(outbox.writer().wait_for_acknowledgments(10s));
+  peer.send("count");
+  const std::string before = peer.read();
+  const std::uint32_t heard = static_cast<std::uint32_t>(std::stoul(before.substr(6)));
+
+  peer.signal(SIGSTOP);
+  std::uint32_t accepted = 0;
+  bool refused = false;
+  for (int i = 0; i < 1000 && !refused; ++i) {
+    try {
+      outbox.writer().write(make_number(7));
+      ++accepted;
+    } catch (const Overloaded&) {
+      refused = true;
+    }
+  }
+  CHECK(refused);
+  CHECK(accepted <= qos.max_samples);
+  CHECK_FALSE(outbox.writer().wait_for_acknowledgments(20ms));
+  peer.signal(SIGCONT);
+  CHECK(outbox.writer().wait_for_acknowledgments(10s));
+  CHECK(eventually([&] {
+    peer.send("count");
+    return peer.read() == "count " + std::to_string(heard + accepted);
+  }));
+  CHECK_NOTHROW(outbox.writer().write(make_number(8)));
+}
+
+TEST_CASE("one stopped reader does not keep samples from the others") {
+  const std::uint32_t domain = fresh_domain();
+  const auto writing = make_participant(kPairing.writing, domain, 60s);
+  const auto reading = make_participant(kPairing.reading, domain, 60s);
+  Outbox outbox(*writing, keyless(), keep_all());
+  Inbox inbox(*reading, keyless(), keep_all());
+  Child peer = start("read", domain, "60000");
+  endpoint(peer);
+  REQUIRE(matched(outbox, inbox));
+  REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
+  peer.signal(SIGSTOP);
+  for (std::uint32_t i = 0; i < 200; ++i) outbox.writer().write(make_number(i));
+  CHECK(eventually([&] { return inbox.count() == 200; }));
+}
+
+TEST_CASE("more participants than the host may hold are refused, with a remedy") {
+  ParticipantOptions options;
+  options.domain = fresh_domain();
+  options.network.max_participants = 2;
+  const auto vendor = load_vendor(kPairing.writing);
+  const auto first = vendor->create_participant(options);
+  const auto second = vendor->create_participant(options);
+  CHECK_THROWS_AS(vendor->create_participant(options), Unavailable);
+}
+
+namespace {
+
+/// A directory that goes with the test.
+struct Scratch {
+  Scratch() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "skein_XXXXXX").string();
+    path = mkdtemp(pattern.data());
+  }
+  ~Scratch() { std::filesystem::remove_all(path); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+  }
+  std::filesystem::path path;
+};
+
+constexpr const char* kHostileProfiles = R"(<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <log><use_default>FALSE</use_default><consumer><class>FileConsumer</class>
+    <property><name>filename</name><value>fastdds.log</value></property></consumer></log>
+  <profiles>
+    <transport_descriptors><transport_descriptor><transport_id>elsewhere</transport_id>
+      <type>UDPv4</type><interfaceWhiteList><address>192.0.2.1</address></interfaceWhiteList>
+    </transport_descriptor></transport_descriptors>
+    <participant profile_name="hostile" is_default_profile="true"><domainId>99</domainId>
+      <rtps><name>hostile</name><useBuiltinTransports>false</useBuiltinTransports>
+        <userTransports><transport_id>elsewhere</transport_id></userTransports></rtps></participant>
+  </profiles></dds>)";
+
+}  // namespace
+
+TEST_CASE("a hostile environment changes nothing") {
+  const Scratch scratch;
+  scratch.write("DEFAULT_FASTRTPS_PROFILES.xml", kHostileProfiles);
+  scratch.write("profiles.xml", kHostileProfiles);
+  scratch.write("environment.json",
+                R"({"environment_variables": {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}})");
+  const std::string at = scratch.path.string();
+  const std::vector<std::string> environment{
+      "CYCLONEDDS_URI=<CycloneDDS><Domain><General><NetworkInterfaceAddress>192.0.2.1"
+      "</NetworkInterfaceAddress><AllowMulticast>true</AllowMulticast></General><Discovery><Peers>"
+      "<Peer Address=\"192.0.2.9\"/></Peers><ExternalDomainId>99</ExternalDomainId></Discovery>"
+      "<Tracing><Verbosity>finest</Verbosity><OutputFile>" + at + "/trace.log</OutputFile></Tracing>"
+      "</Domain></CycloneDDS>",
+      "FASTRTPS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
+      "FASTDDS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
+      "FASTDDS_ENVIRONMENT_FILE=" + at + "/environment.json",
+      "ROS_DISCOVERY_SERVER=127.0.0.1:11811",
+      "FASTDDS_STATISTICS=HISTORY_LATENCY_TOPIC;DATA_COUNT_TOPIC",
+      "FASTDDS_BUILTIN_TRANSPORTS=LARGE_DATA",
+      "ROS_LOCALHOST_ONLY=0",
+      "ROS_DOMAIN_ID=99"};
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain);
+  Inbox inbox(*participant, keyed(), last_state());
+  Child peer = start("write", domain, "10000", environment, at);
+  const Guid writer = endpoint(peer);
+  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  CHECK(inbox.reader().matched_writers() == std::vector{writer});
+  CHECK(peer.finish() == 0);
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(scratch.path)) {
+    files.push_back(entry.path().filename());
+  }
+  std::sort(files.begin(), files.end());
+  CHECK(files == std::vector<std::string>{"DEFAULT_FASTRTPS_PROFILES.xml", "environment.json",
+                                          "profiles.xml"});
+}

@@ -1,0 +1,80 @@
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "../../src/dds/keyed_queue.hpp"
+#include "../../src/dds/sample_format.hpp"
+#include "skein/core/error.hpp"
+#include "skein/dds/port.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+using Catch::Contains;
+
+TEST_CASE("an unknown vendor is refused with the known ones and the nearest") {
+  CHECK_THROWS_WITH(load_vendor("fastdss"), Contains("did you mean 'fastdds'") &&
+                                                Contains("cyclonedds") && Contains("loopback"));
+  CHECK_THROWS_AS(load_vendor(""), InvalidArgument);
+}
+
+TEST_CASE("loopback is always there, and one network for the process") {
+  const auto one = load_vendor("loopback")->create_participant({});
+  const auto other = load_vendor("loopback")->create_participant({});
+  CHECK(load_vendor("loopback")->name() == "loopback");
+  CHECK(one->guid() != other->guid());
+}
+
+TEST_CASE("padding comes off again, and its mark with it") {
+  for (std::size_t size = 4; size < 20; ++size) {
+    std::vector<std::byte> sample(size, std::byte{0x5A});
+    sample[3] = std::byte{0};
+    std::vector<std::byte> sent(padded(size));
+    copy_padded(sample, sent.data());
+    const auto received = without_padding(sent.data(), sent.size());
+    INFO("size " << size);
+    CHECK((std::vector(received.begin(), received.end()) == sample));
+  }
+}
+
+TEST_CASE("a mark of more padding than there is takes nothing away") {
+  std::byte message[] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{3}};
+  CHECK(without_padding(message, 4).size() == 4);
+  std::byte odd[] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{3}, std::byte{9}};
+  CHECK(without_padding(odd, 5).size() == 5);
+}
+
+TEST_CASE("only PLAIN_CDR is taken") {
+  const auto accepted = [](std::initializer_list<int> bytes) {
+    std::vector<std::byte> message;
+    for (const int byte : bytes) message.push_back(static_cast<std::byte>(byte));
+    return is_plain_cdr(message);
+  };
+  CHECK(accepted({0, 1, 0, 0}));
+  CHECK(accepted({0, 0, 0, 0, 1}));
+  CHECK_FALSE(accepted({}));
+  CHECK_FALSE(accepted({0, 1, 0}));
+  CHECK_FALSE(accepted({0, 2, 0, 0}));
+  CHECK_FALSE(accepted({0, 3, 0, 0}));
+  CHECK_FALSE(accepted({1, 1, 0, 0}));
+}
+
+TEST_CASE("a keyed queue keeps the newest of each key, in order of arrival") {
+  KeyedQueue<int> queue(2);
+  Guid one;
+  Guid two;
+  two.bytes[0] = 1;
+  queue.push(two, 100);
+  for (int i = 0; i < 1000; ++i) queue.push(one, i);
+  CHECK(queue.size() == 3);
+  CHECK(queue.pop() == 100);
+  CHECK(queue.pop() == 998);
+  queue.push(one, 1000);
+  queue.push(one, 1001);
+  CHECK(queue.pop() == 1000);
+  CHECK(queue.pop() == 1001);
+  CHECK_FALSE(queue.pop());
+  queue.push(one, 1);
+  queue.push(two, 2);
+  queue.erase(one);
+  CHECK(queue.pop() == 2);
+  CHECK(queue.empty());
+}
