@@ -1,0 +1,149 @@
+#include "navigator.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "route_judge.hpp"
+#include "skein/core/error.hpp"
+#include "values.hpp"
+
+namespace skein::navigation {
+namespace {
+
+using AE_flightControllerI::FlightLimits;
+using AE_flightControllerI::IFlightController;
+using AE_navigator::IPlanner;
+using AE_navigator::NoRoute;
+using AE_navigator::Problem;
+using AE_navigator::Route;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLongestRequest{600'000};
+// Of a planner's time, for the way there and back and for judging its route.
+constexpr milliseconds kJudgingReserve{10};
+constexpr milliseconds kFlightControllerPatience{500};
+
+ParameterValues values_of(const AE_navigatorI::RouteRequest& request) {
+  ParameterValues values;
+  if (!request.planner.empty()) values["Planner"] = request.planner;
+  if (request.problem.time_limit_ms > 0) {
+    values["Time limit"] = std::to_string(request.problem.time_limit_ms);
+  }
+  return values;
+}
+
+std::uint32_t planning_time_ms(Duration budget) {
+  const auto left = std::chrono::duration_cast<milliseconds>(budget);
+  return static_cast<std::uint32_t>(std::max(left - kJudgingReserve, left / 2).count()) + 1;
+}
+
+/// A proof that there is no route settles it, and so does a problem that no planner could solve.
+bool settles(const UserException& exception, const Candidate&) {
+  const auto* no_route = dynamic_cast<const NoRoute*>(&exception);
+  return no_route ? no_route->proven : true;
+}
+
+[[noreturn]] void throw_no_usable_route(const DecisionRecord& record) {
+  std::string reason = "no planner had a usable route in time:";
+  for (const Attempt& attempt : record.attempts) {
+    reason += fmt::format(" {} {}", attempt.csp, to_string(attempt.outcome));
+    reason += attempt.text.empty() ? ";" : fmt::format(" ({});", attempt.text);
+  }
+  reason.pop_back();
+  throw NoRoute(reason, false);
+}
+
+}  // namespace
+
+Navigator::Navigator(Entity& entity, ParameterValues profile,
+                     std::shared_ptr<TerrainProvider> terrains)
+    : entity_(entity),
+      profile_(std::move(profile)),
+      parameters_("INavigator", {{"Planner"}, {"Time limit"}}),
+      terrains_(std::move(terrains)) {}
+
+Route Navigator::request_route(const AE_navigatorI::RouteRequest& request) {
+  if (journal_.at_work() >= kMostRequests) {
+    throw Overloaded(fmt::format("the navigator plans {} routes already; ask again when one is done",
+                                 kMostRequests));
+  }
+  journal_.begin(request.request_id);
+  DecisionRecord record;
+  try {
+    Route route = decide(request, record);
+    journal_.end(request.request_id, record, {});
+    return route;
+  } catch (const std::exception& error) {
+    journal_.end(request.request_id, record, error.what());
+    throw;
+  }
+}
+
+Route Navigator::decide(const AE_navigatorI::RouteRequest& request, DecisionRecord& record) {
+  const ParameterValues parameters = parameters_.resolve({values_of(request), profile_});
+  Problem problem = request.problem;
+  problem.limits = flight_limits();
+  try {
+    return plan(problem, parameters, record);
+  } catch (const UserException&) {
+    throw;
+  } catch (const Error&) {
+    // A planner's crash or silence is not the navigator's: the caller may well ask again.
+    if (record.attempts.empty()) throw;
+    throw_no_usable_route(record);
+  }
+}
+
+Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
+                      DecisionRecord& record) {
+  const auto terrain = terrains_->load(problem.terrain);
+  Task<IPlanner, Route> task;
+  // Asynchronous, so that a planner in this process that hangs holds up its own thread and not this.
+  task.run = [&](IPlanner::Proxy& csp, Duration budget) {
+    Problem timed = problem;
+    timed.time_limit_ms = planning_time_ms(budget);
+    return csp.async_plan(timed).get();
+  };
+  task.evaluate = [&](const Route& route) { return judge_route(*terrain, problem, route); };
+  task.settles = settles;
+  if (const auto planner = parameters.find("Planner"); planner != parameters.end()) {
+    task.only = planner->second;
+  }
+  const Duration limit = duration_of(parameters, "Time limit").value_or(kLongestRequest);
+  return entity_.head().perform(task, &record, limit);
+}
+
+FlightLimits Navigator::flight_limits() {
+  const std::lock_guard lock(mutex_);
+  if (!flight_controller_) {
+    flight_controller_ =
+        entity_.connect<IFlightController>({.timeout = kFlightControllerPatience})
+            .within(kFlightControllerPatience);
+  }
+  try {
+    return flight_controller_->flight_limits();
+  } catch (const Disconnected&) {
+    // It left under way; asking changes nothing, so the next one may be asked at once.
+    return flight_controller_->flight_limits();
+  }
+}
+
+AE_navigatorI::PlanningStatus Navigator::status() {
+  AE_navigatorI::PlanningStatus status;
+  status.request_id = journal_.current();
+  const auto running = entity_.head().running();
+  status.planning = !status.request_id.empty() && !running.empty();
+  if (!status.planning) return status;
+  status.planner = running.back().csp;
+  status.host = running.back().host;
+  status.pid = running.back().pid;
+  return status;
+}
+
+AE_navigatorI::PlanningReport Navigator::report(const std::string& request_id) {
+  return journal_.report(request_id);
+}
+
+}  // namespace skein::navigation

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "flight_controller.idl.hpp"
+#include "navigator.idl.hpp"
+#include "planning_journal.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/entity/parameters.hpp"
+#include "skein/navigation/terrain_provider.hpp"
+
+namespace skein::navigation {
+
+/// The navigator's Body. It plans nothing itself: it completes each request with what the aircraft
+/// can fly, lets its entity's Head find a planner for it, and judges what the planner returns.
+///
+/// A request's variable parameters are `Planner` (only the CSP of that name) and `Time limit`; what the
+/// request leaves open comes from the mission profile. The flight limits are always those of the flight
+/// controller, whatever the request says. The caller's deadline bounds everything.
+///
+/// Up to kMostRequests are planned at once; more are refused as Overloaded, so that status() and
+/// report() always find a thread.
+class Navigator final : public AE_navigatorI::INavigator {
+ public:
+  static constexpr std::size_t kMostRequests = 3;
+  static constexpr std::size_t kThreads = kMostRequests + 1;
+
+  /// `entity` outlives it; `profile` holds the values of the mission profile.
+  Navigator(Entity& entity, ParameterValues profile, std::shared_ptr<TerrainProvider> terrains);
+
+  /// Throws NoRoute, proven or not; InvalidProblem; Unavailable where no planner or no flight
+  /// controller stands by.
+  AE_navigator::Route request_route(const AE_navigatorI::RouteRequest& request) override;
+  AE_navigatorI::PlanningStatus status() override;
+  AE_navigatorI::PlanningReport report(const std::string& request_id) override;
+
+ private:
+  AE_navigator::Route decide(const AE_navigatorI::RouteRequest& request, DecisionRecord& record);
+  AE_navigator::Route plan(const AE_navigator::Problem& problem, const ParameterValues& parameters,
+                           DecisionRecord& record);
+  AE_flightControllerI::FlightLimits flight_limits();
+
+  Entity& entity_;
+  const ParameterValues profile_;
+  const ParameterResolver parameters_;
+  const std::shared_ptr<TerrainProvider> terrains_;
+  PlanningJournal journal_;
+  std::mutex mutex_;
+  std::optional<AE_flightControllerI::IFlightController::Proxy> flight_controller_;
+};
+
+}  // namespace skein::navigation

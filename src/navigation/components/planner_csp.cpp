@@ -1,0 +1,47 @@
+#include "planner_csp.hpp"
+
+#include <algorithm>
+
+#include "navigator.idl.hpp"
+#include "skein/navigation/planners.hpp"
+#include "values.hpp"
+
+namespace skein::navigation {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A planner that never takes longer than its own limit.
+class LimitedPlanner final : public AE_navigator::IPlanner {
+ public:
+  LimitedPlanner(std::unique_ptr<AE_navigator::IPlanner> planner, milliseconds limit)
+      : planner_(std::move(planner)), limit_ms_(static_cast<std::uint32_t>(limit.count())) {}
+
+  AE_navigator::Route plan(const AE_navigator::Problem& task) override {
+    if (task.time_limit_ms != 0 && task.time_limit_ms <= limit_ms_) return planner_->plan(task);
+    AE_navigator::Problem limited = task;
+    limited.time_limit_ms = limit_ms_;
+    return planner_->plan(limited);
+  }
+
+ private:
+  std::unique_ptr<AE_navigator::IPlanner> planner_;
+  std::uint32_t limit_ms_;
+};
+
+}  // namespace
+
+std::shared_ptr<Servant> make_planner_csp(const std::string& name,
+                                          std::shared_ptr<TerrainProvider> terrains,
+                                          const ParameterValues& values) {
+  PlannerOptions options;
+  options.seed = static_cast<std::uint32_t>(number_of(values, "Seed", options.seed));
+  auto planner = make_planner(name, std::move(terrains), std::move(options));
+  if (const auto limit = duration_of(values, "Time limit")) {
+    const auto limit_ms = std::max(milliseconds(1), std::chrono::duration_cast<milliseconds>(*limit));
+    planner = std::make_unique<LimitedPlanner>(std::move(planner), limit_ms);
+  }
+  return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::move(planner));
+}
+
+}  // namespace skein::navigation

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "skein/core/operation.hpp"
+#include "skein/entity/parameters.hpp"
+#include "skein/navigation/terrain_provider.hpp"
+
+namespace skein::navigation {
+
+/// One of the planners that planner_names() lists, wrapped to be a CSP: `Time limit` (a duration) is
+/// the most time that it takes for a route whatever the Problem allows, `Seed` the start of its random
+/// numbers. It stops as soon as nobody waits for its answer any more.
+std::shared_ptr<Servant> make_planner_csp(const std::string& planner,
+                                          std::shared_ptr<TerrainProvider> terrains,
+                                          const ParameterValues& values);
+
+}  // namespace skein::navigation

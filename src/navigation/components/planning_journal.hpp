@@ -1,0 +1,43 @@
+#pragma once
+
+#include <deque>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "navigator.idl.hpp"
+#include "skein/entity/head.hpp"
+
+namespace skein::navigation {
+
+/// What the navigator remembers of its requests: those that it works on, and how the last 64 were
+/// decided. Thread-safe.
+class PlanningJournal {
+ public:
+  void begin(const std::string& request_id);
+
+  /// Turns the Head's record into the report of the request. `failure` is what ended it, or null.
+  void end(const std::string& request_id, const DecisionRecord& record,
+           const std::string& failure);
+
+  /// The request that began last of those at work; empty if there is none.
+  std::string current() const;
+
+  /// Requests at work.
+  std::size_t at_work() const;
+
+  /// Throws UnknownRequest.
+  AE_navigatorI::PlanningReport report(const std::string& request_id) const;
+
+ private:
+  void add_absent(AE_navigatorI::PlanningReport& report) const;
+
+  mutable std::mutex mutex_;
+  std::deque<std::string> at_work_;
+  std::deque<AE_navigatorI::PlanningReport> reports_;
+  /// Every planner that was ever seen, so that reports can say who is missing.
+  std::map<std::string, AE_navigatorI::PlannerCandidate> known_;
+};
+
+}  // namespace skein::navigation

@@ -1,0 +1,35 @@
+// What a process of a mission loads to be the navigator, the flight controller or one of the planners.
+
+#include "flight_controller.hpp"
+#include "navigator.hpp"
+#include "planner_csp.hpp"
+#include "skein/core/abi.hpp"
+#include "skein/entity/component_registry.hpp"
+#include "skein/navigation/planners.hpp"
+
+using skein::ComponentRegistry;
+using skein::ParameterValues;
+
+extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
+
+extern "C" void skein_register_components(ComponentRegistry& registry) {
+  namespace navigation = skein::navigation;
+  const auto terrains = std::make_shared<navigation::TerrainProvider>();
+
+  registry.add_body("FlightController", [](skein::Entity&, const ParameterValues& values) {
+    auto body = std::make_shared<navigation::FlightController>(values);
+    return ComponentRegistry::Body{
+        std::make_shared<AE_flightControllerI::IFlightController::Skeleton>(std::move(body))};
+  });
+  registry.add_body("Navigator", [terrains](skein::Entity& entity, const ParameterValues& values) {
+    auto body = std::make_shared<navigation::Navigator>(entity, values, terrains);
+    return ComponentRegistry::Body{
+        std::make_shared<AE_navigatorI::INavigator::Skeleton>(std::move(body)),
+        navigation::Navigator::kThreads};
+  });
+  for (const std::string& planner : navigation::planner_names()) {
+    registry.add_csp(planner, [terrains, planner](const ParameterValues& values) {
+      return navigation::make_planner_csp(planner, terrains, values);
+    });
+  }
+}
