@@ -32,7 +32,7 @@ def run(tree, arguments):
     if not report.refused:
         analysis.analyse(built, report)
     if not report.refused:
-        analysis.apply_pragmas(pragmas.collect(tree), built, report)
+        analysis.apply_pragmas(pragmas.collect(tree, includes.resolve), built, report, tree.file())
     if report.refused:
         sys.exit(1)
     file = model.File(

@@ -189,16 +189,16 @@ def bounded(kind):
 # ---- pragmas
 
 
-def apply_pragmas(pragmas, builder, report):
+def apply_pragmas(pragmas, builder, report, main_file):
     for pragma in pragmas:
-        words = pragma.text.split()
+        words = pragma.text.split() or [""]
         if words[0] == "keylist":
             _keylist(pragma, words[1:], builder, report)
         elif words[0] == "idempotent":
             _idempotent(pragma, words[1:], builder, report)
         elif hint := suggestion(words[0], ["keylist", "idempotent"]):
             report.error(pragma.place, f"unknown pragma '{words[0]}'{hint}")
-        else:
+        elif pragma.place[0] == main_file:
             report.warning(pragma.place, f"unknown pragma '{words[0]}' is passed over")
 
 

@@ -1,0 +1,71 @@
+"""Compiles IDL that is not ours, the CORBA services in Debian's omniorb-idl, and compares with foreign_idl.txt, which says
+what compiles and what is refused, where and why. Ends with 77 where that package is not installed.
+
+foreign_idl_test.py SKEIN_ROOT CXX [--write]     (--write makes the list anew)
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+FOREIGN = "/usr/share/idl/omniORB"
+LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "foreign_idl.txt")
+FINDING = re.compile(r"^(?P<path>[^:\s]+):(?P<line>\d+): (?:error: )?(?P<reason>.*)$")
+
+
+def foreign_files():
+    found = []
+    for folder, _, names in os.walk(FOREIGN):
+        found += [os.path.relpath(os.path.join(folder, name), FOREIGN) for name in names if name.endswith(".idl")]
+    return sorted(found)
+
+
+def verdict(root, name, directory):
+    """`compiles`, or the first error as `file:line: reason`."""
+    command = ["omniidl", f"-p{root}/idl/compiler", "-bskein", f"-I{FOREIGN}", f"-I{FOREIGN}/COS"]
+    command += [f"-Wbdirectory={directory},name={name}", os.path.join(FOREIGN, name)]
+    environment = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")
+    done = subprocess.run(command, stderr=subprocess.PIPE, env=environment, text=True, timeout=60)
+    if done.returncode == 0:
+        return "compiles"
+    for line in done.stderr.splitlines():
+        match = FINDING.match(line)
+        if match and "Warning" not in line:
+            return f"{os.path.basename(match['path'])}:{match['line']}: {match['reason'].replace(FOREIGN + '/', '')}"
+    return f"no reason given: {done.stderr[:200]!r}"
+
+
+def check_cpp(root, compiler, directory, names):
+    """Everything that compiled must be C++, all of it together."""
+    all_in_one = os.path.join(directory, "all.cpp")
+    with open(all_in_one, "w", encoding="utf-8") as stream:
+        stream.writelines(f'#include "{name}.cpp"\n' for name in names)
+    command = [compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{root}/include"]
+    command += [f"-I{directory}", f"-I{directory}/COS", all_in_one]
+    return subprocess.run(command, timeout=300).returncode == 0
+
+
+def main():
+    root, compiler = sys.argv[1:3]
+    if not os.path.isdir(FOREIGN):
+        print("Skipped: the package omniorb-idl is not installed")
+        return 77
+    with tempfile.TemporaryDirectory() as directory:
+        verdicts = {name: verdict(root, name, directory) for name in foreign_files()}
+        text = "".join(f"{name}: {said}\n" for name, said in verdicts.items())
+        if "--write" in sys.argv:
+            with open(LIST, "w", encoding="utf-8") as stream:
+                stream.write(text)
+        with open(LIST, encoding="utf-8") as stream:
+            expected = stream.read()
+        differing = set(text.splitlines()) ^ set(expected.splitlines())
+        for line in sorted(differing):
+            print(("now:      " if line in text else "expected: ") + line)
+        compiled = [name for name, said in verdicts.items() if said == "compiles"]
+        print(f"{len(compiled)} of {len(verdicts)} files compile")
+        return 0 if check_cpp(root, compiler, directory, compiled) and not differing and compiled else 1
+
+
+sys.exit(main())
