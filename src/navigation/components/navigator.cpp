@@ -39,10 +39,22 @@ std::uint32_t planning_time_ms(Duration budget) {
   return static_cast<std::uint32_t>(std::max(left - kJudgingReserve, left / 2).count()) + 1;
 }
 
+/// What planners gave as reasons for having no route, by the planners' names.
+using Refusals = std::map<std::string, std::string>;
+
 /// A proof that there is no route settles it, and so does a problem that no planner could solve.
-bool settles(const UserException& exception, const Candidate&) {
+bool settles(const UserException& exception, const Candidate& planner, Refusals& refusals) {
   const auto* no_route = dynamic_cast<const NoRoute*>(&exception);
-  return no_route ? no_route->proven : true;
+  if (!no_route) return true;
+  refusals[planner.name] = no_route->reason;
+  return no_route->proven;
+}
+
+void use_own_words(DecisionRecord& record, const Refusals& refusals) {
+  for (Attempt& attempt : record.attempts) {
+    const auto refusal = refusals.find(attempt.csp);
+    if (refusal != refusals.end()) attempt.text = refusal->second;
+  }
 }
 
 [[noreturn]] void throw_no_usable_route(const DecisionRecord& record) {
@@ -107,12 +119,22 @@ Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
     return csp.async_plan(timed).get();
   };
   task.evaluate = [&](const Route& route) { return judge_route(*terrain, problem, route); };
-  task.settles = settles;
+  Refusals refusals;
+  task.settles = [&](const UserException& exception, const Candidate& planner) {
+    return settles(exception, planner, refusals);
+  };
   if (const auto planner = parameters.find("Planner"); planner != parameters.end()) {
     task.only = planner->second;
   }
   const Duration limit = duration_of(parameters, "Time limit").value_or(kLongestRequest);
-  return entity_.head().perform(task, &record, limit);
+  try {
+    Route route = entity_.head().perform(task, &record, limit);
+    use_own_words(record, refusals);
+    return route;
+  } catch (...) {
+    use_own_words(record, refusals);
+    throw;
+  }
 }
 
 FlightLimits Navigator::flight_limits() {

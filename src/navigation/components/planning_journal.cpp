@@ -20,9 +20,9 @@ PlannerCandidate candidate_of(const Candidate& candidate) {
   return {candidate.name, in_ms(candidate.latency.value_or(Duration::zero())), candidate.quality, true};
 }
 
-/// `RRTstar: why it was chosen; accepted after 12 ms`, one line.
+/// Why it was chosen and what came of it, in one line.
 std::string line_of(const Attempt& attempt) {
-  std::string line = fmt::format("{}: {}; {} after {:.0f} ms", attempt.csp, attempt.reason,
+  std::string line = fmt::format("{}; {} after {:.0f} ms", attempt.reason,
                                  to_string(attempt.outcome), in_ms(attempt.took));
   if (!attempt.text.empty()) line += ": " + attempt.text;
   return line;

@@ -17,7 +17,8 @@ class PlanningJournal {
  public:
   void begin(const std::string& request_id);
 
-  /// Turns the Head's record into the report of the request. `failure` is what ended it, or null.
+  /// Turns the Head's record into the report of the request: its reason has one line for each planner
+  /// that was tried, or `failure`, what ended the request, where none was.
   void end(const std::string& request_id, const DecisionRecord& record,
            const std::string& failure);
 

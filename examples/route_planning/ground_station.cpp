@@ -1,0 +1,193 @@
+#include "ground_station.hpp"
+
+#include <fmt/core.h>
+
+#include <sstream>
+
+#include "flight_controller.idl.hpp"
+#include "mission_text.hpp"
+#include "skein/core/error.hpp"
+#include "skein/navigation/demo_problem.hpp"
+#include "skein/navigation/route_checker.hpp"
+#include "skein/navigation/terrain_provider.hpp"
+
+using namespace std::chrono_literals;
+
+namespace route_planning {
+namespace {
+
+using AE_flightControllerI::IFlightController;
+using AE_navigator::Problem;
+using skein::ParameterValues;
+
+std::string value_or(const ParameterValues& values, const std::string& name, std::string otherwise) {
+  const auto found = values.find(name);
+  return found == values.end() ? std::move(otherwise) : found->second;
+}
+
+bool is_synthetic(const std::string& terrain) { return terrain.starts_with("synthetic:"); }
+
+/// Other peers look for the file too, from folders of their own.
+std::string name_for_all(const std::string& terrain) {
+  return is_synthetic(terrain) ? terrain : std::filesystem::absolute(terrain).lexically_normal().string();
+}
+
+/// The checker's own view of the ground.
+skein::navigation::HeightGrid ground_of(const skein::navigation::Terrain& terrain) {
+  if (!is_synthetic(terrain.name())) return skein::navigation::read_height_grid(terrain.name());
+  return {terrain.rows(), terrain.columns(), terrain.north_spacing_m(), terrain.east_spacing_m(),
+          terrain.heights_m()};
+}
+
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  std::istringstream text(list);
+  for (std::string name; std::getline(text, name, ',');) {
+    const auto begin = name.find_first_not_of(' ');
+    if (begin == std::string::npos) continue;
+    names.push_back(name.substr(begin, name.find_last_not_of(' ') + 1 - begin));
+  }
+  return names;
+}
+
+double seconds(skein::Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& values)
+    : entity_(entity),
+      picture_(value_or(values, "Picture", "route.svg")),
+      planners_(names_in(value_or(values, "Planners", ""))),
+      terrain_(skein::navigation::TerrainProvider().load(
+          name_for_all(value_or(values, "Terrain", "synthetic:7")))),
+      terrain_title_(std::filesystem::path(terrain_->name()).filename().string()),
+      ground_(ground_of(*terrain_)),
+      navigator_(entity),
+      limits_(ask_flight_limits()) {}
+
+bool GroundStation::fly() {
+  introduce();
+  brief_planners();
+  ask_with_time();
+  ask_in_a_hurry();
+  ask_and_kill_the_planner();
+  ask_for_the_unreachable();
+  draw();
+  return conclude();
+}
+
+void GroundStation::introduce() {
+  const Problem problem = skein::navigation::demo_problem(*terrain_);
+  print_heading("Route planning over " + terrain_title_);
+  print_field("terrain", fmt::format("{:.0f} by {:.0f} km, {:.0f} to {:.0f} m high; {} radar sites, {} "
+                                     "no-fly zones",
+                                     terrain_->east_extent_m() / 1000, terrain_->north_extent_m() / 1000,
+                                     terrain_->lowest_m(), terrain_->highest_m(),
+                                     problem.radar_sites.size(), problem.no_fly_zones.size()));
+  print_field("aircraft", fmt::format("{:.0f} m/s, climbs {:.0f} degrees, banks {:.0f} degrees, flies up "
+                                      "to {:.0f} m and no lower than {:.0f} m above ground",
+                                      limits_.speed_m_s, limits_.maximum_climb_angle_deg,
+                                      limits_.maximum_bank_angle_deg, limits_.maximum_altitude_m,
+                                      problem.minimum_height_above_ground_m));
+}
+
+void GroundStation::brief_planners() {
+  const skein::Instant begin = entity_.clock().now();
+  std::string names;
+  for (const std::string& planner : planners_) {
+    navigator_.brief(planner, skein::navigation::demo_problem(*terrain_));
+    names += (names.empty() ? "" : ", ") + planner;
+  }
+  if (names.empty()) return;
+  print_field("briefing", fmt::format("{} know the terrain after {:.1f} s", names,
+                                      seconds(entity_.clock().now() - begin)));
+}
+
+void GroundStation::ask_with_time() {
+  print_heading("1  Two seconds to think");
+  const Question question{"crossing", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
+  accept("2 s to think", question, show(question, navigator_.ask(question)));
+}
+
+void GroundStation::ask_in_a_hurry() {
+  print_heading("2  50 milliseconds to think");
+  const Question question{"hurry", flyable(skein::navigation::demo_problem(*terrain_)), 50ms, 5};
+  accept("50 ms to think", question, show(question, navigator_.ask(question)));
+}
+
+void GroundStation::ask_and_kill_the_planner() {
+  print_heading("3  Two seconds to think, and the planner is killed");
+  const Question question{"loss", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
+  Kill kill;
+  const Answer answer = navigator_.ask_and_kill(question, kill);
+  print_field("kill", fmt::format("{} (process {}) after {:.0f} ms", kill.planner, kill.pid,
+                                  1000 * seconds(kill.planned_for)));
+  accept("planner killed", question, show(question, answer));
+  if (answer.route && answer.route->planner == kill.planner) {
+    fail(kill.planner + " answered although it had been killed");
+  }
+  navigator_.brief(kill.planner, question.problem);
+  print_field("back", fmt::format("{} was started again, and had planned a route {:.1f} s after its end",
+                                  kill.planner, seconds(entity_.clock().now() - kill.at)));
+}
+
+void GroundStation::ask_for_the_unreachable() {
+  print_heading("4  A goal that cannot be reached");
+  const Question question{"unreachable",
+                          flyable(skein::navigation::unreachable_demo_problem(*terrain_)), 5s};
+  const Answer answer = show(question, navigator_.ask(question));
+  if (answer.route) return fail("a route to the unreachable goal was returned");
+  if (!answer.proven) return fail("the unreachable goal was not refused as such");
+}
+
+Answer GroundStation::show(const Question& question, Answer answer) {
+  print_planners(answer);
+  print_decision(answer);
+  if (answer.route) {
+    print_route(*answer.route);
+  } else {
+    print_field("refused", answer.refusal + (answer.proven ? " (proved)" : " (not proved)"));
+  }
+  print_time(answer, question.time_to_think);
+  return answer;
+}
+
+void GroundStation::accept(const std::string& label, const Question& question, const Answer& answer) {
+  if (!answer.route) return fail("no route (" + label + ")");
+  routes_.push_back({label + ": " + answer.route->planner, *answer.route});
+  const auto violations = skein::navigation::check_route(question.problem, *answer.route, ground_);
+  if (violations.empty()) return print_field("check", "valid");
+  for (const auto& violation : violations) {
+    print_field("check", fmt::format("INVALID ({}): {}", to_string(violation.rule), violation.text));
+  }
+  fail("the route checker refuses the route (" + label + ")");
+}
+
+void GroundStation::draw() {
+  skein::navigation::write_route_picture(picture_, *terrain_, skein::navigation::demo_problem(*terrain_),
+                                         routes_, "Route planning over " + terrain_title_);
+}
+
+bool GroundStation::conclude() {
+  print_heading("Result");
+  print_field("picture", std::filesystem::absolute(picture_).lexically_normal().string());
+  for (const std::string& failure : failures_) print_field("failed", failure);
+  if (failures_.empty()) {
+    print_field("done", fmt::format("{} routes, all valid; the unreachable goal was refused as such",
+                                    routes_.size()));
+  }
+  return failures_.empty();
+}
+
+void GroundStation::fail(const std::string& what) { failures_.push_back(what); }
+
+AE_flightControllerI::FlightLimits GroundStation::ask_flight_limits() {
+  return entity_.connect<IFlightController>({.timeout = 20s}).flight_limits();
+}
+
+Problem GroundStation::flyable(Problem problem) const {
+  problem.limits = limits_;
+  return problem;
+}
+
+}  // namespace route_planning

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "navigator_link.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/entity/parameters.hpp"
+#include "skein/navigation/height_grid.hpp"
+#include "skein/navigation/route_picture.hpp"
+#include "skein/navigation/terrain.hpp"
+
+namespace route_planning {
+
+/// Asks a navigator for routes across a terrain, past radar sites and no-fly zones: with time to think,
+/// in a hurry, with the planner killed while it plans, and to a goal that cannot be reached. Believes
+/// none of the answers before the route checker has seen them.
+///
+/// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the SVG
+/// to write; route.svg), `Planners` (names, separated by commas, of the planners that must know the
+/// terrain before the first question).
+class GroundStation {
+ public:
+  /// Throws InvalidArgument for a terrain that cannot be read, Unavailable without a navigator or
+  /// flight controller.
+  GroundStation(skein::Entity& entity, const skein::ParameterValues& values);
+
+  /// The mission; true only if every route was valid and the unreachable goal was refused as such.
+  bool fly();
+
+ private:
+  void introduce();
+  void brief_planners();
+  void ask_with_time();
+  void ask_in_a_hurry();
+  void ask_and_kill_the_planner();
+  void ask_for_the_unreachable();
+  void draw();
+  bool conclude();
+  Answer show(const Question& question, Answer answer);
+  void accept(const std::string& label, const Question& question, const Answer& answer);
+  void fail(const std::string& what);
+  AE_flightControllerI::FlightLimits ask_flight_limits();
+  AE_navigator::Problem flyable(AE_navigator::Problem problem) const;
+
+  skein::Entity& entity_;
+  std::filesystem::path picture_;
+  std::vector<std::string> planners_;
+  std::shared_ptr<const skein::navigation::Terrain> terrain_;
+  std::string terrain_title_;
+  skein::navigation::HeightGrid ground_;
+  NavigatorLink navigator_;
+  AE_flightControllerI::FlightLimits limits_;
+  std::vector<skein::navigation::PicturedRoute> routes_;
+  std::vector<std::string> failures_;
+};
+
+}  // namespace route_planning

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "navigator_link.hpp"
+#include "skein/navigation/route_checker.hpp"
+
+namespace route_planning {
+
+// What the mission prints: plain text of 100 columns on standard output, flushed piece by piece.
+
+/// A rule across the page with a title in it.
+void print_heading(std::string_view title);
+
+/// A label and its text, which is wrapped and indented behind the label.
+void print_field(std::string_view label, std::string_view text);
+
+/// Which planners stood by, what they promise, and which of them were tried.
+void print_planners(const Answer& answer);
+
+/// One numbered line for each planner that was tried: why, and what came of it.
+void print_decision(const Answer& answer);
+
+void print_route(const AE_navigator::Route& route);
+
+/// `took`, beside what the question allowed.
+void print_time(const Answer& answer, skein::Duration allowed);
+
+}  // namespace route_planning

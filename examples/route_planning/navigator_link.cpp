@@ -1,0 +1,129 @@
+#include "navigator_link.hpp"
+
+#include <fmt/core.h>
+#include <signal.h>
+
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "skein/brokerless_discovery/process_watch.hpp"
+#include "skein/core/error.hpp"
+#include "skein/discovery.idl.hpp"
+
+using namespace std::chrono_literals;
+
+namespace route_planning {
+namespace {
+
+using AE_navigatorI::INavigator;
+using AE_navigatorI::PlanningStatus;
+using skein::Instant;
+
+constexpr auto kPatience = 20s;
+// A planner that is killed should be seen at work first.
+constexpr auto kLeftToPlan = 200ms;
+
+/// What `ask` brings back: the route, or the reason why there is none.
+template <class Ask>
+Answer answer_of(skein::Clock& clock, Ask ask) {
+  Answer answer;
+  const Instant begin = clock.now();
+  try {
+    answer.route = ask();
+  } catch (const AE_navigator::NoRoute& refusal) {
+    answer.refusal = refusal.reason;
+    answer.proven = refusal.proven;
+  } catch (const AE_navigator::InvalidProblem& refusal) {
+    answer.refusal = refusal.reason;
+  } catch (const skein::TimedOut& error) {
+    answer.refusal = error.what();
+  }
+  answer.took = clock.now() - begin;
+  return answer;
+}
+
+}  // namespace
+
+NavigatorLink::NavigatorLink(skein::Entity& entity)
+    : entity_(entity), navigator_(entity.connect<INavigator>({.timeout = kPatience})) {}
+
+void NavigatorLink::brief(const std::string& planner, AE_navigator::Problem problem) {
+  problem.time_limit_ms = 2000;
+  const Instant deadline = entity_.clock().now() + kPatience;
+  for (;;) {
+    try {
+      navigator_.within(kPatience).request_route({"briefing " + planner, problem, planner});
+      return;
+    } catch (const AE_navigator::NoRoute&) {
+      return;  // It answered, which is all that counts here.
+    } catch (const skein::Unavailable&) {
+      if (entity_.clock().now() >= deadline) throw;
+    }
+    std::this_thread::sleep_for(20ms);
+  }
+}
+
+Answer NavigatorLink::ask(const Question& question) {
+  Answer answer = ask_once(question);
+  while (!answer.route && !answer.proven && answer.times_asked <= question.repetitions) {
+    const int times_asked = answer.times_asked + 1;
+    answer = ask_once(question);
+    answer.times_asked = times_asked;
+  }
+  answer.report = navigator_.report(question.id);
+  return answer;
+}
+
+Answer NavigatorLink::ask_once(const Question& question) {
+  return answer_of(entity_.clock(), [&] {
+    return navigator_.within(question.time_to_think)
+        .request_route({question.id, question.problem, ""});
+  });
+}
+
+Answer NavigatorLink::ask_and_kill(const Question& question, Kill& kill) {
+  auto call = navigator_.within(question.time_to_think)
+                  .async_request_route({question.id, question.problem, ""});
+  const Instant begin = entity_.clock().now();
+  const PlanningStatus status = await_planner(begin + question.time_to_think);
+  require_killable(status);
+  std::this_thread::sleep_for(kLeftToPlan);
+  kill = {status.planner, status.pid, entity_.clock().now() - begin, entity_.clock().now()};
+  if (::kill(static_cast<pid_t>(status.pid), SIGKILL) != 0) {
+    throw skein::InvalidArgument(fmt::format("process {} of {} cannot be killed: {}", status.pid,
+                                             status.planner, std::strerror(errno)));
+  }
+  Answer answer = answer_of(entity_.clock(), [&] { return call.get(); });
+  answer.took += kill.planned_for;
+  answer.report = navigator_.report(question.id);
+  return answer;
+}
+
+PlanningStatus NavigatorLink::await_planner(Instant deadline) {
+  for (;;) {
+    PlanningStatus status = navigator_.status();
+    if (status.planning) return status;
+    if (entity_.clock().now() >= deadline) {
+      throw skein::TimedOut("no planner was seen at work on the request");
+    }
+    std::this_thread::sleep_for(2ms);
+  }
+}
+
+void NavigatorLink::require_killable(const PlanningStatus& status) {
+  if (status.host != skein::brokerless_discovery::ProcessWatch::host()) {
+    throw skein::InvalidArgument(
+        fmt::format("{} plans on another host; it cannot be killed from here", status.planner));
+  }
+  auto& broker = entity_.broker();
+  for (const auto& navigator : broker.find_service(broker.query("AE_navigatorI/INavigator"))) {
+    if (navigator->pid != status.pid) continue;
+    throw skein::InvalidArgument(
+        fmt::format("{} plans inside of the navigator's process; give it one of its own in the "
+                    "mission profile (process=\"own\") to have it killed",
+                    status.planner));
+  }
+}
+
+}  // namespace route_planning
