@@ -93,10 +93,11 @@ ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions o
 std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
                                                  const ConnectOptions& options) const {
   rpc::DdsChannel::Options dds_options;
-  dds_options.peer = "the foreign server of " + std::string(interface.name);
+  const std::string service = options.name.empty() ? std::string(interface.name) : options.name;
+  dds_options.peer = "the foreign server of " + service;
   dds_options.timeout = options.timeout;
   return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations, parts_.clock,
-                               {std::string(interface.name), Guid{}}, std::move(dds_options));
+                               {service, Guid{}}, std::move(dds_options));
 }
 
 // The first provider, in the Broker's order, that answers.

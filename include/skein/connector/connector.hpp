@@ -24,7 +24,7 @@ struct ConnectOptions {
   /// For finding a provider and opening the connection.
   Duration timeout = std::chrono::seconds(5);
   /// A server that is not built with Skein: no description tells of it, and it lives in the default
-  /// partition of the interface's topics.
+  /// partition of the interface's topics. `name`, where given, is the interface's.
   bool foreign = false;
 
   static constexpr const char* kAnySystem = "*";
