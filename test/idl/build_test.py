@@ -1,0 +1,89 @@
+"""skein_add_idl in a project outside the tree: from this tree, and from a copy laid out as an installed package.
+
+build_test.py SKEIN_ROOT CMAKE [unittest's arguments]
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT, CMAKE = sys.argv.pop(1), sys.argv.pop(1)
+PROJECT = """
+cmake_minimum_required(VERSION 3.25)
+project(consumer LANGUAGES CXX)
+include({idl}/cmake/SkeinIdl.cmake)
+add_library(types OBJECT)
+skein_add_idl(TARGET types FILES idl/main.idl idl/geo/point.idl INCLUDES idl)
+"""
+
+
+class BuildTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.write("idl/main.idl", '#include "geo/point.idl"\ninterface I { void f(in Point p); };\n')
+        self.write("idl/geo/point.idl", "struct Point { double x; };\n")
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(text)
+
+    def generated(self, name):
+        with open(os.path.join(self.folder, "build/types.idl", name), encoding="utf-8") as stream:
+            return stream.read()
+
+    def configure(self, idl):
+        self.write("CMakeLists.txt", PROJECT.format(idl=idl))
+        self.run_tool(CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja")
+
+    def generate(self):
+        """Runs what makes the sources, not the compiler; returns what it said."""
+        return self.run_tool(CMAKE, "--build", f"{self.folder}/build", "--target", "types.idl/main.idl.cpp",
+                             "types.idl/geo/point.idl.cpp")  # fmt: skip
+
+    def run_tool(self, *command):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return done.stdout
+
+    def test_a_file_below_an_include_folder_keeps_its_path(self):
+        self.configure(f"{ROOT}/idl")
+        self.generate()
+        self.assertIn('#include "geo/point.idl.hpp"', self.generated("main.idl.hpp"))
+        self.assertIn("struct Point", self.generated("geo/point.idl.hpp"))
+        self.assertIn('#include "geo/point.dds.idl"', self.generated("main.dds.idl"))
+
+    def test_a_change_of_an_included_file_makes_the_outputs_anew_and_nothing_else_does(self):
+        self.configure(f"{ROOT}/idl")
+        self.generate()
+        before = self.generated("main.idl.cpp")
+        self.assertIn("no work to do", self.generate())
+        self.write("idl/geo/point.idl", "struct Point { double x; double y; };\n")
+        self.generate()
+        self.assertNotEqual(before, self.generated("main.idl.cpp"))
+
+    def test_a_change_of_the_compiler_makes_the_outputs_anew(self):
+        shutil.copytree(f"{ROOT}/idl", f"{self.folder}/share/skein/idl")
+        self.configure(f"{self.folder}/share/skein/idl")
+        self.generate()
+        self.assertIn("no work to do", self.generate())
+        with open(f"{self.folder}/share/skein/idl/compiler/skein/cpp.py", "a", encoding="utf-8") as stream:
+            stream.write("# changed\n")
+        self.assertIn("IDL main.idl", self.generate())
+
+    def test_a_refused_file_stops_the_build_with_its_place(self):
+        self.configure(f"{ROOT}/idl")
+        self.write("idl/main.idl", "struct S {\n  any x;\n};\n")
+        with self.assertRaises(AssertionError) as failure:
+            self.generate()
+        self.assertIn("main.idl:2: error: any is not supported", str(failure.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
