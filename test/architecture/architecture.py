@@ -1,0 +1,48 @@
+"""architecture.py CHECK --root FOLDER [--compiler C --include FOLDER … --header FILE --library FILE]
+
+Prints each violation of a rule of ARCHITECTURE.md; the exit code is 1 where there are any, 77 where there was nothing to check.
+"""
+
+import argparse
+import sys
+
+import compile_rules
+import include_rules
+import text_rules
+from source_tree import SourceTree
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("check")
+    parser.add_argument("--root")
+    parser.add_argument("--compiler", default="c++")
+    parser.add_argument("--include", action="append", default=[])
+    parser.add_argument("--header")
+    parser.add_argument("--library")
+    arguments = parser.parse_args()
+    tree = SourceTree(arguments.root)
+    compiler = compile_rules.Compiler(arguments.compiler, arguments.include)
+    checks = {
+        "homes": lambda: include_rules.homes(tree),
+        "floors": lambda: include_rules.floors(tree),
+        "machine_paths": lambda: text_rules.machine_paths(tree),
+        "sleeps": lambda: text_rules.sleeps(tree),
+        "quotes": lambda: text_rules.quotes(tree),
+        "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
+        "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),
+        "generated_includes": lambda: compile_rules.generated_includes(arguments.header),
+        "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library),
+    }
+    if arguments.check not in checks:
+        parser.error(f"there is no check '{arguments.check}'; known are {', '.join(checks)}")
+    if arguments.check == "quotes" and not text_rules.quoted_code(tree):
+        print("skipped: README quotes no code")
+        return 77
+    violations = list(checks[arguments.check]())
+    print("\n".join(violations) or f"{arguments.check}: nothing found")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+"""Each check finds what it is there to find: on trees made for that, which break one rule."""
+
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import compile_rules
+import include_rules
+import text_rules
+from source_tree import SourceTree
+
+COMPILER = sys.argv.pop() if len(sys.argv) > 1 else "c++"
+
+
+class TreeTest(unittest.TestCase):
+    def setUp(self):
+        self.root = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.root)
+        self.tree = SourceTree(self.root)
+
+    def write(self, path, text):
+        whole = os.path.join(self.root, path)
+        os.makedirs(os.path.dirname(whole), exist_ok=True)
+        with open(whole, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return whole
+
+    def assertFinds(self, violations, *parts):
+        found = list(violations)
+        self.assertEqual(len(found), 1, found)
+        for part in parts:
+            self.assertIn(part, found[0])
+
+    def assertFindsNothing(self, violations):
+        self.assertEqual(list(violations), [])
+
+
+class Homes(TreeTest):
+    def test_a_vendor_header_outside_its_folder_is_found(self):
+        self.write("src/rpc/wire.cpp", "#include <vector>\n#include <dds/dds.h>\n")
+        self.assertFinds(include_rules.homes(self.tree), "src/rpc/wire.cpp:2", "Cyclone DDS")
+
+    def test_each_library_is_known_by_its_headers(self):
+        for header in ("fastdds/dds/core/policy/QosPolicies.hpp", "fastrtps/rtps/rtps_fwd.h", "fastcdr/Cdr.h",
+                       "dds/ddsi/ddsi_serdata.h", "ompl/base/Planner.h", "Eigen/Core", "pugixml.hpp", "nlohmann/json.hpp",
+                       "CLI/CLI.hpp"):
+            self.write("src/core/x.cpp", f"#include <{header}>\n")
+            self.assertFinds(include_rules.homes(self.tree), header)
+
+    def test_one_vendor_in_the_folder_of_the_other_is_found(self):
+        self.write("src/dds/fastdds/x.cpp", "#include <dds/dds.h>\n")
+        self.assertFinds(include_rules.homes(self.tree), "stay in src/dds/cyclonedds")
+
+    def test_at_home_and_in_peers_without_skein_they_are_welcome(self):
+        self.write("src/dds/cyclonedds/x.cpp", "#include <dds/dds.h>\n")
+        self.write("test/foreign/fastdds/x.cpp", "#include <fastdds/dds/domain/DomainParticipant.hpp>\n")
+        self.write("src/navigation/x.cpp", "#include <ompl/base/Planner.h>\n#include <Eigen/Core>\n")
+        self.assertFindsNothing(include_rules.homes(self.tree))
+
+
+class Floors(TreeTest):
+    def test_an_include_up_a_floor_is_found(self):
+        self.write("include/skein/core/call.hpp", '#include "skein/rpc/wire.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "include/skein/core/call.hpp:1", "core (floor 0)", "rpc (floor 3)")
+
+    def test_an_include_up_a_floor_by_a_relative_path_is_found(self):
+        self.write("src/entity/head.hpp", "")
+        self.write("src/connector/connector.cpp", '#include "../entity/head.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "connector (floor 5)", "entity (floor 6)")
+
+    def test_a_generated_header_has_the_floor_of_its_idl(self):
+        self.write("src/rpc/x.cpp", '#include "skein/discovery.idl.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "brokerless_discovery (floor 4)")
+
+    def test_one_vendor_that_knows_the_other_is_found(self):
+        self.write("src/dds/cyclonedds/writer.hpp", "")
+        self.write("src/dds/fastdds/x.cpp", '#include "../cyclonedds/writer.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "dds/cyclonedds")
+
+    def test_neighbours_that_know_each_other_are_found(self):
+        self.write("src/navigation/x.cpp", '#include "skein/launch/peer.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "navigation (floor 7)")
+
+    def test_a_folder_without_a_floor_is_found(self):
+        self.write("src/attic/x.cpp", "")
+        self.assertFinds(include_rules.floors(self.tree), "stands on no floor")
+
+    def test_downwards_is_allowed(self):
+        self.write("brokerless_discovery/x.cpp", '#include "skein/dds/port.hpp"\n#include "skein/discovery.idl.hpp"\n')
+        self.write("src/launch/x.cpp", '#include "skein/profile/check.hpp"\n#include "launch.hpp"\n#include <vector>\n')
+        self.assertFindsNothing(include_rules.floors(self.tree))
+
+
+class Texts(TreeTest):
+    def test_a_path_of_one_machine_is_found(self):
+        self.write("src/core/x.cpp", '\nconst char* place = "/home/anna/skein";\n')
+        self.assertFinds(text_rules.machine_paths(self.tree), "src/core/x.cpp:2", "/home/a")
+
+    def test_paths_of_every_machine_are_allowed(self):
+        self.write("dev", "cd /usr/include && ls /tmp/x src/home/x ../work/y https://host/home/x\n")
+        self.assertFindsNothing(text_rules.machine_paths(self.tree))
+
+    def test_a_test_that_sleeps_is_found(self):
+        for path in text_rules.SLEEPERS:
+            self.write(path, "std::this_thread::sleep_for(2ms);\n")
+        self.assertFindsNothing(text_rules.sleeps(self.tree))
+        for name, code in (("x.cpp", "std::this_thread::sleep_until(end);"), ("y.c", "usleep(3);"), ("z.py", "time.sleep(1)"),
+                           ("w.sh", "true\n  sleep 1")):
+            path = self.write("test/rpc/" + name, code + "\n")
+            self.assertFinds(text_rules.sleeps(self.tree), "test/rpc/" + name)
+            os.remove(path)
+
+    def test_an_exception_that_is_none_any_more_is_found(self):
+        for path in text_rules.SLEEPERS:
+            self.write(path, "std::this_thread::sleep_for(2ms);\n")
+        self.write("test/connector/echo_service.cpp", "")
+        self.assertFinds(text_rules.sleeps(self.tree), "take it off")
+
+    def test_code_in_readme_that_no_example_holds_is_found(self):
+        self.write("examples/01/x.idl", "module m {\n  interface I {};\n};\n")
+        self.write("README.md", "Text\n```idl\nmodule m {\n  interface I { void f(); };\n};\n```\n")
+        self.assertFinds(text_rules.quotes(self.tree), "idl code that begins with 'module m {'")
+
+    def test_code_in_readme_that_an_example_holds_is_taken(self):
+        self.write("examples/01/x.cpp", "#include <a>\n\nint main() {\n  f();\n}\n")
+        self.write("README.md", "```cpp\nint main() {\n  f();\n}\n```\n\n```sh\n./dev test\n```\n")
+        self.assertFindsNothing(text_rules.quotes(self.tree))
+
+
+class Compiled(TreeTest):
+    def setUp(self):
+        super().setUp()
+        self.compiler = compile_rules.Compiler(COMPILER, [os.path.join(self.root, "include")])
+
+    def test_a_header_that_does_not_compile_alone_is_found(self):
+        self.write("include/skein/core/x.hpp", "#pragma once\nstd::string text();\n")
+        self.write("include/skein/core/y.hpp", "#pragma once\n#include <string>\nstd::string text();\n")
+        self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "include/skein/core/x.hpp", "error")
+
+    def test_a_header_that_does_not_compile_twice_is_found(self):
+        self.write("include/skein/core/x.hpp", "struct X {};\n")
+        self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "redefinition")
+
+    def test_generated_code_that_checks_no_version_is_found(self):
+        header = self.write("x.idl.hpp", "struct X {};\n")
+        self.assertFinds(compile_rules.generated_version(header, self.compiler), "does not check the version")
+
+    def test_generated_code_that_another_version_takes_is_found(self):
+        header = self.write("x.idl.hpp", "// SKEIN_IDL_VERSION == 1\n")
+        self.assertFinds(compile_rules.generated_version(header, self.compiler), "compiles all the same")
+
+    def test_generated_code_that_checks_its_version_is_taken(self):
+        header = self.write("x.idl.hpp", '#define SKEIN_IDL_VERSION 1\nstatic_assert(SKEIN_IDL_VERSION == 1, "build it anew");\n')
+        self.assertFindsNothing(compile_rules.generated_version(header, self.compiler))
+
+    def test_generated_code_that_knows_dds_is_found(self):
+        header = self.write("x.idl.hpp", '#include "skein/core/call.hpp"\n#include "skein/dds/port.hpp"\n')
+        self.assertFinds(compile_rules.generated_includes(header), "skein/dds/port.hpp")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,64 @@
+"""What only the compiler, or the linker's work, can tell."""
+
+import os
+import re
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+
+
+class Compiler:
+    def __init__(self, command, include_folders):
+        self._command = [command, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
+        self._command += [f"-I{folder}" for folder in include_folders]
+
+    def refusal(self, code):
+        """What the compiler says against the code; empty where it takes it."""
+        ran = subprocess.run([*self._command, "-x", "c++", "-"], input=code, text=True, capture_output=True, check=False)
+        return ran.stderr if ran.returncode else ""
+
+
+def lone_headers(tree, compiler):
+    """A public header that does not compile alone, or not twice."""
+    headers = [path.removeprefix("include/") for path in tree.files((".hpp",), "include")]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        refusals = pool.map(lambda header: compiler.refusal(f'#include "{header}"\n#include "{header}"\n'), headers)
+        for header, refusal in zip(headers, refusals):
+            if refusal:
+                yield f"include/{header}: does not compile alone:\n{_first_error(refusal)}"
+
+
+def generated_version(header, compiler):
+    """Generated code that would compile against other headers of Skein than its own."""
+    text = _read(header)
+    if refusal := compiler.refusal(text):
+        yield f"{header}: does not compile:\n{_first_error(refusal)}"
+    older, changes = re.subn(r"SKEIN_IDL_VERSION == (\d+)", lambda found: f"SKEIN_IDL_VERSION == {int(found.group(1)) + 1}", text)
+    if changes == 0:
+        yield f"{header}: does not check the version of the headers"
+    elif "build it anew" not in compiler.refusal(older):
+        yield f"{header}: made for another version, it compiles all the same"
+
+
+def generated_includes(header):
+    """Generated code that knows more of Skein than floors 0 and 1."""
+    for line, included in re.findall(r'^(#include "(skein/[^"]+)")', _read(header), re.MULTILINE):
+        if not re.match(r"skein/(core|idl)/", included):
+            yield f"{header}: {line}: generated code knows core and idl alone"
+
+
+def linked_vendors(library):
+    """A vendor that libskein needs, though it is to be loaded at run time."""
+    ran = subprocess.run(["readelf", "--dynamic", library], text=True, capture_output=True, check=True)
+    for needed in re.findall(r"\(NEEDED\).*\[(.+)\]", ran.stdout):
+        if re.match(r"lib(fastrtps|fastdds|ddsc|ompl)", needed):
+            yield f"{library}: needs {needed}"
+
+
+def _read(path):
+    with open(path, encoding="utf-8") as stream:
+        return stream.read()
+
+
+def _first_error(text):
+    errors = [line for line in text.splitlines() if "error" in line]
+    return "\n".join(errors[:3] or text.splitlines()[:3])
