@@ -5,12 +5,14 @@
 
 enum { kDomain = 17 };
 
+// GenerateKeyhash: without it Fast DDS does not understand that an endpoint has left, and waits for the lease to end.
 static const char kLoopbackAlone[] =
     "<General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast></General>"
     "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>40</MaxAutoParticipantIndex>"
-    "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>";
+    "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
+    "<Internal><GenerateKeyhash>true</GenerateKeyhash></Internal>";
 
 dds_return_t checked(dds_return_t result, const char* what) {
   if (result >= 0) return result;
