@@ -160,6 +160,16 @@ void CdrReader::read_array(T* values, std::size_t count) {
   }
 }
 
+std::span<const std::byte> CdrReader::read_bytes(std::size_t count) {
+  if (count > remaining()) {
+    fail(std::to_string(count) + " bytes do not fit into the " + std::to_string(remaining()) +
+         " that are left");
+  }
+  const auto* first = reinterpret_cast<const std::byte*>(state_.cdr.getCurrentPosition());
+  state_.cdr.jump(count);
+  return {first, count};
+}
+
 std::uint32_t CdrReader::read_length(std::size_t element_size) {
   const auto length = read<std::uint32_t>();
   if (length > remaining() / element_size) {
@@ -172,13 +182,12 @@ std::uint32_t CdrReader::read_length(std::size_t element_size) {
 void CdrReader::read_string(std::string& text) {
   const std::uint32_t length = read_length(1);
   if (length == 0) return text.clear();  // Fast CDR writes a null char* so.
-  const char* characters = state_.cdr.getCurrentPosition();
+  const auto* characters = reinterpret_cast<const char*>(read_bytes(length).data());
   const void* end = std::memchr(characters, 0, length);
   if (end != characters + length - 1) {
     fail(end ? "a string holds a zero byte" : "a string is not terminated");
   }
   text.assign(characters, length - 1);
-  state_.cdr.jump(length);
 }
 
 std::uint32_t CdrReader::read_enum(std::uint32_t count) {

@@ -145,9 +145,9 @@ TEST_CASE("a refusal names type, member and offset") {
         "malformed sample: message at offset 8: 3 is no value of the enumeration");
   CHECK(refusal<bool>(message_of({0, 1, 0, 0, 2})) == "malformed sample: message at offset 5: 2 is no boolean");
   CHECK(refusal<std::string>(message_of({0, 1, 0, 0, 2, 0, 0, 0, 'a', 'b'})) ==
-        "malformed sample: message at offset 8: a string is not terminated");
+        "malformed sample: message at offset 10: a string is not terminated");
   CHECK(refusal<std::string>(message_of({0, 1, 0, 0, 3, 0, 0, 0, 'a', 0, 0})) ==
-        "malformed sample: message at offset 8: a string holds a zero byte");
+        "malformed sample: message at offset 11: a string holds a zero byte");
   CHECK(refusal<double>(message_of({0, 1, 0, 0, 1, 2, 3})) ==
         "malformed sample: message at offset 4: the message ends here");
 }

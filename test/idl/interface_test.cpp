@@ -142,7 +142,7 @@ TEST_CASE("the metadata of an operation says how it is called and documents it")
     }
     throw std::runtime_error("no such operation");
   };
-  CHECK(find("plan")->documentation == "Plans a route from start to goal.\nTakes as long as it takes.");
+  CHECK(find("plan")->documentation == "Plans a route from start to goal.\nTakes 5 µs → or more.");
   CHECK(find("plan")->raises.size() == 2);
   CHECK(find("plan")->idempotent);
   CHECK(find("echo")->idempotent);

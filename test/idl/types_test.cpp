@@ -71,6 +71,8 @@ TEST_CASE("constants have the values of the IDL") {
   STATIC_REQUIRE(kQuarter == 0.25F);
   STATIC_REQUIRE(kYes);
   STATIC_REQUIRE(kNewline == '\n');
+  STATIC_REQUIRE(kLatin == '\xe9');
+  STATIC_REQUIRE(kUtf8 == "5 µm → 0");
   STATIC_REQUIRE(kOctet == 255);
   STATIC_REQUIRE(kQuoted == "a \"quoted\" \\ text");
   STATIC_REQUIRE(kFavourite == Colour::Green);

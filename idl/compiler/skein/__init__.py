@@ -52,7 +52,7 @@ def run(tree, arguments):
     }
     os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
     for path, lines in outputs.items():
-        with open(path, "w", encoding="latin-1") as stream:
+        with open(path, "w", encoding="utf-8") as stream:
             stream.write("\n".join(lines).rstrip("\n") + "\n")
     if "depfile" in options:
         includes.write_depfile(options["depfile"], list(outputs))

@@ -20,7 +20,8 @@ def documentation(node):
         expected = comment.line() - 1 if text.startswith("//") else -1
         if expected == -1:
             break
-    return [line for text in block for line in _lines(text)]
+    # A backslash at the end would draw the next line of C++ into the comment.
+    return [line.rstrip("\\") for text in block for line in _lines(text)]
 
 
 def _is_near(text, last, line):

@@ -52,19 +52,20 @@ def enumerator(enum, idl_name):
     return next(cpp for idl, cpp, _ in enum.enumerators if idl == idl_name)
 
 
-def quoted(text, quote):
-    def escaped(character):
-        code = ord(character)
-        if character in (quote, "\\", "?"):
-            return "\\" + character
-        return character if 0x20 <= code < 0x7F else f"\\{code & 0xFF:03o}"
+def quoted(text, quote, encoding="latin-1"):
+    """A C++ literal. omniidl gives constants byte by byte, comments as text."""
 
-    return quote + "".join(map(escaped, text)) + quote
+    def escaped(byte):
+        if chr(byte) in (quote, "\\", "?"):
+            return "\\" + chr(byte)
+        return chr(byte) if 0x20 <= byte < 0x7F else f"\\{byte:03o}"
+
+    return quote + "".join(map(escaped, text.encode(encoding))) + quote
 
 
 def string_literal(lines):
     """Text of several lines as one C++ string literal."""
-    return quoted("\n".join(lines).encode().decode("latin-1"), '"')
+    return quoted("\n".join(lines), '"', "utf-8")
 
 
 def documentation(lines, indent=""):

@@ -1,6 +1,6 @@
 """C++ definitions of constants, typedefs, enumerations, structs, unions and exceptions."""
 
-from . import cpp, model
+from . import cpp, model, names
 
 
 def definition(decl):
@@ -20,7 +20,7 @@ def definition(decl):
 
 def alias(decl, indent="  "):
     """Inside what encloses a declaration in IDL: its short name."""
-    name = decl.scope[-1]
+    name = names.plain(decl.scope[-1])
     if isinstance(decl, model.Constant):
         return f"{indent}static constexpr auto {name} = {decl.cpp};"
     return f"{indent}using {name} = {decl.cpp};"

@@ -78,6 +78,8 @@ class CdrReader {
   T read();
   template <Primitive T>
   void read_array(T* values, std::size_t count);
+  /// The next `count` bytes where they lie in the message.
+  std::span<const std::byte> read_bytes(std::size_t count);
   void read_string(std::string& text);
   /// A sequence's length; it and `element_size` bytes an element fit into what is left.
   std::uint32_t read_length(std::size_t element_size);

@@ -82,8 +82,13 @@ template <class T>
 void decode(CdrReader& reader, std::vector<T>& values) {
   if constexpr (PlainlyLaidOut<T>) {
     const std::size_t length = reader.read_length(sizeof(T));
-    values.resize(length);
-    decode_elements(reader, values.data(), length);
+    if constexpr (Primitive<T> && sizeof(T) == 1) {
+      const auto* first = reinterpret_cast<const T*>(reader.read_bytes(length).data());
+      values.assign(first, first + length);  // Not cleared before it is written.
+    } else {
+      values.resize(length);
+      decode_elements(reader, values.data(), length);
+    }
   } else {
     const std::size_t length = reader.read_length(1);
     values.clear();
