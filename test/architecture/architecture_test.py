@@ -152,7 +152,7 @@ class Compiled(TreeTest):
         self.assertFinds(compile_rules.generated_version(header, self.compiler), "compiles all the same")
 
     def test_generated_code_that_checks_its_version_is_taken(self):
-        header = self.write("x.idl.hpp", '#define SKEIN_IDL_VERSION 1\nstatic_assert(SKEIN_IDL_VERSION == 1, "build it anew");\n')
+        header = self.write("x.idl.hpp", '#pragma once\n#define SKEIN_IDL_VERSION 1\nstatic_assert(SKEIN_IDL_VERSION == 1, "build it anew");\n')
         self.assertFindsNothing(compile_rules.generated_version(header, self.compiler))
 
     def test_generated_code_that_knows_dds_is_found(self):

@@ -41,7 +41,7 @@ HOMES = {
     "Fast CDR": (r"fastcdr/", ["src/idl", "test/idl", *_OUTSIDE]),
     "OMPL": (r"ompl/", ["src/navigation"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/navigation"]),
-    "pugixml": (r"pugixml", ["src/profile", "test/profile"]),
+    "pugixml": (r"pugixml", ["src/profile", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "test", "benchmarks"]),
     "the command line": (r"CLI/", ["src/skein", "benchmarks", "examples"]),
 }
