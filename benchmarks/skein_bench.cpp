@@ -1,8 +1,9 @@
 // Measures Skein beside its rivals and writes results.json and report.html.
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
@@ -52,16 +53,24 @@ void print_summary(const std::vector<Comparison>& comparisons) {
   }
 }
 
-void run(const std::string& output, bool quick) {
+const std::vector<std::string> kParts{"calls", "cold_starts", "deaths"};
+
+void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
   facts.remarks.push_back(enter_private_network());
   std::filesystem::create_directories(output);
   const Plan plan = quick ? quick_plan() : full_plan();
   Configurations configurations(std::filesystem::read_symlink("/proc/self/exe").parent_path());
-  std::vector<Comparison> comparisons = compare_calls(configurations, plan.calls);
-  append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
-  append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
-  append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
+  std::vector<Comparison> comparisons;
+  const auto wanted = [&](const char* part) { return std::ranges::find(parts, part) != parts.end(); };
+  if (wanted("calls")) append(comparisons, compare_calls(configurations, plan.calls));
+  if (wanted("cold_starts")) {
+    append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
+  }
+  if (wanted("deaths")) {
+    append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
+    append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
+  }
   write_results(comparisons, output + "/results.json");
   write_report(comparisons, facts, output + "/report.html");
   print_summary(comparisons);
@@ -76,8 +85,10 @@ int main(int argc, char** argv) {
   CLI::App app("Skein beside its rivals, in one interleaved run");
   std::string output = "bench";
   bool quick = false;
+  std::vector<std::string> parts = kParts;
   app.add_option("--output", output, "Folder for results.json and report.html");
   app.add_flag("--quick", quick, "A smoke test of a few seconds");
+  app.add_option("--only", parts, "Parts of the run")->check(CLI::IsMember(kParts));
   SkeinPeer peer;
   CLI::App* as_peer = app.add_subcommand("peer", "One process of a measured configuration")->group("");
   as_peer->add_option("--role", peer.role)->required();
@@ -89,7 +100,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (*as_peer) return run_skein_peer(peer);
-    run(output, quick);
+    run(output, quick, parts);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "skein_bench: %s\n", error.what());

@@ -5,6 +5,7 @@
 
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
+#include "harness/skipped.hpp"
 #include "skein/brokerless_discovery/broker.hpp"
 #include "skein/entity/entity.hpp"
 
@@ -30,10 +31,18 @@ class EchoBody final : public Echo {
   std::atomic<bool> holding_{false};
 };
 
+std::shared_ptr<dds::Vendor> load(const std::string& vendor) {
+  try {
+    return dds::load_vendor(vendor);
+  } catch (const Unavailable& error) {
+    throw Skipped(error.what());
+  }
+}
+
 EntityOptions entity_options(const SkeinPeer& peer) {
   EntityOptions options;
   options.name = peer.role;
-  options.vendor = dds::load_vendor(peer.vendor);
+  options.vendor = load(peer.vendor);
   options.domain = peer.domain;
   options.network.max_participants = kMaxParticipants;
   if (!peer.interface.empty()) {

@@ -6,14 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/skipped.hpp"
 #include "skein/core/clock.hpp"
 
 namespace skein::benchmarks {
-
-/// What a child says instead of `ready` where something is not installed: not an error.
-class Skipped : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// A process of a measured configuration, which obeys lines on its standard input and answers with
 /// lines on its standard output. It ends with this object, and with the process that made it.

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "harness/skipped.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein::benchmarks {
@@ -73,8 +74,8 @@ int run_peer(const std::function<void()>& peer) {
   try {
     peer();
     return 0;
-  } catch (const Unavailable& error) {
-    say("skipped " + one_line(error.what()));
+  } catch (const Skipped& reason) {
+    say("skipped " + one_line(reason.what()));
   } catch (const std::exception& error) {
     say("failed " + one_line(error.what()));
   }

@@ -26,8 +26,8 @@ void run_client(const EchoCall& call, const std::vector<std::pair<std::string, C
 /// A server's: says `ready`, waits until its input ends.
 void run_server();
 
-/// Runs `peer` and turns what it throws into a last line: `skipped` for what is not installed
-/// (Unavailable), `failed` for the rest. The program's exit code.
+/// Runs `peer` and turns what it throws into a last line: `skipped` for Skipped, `failed` for the rest.
+/// The program's exit code.
 int run_peer(const std::function<void()>& peer);
 
 /// Now in ns on the clock that all processes of a host share.

@@ -10,9 +10,10 @@
 
 #include <cstring>
 #include <fstream>
+#include <thread>
 #include <vector>
 
-#include "harness/child.hpp"
+#include "harness/skipped.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -68,6 +69,28 @@ void run_ip(std::vector<std::string> arguments, int network = -1) {
   throw Skipped("'" + text + "' failed; it needs iproute2 and the right to make interfaces");
 }
 
+bool is_running(int network, const char* interface) {
+  const int own = open_network();
+  setns(network, CLONE_NEWNET);
+  const int socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, interface);
+  const bool running = ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_RUNNING);
+  close(socket_);
+  setns(own, CLONE_NEWNET);
+  close(own);
+  return running;
+}
+
+// The kernel raises a cable's ends a moment after they were switched on; Fast DDS passes over an
+// interface that is not up.
+void await_running(int network, const char* interface) {
+  for (int attempt = 0; !is_running(network, interface); ++attempt) {
+    if (attempt == 1000) throw Skipped(std::string(interface) + " does not come up");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 std::string path_of(int network) {
   return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(network);
 }
@@ -95,6 +118,8 @@ TwoHosts::TwoHosts() {
   run_ip({"address", "add", second_.address + "/24", "dev", "skein1"}, second_.network);
   run_ip({"link", "set", "skein0", "up"}, first_.network);
   run_ip({"link", "set", "skein1", "up"}, second_.network);
+  await_running(first_.network, "skein0");
+  await_running(second_.network, "skein1");
 }
 
 TwoHosts::~TwoHosts() {

@@ -13,9 +13,9 @@ Sample* sample_of(const ddsi_serdata* data) {
   return static_cast<Sample*>(const_cast<ddsi_serdata*>(data));
 }
 
-ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind, const nn_rdata* part,
+ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* part,
                              std::size_t size) {
-  Sample* sample = Sample::make(type, size);
+  Sample* sample = Sample::make(type, kind, size);
   for (std::uint32_t copied = 0; part != nullptr; part = part->nextfrag) {
     if (part->maxp1 <= copied) continue;
     const unsigned char* payload = NN_RMSG_PAYLOADOFF(part->rmsg, NN_RDATA_PAYLOAD_OFF(part));
@@ -25,9 +25,9 @@ ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind, const 
   return sample;
 }
 
-ddsi_serdata* from_buffers(const ddsi_sertype* type, ddsi_serdata_kind, ddsrt_msg_iovlen_t count,
+ddsi_serdata* from_buffers(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                            const ddsrt_iovec_t* buffers, std::size_t size) {
-  Sample* sample = Sample::make(type, size);
+  Sample* sample = Sample::make(type, kind, size);
   char* to = sample->bytes();
   for (ddsrt_msg_iovlen_t i = 0; i < count; to += buffers[i++].iov_len) {
     std::memcpy(to, buffers[i].iov_base, buffers[i].iov_len);
@@ -43,7 +43,7 @@ ddsi_serdata* lend(const ddsi_serdata* data, std::size_t offset, std::size_t siz
 }
 
 ddsi_serdata* without_key(const ddsi_serdata* data) {
-  Sample* sample = Sample::make(data->type, 0);
+  Sample* sample = Sample::make(data->type, SDK_KEY, 0);
   sample->type = nullptr;
   return sample;
 }
@@ -54,7 +54,7 @@ const ddsi_serdata_ops kSampleOperations{
     .from_ser = from_fragments,
     .from_ser_iov = from_buffers,
     .from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
-      return Sample::make(type, 0);
+      return Sample::make(type, SDK_KEY, 0);
     },
     .from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* {
       return nullptr;
@@ -98,10 +98,10 @@ const ddsi_sertype_ops kTypeOperations{
 
 }  // namespace
 
-Sample* Sample::make(const ddsi_sertype* type, std::size_t size) {
+Sample* Sample::make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
   const std::size_t padded = (size + 3) / 4 * 4;
   auto* sample = new (::operator new(sizeof(Sample) + padded)) Sample;
-  ddsi_serdata_init(sample, type, SDK_DATA);
+  ddsi_serdata_init(sample, type, kind);
   sample->size = padded;
   sample->hash = 0;
   return sample;

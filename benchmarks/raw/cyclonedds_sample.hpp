@@ -12,7 +12,7 @@ namespace skein::benchmarks::raw {
 struct Sample : ddsi_serdata {
   std::size_t size;  // a multiple of 4
   char* bytes() { return reinterpret_cast<char*>(this + 1); }
-  static Sample* make(const ddsi_sertype* type, std::size_t size);
+  static Sample* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size);
 };
 
 /// The keyless type of such samples. Belongs to the topic that is made with it.

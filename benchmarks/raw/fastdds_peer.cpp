@@ -114,7 +114,7 @@ class Participant {
     dds::DataReaderQos qos;
     fill(qos);
     qos.reliable_reader_qos().times.initialAcknackDelay = Duration_t(0, 10'000'000);
-    qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 5'000'000);
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
     return subscriber_->create_datareader(
         participant_->create_topic(topic, kType, dds::TopicQos()), qos, listener,
         listener ? dds::StatusMask::data_available() : dds::StatusMask::none());

@@ -1,0 +1,121 @@
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "harness/comparison.hpp"
+
+using nlohmann::json;
+using skein::benchmarks::Comparison;
+
+namespace {
+
+/// What one quick run of the benchmark wrote.
+struct QuickRun {
+  std::filesystem::path folder = std::filesystem::current_path() / "quick_bench";
+  int exit_code = 0;
+  json results;
+
+  QuickRun() {
+    std::filesystem::remove_all(folder);
+    exit_code = std::system((std::string(SKEIN_BENCH) + " --quick --output '" + folder.string() + "'").c_str());
+    std::ifstream file(folder / "results.json");
+    results = json::parse(file, nullptr, false);
+  }
+
+  static const QuickRun& get() {
+    static const QuickRun run;
+    return run;
+  }
+};
+
+const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds", "cyclonedds-fastdds"};
+
+bool has(const json& results, const std::string& claim, const std::string& subject, const json& parameters,
+         const std::string& rival = "") {
+  for (const json& row : results) {
+    bool same = row.at("claim") == claim && row.at("subject") == subject;
+    same = same && (rival.empty() || row.at("rival") == rival);
+    for (const auto& [name, value] : parameters.items()) {
+      same = same && row.at("parameters").contains(name) && row.at("parameters").at(name) == value;
+    }
+    if (same) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("a percentile is the smallest sample that so many do not exceed") {
+  std::vector<double> samples;
+  for (int i = 1000; i >= 1; --i) samples.push_back(i);
+  const auto summary = skein::benchmarks::summarize(samples);
+  CHECK(summary.p50 == 500);
+  CHECK(summary.p90 == 900);
+  CHECK(summary.p99 == 990);
+  CHECK(summary.p999 == 999);
+  CHECK(skein::benchmarks::summarize({7}).p999 == 7);
+  CHECK(skein::benchmarks::summarize({}).samples == 0);
+}
+
+TEST_CASE("a comparison that was not measured has no figures, only the reason") {
+  Comparison comparison{"claim", "subject", "rival"};
+  comparison.skipped = "not here";
+  const json row = skein::benchmarks::to_json(comparison);
+  CHECK(row.at("skipped") == "not here");
+  CHECK(row.at("samples") == 0);
+  CHECK(row.at("p50_us").is_null());
+  CHECK(row.at("ratio_p50").is_null());
+}
+
+TEST_CASE("a ratio is the subject's time by the rival's") {
+  Comparison comparison{"claim", "subject", "rival"};
+  comparison.samples = {30, 10, 20};
+  comparison.rival_samples = {10};
+  CHECK(skein::benchmarks::to_json(comparison).at("ratio_p50") == 2.0);
+}
+
+TEST_CASE("a quick run writes every row of results.json in the common shape") {
+  const QuickRun& run = QuickRun::get();
+  REQUIRE(run.exit_code == 0);
+  REQUIRE(run.results.is_array());
+  for (const json& row : run.results) {
+    CAPTURE(row.dump());
+    for (const char* name : {"claim", "subject", "rival"}) CHECK_FALSE(row.at(name).get<std::string>().empty());
+    CHECK(row.at("parameters").is_object());
+    const bool skipped = row.contains("skipped");
+    CHECK((row.at("samples") > 0) != skipped);
+    for (const char* name : {"p50_us", "p90_us", "p99_us", "p999_us", "rival_p50_us", "rival_p99_us",
+                             "ratio_p50", "ratio_p99"}) {
+      CHECK(row.at(name).is_number() != skipped);
+    }
+    if (skipped) WARN(row.at("claim") << ", " << row.at("subject") << " skipped: " << row.at("skipped"));
+  }
+}
+
+TEST_CASE("no pair of vendors, size or way to die is missing") {
+  const json& results = QuickRun::get().results;
+  for (const std::string& pair : kPairs) {
+    CAPTURE(pair);
+    for (const int size : {64, 1024, 65'536, 1'048'576}) {
+      CHECK(has(results, "a call over DDS", "skein " + pair, {{"size_bytes", size}}));
+      CHECK(has(results, "a call over DDS", "skein " + pair, {{"size_bytes", size}}, "unix socket"));
+    }
+    CHECK(has(results, "process start to first reply", "skein " + pair, json::object()));
+    for (const char* where : {"one host", "across two hosts"}) {
+      CHECK(has(results, "provider killed to caller told", "skein " + pair, {{"where", where}}));
+    }
+  }
+}
+
+TEST_CASE("the report is one page that refers to nothing outside") {
+  std::ifstream file(QuickRun::get().folder / "report.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  CHECK(page.find("<svg") != std::string::npos);
+  CHECK(page.find("Where Skein loses") != std::string::npos);
+  for (const char* reference : {"http://", "https://", "src=", "<link", "@import", "url("}) {
+    CHECK(page.find(reference) == std::string::npos);
+  }
+}
