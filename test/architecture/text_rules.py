@@ -14,6 +14,7 @@ SLEEPERS = {
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
     "test/conformance/suite_lifetime.cpp": "the pace of a writer that never rests",
     "test/faults/death_test.cpp": "an operation that takes its time until it is let go",
+    "test/entity/worker_process.cpp": "a CSP that never returns",
     "test/faults/first_call_test.cpp": "the offset between two starts, which is what the test varies",
     "test/faults/partition_test.cpp": "how long the network is cut, which is what the test varies",
 }
@@ -42,7 +43,7 @@ def sleeps(tree):
                 line = text.count("\n", 0, found.start()) + 1
                 yield f"{path}:{line}: sleeps; wait for a condition with eventually()"
     for path in SLEEPERS:
-        if path not in asleep and tree.exists("test"):
+        if path not in asleep and tree.exists(path):
             yield f"{path} does not sleep any more; take it off SLEEPERS"
 
 

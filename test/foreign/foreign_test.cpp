@@ -26,11 +26,15 @@ std::string expected(int calls, const std::string& remembered) {
          "look: kind 1, Anna at 90.5, 3 bytes, turns 4, clear\n"
          "look: OutOfSight 5000 beyond the horizon\n"
          "look: Asleep\n"
-         "echo: " + std::to_string(calls) + " right\n"
+         "echo: " +
+         std::to_string(calls) +
+         " right\n"
          "overload: remote exception 3\n"
          "reject: remote exception 2\n"
          "break: remote exception 5\n"
-         "remembered: " + remembered + "\n"
+         "remembered: " +
+         remembered +
+         "\n"
          "place: mast\n";
 }
 
@@ -66,7 +70,8 @@ TEST_CASE("several peers without Skein at once get each its own replies") {
   const auto service = std::make_shared<LookoutService>();
   server->provide<ILookout>(service);
   std::vector<Program> clients;
-  for (int i = 0; i < kClients; ++i) clients.push_back(start_client("client " + std::to_string(i), kCalls));
+  for (int i = 0; i < kClients; ++i)
+    clients.push_back(start_client("client " + std::to_string(i), kCalls));
   for (Program& client : clients) {
     const std::string text = client.read_all();
     const std::string alike = expected(kCalls, "");
@@ -84,7 +89,8 @@ TEST_CASE("a Skein client and one without Skein share a service") {
   const auto entity = make_client();
   auto lookout = entity->connect<ILookout>({.timeout = 20s});
   Program client = start_client("other", 200);
-  for (int i = 0; i < 200; ++i) CHECK(lookout.echo("mine " + std::to_string(i)) == "mine " + std::to_string(i));
+  for (int i = 0; i < 200; ++i)
+    CHECK(lookout.echo("mine " + std::to_string(i)) == "mine " + std::to_string(i));
   CHECK(client.read_all() == expected(200, "1"));
 }
 
@@ -123,7 +129,8 @@ TEST_CASE("the remote exceptions of a server without Skein arrive as errors of t
 
 TEST_CASE("an operation that a server without Skein does not know is Unimplemented") {
   ForeignServer foreign;
-  auto newer = foreign.client->connect<later::ILookout>({.name = "foreign::ILookout", .timeout = 20s, .foreign = true});
+  auto newer = foreign.client->connect<later::ILookout>(
+      {.name = "foreign::ILookout", .timeout = 20s, .foreign = true});
   CHECK(newer.echo("known") == "known");
   CHECK_THROWS_AS(newer.wake("Anna"), Unimplemented);
 }

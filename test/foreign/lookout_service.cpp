@@ -6,8 +6,8 @@
 
 namespace skein::test {
 
-foreign::Sighting LookoutService::look(double bearing_deg, std::uint64_t distance_m, std::int16_t& turns,
-                                       std::string& remark) {
+foreign::Sighting LookoutService::look(double bearing_deg, std::uint64_t distance_m,
+                                       std::int16_t& turns, std::string& remark) {
   constexpr std::int64_t kLimitM = 5000;
   if (turns < 0) throw foreign::Asleep();
   if (distance_m > kLimitM) throw foreign::OutOfSight(kLimitM, "beyond the horizon");

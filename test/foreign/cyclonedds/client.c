@@ -1,5 +1,5 @@
-// client NAME CALLS: calls foreign::ILookout and prints what came back. Nothing of Skein: what idlc made of the flattened
-// IDL, and Cyclone DDS.
+// client NAME CALLS: calls foreign::ILookout and prints what came back. Nothing of Skein: what idlc
+// made of the flattened IDL, and Cyclone DDS.
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,11 +58,13 @@ static void await_server(void) {
 }
 
 static void look(uint64_t distance_m, int16_t turns) {
-  Request request = {.data = {._d = foreign_ILookout_look_Hash,
-                              ._u.look = {.bearing_deg = 90.5, .distance_m = distance_m, .turns = turns}}};
+  Request request = {
+      .data = {._d = foreign_ILookout_look_Hash,
+               ._u.look = {.bearing_deg = 90.5, .distance_m = distance_m, .turns = turns}}};
   const Reply* answer = call(&request);
   const foreign_ILookout_look_Result* result = &answer->data._u.look;
-  if (answer->header.remoteEx != dds_rpc_REMOTE_EX_OK || answer->data._d != foreign_ILookout_look_Hash) {
+  if (answer->header.remoteEx != dds_rpc_REMOTE_EX_OK ||
+      answer->data._d != foreign_ILookout_look_Hash) {
     printf("look: remote exception %d\n", (int)answer->header.remoteEx);
   } else if (result->_d == 0) {
     const foreign_ILookout_look_Out* out = &result->_u.result;
@@ -99,7 +101,8 @@ static void echo_failing(char* how) {
 }
 
 static void remember_and_count(void) {
-  Request request = {.data = {._d = foreign_ILookout_remember_Hash, ._u.remember = {.text = "this"}}};
+  Request request = {
+      .data = {._d = foreign_ILookout_remember_Hash, ._u.remember = {.text = "this"}}};
   send(&request);
   Request count = {.data = {._d = foreign_ILookout_remembered_Hash}};
   printf("remembered: %" PRIu32 "\n", call(&count)->data._u.remembered._u.result.return_);

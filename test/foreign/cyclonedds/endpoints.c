@@ -5,9 +5,11 @@
 
 enum { kDomain = 17 };
 
-// GenerateKeyhash: without it Fast DDS does not understand that an endpoint has left, and waits for the lease to end.
+// GenerateKeyhash: without it Fast DDS does not understand that an endpoint has left, and waits for
+// the lease to end.
 static const char kLoopbackAlone[] =
-    "<General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
+    "<General><Interfaces><NetworkInterface address=\"127.0.0.1\" "
+    "multicast=\"false\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast></General>"
     "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>40</MaxAutoParticipantIndex>"
@@ -36,8 +38,8 @@ Endpoints open_endpoints(const dds_topic_descriptor_t* written_type, const char*
   dds_qos_t* qos = make_qos();
   Endpoints made;
   made.participant = checked(dds_create_participant(kDomain, NULL, NULL), "participant");
-  const dds_entity_t written =
-      checked(dds_create_topic(made.participant, written_type, written_topic, qos, NULL), written_topic);
+  const dds_entity_t written = checked(
+      dds_create_topic(made.participant, written_type, written_topic, qos, NULL), written_topic);
   const dds_entity_t read =
       checked(dds_create_topic(made.participant, read_type, read_topic, qos, NULL), read_topic);
   made.writer = checked(dds_create_writer(made.participant, written, qos, NULL), "writer");

@@ -1,5 +1,5 @@
-// server: serves foreign::ILookout until its standard input ends. Nothing of Skein: what idlc made of the flattened IDL, and
-// Cyclone DDS.
+// server: serves foreign::ILookout until its standard input ends. Nothing of Skein: what idlc made
+// of the flattened IDL, and Cyclone DDS.
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>

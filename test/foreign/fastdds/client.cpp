@@ -1,5 +1,5 @@
-// client NAME CALLS: calls foreign::ILookout and prints what came back. Nothing of Skein: what fastddsgen made of the
-// flattened IDL, and Fast DDS.
+// client NAME CALLS: calls foreign::ILookout and prints what came back. Nothing of Skein: what
+// fastddsgen made of the flattened IDL, and Fast DDS.
 #include <cstdio>
 #include <cstring>
 
@@ -28,7 +28,8 @@ class Client {
   bool receive(ILookout_Reply& reply, int patience_ms) {
     while (endpoints_.take(&reply, patience_ms)) {
       const auto& related = reply.header().relatedRequestId();
-      if (related.writer_guid() == own_guid() && related.sequence_number().low() == last_number_) return true;
+      if (related.writer_guid() == own_guid() && related.sequence_number().low() == last_number_)
+        return true;
     }
     return false;
   }
@@ -36,7 +37,8 @@ class Client {
   ILookout_Reply call(const ILookout_Call& data) {
     ILookout_Reply reply;
     send(data);
-    if (!receive(reply, kPatienceMs)) throw std::runtime_error("no reply to operation " + std::to_string(data._d()));
+    if (!receive(reply, kPatienceMs))
+      throw std::runtime_error("no reply to operation " + std::to_string(data._d()));
     return reply;
   }
 
@@ -57,7 +59,9 @@ class Client {
   std::uint32_t last_number_ = 0;
 };
 
-int remote_exception(const ILookout_Reply& reply) { return static_cast<int>(reply.header().remoteEx()); }
+int remote_exception(const ILookout_Reply& reply) {
+  return static_cast<int>(reply.header().remoteEx());
+}
 
 /// DDS does not tell when the other side is ready; an answer does.
 void await_server(Client& client) {
@@ -88,9 +92,9 @@ void look(Client& client, std::uint64_t distance_m, std::int16_t turns) {
   if (result._d() == 0) {
     const ILookout_look_Out& out = result.result();
     const Sighting& sighting = out.return_();
-    std::printf("look: kind %d, %s at %.1f, %zu bytes, turns %d, %s\n", static_cast<int>(sighting.kind()),
-                sighting.name().c_str(), sighting.bearing_deg(), sighting.image().size(), out.turns(),
-                out.remark().c_str());
+    std::printf("look: kind %d, %s at %.1f, %zu bytes, turns %d, %s\n",
+                static_cast<int>(sighting.kind()), sighting.name().c_str(), sighting.bearing_deg(),
+                sighting.image().size(), out.turns(), out.remark().c_str());
   } else if (result._d() == OutOfSight_Ex_Hash) {
     const OutOfSight& exception = result.outOfSight_ex();
     std::printf("look: OutOfSight %lld %s\n", static_cast<long long>(exception.limit_m()),
@@ -130,7 +134,8 @@ void remember_and_count(Client& client) {
   data.remembered({});
   std::printf("remembered: %u\n", client.call(data).data().remembered().result().return_());
   data.attribute_get_place({});
-  std::printf("place: %s\n", client.call(data).data().attribute_get_place().result().return_().c_str());
+  std::printf("place: %s\n",
+              client.call(data).data().attribute_get_place().result().return_().c_str());
 }
 
 }  // namespace

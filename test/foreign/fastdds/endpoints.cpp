@@ -1,11 +1,12 @@
 #include "endpoints.hpp"
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
 #include <chrono>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <stdexcept>
 
 using namespace eprosima::fastdds::dds;
@@ -56,8 +57,8 @@ TypeSupport without_description(TypeSupport type) {
 
 }  // namespace
 
-Endpoints::Endpoints(TypeSupport written_type, const std::string& written_topic, TypeSupport read_type,
-                     const std::string& read_topic)
+Endpoints::Endpoints(TypeSupport written_type, const std::string& written_topic,
+                     TypeSupport read_type, const std::string& read_topic)
     : participant_(made(
           DomainParticipantFactory::get_instance()->create_participant(kDomain, loopback_alone()),
           "participant")) {
@@ -66,12 +67,15 @@ Endpoints::Endpoints(TypeSupport written_type, const std::string& written_topic,
     return made(participant_->create_topic(name, type.get_type_name(), TOPIC_QOS_DEFAULT), name);
   };
   Publisher* publisher = made(participant_->create_publisher(PUBLISHER_QOS_DEFAULT), "publisher");
-  Subscriber* subscriber = made(participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT), "subscriber");
+  Subscriber* subscriber =
+      made(participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT), "subscriber");
   auto writer_qos = service_qos<DataWriterQos>();
   writer_qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};
-  writer_ = made(publisher->create_datawriter(topic(written_type, written_topic), writer_qos), "writer");
-  reader_ = made(subscriber->create_datareader(topic(read_type, read_topic), service_qos<DataReaderQos>()),
-                 "reader");
+  writer_ =
+      made(publisher->create_datawriter(topic(written_type, written_topic), writer_qos), "writer");
+  reader_ = made(
+      subscriber->create_datareader(topic(read_type, read_topic), service_qos<DataReaderQos>()),
+      "reader");
 }
 
 Endpoints::~Endpoints() {

@@ -8,7 +8,8 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <string>
 
-/// One side of a service as DDS sees it: a writer and a reader in the default partition, on loopback alone.
+/// One side of a service as DDS sees it: a writer and a reader in the default partition, on
+/// loopback alone.
 class Endpoints {
  public:
   /// Throws std::runtime_error where DDS refuses.

@@ -1,5 +1,5 @@
-// server: serves foreign::ILookout until its standard input ends. Nothing of Skein: what fastddsgen made of the flattened IDL,
-// and Fast DDS.
+// server: serves foreign::ILookout until its standard input ends. Nothing of Skein: what fastddsgen
+// made of the flattened IDL, and Fast DDS.
 #include <poll.h>
 #include <unistd.h>
 
