@@ -6,6 +6,7 @@
 #include <new>
 
 #include "../sample_format.hpp"
+#include "blob_memory.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {
@@ -101,8 +102,9 @@ ddsi_serdata* key_alone(const ddsi_serdata* data) {
 
 void free_blob(ddsi_serdata* data) {
   Blob* blob = as_blob(data);
+  const std::size_t size = sizeof(Blob) + padded(blob->size);
   blob->~Blob();
-  ::operator delete(blob);
+  free_blob_memory(blob, size);
 }
 
 std::size_t print(const ddsi_sertype*, const ddsi_serdata* data, char* buffer, std::size_t size) {
@@ -168,7 +170,7 @@ const ddsi_sertype_ops kTypeOperations{
 }  // namespace
 
 Blob* Blob::make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
-  void* memory = ::operator new(sizeof(Blob) + padded(size));
+  void* memory = allocate_blob(sizeof(Blob) + padded(size));
   Blob* blob = new (memory) Blob;
   ddsi_serdata_init(blob, type, kind);
   blob->size = static_cast<std::uint32_t>(size);
