@@ -84,7 +84,8 @@ void CdrWriter::write_length(std::size_t length) {
 
 void CdrWriter::write_string(std::string_view text) {
   if (text.find('\0') != std::string_view::npos) {
-    throw InvalidArgument("text with a zero byte cannot travel as an IDL string; use sequence<octet>");
+    throw InvalidArgument(
+        "text with a zero byte cannot travel as an IDL string; use sequence<octet>");
   }
   write_length(text.size() + 1);
   write_array(text.data(), text.size());
@@ -130,7 +131,8 @@ std::size_t CdrReader::remaining() const noexcept { return state_.size - state_.
 
 template <Primitive T>
 T CdrReader::read() {
-  if (remaining() < padding(state_.position(), sizeof(T)) + sizeof(T)) fail("the message ends here");
+  if (remaining() < padding(state_.position(), sizeof(T)) + sizeof(T))
+    fail("the message ends here");
   state_.align(sizeof(T));
   if constexpr (std::is_same_v<T, bool>) {
     std::uint8_t value;
@@ -198,13 +200,15 @@ std::uint32_t CdrReader::read_enum(std::uint32_t count) {
 
 void CdrReader::check_bound(std::size_t size, std::size_t bound, const char* place) const {
   if (size > bound) {
-    throw MalformedSample("malformed sample: " + std::string(place) + ' ' + beyond_bound(size, bound));
+    throw MalformedSample("malformed sample: " + std::string(place) + ' ' +
+                          beyond_bound(size, bound));
   }
 }
 
 void CdrReader::fail(std::string_view reason) const {
   throw MalformedSample("malformed sample: " + std::string(place_) + " at offset " +
-                        std::to_string(state_.position() + kHeaderSize) + ": " + std::string(reason));
+                        std::to_string(state_.position() + kHeaderSize) + ": " +
+                        std::string(reason));
 }
 
 CdrReader::Nesting::Nesting(CdrReader& reader) : reader_(reader) {
@@ -243,22 +247,24 @@ std::size_t read_cdr_erased(std::span<const std::byte> message, std::size_t offs
     throw MalformedSample("malformed sample: " + std::to_string(message.size()) +
                           " bytes cannot hold a value at offset " + std::to_string(offset));
   }
-  const auto kind = std::to_integer<unsigned>(message[0]) << 8 | std::to_integer<unsigned>(message[1]);
+  const auto kind =
+      std::to_integer<unsigned>(message[0]) << 8 | std::to_integer<unsigned>(message[1]);
   if (kind > 1) {
     throw MalformedSample("malformed sample: representation " + std::to_string(kind) +
                           " is not PLAIN_CDR (0 or 1); the writer must be set to XCDR1");
   }
-  CdrReader::State state(message.subspan(kHeaderSize), kind == 0 ? ByteOrder::Big : ByteOrder::Little);
+  CdrReader::State state(message.subspan(kHeaderSize),
+                         kind == 0 ? ByteOrder::Big : ByteOrder::Little);
   state.cdr.jump(offset - kHeaderSize);
   CdrReader reader(state);
   read(reader, context);
   return kHeaderSize + state.position();
 }
 
-#define SKEIN_INSTANTIATE(T)                                           \
-  template void CdrWriter::write<T>(T);                                \
-  template void CdrWriter::write_array<T>(const T*, std::size_t);      \
-  template T CdrReader::read<T>();                                     \
+#define SKEIN_INSTANTIATE(T)                                      \
+  template void CdrWriter::write<T>(T);                           \
+  template void CdrWriter::write_array<T>(const T*, std::size_t); \
+  template T CdrReader::read<T>();                                \
   template void CdrReader::read_array<T>(T*, std::size_t);
 SKEIN_INSTANTIATE(bool)
 SKEIN_INSTANTIATE(char)

@@ -90,7 +90,8 @@ JsonReader JsonReader::member(std::string_view name) const {
   return JsonReader(&*value_of(node_).find(name), this, name, 0);
 }
 
-void JsonReader::expect_members(std::string_view type, std::span<const std::string_view> names) const {
+void JsonReader::expect_members(std::string_view type,
+                                std::span<const std::string_view> names) const {
   const json& value = value_of(node_);
   if (!value.is_object()) fail("is no object, as " + std::string(type) + " must be");
   for (const auto& [name, member] : value.items()) {
@@ -119,7 +120,8 @@ std::uint32_t JsonReader::read_enum(std::string_view type,
 
 void JsonReader::expect_size(std::size_t size) const {
   if (array_size() != size) {
-    fail("has " + std::to_string(array_size()) + " elements, " + std::to_string(size) + " are needed");
+    fail("has " + std::to_string(array_size()) + " elements, " + std::to_string(size) +
+         " are needed");
   }
 }
 
@@ -138,8 +140,8 @@ void parse_json(std::string_view text, const std::function<void(const JsonReader
     const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
     const auto line = std::ranges::count(before, '\n') + 1;
     const auto column = before.size() - (before.rfind('\n') + 1) + 1;
-    throw InvalidArgument("JSON: line " + std::to_string(line) + ", column " + std::to_string(column) +
-                          ": this is no JSON");
+    throw InvalidArgument("JSON: line " + std::to_string(line) + ", column " +
+                          std::to_string(column) + ": this is no JSON");
   }
   read(JsonReader(&value));
 }

@@ -42,7 +42,8 @@ void JsonWriter::write(T value) {
   } else if constexpr (std::is_same_v<T, char>) {
     const auto code = static_cast<unsigned char>(value);
     std::string utf8(1, value);
-    if (code >= 0x80) utf8 = {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
+    if (code >= 0x80)
+      utf8 = {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
     write_string(utf8);
   } else {
     if constexpr (std::is_floating_point_v<T>) {

@@ -30,7 +30,8 @@ using Digest = std::array<std::uint32_t, 4>;
 
 std::uint32_t word_at(const std::byte* block, std::size_t index) {
   std::uint32_t word = 0;
-  for (std::size_t i = 0; i < 4; ++i) word |= std::to_integer<std::uint32_t>(block[4 * index + i]) << (8 * i);
+  for (std::size_t i = 0; i < 4; ++i)
+    word |= std::to_integer<std::uint32_t>(block[4 * index + i]) << (8 * i);
   return word;
 }
 
@@ -41,10 +42,18 @@ void add_block(Digest& digest, const std::byte* block) {
     std::uint32_t mixed;
     std::size_t index;
     switch (round) {
-      case 0: mixed = (b & c) | (~b & d), index = i; break;
-      case 1: mixed = (d & b) | (~d & c), index = (5 * i + 1) % 16; break;
-      case 2: mixed = b ^ c ^ d, index = (3 * i + 5) % 16; break;
-      default: mixed = c ^ (b | ~d), index = (7 * i) % 16; break;
+      case 0:
+        mixed = (b & c) | (~b & d), index = i;
+        break;
+      case 1:
+        mixed = (d & b) | (~d & c), index = (5 * i + 1) % 16;
+        break;
+      case 2:
+        mixed = b ^ c ^ d, index = (3 * i + 5) % 16;
+        break;
+      default:
+        mixed = c ^ (b | ~d), index = (7 * i) % 16;
+        break;
     }
     const std::uint32_t sum = a + mixed + sines()[i] + word_at(block, index);
     a = d;
@@ -60,7 +69,8 @@ void add_block(Digest& digest, const std::byte* block) {
 Guid md5(std::span<const std::byte> content) noexcept {
   Digest digest{0x67452301, 0xEFCDAB89, 0x98BADCFE, 0x10325476};
   const std::uint64_t bits = std::uint64_t{content.size()} * 8;
-  for (; content.size() >= kBlock; content = content.subspan(kBlock)) add_block(digest, content.data());
+  for (; content.size() >= kBlock; content = content.subspan(kBlock))
+    add_block(digest, content.data());
   std::array<std::byte, 2 * kBlock> tail{};
   std::ranges::copy(content, tail.begin());
   tail[content.size()] = std::byte{0x80};
@@ -75,7 +85,8 @@ Guid md5(std::span<const std::byte> content) noexcept {
 }
 
 Guid key_hash_of(std::span<const std::byte> message, bool short_key) {
-  if (message.size() < kEncapsulation.size()) throw Internal("key_hash_of: no encapsulation header");
+  if (message.size() < kEncapsulation.size())
+    throw Internal("key_hash_of: no encapsulation header");
   const auto key = message.subspan(kEncapsulation.size());
   if (!short_key) return md5(key);
   Guid hash;

@@ -9,12 +9,23 @@ constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 void print_character(std::ostream& stream, char character) {
   switch (character) {
-    case '\n': stream << "\\n"; return;
-    case '\t': stream << "\\t"; return;
-    case '\r': stream << "\\r"; return;
-    case '"': stream << "\\\""; return;
-    case '\\': stream << "\\\\"; return;
-    default: break;
+    case '\n':
+      stream << "\\n";
+      return;
+    case '\t':
+      stream << "\\t";
+      return;
+    case '\r':
+      stream << "\\r";
+      return;
+    case '"':
+      stream << "\\\"";
+      return;
+    case '\\':
+      stream << "\\\\";
+      return;
+    default:
+      break;
   }
   const auto code = static_cast<unsigned char>(character);
   if (code >= 0x20 && code != 0x7F) {

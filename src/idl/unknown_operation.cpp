@@ -11,8 +11,8 @@ namespace skein::idl {
 void throw_unknown_operation(const InterfaceInfo& interface, const OperationInfo& operation) {
   std::vector<std::string> known;
   for (const OperationInfo& one : interface.operations) known.emplace_back(one.name);
-  throw Unimplemented(std::string(interface.name) + " has no operation '" + std::string(operation.name) +
-                      "'" + suggestion(operation.name, known));
+  throw Unimplemented(std::string(interface.name) + " has no operation '" +
+                      std::string(operation.name) + "'" + suggestion(operation.name, known));
 }
 
 }  // namespace skein::idl

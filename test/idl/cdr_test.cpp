@@ -89,11 +89,15 @@ std::size_t allowance(std::size_t message_size) { return 64 * message_size + 409
 TEST_CASE("a message is PLAIN_CDR, little-endian, aligned from its fifth byte, padded with zeros") {
   const test_planner::Route route{{{1, 0, 0}}, 2, "ab"};
   CHECK(hex(encode_message(route)) ==
-        "00010000"                          // encapsulation
-        "01000000" "00000000"               // one point, padding to 8
-        "000000000000f03f" "0000000000000000" "0000000000000000"
-        "0000000000000040"                  // length_m
-        "03000000" "616200");               // remark
+        "00010000"  // encapsulation
+        "01000000"
+        "00000000"  // one point, padding to 8
+        "000000000000f03f"
+        "0000000000000000"
+        "0000000000000000"
+        "0000000000000040"  // length_m
+        "03000000"
+        "616200");  // remark
 }
 
 TEST_CASE("a value behind others is aligned as if it had been written with them") {
@@ -139,11 +143,13 @@ TEST_CASE("a refusal names type, member and offset") {
   Bytes message = encode_message(test_planner::Route{{}, 2, "ab"});
   message.resize(message.size() - 1);
   CHECK(refusal<test_planner::Route>(message) ==
-        "malformed sample: test_planner::Route.remark at offset 24: a length of 3 does not fit into the 2 "
+        "malformed sample: test_planner::Route.remark at offset 24: a length of 3 does not fit "
+        "into the 2 "
         "bytes that are left");
   CHECK(refusal<everything::Colour>(message_of({0, 1, 0, 0, 3, 0, 0, 0})) ==
         "malformed sample: message at offset 8: 3 is no value of the enumeration");
-  CHECK(refusal<bool>(message_of({0, 1, 0, 0, 2})) == "malformed sample: message at offset 5: 2 is no boolean");
+  CHECK(refusal<bool>(message_of({0, 1, 0, 0, 2})) ==
+        "malformed sample: message at offset 5: 2 is no boolean");
   CHECK(refusal<std::string>(message_of({0, 1, 0, 0, 2, 0, 0, 0, 'a', 'b'})) ==
         "malformed sample: message at offset 10: a string is not terminated");
   CHECK(refusal<std::string>(message_of({0, 1, 0, 0, 3, 0, 0, 0, 'a', 0, 0})) ==
@@ -154,8 +160,10 @@ TEST_CASE("a refusal names type, member and offset") {
 
 TEST_CASE("other representations than PLAIN_CDR are refused with the remedy") {
   CHECK(refusal<bool>(message_of({0, 7, 0, 0, 1})) ==
-        "malformed sample: representation 7 is not PLAIN_CDR (0 or 1); the writer must be set to XCDR1");
-  CHECK(refusal<bool>(message_of({0, 1})) == "malformed sample: 2 bytes cannot hold a value at offset 4");
+        "malformed sample: representation 7 is not PLAIN_CDR (0 or 1); the writer must be set to "
+        "XCDR1");
+  CHECK(refusal<bool>(message_of({0, 1})) ==
+        "malformed sample: 2 bytes cannot hold a value at offset 4");
 }
 
 TEST_CASE("a bound is kept on decoding") {
@@ -189,7 +197,8 @@ TEST_CASE("a message that nests a recursive type too deep is refused") {
       writer.write_length(1);
     }
   });
-  CHECK(refusal<recursive::Tree>(message).ends_with("the value is nested more than 100 levels deep"));
+  CHECK(
+      refusal<recursive::Tree>(message).ends_with("the value is nested more than 100 levels deep"));
 }
 
 TEST_CASE("every truncation of a message is refused or harmless, and cheap") {
@@ -198,7 +207,8 @@ TEST_CASE("every truncation of a message is refused or harmless, and cheap") {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       // A buffer of its own, so that a sanitizer sees what is read beyond the end.
       const Bytes cut(whole.first(size));
-      if (decode_hostile(specimen, cut) > allowance(size)) FAIL("cut at " << size << " of " << specimen.support->name);
+      if (decode_hostile(specimen, cut) > allowance(size))
+        FAIL("cut at " << size << " of " << specimen.support->name);
     }
   }
 }

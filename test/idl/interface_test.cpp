@@ -28,7 +28,8 @@ class Planner final : public IPlanner {
   }
   void reset() override { margin_ = 0; }
   void note(const std::string& text) override { noted = text; }
-  void observe(const skein::Reference<IObserver>& observer, skein::Reference<IPlanner>& self) override {
+  void observe(const skein::Reference<IObserver>& observer,
+               skein::Reference<IPlanner>& self) override {
     self = skein::Reference<IPlanner>(observer);
   }
   Blob blob(const Blob& content) override { return content; }
@@ -50,14 +51,16 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE_METHOD(Fixture, "a call through proxy and skeleton returns what the implementation returns") {
+TEST_CASE_METHOD(Fixture,
+                 "a call through proxy and skeleton returns what the implementation returns") {
   const Route route = proxy.plan(problem);
   CHECK(route.points == test_geometry::Path{problem.start, problem.goal});
   CHECK(route.length_m == 12.5);
   CHECK(proxy.async_plan(problem).get() == route);
 }
 
-TEST_CASE_METHOD(Fixture, "an argument reaches an implementation in the same process without a copy") {
+TEST_CASE_METHOD(Fixture,
+                 "an argument reaches an implementation in the same process without a copy") {
   proxy.plan(problem);
   CHECK(planner->seen == problem.terrain.data());
 }
@@ -83,7 +86,9 @@ TEST_CASE_METHOD(Fixture, "an exception can be raised again from what its info k
   CHECK_THROWS_AS(base.info().raise(base.value()), NoRoute);
 }
 
-TEST_CASE_METHOD(Fixture, "out and inout parameters come back, in the out struct where the call is asynchronous") {
+TEST_CASE_METHOD(
+    Fixture,
+    "out and inout parameters come back, in the out struct where the call is asynchronous") {
   std::string text;
   test_geometry::Path path{{0, 0, 0}};
   CHECK(proxy.statistics(Speed::Fast, text, path) == IPlanner::Statistics{4, 0.5});
@@ -120,7 +125,8 @@ TEST_CASE_METHOD(Fixture, "a oneway call and a void call return nothing") {
 }
 
 TEST_CASE_METHOD(Fixture, "a parameter of an interface's type is a service reference") {
-  const skein::Reference<IObserver> observer({"test_planner/IObserver", skein::Guid::random(), "one"});
+  const skein::Reference<IObserver> observer(
+      {"test_planner/IObserver", skein::Guid::random(), "one"});
   skein::Reference<IPlanner> self;
   proxy.observe(observer, self);
   CHECK(self.provider == observer.provider);
@@ -161,7 +167,8 @@ TEST_CASE("the hash of an operation is the first four bytes of its name's MD5, l
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a skeleton refuses an operation that it does not know and suggests a near one") {
+TEST_CASE_METHOD(Fixture,
+                 "a skeleton refuses an operation that it does not know and suggests a near one") {
   IPlanner::Skeleton skeleton(planner);
   skein::OperationInfo unknown = IPlanner::interface_info().operations[0];
   unknown.name = "plam";
@@ -170,6 +177,7 @@ TEST_CASE_METHOD(Fixture, "a skeleton refuses an operation that it does not know
     skeleton.dispatch(unknown, nullptr, nullptr);
     FAIL("nothing was thrown");
   } catch (const skein::Unimplemented& error) {
-    CHECK(std::string(error.what()) == "test_planner/IPlanner has no operation 'plam' (did you mean 'plan'?)");
+    CHECK(std::string(error.what()) ==
+          "test_planner/IPlanner has no operation 'plam' (did you mean 'plan'?)");
   }
 }

@@ -59,12 +59,12 @@ class Decoded {
   T value_{};
 };
 
-#define CHECK_SAME(ctype, value)                                              \
-  do {                                                                        \
-    const Decoded<ctype> decoded(encode_message(value), ctype##_desc);        \
-    INFO(#ctype);                                                             \
-    REQUIRE(decoded.accepted());                                              \
-    CHECK(decoded.writes_the_same());                                         \
+#define CHECK_SAME(ctype, value)                                       \
+  do {                                                                 \
+    const Decoded<ctype> decoded(encode_message(value), ctype##_desc); \
+    INFO(#ctype);                                                      \
+    REQUIRE(decoded.accepted());                                       \
+    CHECK(decoded.writes_the_same());                                  \
   } while (false)
 
 const skein::OperationInfo& operation(const skein::InterfaceInfo& info, std::string_view name) {
@@ -88,8 +88,8 @@ Bytes request(const skein::OperationInfo& operation, const void* in) {
   return message;
 }
 
-Bytes reply(const skein::OperationInfo& operation, std::int32_t result, const skein::TypeSupport& type,
-            const void* value) {
+Bytes reply(const skein::OperationInfo& operation, std::int32_t result,
+            const skein::TypeSupport& type, const void* value) {
   Bytes message{std::span<const std::byte>(skein::idl::kEncapsulation)};
   skein::idl::append_cdr(message, [&](CdrWriter& writer) {
     writer.write_array(skein::Guid{}.bytes.data(), 16);

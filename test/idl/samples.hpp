@@ -7,8 +7,19 @@
 namespace samples {
 
 inline everything::Basic basic() {
-  return {true, 'x', 200, -300, 60000, -70000, 4000000000U, -5000000000LL, 18000000000000000000ULL,
-          1.5F, -2.25, "text", everything::Colour::Blue};
+  return {true,
+          'x',
+          200,
+          -300,
+          60000,
+          -70000,
+          4000000000U,
+          -5000000000LL,
+          18000000000000000000ULL,
+          1.5F,
+          -2.25,
+          "text",
+          everything::Colour::Blue};
 }
 
 inline everything::Compound compound() {

@@ -82,7 +82,8 @@ TEST_CASE("constants have the values of the IDL") {
 TEST_CASE("values print readably") {
   CHECK(to_string(Colour::Green) == "Green");
   CHECK(to_string(static_cast<Colour>(7)) == "everything::Colour(7)");
-  CHECK(to_string(test_geometry::Position{1, 2.5, -3}) == "Position{east_m=1, north_m=2.5, up_m=-3}");
+  CHECK(to_string(test_geometry::Position{1, 2.5, -3}) ==
+        "Position{east_m=1, north_m=2.5, up_m=-3}");
   CHECK(to_string(samples::tree()) ==
         "Tree{label=\"root\", children=[Tree{label=\"left\", children=[]}, "
         "Tree{label=\"right\", children=[Tree{label=\"leaf\", children=[]}]}]}");
@@ -193,9 +194,12 @@ TEST_CASE("JSON that does not fit is refused with the place") {
   CHECK(refusal(R"({"points": [], "length_m": 1})") ==
         "JSON: $ lacks the member 'remark' of test_planner::Route");
   CHECK(refusal(R"({"points": [], "lenght_m": 1, "remark": ""})") ==
-        "JSON: $ has a member 'lenght_m', which test_planner::Route has not (did you mean 'length_m'?)");
-  CHECK(refusal(R"({"points": [{"east_m": 0, "north_m": "x", "up_m": 0}], "length_m": 1, "remark": ""})") ==
-        "JSON: $.points[0].north_m is no number");
+        "JSON: $ has a member 'lenght_m', which test_planner::Route has not (did you mean "
+        "'length_m'?)");
+  CHECK(
+      refusal(
+          R"({"points": [{"east_m": 0, "north_m": "x", "up_m": 0}], "length_m": 1, "remark": ""})") ==
+      "JSON: $.points[0].north_m is no number");
   const auto basic = [](std::string json) {
     return error_of<skein::InvalidArgument>([&] { from_json<Basic>(json); });
   };
@@ -208,7 +212,8 @@ TEST_CASE("JSON that does not fit is refused with the place") {
   CHECK(basic(json) == "JSON: $.byte is no integer");
   json.replace(json.find(":1.5,"), 5, ":1,");
   json.replace(json.find("Blue"), 4, "Blua");
-  CHECK(basic(json) == "JSON: $.colour is 'Blua', which is no value of everything::Colour (did you mean 'Blue'?)");
+  CHECK(basic(json) ==
+        "JSON: $.colour is 'Blua', which is no value of everything::Colour (did you mean 'Blue'?)");
   CHECK(basic(std::string(100000, '[')) == "JSON: line 1, column 100001: this is no JSON");
 }
 
@@ -229,7 +234,8 @@ TEST_CASE("identifiers that C++ reserves get an underscore") {
   CHECK(error.info().name == "names::virtual");
 }
 
-TEST_CASE("a key of at most 16 bytes is its own hash, big-endian and padded; a longer one is hashed") {
+TEST_CASE(
+    "a key of at most 16 bytes is its own hash, big-endian and padded; a longer one is hashed") {
   ShortKey first{0x01020304, 1.5, 0xAA};
   CHECK(key_hash(first).hex() == "01020304aa0000000000000000000000");
   ShortKey second = first;

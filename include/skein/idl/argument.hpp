@@ -6,16 +6,17 @@
 
 namespace skein {
 
-/// An `in` or `inout` parameter on its way: a value of its own, or one borrowed from the caller, who
-/// keeps it alive while the request is handed over. So a proxy hands over a mebibyte without copying
-/// it. A copy always owns its value.
+/// An `in` or `inout` parameter on its way: a value of its own, or one borrowed from the caller,
+/// who keeps it alive while the request is handed over. So a proxy hands over a mebibyte without
+/// copying it. A copy always owns its value.
 template <class T>
 class Argument {
  public:
   Argument() = default;
   template <class U>
-    requires std::convertible_to<U, T> && (!std::same_as<std::remove_cvref_t<U>, Argument>)
-  Argument(U&& value) : own_(std::forward<U>(value)) {}
+  requires std::convertible_to<U, T> &&
+      (!std::same_as<std::remove_cvref_t<U>, Argument>)Argument(U&& value)
+      : own_(std::forward<U>(value)) {}
   Argument(const Argument& other) : own_(other.get()) {}
   Argument(Argument&&) noexcept = default;
   Argument& operator=(const Argument& other) {

@@ -15,12 +15,11 @@ namespace skein::idl {
 
 /// The C++ types of IDL's basic types.
 template <class T>
-concept Primitive =
-    std::same_as<T, bool> || std::same_as<T, char> || std::same_as<T, std::uint8_t> ||
-    std::same_as<T, std::int16_t> || std::same_as<T, std::uint16_t> ||
-    std::same_as<T, std::int32_t> || std::same_as<T, std::uint32_t> ||
-    std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> || std::same_as<T, float> ||
-    std::same_as<T, double>;
+concept Primitive = std::same_as<T, bool> || std::same_as<T, char> ||
+    std::same_as<T, std::uint8_t> || std::same_as<T, std::int16_t> ||
+    std::same_as<T, std::uint16_t> || std::same_as<T, std::int32_t> ||
+    std::same_as<T, std::uint32_t> || std::same_as<T, std::int64_t> ||
+    std::same_as<T, std::uint64_t> || std::same_as<T, float> || std::same_as<T, double>;
 
 enum class ByteOrder { Big, Little };
 
@@ -116,8 +115,9 @@ void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&
 std::size_t read_cdr_erased(std::span<const std::byte> message, std::size_t offset,
                             void (*read)(CdrReader&, const void*), const void* context);
 
-/// Appends to `message`, which begins with an encapsulation header, what `write(CdrWriter&)` writes.
-/// Alignment counts from byte 4. `write` may run more than once: the message grows by starting again.
+/// Appends to `message`, which begins with an encapsulation header, what `write(CdrWriter&)`
+/// writes. Alignment counts from byte 4. `write` may run more than once: the message grows by
+/// starting again.
 template <std::invocable<CdrWriter&> Write>
 void append_cdr(Bytes& message, const Write& write, ByteOrder order = ByteOrder::Little) {
   append_cdr_erased(

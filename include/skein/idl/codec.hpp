@@ -39,7 +39,8 @@ inline void decode(CdrReader& reader, std::string& value) { reader.read_string(v
 template <PlainlyLaidOut T>
 void encode_elements(CdrWriter& writer, const T* values, std::size_t count) {
   using Element = typename PlainLayout<T>::Element;
-  writer.write_array(reinterpret_cast<const Element*>(values), count * (sizeof(T) / sizeof(Element)));
+  writer.write_array(reinterpret_cast<const Element*>(values),
+                     count * (sizeof(T) / sizeof(Element)));
 }
 
 template <PlainlyLaidOut T>

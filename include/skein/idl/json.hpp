@@ -10,8 +10,8 @@
 
 namespace skein::idl {
 
-/// Writes JSON text. Numbers are written so that they read back the same; numbers that JSON lacks as
-/// "NaN", "Infinity", "-Infinity"; text that is no UTF-8 with replacement characters.
+/// Writes JSON text. Numbers are written so that they read back the same; numbers that JSON lacks
+/// as "NaN", "Infinity", "-Infinity"; text that is no UTF-8 with replacement characters.
 class JsonWriter {
  public:
   void begin_object() { open('{'); }

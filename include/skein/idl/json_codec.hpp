@@ -8,8 +8,8 @@
 #include "skein/idl/argument.hpp"
 #include "skein/idl/json.hpp"
 
-/// JSON of every type that IDL can make; generated types by `skein_write_json` and `skein_read_json`
-/// found beside them.
+/// JSON of every type that IDL can make; generated types by `skein_write_json` and
+/// `skein_read_json` found beside them.
 namespace skein::idl {
 
 template <class T>
@@ -31,7 +31,9 @@ void read_json(const JsonReader& reader, T& value) {
 }
 
 inline void write_json(JsonWriter& writer, const std::string& value) { writer.write_string(value); }
-inline void read_json(const JsonReader& reader, std::string& value) { value = reader.read_string(); }
+inline void read_json(const JsonReader& reader, std::string& value) {
+  value = reader.read_string();
+}
 
 template <class Values>
 void write_json_elements(JsonWriter& writer, const Values& values) {

@@ -11,8 +11,8 @@
 #include "skein/idl/argument.hpp"
 #include "skein/idl/cdr.hpp"
 
-/// Readable text of every type that IDL can make: `Route{points=[Point{x=1, y=2}], name="north"}`. For
-/// people; JSON is the form that reads back.
+/// Readable text of every type that IDL can make: `Route{points=[Point{x=1, y=2}], name="north"}`.
+/// For people; JSON is the form that reads back.
 namespace skein::idl {
 
 /// Of longer sequences only so many elements are printed.

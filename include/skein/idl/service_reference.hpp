@@ -27,8 +27,8 @@ struct ServiceReference {
   bool is_nil() const noexcept { return provider.is_nil(); }
 };
 
-/// A reference to a service of interface `I`: what IDL parameters and members of an interface's type
-/// become. `I` may be incomplete. Whether the provider really offers `I` shows on connecting.
+/// A reference to a service of interface `I`: what IDL parameters and members of an interface's
+/// type become. `I` may be incomplete. Whether the provider really offers `I` shows on connecting.
 template <class I>
 struct Reference : ServiceReference {
   using Interface = I;

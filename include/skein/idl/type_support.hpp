@@ -6,8 +6,8 @@
 
 namespace skein::idl {
 
-/// The type support of a generated type. Generated code declares `type_support(const T*)` beside each
-/// struct, union, enumeration and exception; this is its short form: `type_support<Route>()`.
+/// The type support of a generated type. Generated code declares `type_support(const T*)` beside
+/// each struct, union, enumeration and exception; this is its short form: `type_support<Route>()`.
 template <class T>
 const TypeSupport& type_support() {
   return type_support(static_cast<const T*>(nullptr));
@@ -20,16 +20,19 @@ constexpr TypeSupport make_type_support(std::string_view name) {
       .name = name,
       .make = []() -> void* { return new T(); },
       .destroy = [](void* value) noexcept { delete static_cast<T*>(value); },
-      .assign = [](void* to, const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
+      .assign = [](void* to,
+                   const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
       .encode =
           [](const void* value, Bytes& message) {
-            append_cdr(message,
-                       [value](CdrWriter& writer) { encode(writer, *static_cast<const T*>(value)); });
+            append_cdr(message, [value](CdrWriter& writer) {
+              encode(writer, *static_cast<const T*>(value));
+            });
           },
       .decode =
           [](void* value, std::span<const std::byte> message, std::size_t offset) {
-            return read_cdr(message, offset,
-                            [value](CdrReader& reader) { decode(reader, *static_cast<T*>(value)); });
+            return read_cdr(message, offset, [value](CdrReader& reader) {
+              decode(reader, *static_cast<T*>(value));
+            });
           },
       .to_json =
           [](const void* value) {
@@ -39,8 +42,9 @@ constexpr TypeSupport make_type_support(std::string_view name) {
           },
       .from_json =
           [](void* value, std::string_view json) {
-            parse_json(json,
-                       [value](const JsonReader& reader) { read_json(reader, *static_cast<T*>(value)); });
+            parse_json(json, [value](const JsonReader& reader) {
+              read_json(reader, *static_cast<T*>(value));
+            });
           },
   };
 }
