@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+
+#include "office.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using Lines = std::vector<std::string>;
+
+TEST_CASE("a CSP that joins while the system runs is selected from then on, and no more once it has left") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Office office;
+  office.add("old", Place::Inside, answer_as("old"), declared("10", "0.5"));
+  CHECK(office.perform(Office::task(), 10s) == "old did it");
+  office.add("new", place, answer_as("new"), declared("10", "0.9"));
+  CHECK(office.perform(Office::task(), 10s) == "new did it");
+  office.remove("new");
+  REQUIRE(eventually([&] { return !office.stands_by("new"); }));
+  CHECK(office.perform(Office::task(), 10s) == "old did it");
+  CHECK(office.attempts() == Lines{"old accepted"});
+}
+
+TEST_CASE("a CSP that leaves while it works is followed by the next best") {
+  Office office;
+  // It holds its worker for as long as its owner's patience with stuck calls, no longer.
+  Hang hang;
+  const auto leaver = office.add("leaver", Place::Outside, hang.script(), declared("20", "0.9"));
+  office.add("stayer", Place::Inside, answer_as("stayer"), declared("10", "0.5"));
+  std::string result;
+  std::thread other([&] { result = office.perform(Office::task(), 60s); });
+  const bool entered = eventually([&] { return leaver->inside == 1; });
+  std::thread leaving([&] { office.remove("leaver"); });
+  other.join();
+  hang.release();
+  leaving.join();
+  REQUIRE(entered);
+  CHECK(result == "stayer did it");
+  CHECK(office.attempts() == Lines{"leaver disconnected", "stayer accepted"});
+}
+
+TEST_CASE("CSPs come and go under load and no task is lost") {
+  Office office;
+  office.add("steady", Place::Inside, answer_as("steady"), declared("10", "0.5"));
+  std::atomic<bool> done = false;
+  std::atomic<int> right = 0, wrong = 0;
+  std::thread client([&] {
+    while (!done) {
+      const std::string result = office.owner->head().perform(Office::task("x"), nullptr, 30s);
+      ++(result.ends_with(" did x") ? right : wrong);
+    }
+  });
+  for (int round = 0; round < 5; ++round) {
+    const std::string name = "guest" + std::to_string(round);
+    const auto guest = office.add(name, Place::Outside, answer_as(name), declared("10", "0.9"));
+    CHECK(eventually([&] { return guest->calls > 0; }));
+    office.remove(name);
+  }
+  done = true;
+  client.join();
+  CHECK(wrong == 0);
+  CHECK(right >= 5);
+}

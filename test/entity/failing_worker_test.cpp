@@ -1,0 +1,116 @@
+#include <catch2/catch.hpp>
+
+#include "office.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using crew::NoAnswer;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+ScriptedWorker::Script refuse(bool final_word) {
+  return [final_word](const std::string&) -> std::string { throw NoAnswer("not today", final_word); };
+}
+
+ScriptedWorker::Script crash() {
+  return [](const std::string&) -> std::string { throw std::runtime_error("a bug"); };
+}
+
+/// A CSP that is chosen first, in each of the two places, and a sound one that is chosen next.
+struct FirstFails {
+  FirstFails(Place place, ScriptedWorker::Script script)
+      : first(office.add("first", place, std::move(script), declared("200", "0.9"))),
+        second(office.add("second", Place::Inside, answer_as("second"), declared("100", "0.5"))) {}
+  Office office;
+  std::shared_ptr<ScriptedWorker> first;
+  std::shared_ptr<ScriptedWorker> second;
+};
+
+}  // namespace
+
+TEST_CASE("a CSP that throws is followed by the next best") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  FirstFails team(place, crash());
+  CHECK(team.office.perform(Office::task(), 10s) == "second did it");
+  CHECK(team.office.attempts() == Lines{"first failed", "second accepted"});
+  CHECK_THAT(team.office.record.attempts[0].text, Catch::Contains("a bug"));
+}
+
+TEST_CASE("a CSP that refuses is followed by the next best, unless its word settles the matter") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  SECTION("it does not") {
+    FirstFails team(place, refuse(false));
+    CHECK(team.office.perform(Office::task(), 10s) == "second did it");
+    CHECK(team.office.attempts() == Lines{"first refused", "second accepted"});
+  }
+  SECTION("it does") {
+    FirstFails team(place, refuse(true));
+    CHECK_THROWS_AS(team.office.perform(Office::task(), 10s), NoAnswer);
+    CHECK(team.office.attempts() == Lines{"first refused"});
+    CHECK(team.second->calls == 0);
+  }
+}
+
+TEST_CASE("a CSP whose result is rejected is followed by the next best") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  FirstFails team(place, answer_as("wrong"));
+  CHECK(team.office.perform(Office::task(), 10s) == "second did it");
+  CHECK(team.office.attempts() == Lines{"first rejected", "second accepted"});
+  CHECK(team.office.record.attempts[0].text == "it is wrong did it");
+}
+
+TEST_CASE("a CSP that hangs is given up in time for the next best") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Hang hang;
+  FirstFails team(place, hang.script());
+  CHECK(team.office.perform(Office::task(), 1s) == "second did it");
+  CHECK(team.office.attempts() == Lines{"first timed out", "second accepted"});
+  CHECK(team.office.record.attempts[0].slice <= 900ms);
+  CHECK(team.office.record.took < 1s);
+  hang.release();
+}
+
+TEST_CASE("an instance in the process that is stuck is not entered again before it has come back") {
+  Hang hang;
+  FirstFails team(Place::Inside, hang.script());
+  team.office.perform(Office::task(), 500ms);
+  REQUIRE(team.first->inside == 1);
+  CHECK(team.office.perform(Office::task(), 10s) == "second did it");
+  CHECK(team.office.attempts() == Lines{"second accepted"});
+  CHECK(team.first->calls == 1);
+  hang.release();
+  CHECK(eventually([&] {
+    team.office.perform(Office::task(), 10s);
+    return team.first->calls == 2;
+  }));
+}
+
+TEST_CASE("where every result is rejected the task fails with what was wrong with the last one") {
+  Office office;
+  office.add("first", Place::Outside, answer_as("wrong first"), declared("20", "0.9"));
+  office.add("second", Place::Inside, answer_as("wrong second"), declared("10", "0.5"));
+  CHECK_THROWS_AS(office.perform(Office::task(), 10s), Internal);
+  CHECK_THROWS_WITH(office.perform(Office::task(), 10s), Catch::Contains("it is wrong second did it"));
+  CHECK(office.attempts() == Lines{"first rejected", "second rejected"});
+}
+
+TEST_CASE("where every CSP fails the task ends with the last one's error, and the record tells of all") {
+  Office office;
+  office.add("first", Place::Outside, crash(), declared("20", "0.9"));
+  office.add("second", Place::Inside, refuse(false), declared("10", "0.5"));
+  CHECK_THROWS_AS(office.perform(Office::task(), 10s), NoAnswer);
+  CHECK(office.attempts() == Lines{"first failed", "second refused"});
+}
+
+TEST_CASE("a client has its answer by its deadline although the CSP that was chosen hangs") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Hang hang;
+  FirstFails team(place, hang.script());
+  team.office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(team.office.owner->head()));
+  const auto client = make_client();
+  auto desk = client->connect<crew::Desk>();
+  CHECK(desk.within(1s).ask("x") == "second did x");
+  hang.release();
+}

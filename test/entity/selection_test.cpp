@@ -1,0 +1,63 @@
+#include <catch2/catch.hpp>
+
+#include "skein/entity/selection.hpp"
+
+using namespace skein;
+using namespace std::chrono_literals;
+
+namespace {
+
+Candidate candidate(std::string name, std::optional<Duration> latency, double quality) {
+  Candidate candidate;
+  candidate.name = std::move(name);
+  candidate.latency = latency;
+  candidate.quality = quality;
+  return candidate;
+}
+
+const std::vector<Candidate> kThree{candidate("thorough", 1500ms, 0.95), candidate("quick", 20ms, 0.5),
+                                    candidate("middling", 300ms, 0.9)};
+
+std::string chosen(const std::vector<Candidate>& candidates, Duration remaining) {
+  return candidates[make_declared_selection()->select(candidates, remaining).candidate].name;
+}
+
+}  // namespace
+
+TEST_CASE("the best declared quality that fits into the time left is selected") {
+  CHECK(chosen(kThree, 2s) == "thorough");
+  CHECK(chosen(kThree, 1s) == "middling");
+  CHECK(chosen(kThree, 50ms) == "quick");
+}
+
+TEST_CASE("where no declared latency fits the fastest is selected and gets all of the time") {
+  const Selection selection = make_declared_selection()->select(kThree, 5ms);
+  CHECK(kThree[selection.candidate].name == "quick");
+  CHECK(selection.slice == 5ms);
+  CHECK_THAT(selection.reason, Catch::Contains("no declared latency fits"));
+}
+
+TEST_CASE("time for the fastest other candidate is kept in reserve where that leaves enough") {
+  CHECK(make_declared_selection()->select(kThree, 2s).slice == 1980ms);
+  CHECK(make_declared_selection()->select(kThree, 1510ms).slice == 1510ms);
+}
+
+TEST_CASE("equal quality is decided by latency") {
+  CHECK(chosen({candidate("slow", 30ms, 0.5), candidate("fast", 10ms, 0.5)}, 1s) == "fast");
+}
+
+TEST_CASE("a candidate that declares no latency is not ruled out by time") {
+  CHECK(chosen({candidate("silent", std::nullopt, 0.9), candidate("fast", 10ms, 0.5)}, 20ms) == "silent");
+}
+
+TEST_CASE("the reason of a selection names the candidate, its quality and the time") {
+  CHECK_THAT(make_declared_selection()->select(kThree, 2s).reason,
+             Catch::Contains("thorough") && Catch::Contains("0.95") && Catch::Contains("2000 ms") &&
+                 Catch::Contains("1500 ms"));
+}
+
+TEST_CASE("the fixed order takes the first and shares the time evenly") {
+  const Selection selection = make_fixed_order_selection()->select(kThree, 900ms);
+  CHECK(selection.candidate == 0);
+  CHECK(selection.slice == 300ms);
+}
