@@ -146,7 +146,7 @@ Answer GroundStation::show(const Question& question, Answer answer) {
   if (answer.route) {
     print_route(*answer.route);
   } else {
-    print_field("refused", answer.refusal + (answer.proven ? " (proved)" : " (not proved)"));
+    print_field("refused", (answer.proven ? "proved: " : "without proof: ") + answer.refusal);
   }
   print_time(answer, question.time_to_think);
   return answer;

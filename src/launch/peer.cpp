@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <csignal>
+#include <set>
 
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
@@ -129,8 +130,17 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   return await_end();
 }
 
+// The peer's plugin and those of its CSPs in this process, each once.
+void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
+  std::set<std::string> plugins{peer.plugin};
+  for (const CspProfile& csp : peer.csps) {
+    if (csp.process == profile::CspProcess::InOwner) plugins.insert(csp.plugin);
+  }
+  for (const std::string& plugin : plugins) load_plugin(registry, plugin);
+}
+
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
-  load_plugin(registry, peer.plugin);
+  load_plugins(registry, peer);
   Entity entity(entity_options(mission, peer, peer.name, peer.vendor));
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)

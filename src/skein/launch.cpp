@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "commands.hpp"
 #include "skein/launch/peer.hpp"
@@ -16,6 +17,7 @@ struct Arguments {
   std::string process;
   std::vector<std::string> settings;
   bool dry_run = false;
+  bool verbose = false;
 };
 
 void add_common(CLI::App& command, Arguments& arguments) {
@@ -41,6 +43,60 @@ std::vector<std::string> command_line(const Arguments& arguments, const profile:
   return argv;
 }
 
+void write(std::FILE* stream, const std::string& line) {
+  std::fwrite(line.data(), 1, line.size(), stream);
+  std::fflush(stream);
+}
+
+/// Lines and events as people want to read them: the mission's own text as it is, other peers' lines
+/// with their names, and of the events those that are out of order.
+class Narrator {
+ public:
+  Narrator(const launch::LaunchPlan& plan, bool verbose) : verbose_(verbose) {
+    for (const launch::ChildPlan& child : plan.children) {
+      if (child.runs_mission) mission_ = child.name;
+    }
+  }
+
+  void tell_line(std::string_view child, std::string_view line) const {
+    std::string text = child == mission_ ? "" : std::string(child) + " | ";
+    write(stdout, text.append(line) + "\n");
+  }
+
+  void tell(const launch::ChildEvent& event) {
+    if (event.state == launch::ChildState::Waiting) restarted_.insert(event.child);
+    if (verbose_ || !in_order(event)) {
+      write(stderr, "* " + (event.child.empty() ? "mission" : event.child) + ": " + event.text + "\n");
+    }
+  }
+
+ private:
+  bool in_order(const launch::ChildEvent& event) const {
+    using launch::ChildState;
+    if (event.child.empty()) return true;
+    switch (event.state) {
+      case ChildState::Starting:
+      case ChildState::Ready: return !restarted_.contains(event.child);
+      case ChildState::Ended:
+      case ChildState::Terminated: return true;
+      default: return false;
+    }
+  }
+
+  const bool verbose_;
+  std::string mission_;
+  std::set<std::string> restarted_;
+};
+
+launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator) {
+  launch::SupervisorOptions options;
+  options.on_output = [narrator](std::string_view child, std::string_view line) {
+    narrator->tell_line(child, line);
+  };
+  options.on_event = [narrator](const launch::ChildEvent& event) { narrator->tell(event); };
+  return options;
+}
+
 int launch(const Arguments& arguments) {
   const auto plan = launch::make_launch_plan(
       read(arguments), [&](const profile::PeerProfile& peer, const profile::CspProfile* csp) {
@@ -50,9 +106,10 @@ int launch(const Arguments& arguments) {
     std::fputs(launch::to_text(plan).c_str(), stdout);
     return 0;
   }
-  launch::Supervisor supervisor(plan);
+  const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
+  launch::Supervisor supervisor(plan, told_by(narrator));
   const launch::LaunchResult outcome = supervisor.run();
-  std::fprintf(outcome.exit_code == 0 ? stdout : stderr, "skein: %s\n", outcome.reason.c_str());
+  if (outcome.exit_code != 0) write(stderr, "skein: " + outcome.reason + "\n");
   return outcome.exit_code;
 }
 
@@ -63,6 +120,7 @@ void add_launch(CLI::App& app, int& result) {
   auto arguments = std::make_shared<Arguments>();
   add_common(*command, *arguments);
   command->add_flag("--dry-run", arguments->dry_run, "Only say what would run");
+  command->add_flag("--verbose", arguments->verbose, "Show the start, readiness and end of each process");
   command->callback([arguments, &result] { result = launch(*arguments); });
 }
 
