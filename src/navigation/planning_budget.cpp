@@ -19,12 +19,14 @@ PlanningBudget::PlanningBudget(const PlannerOptions& options, std::uint32_t time
 }
 
 void PlanningBudget::require_time() const {
-  if (stopped()) throw AE_navigator::NoRoute("the planning was stopped before it found a route", false);
-  if (late()) {
-    throw AE_navigator::NoRoute(
-        fmt::format("no route was found within the time limit of {} ms", time_limit_ms_),
-        false);
-  }
+  if (stopped())
+    throw AE_navigator::NoRoute("the planning was stopped before it found a route", false);
+  if (late()) throw nothing_found();
+}
+
+AE_navigator::NoRoute PlanningBudget::nothing_found() const {
+  if (!end_) return {"no route was found within the planner's own time limit", false};
+  return {fmt::format("no route was found within the time limit of {} ms", time_limit_ms_), false};
 }
 
 Instant PlanningBudget::search_end(double share) const {

@@ -19,6 +19,9 @@ class PlanningBudget {
   /// Throws NoRoute, with what ended the planning, once it is spent.
   void require_time() const;
 
+  /// The refusal of a search that has used all of its time.
+  AE_navigator::NoRoute nothing_found() const;
+
   /// When a search must end that uses all of its time, so that enough is left to finish its route:
   /// as the time so far shows how fast this machine and this terrain are, `share` of that, and
   /// never more than half of the limit.

@@ -181,10 +181,8 @@ class RrtConnectPlanner final : public SamplingPlanner {
       }
     }
     scene.budget().require_time();
-    throw AE_navigator::NoRoute(unflyable.empty()
-                                    ? "no route was found within the default time limit"
-                                    : "no path that was found can be flown: " + unflyable,
-                                false);
+    if (unflyable.empty()) throw scene.budget().nothing_found();
+    throw AE_navigator::NoRoute("no path that was found can be flown: " + unflyable, false);
   }
 };
 
@@ -206,14 +204,15 @@ class RrtStarPlanner final : public SamplingPlanner {
     const auto path = sampling.solve(
         planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
     scene.budget().require_time();
-    if (!path) throw AE_navigator::NoRoute("no route was found within the time to search", false);
+    if (!path) throw scene.budget().nothing_found();
     try {
       const auto cost = [&](const GroundPoint& a, const GroundPoint& b) {
         return scene.cost(a, b);
       };
       return make_route(scene, *path, cost, kMostPoints, "RRTstar");
     } catch (const Unflyable& reason) {
-      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(), false);
+      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
+                                  false);
     }
   }
 };

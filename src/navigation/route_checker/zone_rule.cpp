@@ -97,10 +97,10 @@ double entry_into(const AE_navigator::NoFlyZone& zone, const AE_navigator::Posit
   double to = 1;
   const double climb = b.altitude_m - a.altitude_m;
   if (climb != 0) {
-    const auto [low, high] =
-        std::minmax((zone.floor_m - a.altitude_m) / climb, (zone.ceiling_m - a.altitude_m) / climb);
-    from = std::max(from, low);
-    to = std::min(to, high);
+    const double at_floor = (zone.floor_m - a.altitude_m) / climb;
+    const double at_ceiling = (zone.ceiling_m - a.altitude_m) / climb;
+    from = std::max(from, std::min(at_floor, at_ceiling));
+    to = std::min(to, std::max(at_floor, at_ceiling));
   } else if (a.altitude_m <= zone.floor_m || a.altitude_m >= zone.ceiling_m) {
     return -1;
   }

@@ -1,0 +1,156 @@
+#include "skein/navigation/planners.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "demo.hpp"
+#include "skein/core/call_context.hpp"
+#include "skein/core/error.hpp"
+
+using namespace skein::navigation;
+using namespace skein::navigation::testing;
+using AE_navigator::NoRoute;
+using AE_navigator::Route;
+
+TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whatever terrain") {
+  for (const std::uint32_t seed : {1u, 2u, 3u, 7u, 20u, 34u}) {
+    Demo demo(seed);
+    demo.problem.time_limit_ms = 20000;
+    for (const std::string name : {"AStar", "RRTConnect"}) {
+      INFO(name << " on " << demo.problem.terrain);
+      const Route route = make_planner(name, demo.terrains)->plan(demo.problem);
+      CHECK(violations(demo.problem, route, demo.ground) == "");
+      CHECK(route.planner == name);
+    }
+    demo.problem.time_limit_ms = 0;
+    INFO("RRTstar on " << demo.problem.terrain);
+    CHECK(violations(demo.problem, make_rrt_star(demo.terrains)->plan(demo.problem), demo.ground) ==
+          "");
+  }
+}
+
+TEST_CASE("Samplers give valid routes whatever their seed") {
+  const Demo demo;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    PlannerOptions options;
+    options.seed = seed;
+    INFO("seed " << seed);
+    const Route route = make_rrt_connect(demo.terrains, options)->plan(demo.problem);
+    CHECK(violations(demo.problem, route, demo.ground) == "");
+  }
+}
+
+TEST_CASE("The same seed gives the same route, another one another") {
+  const Demo demo;
+  const auto plan = [&](std::uint32_t seed) {
+    PlannerOptions options;
+    options.seed = seed;
+    return make_rrt_connect(demo.terrains, options)->plan(demo.problem).waypoints;
+  };
+  CHECK(plan(5) == plan(5));
+  CHECK(plan(5) != plan(6));
+}
+
+TEST_CASE("RRTstar makes good use of more steps") {
+  const Demo demo;
+  // Time is counted in looks at the clock here, so that a loaded machine changes nothing.
+  const auto cost_after = [&](int looks) {
+    PlannerOptions options;
+    int left = looks;
+    options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
+    return cost_m(demo.problem, make_rrt_star(demo.terrains, options)->plan(demo.problem));
+  };
+  const double soon = cost_after(150);
+  const double later = cost_after(3000);
+  CHECK(later < soon);
+  CHECK(later < 1.05 * cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem)));
+}
+
+TEST_CASE(
+    "Routes end where they should and fly no lower than allowed, also just above the minimum") {
+  Demo demo;
+  demo.problem.start.altitude_m -= 128;
+  demo.problem.goal.altitude_m -= 128;
+  const Route route = make_a_star(demo.terrains)->plan(demo.problem);
+  CHECK(route.waypoints.front() == demo.problem.start);
+  CHECK(route.waypoints.back() == demo.problem.goal);
+  CHECK(violations(demo.problem, route, demo.ground) == "");
+}
+
+TEST_CASE("An aircraft that turns on the spot needs no arcs, a faster one longer ones") {
+  Demo demo;
+  demo.problem.limits.maximum_bank_angle_deg = 0;
+  const Route nimble = make_a_star(demo.terrains)->plan(demo.problem);
+  CHECK(violations(demo.problem, nimble, demo.ground) == "");
+  demo.problem.limits.maximum_bank_angle_deg = 30;
+  demo.problem.limits.speed_m_s = 100;
+  const Route fast = make_a_star(demo.terrains)->plan(demo.problem);
+  CHECK(violations(demo.problem, fast, demo.ground) == "");
+  CHECK(cost_m(demo.problem, nimble) < 1.005 * cost_m(demo.problem, fast));
+}
+
+TEST_CASE("A planner that is told to stop ends with NoRoute and says so") {
+  for (const std::string& name : planner_names()) {
+    const Demo demo;
+    PlannerOptions options;
+    options.stop = [] { return true; };
+    INFO(name);
+    try {
+      make_planner(name, demo.terrains, options)->plan(demo.problem);
+      FAIL("it found a route");
+    } catch (const NoRoute& refusal) {
+      CHECK_THAT(refusal.reason, Catch::Contains("stopped"));
+      CHECK_FALSE(refusal.proven);
+    }
+  }
+}
+
+TEST_CASE("By default a planner stops with the call that it works for") {
+  const Demo demo;
+  const skein::ManualClock clock;
+  const std::atomic<bool> cancelled{true};
+  const skein::CallContext context(clock, clock.now() + std::chrono::hours(1), {}, {}, nullptr,
+                                   &cancelled);
+  const skein::CallContextScope scope(context);
+  CHECK(current_call_cancelled());
+  CHECK_THROWS_AS(make_a_star(demo.terrains)->plan(demo.problem), NoRoute);
+}
+
+TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
+  for (const std::string& name : planner_names()) {
+    Demo demo;
+    demo.problem.time_limit_ms = 40;
+    PlannerOptions options;
+    int looks = 0;
+    options.now = [&] { return skein::Instant(std::chrono::milliseconds(++looks * 10)); };
+    INFO(name);
+    try {
+      make_planner(name, demo.terrains, options)->plan(demo.problem);
+      FAIL("it found a route");
+    } catch (const NoRoute& refusal) {
+      CHECK_THAT(refusal.reason, Catch::Contains("40 ms"));
+      CHECK_FALSE(refusal.proven);
+    }
+  }
+}
+
+TEST_CASE("One planner serves several threads at once") {
+  const Demo demo;
+  const auto planner = make_a_star(demo.terrains);
+  std::vector<Route> routes(3);
+  std::vector<std::thread> threads;
+  for (Route& route : routes) {
+    threads.emplace_back([&] { route = planner->plan(demo.problem); });
+  }
+  for (auto& thread : threads) thread.join();
+  for (const Route& route : routes) CHECK(route.waypoints == routes[0].waypoints);
+}
+
+TEST_CASE("An unknown planner is refused with the nearest that there is") {
+  const auto terrains = std::make_shared<TerrainProvider>();
+  CHECK_THROWS_WITH(make_planner("RRTStar", terrains),
+                    Catch::Contains("'RRTStar'") && Catch::Contains("'RRTstar'"));
+  CHECK_THROWS_AS(make_planner("", terrains), skein::InvalidArgument);
+}

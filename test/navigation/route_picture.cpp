@@ -1,0 +1,92 @@
+#include "skein/navigation/route_picture.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <pugixml.hpp>
+
+#include "demo.hpp"
+#include "made_terrain.hpp"
+#include "skein/core/error.hpp"
+
+using namespace skein::navigation;
+using namespace skein::navigation::testing;
+using Catch::Contains;
+
+namespace {
+
+std::vector<PicturedRoute> two_routes(const Demo& demo) {
+  return {{"A*, 2 s", make_a_star(demo.terrains)->plan(demo.problem)},
+          {"RRTConnect, 50 ms", make_rrt_connect(demo.terrains)->plan(demo.problem)}};
+}
+
+}  // namespace
+
+TEST_CASE("A picture is well-formed, below 2 MB and refers to nothing outside of itself") {
+  const Demo demo;
+  const std::string svg = route_picture(*demo.terrain, demo.problem, two_routes(demo), "Routes");
+  pugi::xml_document document;
+  REQUIRE(document.load_string(svg.c_str()));
+  CHECK(svg.size() < 2'000'000);
+  CHECK(document.select_nodes("//*[local-name()='image']").size() == 1);
+  for (const auto& match :
+       document.select_nodes("//@*[local-name()='href' or local-name()='src']")) {
+    CHECK_THAT(match.attribute().value(), Catch::StartsWith("data:image/png;base64,iVBORw0KGgo"));
+  }
+  for (const auto& match : document.select_nodes("//@*[contains(., 'url(')]")) {
+    CHECK_THAT(match.attribute().value(), Contains("url(#"));
+  }
+}
+
+TEST_CASE("A picture names routes, zones, radars, both ends and the figures of each route") {
+  const Demo demo;
+  const auto routes = two_routes(demo);
+  const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
+  for (const char* name : {"A*, 2 s", "RRTConnect, 50 ms", "City", "Reserve", "Corridor", "Alpha",
+                           "Delta", "Start", "Goal", "synthetic:7"}) {
+    CHECK_THAT(svg, Contains(name));
+  }
+  CHECK_THAT(svg,
+             Contains(fmt::format("{:.1f} km, exposure {:.1f} km", routes[0].route.length_m / 1000,
+                                  routes[0].route.radar_exposure / 1000)));
+}
+
+TEST_CASE("Names that look like XML stay names") {
+  Demo demo;
+  demo.problem.no_fly_zones[0].name = "</text><script>alert(1)</script>&";
+  demo.problem.radar_sites[0].name = "a\x01\"b";
+  const std::string svg = route_picture(*demo.terrain, demo.problem, {}, "<Routes> & \"more\"");
+  pugi::xml_document document;
+  REQUIRE(document.load_string(svg.c_str()));
+  CHECK(document.select_nodes("//*[local-name()='script']").empty());
+  CHECK(std::string(document.child("svg").child("title").text().get()) == "<Routes> & \"more\"");
+}
+
+TEST_CASE("A route with a number that is not finite is listed, but not drawn") {
+  const Demo demo;
+  auto routes = two_routes(demo);
+  routes[1].route.waypoints[3].north_m = std::nan("");
+  const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
+  CHECK_THAT(svg, Contains("not drawn: not a route"));
+  pugi::xml_document document;
+  REQUIRE(document.load_string(svg.c_str()));
+  for (const auto& path : document.select_nodes("//*[local-name()='path']/@d")) {
+    CHECK_THAT(path.attribute().value(), !Contains("nan"));
+  }
+}
+
+TEST_CASE("A picture that cannot be written is an error with its path") {
+  const Demo demo;
+  CHECK_THROWS_WITH(
+      write_route_picture("/nowhere/route.svg", *demo.terrain, demo.problem, {}, "Routes"),
+      Contains("/nowhere/route.svg"));
+}
+
+TEST_CASE("A written picture is the picture") {
+  const Demo demo;
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "route.svg";
+  write_route_picture(file, *demo.terrain, demo.problem, {}, "Routes");
+  std::ifstream in(file);
+  const std::string written((std::istreambuf_iterator<char>(in)), {});
+  CHECK(written == route_picture(*demo.terrain, demo.problem, {}, "Routes"));
+}
