@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "skein/discovery.idl.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
@@ -17,6 +18,9 @@ namespace skein::brokerless_discovery {
 namespace {
 
 const dds::Topic kTopic{"skein/services", "skein::discovery::ServiceDescription", true};
+
+// How many writers that have gone are remembered, in case that one of them comes back.
+constexpr std::size_t kMaxLostWriters = 4096;
 
 dds::Qos description_qos(std::vector<std::string> partitions, std::chrono::milliseconds lease) {
   dds::Qos qos;
@@ -76,15 +80,18 @@ struct Broker::State : std::enable_shared_from_this<State> {
   Table table;
   std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
   std::uint64_t last_observer = 0;
+  std::uint64_t malformed = 0;
 
   std::mutex writing;  // guards what follows; taken before `mutex` where both are
   std::map<Guid, Own> own;
   std::map<std::string, std::unique_ptr<dds::Writer>> writers;  // by owner; "" for public services
   Instant last_tick{};
+  Instant last_renewal{};
   TimerId tick_timer = 0;
   bool closed = false;
-
   std::unique_ptr<dds::Reader> reader;
+
+  std::set<Guid> lost_writers;  // guarded by `mutex`
 
   // ---- what others tell
 
@@ -99,9 +106,55 @@ struct Broker::State : std::enable_shared_from_this<State> {
       apply([&](Table& table) {
         return table.on_description(std::move(description), sample.writer);
       });
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
+      std::lock_guard lock(mutex);
+      if (++malformed > 1) return;
       log(LogLevel::Warning, "broker", std::string("dropped a malformed service description: ") + error.what());
     }
+  }
+
+  void on_writer(const Guid& writer, bool matched) {
+    if (!matched) apply([&](Table& table) { return table.on_writer_gone(writer); });
+    {
+      std::lock_guard lock(mutex);
+      if (!matched) {
+        if (lost_writers.size() >= kMaxLostWriters) lost_writers.erase(lost_writers.begin());
+        lost_writers.insert(writer);
+        return;
+      }
+      if (lost_writers.erase(writer) == 0) return;
+    }
+    control.post([state = weak_from_this()] {
+      if (const auto self = state.lock()) self->renew_reader();
+    });
+  }
+
+  // R17: a writer that comes back need not know that it was gone, and some vendors do not deliver again
+  // what a reader has had from it. A new reader gets everything from everybody.
+  void renew_reader() {
+    std::lock_guard lock(writing);
+    if (closed) return;
+    try {
+      auto renewed = make_reader();
+      reader.swap(renewed);
+      last_renewal = clock.now();
+    } catch (const Error& error) {
+      log(LogLevel::Error, "broker", std::string("descriptions cannot be read again: ") + error.what());
+    }
+  }
+
+  std::unique_ptr<dds::Reader> make_reader() {
+    dds::ReaderListener listener;
+    listener.on_data = [this](dds::Reader& source) {
+      source.take([this](const dds::Sample& sample) { on_sample(sample); });
+    };
+    listener.on_matched = [this](const Guid& writer, bool matched) { on_writer(writer, matched); };
+    listener.on_liveliness = [this](const Guid& writer, bool alive) {
+      apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
+    };
+    return participant.create_reader(
+        kTopic, description_qos({"", owner_partition(options.system + "/" + options.entity)}, options.lease),
+        std::move(listener));
   }
 
   void watch_process(const ServiceDescription& description) {
@@ -181,10 +234,11 @@ struct Broker::State : std::enable_shared_from_this<State> {
   // R17: a peer that slept through its lease is suspect to others, and on some vendors stays so until it
   // writes again.
   void tick() {
+    if (suspects_stay()) renew_reader();
     std::lock_guard lock(writing);
     if (closed) return;
     const Instant now = clock.now();
-    if (now - last_tick > options.lease) {
+    if (now - last_tick > options.lease / 2) {
       for (const auto& [provider, mine] : own) {
         try {
           write(mine);
@@ -195,6 +249,14 @@ struct Broker::State : std::enable_shared_from_this<State> {
     }
     last_tick = now;
     arm();
+  }
+
+  // A writer that is alive again is not reported as such by every vendor.
+  bool suspects_stay() {
+    std::lock_guard lock(writing);
+    if (clock.now() - last_renewal < options.lease) return false;
+    std::lock_guard table_lock(mutex);
+    return table.has_suspects();
   }
 
   void arm() {
@@ -220,35 +282,23 @@ Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, P
   check_name("an entity", options.entity);
   state_ = std::make_shared<State>(participant, clock, control, watch, std::move(options));
   State& state = *state_;
-  dds::ReaderListener listener;
-  listener.on_data = [&state](dds::Reader& reader) {
-    reader.take([&state](const dds::Sample& sample) { state.on_sample(sample); });
-  };
-  listener.on_matched = [&state](const Guid& writer, bool matched) {
-    if (!matched) state.apply([&](Table& table) { return table.on_writer_gone(writer); });
-  };
-  listener.on_liveliness = [&state](const Guid& writer, bool alive) {
-    state.apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
-  };
-  state.reader = participant.create_reader(
-      kTopic,
-      description_qos({"", owner_partition(state.options.system + "/" + state.options.entity)},
-                      state.options.lease),
-      std::move(listener));
   std::lock_guard lock(state.writing);
+  state.reader = state.make_reader();
   state.last_tick = clock.now();
   state.arm();
 }
 
 Broker::~Broker() {
   TimerId timer;
+  std::unique_ptr<dds::Reader> reader;
   {
     std::lock_guard lock(state_->writing);
     state_->closed = true;
     timer = state_->tick_timer;
+    reader.swap(state_->reader);
   }
   state_->clock.cancel(timer);
-  state_->reader.reset();
+  reader.reset();
 }
 
 const Broker::Options& Broker::options() const noexcept { return state_->options; }
@@ -310,6 +360,16 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
 std::string Broker::explain(const Query& query) const {
   std::lock_guard lock(state_->mutex);
   return state_->table.explain(query);
+}
+
+bool Broker::knows(const Guid& provider) const {
+  std::lock_guard lock(state_->mutex);
+  return state_->table.knows(provider);
+}
+
+std::uint64_t Broker::malformed() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->malformed;
 }
 
 Table::Found Broker::all() const {

@@ -180,6 +180,10 @@ Table::Found Table::all() const {
   return found;
 }
 
+bool Table::has_suspects() const {
+  return std::any_of(entries_.begin(), entries_.end(), [](const auto& entry) { return entry.second.suspect; });
+}
+
 bool Table::knows_process(const std::string& process) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const auto& entry) {
     return entry.second.description->process == process;

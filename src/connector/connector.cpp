@@ -44,6 +44,8 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
         if (const auto gone = weak.lock()) gone->provider_gone(ending_of(change.departure));
       }));
   channel->attach(registration);
+  // It may have gone between the answer to `open` and the first look.
+  if (!broker.knows(provider)) channel->provider_gone("it ended while it was being connected");
 }
 
 }  // namespace
@@ -86,7 +88,7 @@ ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions o
   }
   options.name = reference.interface_name;
   options.provider = reference.provider;
-  options.system = ConnectOptions::kAnySystem;
+  options.system = std::string(ConnectOptions::kAnySystem);
   return options;
 }
 

@@ -63,6 +63,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   std::exception_ptr refusal;
   std::size_t matched_servers = 0;
   std::uint64_t last_number = 0;
+  std::uint64_t malformed = 0;
   std::unordered_map<std::uint64_t, Entry> entries;
   Guid client;
   std::shared_ptr<dds::Writer> requests;
@@ -149,11 +150,20 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       if (head.related.client != client) return;
       if (head.related.number == 0) {
         on_opened(sample.cdr, head);
+      } else if (head.operation == wire::kOpen) {
+        lose("it had ended the session before the call arrived");
       } else if (const auto call = remove(head.related.number)) {
         complete(*call, sample.cdr, head);
       }
-    } catch (const Error& error) {
-      log(LogLevel::Warning, address.service, std::string("dropped a malformed reply: ") + error.what());
+    } catch (const std::exception& error) {
+      note_malformed(error.what());
+    }
+  }
+
+  void note_malformed(const std::string& why) {
+    std::lock_guard lock(mutex);
+    if (++malformed == 1) {
+      log(LogLevel::Warning, address.service, "malformed reply from " + options.peer + ": " + why);
     }
   }
 
@@ -163,51 +173,65 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     const bool known = head.exception != wire::RemoteException::Ok &&
                        head.exception != wire::RemoteException::UnknownOperation;
     if (known) refused = error_in(message, head);
-    std::lock_guard lock(mutex);
-    if (phase == Phase::Opening) {
-      if (refused) {
-        refusal = refused;
-      } else {
-        phase = Phase::Open;
+    {
+      std::lock_guard lock(mutex);
+      if (phase == Phase::Opening) {
+        if (refused) {
+          refusal = refused;
+        } else {
+          phase = Phase::Open;
+        }
+        changed.notify_all();
+        return;
       }
     }
-    changed.notify_all();
+    if (refused) lose("it has ended the session, as this side was not heard of for its lease");
   }
 
   void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head) {
     if (!call.claim()) return;
     std::exception_ptr error;
     try {
-      decode_result(call, message, head);
-    } catch (...) {
-      error = std::current_exception();
+      error = read_result(call, message, head);
+    } catch (const std::exception& malformed) {
+      note_malformed(malformed.what());
+      error = std::make_exception_ptr(Internal(options.peer + " answered " +
+                                               std::string(call.operation().name) +
+                                               " with what cannot be read: " + malformed.what()));
     }
     call.finish(std::move(error));
   }
 
-  void decode_result(PendingCall& call, std::span<const std::byte> message,
-                     const wire::ReplyHead& head) {
+  // Fills the call's out struct, or gives what the operation ended with; throws where the bytes are neither.
+  std::exception_ptr read_result(PendingCall& call, std::span<const std::byte> message,
+                                 const wire::ReplyHead& head) {
     const OperationInfo& operation = call.operation();
-    if (head.exception != wire::RemoteException::Ok) std::rethrow_exception(error_in(message, head));
+    if (head.exception != wire::RemoteException::Ok) return error_in(message, head);
     if (head.operation != operation.hash) {
-      throw Internal(options.peer + " answered " + std::string(operation.name) +
-                     " with the result of another operation");
+      throw InvalidArgument("it is the result of another operation");
     }
     std::size_t offset = head.result;
     const std::uint32_t which = wire::read_discriminator(message, offset);
     if (which == 0) {
       operation.out->decode(call.out(), message, offset);
-      return;
+      return nullptr;
     }
     for (const ExceptionInfo* exception : operation.raises) {
       if (exception->hash != which) continue;
       const std::unique_ptr<void, void (*)(void*)> value(exception->type->make(),
                                                          exception->type->destroy);
       exception->type->decode(value.get(), message, offset);
-      exception->raise(value.get());
+      return raised(*exception, value.get());
     }
-    throw Internal(options.peer + " ended " + std::string(operation.name) +
-                   " with an exception that this side's interface does not declare");
+    throw InvalidArgument("it is an exception that this side's interface does not declare");
+  }
+
+  static std::exception_ptr raised(const ExceptionInfo& exception, const void* value) {
+    try {
+      exception.raise(value);
+    } catch (...) {
+      return std::current_exception();
+    }
   }
 
   std::exception_ptr error_in(std::span<const std::byte> message, const wire::ReplyHead& head) {
@@ -397,6 +421,11 @@ void DdsChannel::attach(std::shared_ptr<void> companion) {
 std::size_t DdsChannel::pending() const {
   std::lock_guard lock(state_->mutex);
   return state_->entries.size();
+}
+
+std::uint64_t DdsChannel::malformed() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->malformed;
 }
 
 }  // namespace skein::rpc

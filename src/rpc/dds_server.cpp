@@ -1,7 +1,10 @@
 #include "skein/rpc/dds_server.hpp"
 
+#include <atomic>
 #include <mutex>
+#include <set>
 #include <unordered_map>
+#include <vector>
 
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
@@ -15,6 +18,8 @@ using wire::RequestId;
 
 // How long an opened client may take to match its reply reader before it is forgotten.
 constexpr std::chrono::seconds kOpenPatience{10};
+// How many clients that have gone are remembered, in case that one of them comes back.
+constexpr std::size_t kMaxForgotten = 1024;
 
 dds::Qos call_qos(std::vector<std::string> partitions) {
   dds::Qos qos;
@@ -22,8 +27,9 @@ dds::Qos call_qos(std::vector<std::string> partitions) {
   return qos;
 }
 
-void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std::string& text) {
-  wire::begin_reply(message, id, wire::remote_exception_of(code), 0);
+void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std::string& text,
+                  std::uint32_t operation = 0) {
+  wire::begin_reply(message, id, wire::remote_exception_of(code), operation);
   wire::append_default_branch(message);
   wire::append_trailer(message, wire::ReplyTrailer{code, text});
 }
@@ -84,11 +90,12 @@ std::vector<std::string> DdsAddress::partitions() const {
 
 struct DdsServer::State : std::enable_shared_from_this<State> {
   struct Client {
-    std::unique_ptr<dds::Writer> writer;
+    std::shared_ptr<dds::Writer> writer;  // under the server's mutex; nothing once the server ends
     std::shared_ptr<Session> session;
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
     bool matched = false;
+    std::atomic<bool> stalled{false};  // did not take a reply in time
   };
 
   State(dds::Participant& participant_, Executor& control_, Clock& clock_,
@@ -110,8 +117,10 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   mutable std::mutex mutex;
   std::unordered_map<Guid, std::shared_ptr<Client>> clients;
   std::unordered_map<Guid, std::unordered_map<std::uint64_t, std::shared_ptr<Invocation>>> active;
+  std::set<Guid> forgotten;  // clients whose sessions have ended
   std::shared_ptr<Client> foreign;
   Counters counters;
+  bool closed = false;
   std::unique_ptr<dds::Reader> requests;  // last: goes first, and no listener runs after that
 
   // The last to let go of a client may be a vendor's thread, which must not destroy its writer.
@@ -130,32 +139,46 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     try {
       head = wire::read_request_head(sample.cdr);
     } catch (const Error& error) {
-      std::lock_guard lock(mutex);
-      if (++counters.malformed == 1) {
-        log(LogLevel::Warning, address.service, std::string("dropped a malformed request: ") + error.what());
-      }
-      return;
+      return drop_malformed(error.what());
     }
     try {
-      on_request(sample.cdr, head);
+      on_request(sample, head);
     } catch (const Error& error) {
       refuse(head.id, error.code(), error.what());
+    } catch (const std::exception& error) {
+      refuse(head.id, ErrorCode::Internal, error.what());
     }
   }
 
-  void on_request(std::span<const std::byte> message, const wire::RequestHead& head) {
+  void drop_malformed(const std::string& why) {
+    std::lock_guard lock(mutex);
+    if (++counters.malformed == 1) {
+      log(LogLevel::Warning, address.service, "dropped a malformed request: " + why);
+    }
+  }
+
+  // A Skein client's identity is that of its request writer: nobody speaks for another.
+  bool is_impostor(const dds::Sample& sample, const wire::RequestHead& head) {
+    if (sample.writer == head.id.client) return false;
+    drop_malformed("it is in the name of a client that did not send it");
+    return true;
+  }
+
+  void on_request(const dds::Sample& sample, const wire::RequestHead& head) {
     {
       std::lock_guard lock(mutex);
       ++counters.received;
     }
+    const auto message = sample.cdr;
     const OperationInfo* operation = service->interface_info().find_operation(head.operation);
-    if (!operation) return on_reserved(message, head);
+    if (!operation) return on_reserved(sample, head);
 
     auto invocation = std::make_shared<Invocation>();
     invocation->operation = operation;
     invocation->in = {operation->in->make(), operation->in->destroy};
     const std::size_t end = operation->in->decode(invocation->in.get(), message, head.body);
     auto trailer = wire::read_request_trailer(message, end);
+    if (trailer && is_impostor(sample, head)) return;
     invocation->caller = head.id.client;
     invocation->deadline = clock.now() + (trailer ? trailer->remaining : options.default_deadline);
     if (trailer) invocation->chain = std::move(trailer->chain);
@@ -179,8 +202,9 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     }
   }
 
-  void on_reserved(std::span<const std::byte> message, const wire::RequestHead& head) {
-    auto trailer = wire::read_request_trailer(message, head.body + 1);
+  void on_reserved(const dds::Sample& sample, const wire::RequestHead& head) {
+    auto trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
+    if (trailer && is_impostor(sample, head)) return;
     if (trailer && head.operation == wire::kOpen) {
       control.post([state = weak_from_this(), id = head.id, strategy = trailer->strategy] {
         if (const auto self = state.lock()) self->open(id, strategy);
@@ -205,8 +229,11 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       return foreign;
     }
     const auto found = clients.find(id.client);
-    if (found != clients.end()) return found->second;
+    if (found != clients.end() && !found->second->refusal) return found->second;
     ++counters.unconnected;
+    control.post([state = weak_from_this(), id] {
+      if (const auto self = state.lock()) self->dismiss(id);
+    });
     return nullptr;
   }
 
@@ -256,25 +283,53 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     } catch (...) {
       client->refusal = std::current_exception();
     }
+    admit(id, client);
+  }
+
+  // This side forgot the client (it was stopped, or cut off), and the client did not notice: it hears so
+  // once its reply reader is found. What it sent may be a repetition, so it is never executed.
+  void dismiss(const RequestId& id) {
     {
       std::lock_guard lock(mutex);
-      clients.emplace(id.client, client);
-      counters.clients = clients.size();
+      if (const auto found = clients.find(id.client); found != clients.end()) found->second->open = id;
     }
-    dds::WriterListener listener;
-    listener.on_matched = [state = weak_from_this(), key = id.client](const Guid&, bool matched) {
-      if (const auto self = state.lock()) self->on_reply_reader(key, matched);
-    };
-    auto writer = participant.create_writer(address.reply_topic(), call_qos({id.client.hex()}),
-                                            std::move(listener));
-    {
-      std::lock_guard lock(mutex);
-      client->writer = std::move(writer);
+    if (answer_open(id.client)) return;
+    auto client = make_client();
+    client->open = id;
+    client->refusal = std::make_exception_ptr(
+        Disconnected("the session has ended, as the client was not heard of for its lease"));
+    admit(id, client);
+  }
+
+  void admit(const RequestId& id, const std::shared_ptr<Client>& client) {
+    try {
+      make_reply_writer(id, client);
+    } catch (const Error& error) {
+      log(LogLevel::Error, address.service, std::string("a client cannot be answered: ") + error.what());
+      return drop(id.client);
     }
     answer_open(id.client);
     clock.call_after(kOpenPatience, [state = weak_from_this(), key = id.client] {
       if (const auto self = state.lock()) self->drop_unless_matched(key);
     });
+  }
+
+  void make_reply_writer(const RequestId& id, const std::shared_ptr<Client>& client) {
+    {
+      std::lock_guard lock(mutex);
+      clients.emplace(id.client, client);
+    }
+    dds::WriterListener listener;
+    listener.on_matched = [state = weak_from_this(), key = id.client,
+                           weak = std::weak_ptr(client)](const Guid&, bool matched) {
+      const auto self = state.lock();
+      const auto client = weak.lock();
+      if (self && client) self->on_reply_reader(key, client, matched);
+    };
+    auto writer = participant.create_writer(address.reply_topic(), call_qos({id.client.hex()}),
+                                            std::move(listener));
+    const std::lock_guard lock(mutex);
+    if (!closed) client->writer = std::move(writer);
   }
 
   // False where there is no such client; answers only a client whose reader would get the answer.
@@ -293,30 +348,58 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       wire::begin_reply(message, client->open, wire::RemoteException::Ok, wire::kOpen);
       wire::append_default_branch(message);
     } catch (const Error& error) {
-      encode_error(message, client->open, error.code(), error.what());
+      encode_error(message, client->open, error.code(), error.what(), wire::kOpen);
     } catch (const std::exception& error) {
-      encode_error(message, client->open, ErrorCode::Internal, error.what());
+      encode_error(message, client->open, ErrorCode::Internal, error.what(), wire::kOpen);
     }
     write(*client, message);
     return true;
   }
 
-  void on_reply_reader(const Guid& key, bool matched) {
+  void on_reply_reader(const Guid& key, const std::shared_ptr<Client>& client, bool matched) {
     {
       std::lock_guard lock(mutex);
-      const auto found = clients.find(key);
-      if (found == clients.end()) return;
-      found->second->matched = matched;
+      client->matched = matched;
     }
-    control.post([state = weak_from_this(), key, matched] {
+    control.post([state = weak_from_this(), key, client, matched] {
       const auto self = state.lock();
       if (!self) return;
       if (matched) {
         self->answer_open(key);
-      } else {
+      } else if (self->is_current(key, client)) {
         self->drop(key);
       }
     });
+  }
+
+  bool is_current(const Guid& key, const std::shared_ptr<Client>& client) const {
+    std::lock_guard lock(mutex);
+    const auto found = clients.find(key);
+    return found != clients.end() && found->second == client;
+  }
+
+  // A client that comes back after it was forgotten may not know that it was, and may wait for an answer
+  // to what was lost meanwhile.
+  void on_request_writer(const Guid& key, bool matched) {
+    {
+      std::lock_guard lock(mutex);
+      if (!matched) {
+        if (clients.contains(key)) remember_forgotten(key);
+        return;
+      }
+      if (forgotten.erase(key) == 0) return;
+    }
+    control.post([state = weak_from_this(), key] {
+      const auto self = state.lock();
+      if (!self) return;
+      self->drop(key);
+      self->dismiss({key, 0});
+    });
+  }
+
+  void remember_forgotten(const Guid& key) {
+    if (forgotten.size() >= kMaxForgotten) forgotten.erase(forgotten.begin());
+    forgotten.insert(key);
   }
 
   void drop_unless_matched(const Guid& key) {
@@ -332,13 +415,15 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
 
   // The client has gone: its session ends, and nobody waits for its calls any more.
   void drop(const Guid& key) {
-    std::shared_ptr<Client> client;  // outlives the lock, which its writer's listener takes too
+    std::shared_ptr<dds::Writer> writer;  // goes here, where its listener can be waited for, and unlocked
+    std::shared_ptr<Client> client;
     std::lock_guard lock(mutex);
     const auto found = clients.find(key);
     if (found == clients.end()) return;
     client = std::move(found->second);
+    writer = std::move(client->writer);
     clients.erase(found);
-    counters.clients = clients.size();
+    remember_forgotten(key);
     if (const auto calls = active.find(key); calls != active.end()) {
       for (auto& [number, invocation] : calls->second) invocation->cancelled = true;
     }
@@ -364,10 +449,22 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     if (calls->second.empty()) active.erase(calls);
   }
 
+  std::shared_ptr<dds::Writer> writer_of(const Client& client) const {
+    std::lock_guard lock(mutex);
+    return client.writer;
+  }
+
   void write(Client& client, const Bytes& message) {
+    using namespace std::chrono_literals;
+    const auto writer = writer_of(client);
+    if (!writer) return;
     try {
-      if (client.writer) client.writer->write(message);
+      // A client that stopped reading may hold up this thread once, and not with each reply.
+      if (client.stalled && !writer->wait_for_acknowledgments(0ms)) return;
+      client.stalled = false;
+      writer->write(message);
     } catch (const Error& error) {
+      client.stalled = error.code() == ErrorCode::Overloaded;
       log(LogLevel::Warning, address.service, std::string("a reply was lost: ") + error.what());
     }
   }
@@ -389,6 +486,9 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
   listener.on_data = [&state](dds::Reader& reader) {
     reader.take([&state](const dds::Sample& sample) { state.on_sample(sample); });
   };
+  listener.on_matched = [&state](const Guid& writer, bool matched) {
+    state.on_request_writer(writer, matched);
+  };
   state.requests = participant.create_reader(state.address.request_topic(),
                                              call_qos(std::move(partitions)), std::move(listener));
 }
@@ -396,14 +496,23 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 DdsServer::~DdsServer() {
   state_->requests.reset();
   state_->service->close();
+  // The writers end here, where their listeners can be waited for: a listener that still runs may be the
+  // last to let go of its client, and of the state.
+  std::vector<std::shared_ptr<dds::Writer>> writers;
   std::unordered_map<Guid, std::shared_ptr<State::Client>> clients;
   std::lock_guard lock(state_->mutex);
+  state_->closed = true;
   clients.swap(state_->clients);
+  for (const auto& [key, client] : clients) writers.push_back(std::move(client->writer));
+  if (state_->foreign) writers.push_back(std::move(state_->foreign->writer));
 }
 
 DdsServer::Counters DdsServer::counters() const {
   std::lock_guard lock(state_->mutex);
-  return state_->counters;
+  Counters counters = state_->counters;
+  for (const auto& [key, client] : state_->clients) counters.clients += client->refusal ? 0 : 1;
+  for (const auto& [key, calls] : state_->active) counters.active += calls.size();
+  return counters;
 }
 
 }  // namespace skein::rpc

@@ -12,6 +12,7 @@ static_assert(std::endian::native == std::endian::little, "trailers and headers 
 constexpr std::uint32_t kTrailerMagic = 0x314E4B53;  // "SKN1"
 constexpr std::size_t kOrigin = 4;                   // alignment counts from behind the encapsulation
 constexpr std::size_t kMaxChain = 64;
+constexpr std::chrono::hours kMaxRemaining{24 * 365};
 constexpr std::size_t kMaxText = 64 * 1024;
 
 template <class T>
@@ -206,8 +207,8 @@ std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> me
   auto cursor = find_trailer(message, end);
   if (!cursor) return std::nullopt;
   RequestTrailer trailer;
-  trailer.remaining = std::chrono::duration_cast<Duration>(
-      std::chrono::nanoseconds(cursor->get<std::int64_t>()));
+  trailer.remaining = std::clamp<Duration>(std::chrono::nanoseconds(cursor->get<std::int64_t>()),
+                                           Duration::zero(), kMaxRemaining);
   trailer.target = cursor->get<std::uint64_t>();
   const auto count = cursor->get<std::uint32_t>();
   if (count > kMaxChain) {

@@ -73,6 +73,12 @@ class Broker {
   /// Why find_service gives nothing.
   std::string explain(const Query& query) const;
 
+  /// Whether a description of that provider stands, suspect or not.
+  bool knows(const Guid& provider) const;
+
+  /// Descriptions dropped because they could not be read, since the start.
+  std::uint64_t malformed() const;
+
   /// Everything known, suspects included.
   Table::Found all() const;
 

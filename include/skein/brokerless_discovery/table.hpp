@@ -65,6 +65,12 @@ class Table {
   /// Everything that stands, suspects included, ordered by provider.
   Found all() const;
 
+  /// Whether a description of that provider stands.
+  bool knows(const Guid& provider) const { return entries_.contains(provider); }
+
+  /// Whether some provider is kept, but not offered.
+  bool has_suspects() const;
+
   /// Whether some description names this process as its own.
   bool knows_process(const std::string& process) const;
 

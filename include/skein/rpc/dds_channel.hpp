@@ -45,6 +45,9 @@ class DdsChannel final : public Channel {
   /// Calls without an answer yet.
   std::size_t pending() const;
 
+  /// Replies dropped, or calls failed, because what came could not be read.
+  std::uint64_t malformed() const;
+
  private:
   struct State;
   explicit DdsChannel(std::shared_ptr<State> state) : state_(std::move(state)) {}

@@ -38,10 +38,11 @@ class DdsServer {
   /// What has happened since the start.
   struct Counters {
     std::uint64_t received = 0;
-    std::uint64_t malformed = 0;     ///< Dropped: no request at all.
+    std::uint64_t malformed = 0;     ///< Dropped: no request at all, or in another client's name.
     std::uint64_t refused = 0;       ///< Answered with an error before execution.
-    std::uint64_t unconnected = 0;   ///< Dropped: from a client that has no session (any more).
+    std::uint64_t unconnected = 0;   ///< Not executed: from a client that has no session (any more).
     std::size_t clients = 0;         ///< Connected now, foreign ones not counted.
+    std::size_t active = 0;          ///< Requests that wait or run now.
   };
 
   /// `participant`, `control` and `clock` outlive the server. Throws what the port throws.
