@@ -1,0 +1,132 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include "../tools/network_space.hpp"
+#include "processes.hpp"
+
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Two hosts at the ends of one cable, a peer on each: `left` on the server's vendor, `right` on the
+/// client's. Each provides the echo service.
+struct TwoHosts {
+  TwoHosts() {
+    NetworkSpace::connect(here, there);
+    left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2"));
+    right.emplace(peer("right", *Pairing::get().client, there, "10.77.0.1"));
+    for (auto* one : {&*left, &*right}) {
+      one->send("provide");
+      one->expect("provided");
+    }
+  }
+
+  static ChildProcess peer(const std::string& name, const skein::dds::Vendor& vendor,
+                           const NetworkSpace& space, const std::string& other_host) {
+    ChildProcess::Options options;
+    options.network = space.descriptor();
+    return start_peer(name, vendor, {"interface=skein0", "host=" + other_host}, options);
+  }
+
+  bool each_knows(int count) {
+    return eventually([&] { return services_of(*left) == count && services_of(*right) == count; });
+  }
+
+  /// Each opens a connection to the other.
+  void connect() {
+    left->send("connect right");
+    left->expect("connected", 30s);
+    right->send("connect left");
+    right->expect("connected", 30s);
+  }
+
+  /// One call in each direction.
+  void call() {
+    for (auto* one : {&*left, &*right}) call_until_connected(*one);
+  }
+
+  NetworkSpace here;
+  NetworkSpace there;
+  std::optional<ChildProcess> left;
+  std::optional<ChildProcess> right;
+};
+
+}  // namespace
+
+TEST_CASE("a provider killed on another host: its call ends as Disconnected with the lease") {
+  TwoHosts hosts;
+  REQUIRE(hosts.each_knows(2));
+  hosts.connect();
+  REQUIRE(hosts.right->ask("wait") == "waiting");
+  REQUIRE(eventually([&] { return hosts.left->ask("calls") == "calls 1"; }));
+
+  hosts.right->send("outcome");
+  const auto killed = std::chrono::steady_clock::now();
+  hosts.left->signal(SIGKILL);
+  CHECK(hosts.right->read().starts_with("error Disconnected"));
+  const auto took = std::chrono::steady_clock::now() - killed;
+  CHECK(eventually([&] { return services_of(*hosts.right) == 1; }));
+  std::printf("killed to told, lease of 1000 ms, %s server, %s client: %.0f ms\n",
+              Pairing::get().server->name().c_str(), Pairing::get().client->name().c_str(),
+              std::chrono::duration<double, std::milli>(took).count());
+}
+
+TEST_CASE("two hosts that were cut off from each other find each other again, and call") {
+  TwoHosts hosts;
+  REQUIRE(hosts.each_knows(2));
+  hosts.connect();
+  hosts.call();
+  SECTION("by silence on the cable") {
+    hosts.here.mute();
+    hosts.there.mute();
+    REQUIRE(hosts.each_knows(1));
+    hosts.here.heal();
+    hosts.there.heal();
+  }
+  SECTION("by a pulled cable") {
+    hosts.here.run("ip link set skein0 down");
+    REQUIRE(hosts.each_knows(1));
+    hosts.here.run("ip link set skein0 up");
+  }
+  REQUIRE(hosts.each_knows(2));
+  hosts.call();
+}
+
+TEST_CASE("a host that was not heard, but heard the other, is found again, and both call") {
+  TwoHosts hosts;
+  REQUIRE(hosts.each_knows(2));
+  hosts.connect();
+  hosts.call();
+  const bool left_mute = GENERATE(true, false);
+  NetworkSpace& mute = left_mute ? hosts.here : hosts.there;
+  ChildProcess& hears_nothing = left_mute ? *hosts.right : *hosts.left;
+  mute.mute();
+  REQUIRE(eventually([&] { return services_of(hears_nothing) == 1; }));
+  mute.heal();
+  REQUIRE(hosts.each_knows(2));
+  hosts.call();
+}
+
+TEST_CASE("cuts about as long as the lease leave nobody behind") {
+  TwoHosts hosts;
+  REQUIRE(hosts.each_knows(2));
+  hosts.connect();
+  const char* given = std::getenv("SKEIN_SEED");
+  const std::uint64_t seed = given ? std::stoull(given) : std::random_device{}();
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 4; ++i) {
+    const auto cut = 700ms + std::chrono::milliseconds(random() % 700);
+    INFO("SKEIN_SEED=" << seed << ", cut " << i << " of " << cut.count() << " ms");
+    hosts.here.mute();
+    hosts.there.mute();
+    std::this_thread::sleep_for(cut);
+    hosts.here.heal();
+    hosts.there.heal();
+    REQUIRE(hosts.each_knows(2));
+    hosts.call();
+  }
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../connector/pairing.hpp"
+#include "../tools/child_process.hpp"
+
+namespace skein::test {
+
+/// The peer program (peer.cpp) as `name` on that vendor. `more` are further arguments of it.
+inline ChildProcess start_peer(const std::string& name, const dds::Vendor& vendor,
+                               const std::vector<std::string>& more = {},
+                               ChildProcess::Options options = {}) {
+  options.arguments = {"vendor=" + vendor.name(), "name=" + name};
+  options.arguments.insert(options.arguments.end(), more.begin(), more.end());
+  return ChildProcess("faults_peer", options);
+}
+
+/// How many providers of the echo service a peer program knows now.
+inline int services_of(ChildProcess& peer) {
+  peer.send("services");
+  return std::stoi(peer.expect("services"));
+}
+
+/// A call of a peer program whose connection may have been lost without its knowing: then it ends as
+/// Disconnected, and not by its deadline, and the next one finds the provider again.
+inline void call_until_connected(ChildProcess& peer) {
+  std::string answer = peer.ask("echo 1 hello", std::chrono::seconds(30));
+  for (int i = 0; i < 2 && answer.starts_with("error Disconnected"); ++i) {
+    answer = peer.ask("echo 1 hello", std::chrono::seconds(30));
+  }
+  if (!answer.starts_with("echoed")) throw std::runtime_error("a call ended with '" + answer + "'");
+}
+
+/// The entity of a test's own process, with a lease.
+inline std::unique_ptr<Entity> entity_with_lease(const std::string& name,
+                                                 std::shared_ptr<dds::Vendor> vendor,
+                                                 std::chrono::milliseconds lease) {
+  EntityOptions options;
+  options.name = name;
+  options.system = "uav-1";
+  options.vendor = std::move(vendor);
+  options.domain = 17;
+  options.lease = lease;
+  return std::make_unique<Entity>(std::move(options));
+}
+
+}  // namespace skein::test

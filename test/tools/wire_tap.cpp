@@ -1,0 +1,161 @@
+#include "wire_tap.hpp"
+
+#include <arpa/inet.h>
+#include <linux/if_packet.h>
+#include <net/ethernet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace skein::test {
+namespace {
+
+constexpr int kRoom = 64 << 20;
+constexpr std::size_t kIpHeader = 20;
+constexpr std::size_t kUdpHeader = 8;
+constexpr std::size_t kMessageHeader = 20;
+
+std::uint16_t big16(const std::byte* at) {
+  return static_cast<std::uint16_t>(std::to_integer<int>(at[0]) << 8 | std::to_integer<int>(at[1]));
+}
+
+std::uint32_t big32(const std::byte* at) {
+  return static_cast<std::uint32_t>(big16(at)) << 16 | big16(at + 2);
+}
+
+Packet parse(const std::vector<std::byte>& bytes, std::size_t size) {
+  Packet packet;
+  packet.protocol = std::to_integer<std::uint8_t>(bytes[9]);
+  packet.source = big32(&bytes[12]);
+  packet.destination = big32(&bytes[16]);
+  const std::size_t header = (std::to_integer<std::size_t>(bytes[0]) & 0x0F) * 4;
+  std::size_t content = std::min(header, size);
+  if (packet.protocol == IPPROTO_UDP && size >= header + kUdpHeader) {
+    packet.source_port = big16(&bytes[header]);
+    packet.destination_port = big16(&bytes[header + 2]);
+    content = header + kUdpHeader;
+  }
+  packet.content.assign(bytes.begin() + static_cast<std::ptrdiff_t>(content),
+                        bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  return packet;
+}
+
+// Builtin endpoints have the two highest bits of their kind set, vendors' own the second highest.
+bool is_user_endpoint(std::byte kind) { return (kind & std::byte{0xC0}) == std::byte{0}; }
+
+}  // namespace
+
+WireTap::WireTap()
+    : socket_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, htons(ETH_P_ALL))),
+      wake_(eventfd(0, EFD_CLOEXEC)) {
+  if (socket_ < 0) {
+    std::fprintf(stderr, "skipped: packets may not be captured here\n");
+    std::_Exit(77);
+  }
+  setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kRoom, sizeof kRoom);
+  thread_ = std::thread([this] { run(); });
+}
+
+WireTap::~WireTap() {
+  end();
+  close(socket_);
+  close(wake_);
+}
+
+void WireTap::end() {
+  if (!thread_.joinable()) return;
+  eventfd_write(wake_, 1);
+  thread_.join();
+}
+
+void WireTap::run() {
+  std::vector<std::byte> buffer(1 << 17);
+  while (true) {
+    pollfd waited[] = {{socket_, POLLIN, 0}, {wake_, POLLIN, 0}};
+    poll(waited, 2, -1);
+    sockaddr_ll from{};
+    socklen_t length = sizeof from;
+    ssize_t size;
+    while ((size = recvfrom(socket_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from),
+                            &length)) >= 0) {
+      // What stays on the machine is seen leaving and arriving: only the former counts.
+      const bool counts = from.sll_pkttype == PACKET_OUTGOING && ntohs(from.sll_protocol) == ETH_P_IP;
+      if (counts && size >= static_cast<ssize_t>(kIpHeader)) {
+        packets_.push_back(parse(buffer, static_cast<std::size_t>(size)));
+      }
+    }
+    if (waited[1].revents != 0) return;
+  }
+}
+
+std::vector<Packet> WireTap::stop() {
+  end();
+  tpacket_stats statistics{};
+  socklen_t length = sizeof statistics;
+  getsockopt(socket_, SOL_PACKET, PACKET_STATISTICS, &statistics, &length);
+  if (statistics.tp_drops > 0) throw std::runtime_error("the capture is not complete");
+  return std::move(packets_);
+}
+
+std::vector<DataSubmessage> user_data(const Packet& packet) {
+  const auto& bytes = packet.content;
+  if (bytes.size() < kMessageHeader || std::memcmp(bytes.data(), "RTPS", 4) != 0) return {};
+  std::vector<DataSubmessage> found;
+  for (std::size_t at = kMessageHeader; at + 4 <= bytes.size();) {
+    const std::byte kind = bytes[at];
+    const bool little = (bytes[at + 1] & std::byte{1}) != std::byte{0};
+    const std::size_t written = little ? std::to_integer<std::size_t>(bytes[at + 3]) << 8 |
+                                             std::to_integer<std::size_t>(bytes[at + 2])
+                                       : big16(&bytes[at + 2]);
+    const std::size_t left = bytes.size() - at - 4;
+    const std::size_t size = written == 0 || written > left ? left : written;
+    const bool data = kind == std::byte{0x15} || kind == std::byte{0x16};
+    if (data && size >= 12 && is_user_endpoint(bytes[at + 4 + 11])) {
+      DataSubmessage submessage;
+      std::memcpy(submessage.writer.bytes.data(), &bytes[8], 12);
+      std::memcpy(submessage.writer.bytes.data() + 12, &bytes[at + 4 + 8], 4);
+      submessage.fragment = kind == std::byte{0x16};
+      submessage.payload = {reinterpret_cast<const char*>(&bytes[at + 4]), size};
+      found.push_back(submessage);
+    }
+    at += 4 + size;
+  }
+  return found;
+}
+
+std::set<std::uint16_t> udp_ports_of(pid_t process) {
+  const std::string place = "/proc/" + std::to_string(process);
+  std::set<std::string> sockets;
+  for (const auto& entry : std::filesystem::directory_iterator(place + "/fd")) {
+    std::error_code ignored;
+    const std::string target = std::filesystem::read_symlink(entry.path(), ignored).string();
+    if (target.starts_with("socket:[")) sockets.insert(target.substr(8, target.size() - 9));
+  }
+  std::set<std::uint16_t> ports;
+  std::ifstream table(place + "/net/udp");
+  std::string line;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::istringstream fields(line);
+    std::string skipped, local, inode;
+    fields >> skipped >> local;
+    for (int i = 0; i < 7; ++i) fields >> skipped;
+    fields >> inode;
+    if (sockets.contains(inode)) {
+      ports.insert(static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
+    }
+  }
+  return ports;
+}
+
+}  // namespace skein::test
