@@ -55,7 +55,8 @@ xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 {} {:.0f}" width="{}" he
   svg.add(R"svg(<style>text{{font-family:"DejaVu Sans",Helvetica,Arial,sans-serif;fill:#1f2933}}
 .title{{font-size:23px;font-weight:600}}.sub{{font-size:13px;fill:#5b6770}}
 .small{{font-size:13px}}.tick{{font-size:11px;fill:#5b6770}}
-.name{{font-size:12.5px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3.2px;stroke-linejoin:round}}
+.name{{font-size:12.5px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3.2px;
+stroke-linejoin:round}}
 </style>)svg");
   svg.add(R"svg(<defs><pattern id="hatch" width="9" height="9" patternUnits="userSpaceOnUse"
 patternTransform="rotate(45)"><rect width="3" height="9" fill="#a01020"/></pattern></defs>)svg");
