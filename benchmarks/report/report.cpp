@@ -13,7 +13,7 @@ namespace skein::benchmarks {
 namespace {
 
 constexpr const char* kStyle = R"(
-body{font:15px/1.5 system-ui,sans-serif;color:#1d2430;background:#fff;max-width:1180px;margin:2em auto;padding:0 1em}
+body{font:15px/1.5 system-ui,sans-serif;color:#1d2430;background:#fff;max-width:1540px;margin:2em auto;padding:0 1em}
 h1{font-size:1.6em;margin-bottom:0}h2{margin-top:1.8em;border-bottom:1px solid #dde2ea;padding-bottom:.2em}
 h3{font-size:1em;margin:.9em 0 .2em}ul{margin:.2em 0}
 svg text{font:11px system-ui,sans-serif;fill:#44506a}svg .title{font-size:13px;font-weight:600;fill:#1d2430}
