@@ -67,12 +67,15 @@ GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& value
 
 bool GroundStation::fly() {
   introduce();
-  brief_planners();
-  ask_with_time();
-  ask_in_a_hurry();
-  ask_and_kill_the_planner();
-  ask_for_the_unreachable();
-  draw();
+  for (const auto step : {&GroundStation::brief_planners, &GroundStation::ask_with_time,
+                          &GroundStation::ask_in_a_hurry, &GroundStation::ask_and_kill_the_planner,
+                          &GroundStation::ask_for_the_unreachable, &GroundStation::draw}) {
+    try {
+      (this->*step)();
+    } catch (const skein::Error& error) {
+      fail(error.what());
+    }
+  }
   return conclude();
 }
 

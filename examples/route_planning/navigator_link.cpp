@@ -21,7 +21,7 @@ using AE_navigatorI::PlanningStatus;
 using skein::Instant;
 
 constexpr auto kPatience = 20s;
-// A planner that is killed should be seen at work first.
+// A planner that is to be killed is to be at work, not just done.
 constexpr auto kLeftToPlan = 200ms;
 
 /// What `ask` brings back: the route, or the reason why there is none.
@@ -88,7 +88,6 @@ Answer NavigatorLink::ask_and_kill(const Question& question, Kill& kill) {
   const Instant begin = entity_.clock().now();
   const PlanningStatus status = await_planner(begin + question.time_to_think);
   require_killable(status);
-  std::this_thread::sleep_for(kLeftToPlan);
   kill = {status.planner, status.pid, entity_.clock().now() - begin, entity_.clock().now()};
   if (::kill(static_cast<pid_t>(status.pid), SIGKILL) != 0) {
     throw skein::InvalidArgument(fmt::format("process {} of {} cannot be killed: {}", status.pid,
@@ -101,12 +100,17 @@ Answer NavigatorLink::ask_and_kill(const Question& question, Kill& kill) {
 }
 
 PlanningStatus NavigatorLink::await_planner(Instant deadline) {
+  PlanningStatus seen;
+  Instant since = entity_.clock().now();
   for (;;) {
-    PlanningStatus status = navigator_.status();
-    if (status.planning) return status;
-    if (entity_.clock().now() >= deadline) {
-      throw skein::TimedOut("no planner was seen at work on the request");
+    const PlanningStatus status = navigator_.status();
+    const Instant now = entity_.clock().now();
+    if (status != seen) {
+      seen = status;
+      since = now;
     }
+    if (status.planning && now - since >= kLeftToPlan) return status;
+    if (now >= deadline) throw skein::TimedOut("no planner was seen at work for long enough to kill it");
     std::this_thread::sleep_for(2ms);
   }
 }

@@ -55,6 +55,7 @@ class NavigatorLink {
 
  private:
   Answer ask_once(const Question& question);
+  /// Waits for a planner that is at work for some time.
   AE_navigatorI::PlanningStatus await_planner(skein::Instant deadline);
   void require_killable(const AE_navigatorI::PlanningStatus& status);
 

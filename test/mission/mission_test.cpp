@@ -1,0 +1,107 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <pugixml.hpp>
+
+#include "mission_run.hpp"
+
+using namespace skein::test;
+using Catch::Contains;
+
+namespace {
+
+const std::filesystem::path kMission = std::filesystem::path(PROFILES) / "route_planning.xml";
+const std::filesystem::path kTestProfiles = TEST_PROFILES;
+
+/// The mission, flown once for all that is looked at.
+const MissionRun& flown() {
+  static const MissionRun run(kMission);
+  return run;
+}
+
+/// Where a picture refers to something outside of itself.
+std::vector<std::string> references_out_of(const pugi::xml_node& picture) {
+  struct Walker : pugi::xml_tree_walker {
+    bool for_each(pugi::xml_node& node) override {
+      for (const auto& attribute : node.attributes()) {
+        const std::string name = attribute.name(), value = attribute.value();
+        const bool refers = name == "href" || name == "xlink:href" || name == "src";
+        if (refers && !value.starts_with("#") && !value.starts_with("data:")) found.push_back(value);
+        if (value.find("url(") != std::string::npos && value.find("url(#") == std::string::npos) found.push_back(value);
+      }
+      return true;
+    }
+    std::vector<std::string> found;
+  } walker;
+  const_cast<pugi::xml_node&>(picture).traverse(walker);
+  return walker.found;
+}
+
+}  // namespace
+
+TEST_CASE("the mission flies: every route is valid, and the unreachable goal is refused as such") {
+  const MissionRun& run = flown();
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  CHECK_THAT(run.output(), Contains("3 routes, all valid; the unreachable goal was refused as such"));
+
+  SECTION("with time to think the best planner answers, in a hurry the quick one") {
+    CHECK_THAT(run.output(), Contains("RRTstar has the best declared quality (0.95) of those whose latency fits"));
+    CHECK_THAT(run.output(), Contains("RRTConnect has the best declared quality (0.5) of those whose latency fits"));
+  }
+  SECTION("when the planner is killed the next best answers, and the launcher brings it back") {
+    CHECK_THAT(run.output(), Contains("kill RRTstar (process "));
+    CHECK_THAT(run.output(), Contains("navigator/RRTstar: ended by signal 9"));
+    CHECK_THAT(run.output(), Contains("disconnected after"));
+    CHECK_THAT(run.output(), Contains("2. AStar has the best declared quality (0.9)"));
+    CHECK_THAT(run.output(), Contains("back RRTstar was started again"));
+  }
+  SECTION("the goal that cannot be reached is refused with the zones that enclose it") {
+    CHECK_THAT(run.output(), Contains("refused proved: there is no route: the goal is enclosed by the no-fly zones"));
+  }
+  SECTION("the picture is well-formed and refers to nothing outside of itself") {
+    pugi::xml_document picture;
+    const auto parsed = picture.load_file(run.file("route.svg").c_str());
+    INFO(parsed.description());
+    REQUIRE(parsed);
+    CHECK(std::string(picture.document_element().name()) == "svg");
+    CHECK(references_out_of(picture) == std::vector<std::string>{});
+    std::ifstream text(run.file("route.svg"));
+    const std::string content{std::istreambuf_iterator<char>(text), {}};
+    for (const char* label : {"2 s to think: RRTstar", "50 ms to think: RRTConnect", "planner killed: AStar"}) {
+      CHECK_THAT(content, Contains(label));
+    }
+  }
+}
+
+TEST_CASE("a planner that lies about a cut corner is found out, and the next best answers in its place") {
+  const MissionRun run(kTestProfiles / "lying_planner.xml");
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  CHECK_THAT(run.output(), Contains("1. ShortCut has the best declared quality (0.99)"));
+  CHECK_THAT(run.output(), Contains("rejected after") && Contains("it enters the no-fly zone 'City'"));
+  CHECK_THAT(run.output(), Contains("2. RRTstar has the best declared quality (0.95)"));
+}
+
+TEST_CASE("a navigator that passes on a route through a no-fly zone fails the mission") {
+  const MissionRun run(kTestProfiles / "lying_navigator.xml");
+  INFO(run.output());
+  CHECK(run.exit_code() == 1);
+  CHECK_THAT(run.output(), Contains("check INVALID (no-fly zone)"));
+  CHECK_THAT(run.output(), Contains("failed the route checker refuses the route (2 s to think)"));
+  CHECK_THAT(run.output(), Contains("a route to the unreachable goal was returned"));
+}
+
+TEST_CASE("a plugin that is missing is named, with where it was looked for and what to do") {
+  const MissionRun run(kTestProfiles / "missing_plugin.xml");
+  INFO(run.output());
+  CHECK(run.exit_code() != 0);
+  CHECK_THAT(run.output(), Contains("flight_controller | skein: no libskein_no_such_plugin.so in"));
+  CHECK_THAT(run.output(), Contains("build or install the plugin"));
+}
+
+TEST_CASE("a terrain that does not exist ends the mission with its name") {
+  const MissionRun run(kMission, {"--set", "ground_station.Terrain=nowhere/N00E000.hgt"});
+  INFO(run.output());
+  CHECK(run.exit_code() != 0);
+  CHECK_THAT(run.output(), Contains("nowhere/N00E000.hgt"));
+}

@@ -1,0 +1,86 @@
+#include <catch2/catch.hpp>
+
+#include "../../src/navigation/components/planning_journal.hpp"
+
+using namespace skein;
+using namespace skein::navigation;
+using namespace std::chrono_literals;
+
+namespace {
+
+Candidate candidate(const std::string& name, Duration latency, double quality) {
+  Candidate candidate;
+  candidate.name = name;
+  candidate.latency = latency;
+  candidate.quality = quality;
+  return candidate;
+}
+
+DecisionRecord record() {
+  DecisionRecord record;
+  record.candidates = {candidate("RRTstar", 1500ms, 0.95), candidate("AStar", 300ms, 0.9)};
+  record.attempts = {{"RRTstar", 1s, 200ms, Attempt::Outcome::Disconnected, "it died", "it is the best"},
+                     {"AStar", 1s, 100ms, Attempt::Outcome::Accepted, "", "it is the next best"}};
+  record.took = 301ms;
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("a request's report tells who stood by, who was tried, why and what came of it") {
+  PlanningJournal journal;
+  journal.begin("one");
+  journal.end("one", record(), "");
+  const auto report = journal.report("one");
+  CHECK(report.tried == std::vector<std::string>{"RRTstar", "AStar"});
+  CHECK(report.reason ==
+        "it is the best; disconnected after 200 ms: it died\nit is the next best; accepted after 100 ms");
+  CHECK(report.elapsed_ms == Approx(301));
+  REQUIRE(report.candidates.size() == 2);
+  CHECK(report.candidates[0].predicted_latency_ms == Approx(1500));
+  CHECK(report.candidates[0].available);
+}
+
+TEST_CASE("a planner that stood by once and is gone is reported as not available") {
+  PlanningJournal journal;
+  journal.begin("one");
+  journal.end("one", record(), "");
+  DecisionRecord later = record();
+  later.candidates.erase(later.candidates.begin());
+  journal.begin("two");
+  journal.end("two", later, "");
+  const auto report = journal.report("two");
+  REQUIRE(report.candidates.size() == 2);
+  CHECK(report.candidates[1].planner == "RRTstar");
+  CHECK_FALSE(report.candidates[1].available);
+}
+
+TEST_CASE("the report of a request that no planner was tried for gives the error as its reason") {
+  PlanningJournal journal;
+  journal.begin("one");
+  journal.end("one", {}, "no planner stands by");
+  CHECK(journal.report("one").reason == "no planner stands by");
+}
+
+TEST_CASE("the last 64 reports are kept, an unknown request is refused by its name") {
+  PlanningJournal journal;
+  for (int i = 0; i < 65; ++i) {
+    journal.begin(std::to_string(i));
+    journal.end(std::to_string(i), record(), "");
+  }
+  CHECK(journal.report("1").request_id == "1");
+  CHECK(journal.report("64").request_id == "64");
+  CHECK_THROWS_AS(journal.report("0"), AE_navigatorI::UnknownRequest);
+  CHECK_THROWS_WITH(journal.report("0"), Catch::Contains("'0'"));
+}
+
+TEST_CASE("the request at work is the one that began last of those that have not ended") {
+  PlanningJournal journal;
+  CHECK(journal.current().empty());
+  journal.begin("one");
+  journal.begin("two");
+  CHECK(journal.current() == "two");
+  journal.end("two", record(), "");
+  CHECK(journal.current() == "one");
+  CHECK(journal.at_work() == 1);
+}

@@ -1,0 +1,81 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "../../src/navigation/components/route_judge.hpp"
+
+using namespace skein::navigation;
+using AE_navigator::Problem;
+using AE_navigator::Route;
+using Catch::Contains;
+
+namespace {
+
+/// A plain 10 km by 10 km at 100 m, and a route across it that stays 200 m above it.
+const Terrain kPlain("plain", 11, 11, 1000, 1000, std::vector<float>(121, 100));
+
+Problem problem() {
+  Problem problem;
+  problem.start = {1000, 1000, 300};
+  problem.goal = {9000, 9000, 300};
+  problem.no_fly_zones = {{"City", {{5000, 2000}}, 500, 0, 1000}};
+  problem.minimum_height_above_ground_m = 120;
+  problem.limits = {60, 12, 30, 1000};
+  return problem;
+}
+
+Route route() {
+  Route route;
+  route.waypoints = {{1000, 1000, 300}, {5000, 5000, 320}, {9000, 9000, 300}};
+  return route;
+}
+
+std::string flaw(const Route& route) { return judge_route(kPlain, problem(), route).value_or("none"); }
+
+}  // namespace
+
+TEST_CASE("a route that keeps clear of everything is passed on") { CHECK(flaw(route()) == "none"); }
+
+TEST_CASE("a route with one flaw is stopped, and the flaw and its place are named") {
+  Route bad = route();
+  SECTION("no way at all") {
+    bad.waypoints = {};
+    CHECK_THAT(flaw(bad), Contains("fewer than two"));
+  }
+  SECTION("a number that is none") {
+    bad.waypoints[1].altitude_m = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THAT(flaw(bad), Contains("not finite"));
+  }
+  SECTION("a claim that is no number") {
+    bad.radar_exposure = std::numeric_limits<double>::infinity();
+    CHECK_THAT(flaw(bad), Contains("not finite"));
+  }
+  SECTION("another start") {
+    bad.waypoints.front().north_m += 5;
+    CHECK_THAT(flaw(bad), Contains("5.0 m from the start"));
+  }
+  SECTION("another goal") {
+    bad.waypoints.back().east_m -= 7;
+    CHECK_THAT(flaw(bad), Contains("7.0 m from the goal"));
+  }
+  SECTION("a corner cut through a zone") {
+    bad.waypoints[1] = {5000, 2400, 320};
+    CHECK_THAT(flaw(bad), Contains("between waypoints 0 and 1") && Contains("'City'"));
+  }
+  SECTION("too low") {
+    bad.waypoints[1].altitude_m = 210;
+    CHECK_THAT(flaw(bad), Contains("110.0 m of the ground; 120.0 m are demanded"));
+  }
+  SECTION("too high") {
+    bad.waypoints[1].altitude_m = 1001;
+    CHECK_THAT(flaw(bad), Contains("1001 m; the aircraft flies no higher than 1000 m"));
+  }
+  SECTION("too steep") {
+    bad.waypoints.insert(bad.waypoints.begin() + 1, {1100, 1000, 400});
+    CHECK_THAT(flaw(bad), Contains("climbs at 45.0 degrees"));
+  }
+  SECTION("off the map") {
+    bad.waypoints[1] = {-10, 5000, 320};
+    CHECK_THAT(flaw(bad), Contains("leaves the terrain"));
+  }
+}
