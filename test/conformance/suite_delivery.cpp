@@ -14,7 +14,7 @@ TEST_CASE("samples of every size arrive whole, byte for byte and in order") {
   Wire wire;
   Outbox outbox(*wire.writing, keyless(), keep_all());
   Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   // Bodies of 0 to 8 bytes and around: what RTPS pads must come off again.
   const std::vector<std::size_t> sizes{4,    5,    6,     7,     8,     9,     10,      11,      12,
                                        68,   1027, 1028,  16385, 63000, 65000, 65533,   65536,   70001,
@@ -42,7 +42,7 @@ TEST_CASE("a burst of reliable samples arrives complete and in order") {
   qos.max_blocking = 5s;
   Outbox outbox(*wire.writing, keyless(), qos);
   Inbox inbox(*wire.reading, keyless(), qos);
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   constexpr std::uint32_t kCount = 5000;
   for (std::uint32_t i = 0; i < kCount; ++i) outbox.writer().write(make_number(i));
   REQUIRE(eventually([&] { return inbox.count() == kCount; }));
@@ -57,7 +57,7 @@ TEST_CASE("large reliable samples in a row all arrive") {
   qos.max_blocking = 10s;
   Outbox outbox(*wire.writing, keyless(), qos);
   Inbox inbox(*wire.reading, keyless(), qos);
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   for (std::uint32_t i = 0; i < 16; ++i) outbox.writer().write(make_sample(1u << 20, i));
   REQUIRE(eventually([&] { return inbox.count() == 16; }));
   const auto received = inbox.received();
@@ -68,7 +68,7 @@ TEST_CASE("samples of both byte orders are handed over as they are") {
   Wire wire;
   Outbox outbox(*wire.writing, keyless(), keep_all());
   Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   auto big_endian = make_number(1);
   big_endian[1] = std::byte{0};
   outbox.writer().write(big_endian);
@@ -166,7 +166,7 @@ TEST_CASE("one writer serves several threads") {
   qos.max_blocking = 5s;
   Outbox outbox(*wire.writing, keyless(), qos);
   Inbox inbox(*wire.reading, keyless(), qos);
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   constexpr std::uint32_t kThreads = 4;
   constexpr std::uint32_t kEach = 250;
   std::vector<std::thread> threads;
@@ -208,8 +208,56 @@ TEST_CASE("a writer and a reader of one participant match and talk") {
   Wire wire;
   Outbox outbox(*wire.writing, keyless(), keep_all());
   Inbox inbox(*wire.writing, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+  REQUIRE(connected(outbox, inbox));
   outbox.writer().write(make_number(3));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(inbox.received()[0].writer == outbox.writer().guid());
+}
+
+TEST_CASE("several readers, also of the writer's own participant, get the same bytes") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  Inbox own(*wire.writing, keyless(), keep_all());
+  Inbox one(*wire.reading, keyless(), keep_all());
+  Inbox other(*wire.reading, keyless(), keep_all());
+  for (Inbox* inbox : {&own, &one, &other}) REQUIRE(connected(outbox, *inbox));
+  for (Inbox* inbox : {&own, &one, &other}) {
+    REQUIRE(outbox.writer().wait_for_acknowledgments(10s));
+    inbox->forget_samples();
+  }
+  for (std::uint32_t size = 4; size < 12; ++size) outbox.writer().write(make_sample(size, size));
+  for (Inbox* inbox : {&own, &one, &other}) {
+    REQUIRE(eventually([&] { return inbox->count() == 8; }));
+    const auto received = inbox->received();
+    for (std::uint32_t size = 4; size < 12; ++size) {
+      CHECK((received[size - 4].cdr == make_sample(size, size)));
+    }
+  }
+}
+
+TEST_CASE("a sample that is kept outlives the call, its reader's next samples and the reader") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  std::mutex mutex;
+  std::vector<std::pair<std::shared_ptr<const void>, std::span<const std::byte>>> kept;
+  ReaderListener listener;
+  listener.on_data = [&](Reader& reader) {
+    reader.take([&](const Sample& sample) {
+      std::lock_guard lock(mutex);
+      kept.emplace_back(sample.keep(), sample.cdr);
+    });
+  };
+  auto reader = wire.reading->create_reader(keyless(), keep_all(), listener);
+  REQUIRE(eventually([&] { return !outbox.writer().matched_readers().empty(); }));
+  REQUIRE(eventually([&] { return !reader->matched_writers().empty(); }));
+  for (std::uint32_t i = 0; i < 10; ++i) outbox.writer().write(make_sample(10'001, i));
+  REQUIRE(eventually([&] {
+    std::lock_guard lock(mutex);
+    return kept.size() == 10;
+  }));
+  reader.reset();
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const auto& cdr = kept[i].second;
+    CHECK((std::vector(cdr.begin(), cdr.end()) == make_sample(10'001, i)));
+  }
 }

@@ -1,5 +1,6 @@
 #include "wire.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <random>
@@ -61,6 +62,11 @@ std::size_t Inbox::count() const {
   return received_.size();
 }
 
+void Inbox::forget_samples() {
+  std::lock_guard lock(mutex_);
+  received_.clear();
+}
+
 std::vector<std::pair<Guid, bool>> Inbox::matches() const {
   std::lock_guard lock(mutex_);
   return matches_;
@@ -93,6 +99,20 @@ bool matched(Outbox& outbox, Inbox& inbox) {
     return contains(outbox.writer().matched_readers(), inbox.reader().guid()) &&
            contains(inbox.reader().matched_writers(), outbox.writer().guid());
   });
+}
+
+bool connected(Outbox& outbox, Inbox& inbox) {
+  if (!matched(outbox, inbox)) return false;
+  std::uint32_t last = 0;
+  const bool heard = test::eventually([&] {
+    outbox.writer().write(make_number(++last));
+    return inbox.count() > 0;
+  });
+  const bool all = heard && test::eventually([&] {
+    return to_number(inbox.received().back().cdr) == last;
+  });
+  inbox.forget_samples();
+  return all;
 }
 
 std::vector<std::byte> make_sample(std::size_t size, std::uint32_t seed) {

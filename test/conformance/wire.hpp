@@ -50,6 +50,7 @@ class Inbox {
   void close() { reader_.reset(); }
   std::vector<Received> received() const;
   std::size_t count() const;
+  void forget_samples();
   std::vector<std::pair<Guid, bool>> matches() const;
   std::vector<std::pair<Guid, bool>> liveliness() const;
 
@@ -76,8 +77,12 @@ class Outbox {
   std::unique_ptr<Writer> writer_;
 };
 
-/// Waits until both sides know of each other.
+/// Waits until both sides know of each other. That proves little for a volatile reader: Cyclone DDS
+/// ignores a matched Fast DDS writer until its first heartbeat.
 bool matched(Outbox& outbox, Inbox& inbox);
+
+/// Waits until samples of a keyless, reliable writer arrive; forgets those that tried it.
+bool connected(Outbox& outbox, Inbox& inbox);
 
 /// A sample of `size` bytes with its header; its content depends on `seed`.
 std::vector<std::byte> make_sample(std::size_t size, std::uint32_t seed = 0);

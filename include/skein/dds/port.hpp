@@ -21,6 +21,7 @@ namespace skein::dds {
 using KeyHash = Guid;
 
 struct Topic {
+  /// Letters, digits, `_` and `/`; not beginning with a digit or `DCPS`.
   std::string name;
   std::string type_name;
   bool keyed = false;
@@ -30,15 +31,22 @@ struct Topic {
 
 /// What writers and readers must agree upon, and what they keep. XCDR1 always.
 struct Qos {
+  /// A reliable reader matches reliable writers only.
   bool reliable = true;
+  /// Late joiners get the writer's history. A transient-local reader matches such writers only; whether
+  /// a volatile reader of one is sent its past is not promised.
   bool transient_local = false;
-  /// Samples kept per instance; nothing means all (bounded by `max_samples`).
+  /// Samples kept per instance, disposals among them, by a writer and by a reader that does not take;
+  /// nothing means all.
   std::optional<std::uint32_t> history_depth;
-  /// With "all": how many samples may wait before a reliable writer blocks; 0 means no limit.
+  /// With "all": how many samples may wait for acknowledgment before a reliable writer blocks; 0 means
+  /// no limit on their number (Cyclone DDS still bounds their bytes, at 4 MiB). Readers have no limit:
+  /// a full one would stop a participant's reception, and its leases with it.
   std::uint32_t max_samples = 0;
   /// How long a write may wait for room before it throws Overloaded.
   std::chrono::milliseconds max_blocking{100};
   /// Automatic liveliness: a writer not heard of for so long is reported as not alive. Nothing: never.
+  /// Give both sides the same: a reader's must not be shorter than a writer's.
   std::optional<std::chrono::milliseconds> liveliness_lease;
   /// Only endpoints that share a partition match. Exact names, no wildcards (vendors differ); empty
   /// means the default partition, which is called "". Fixed at creation.
@@ -47,20 +55,36 @@ struct Qos {
 
 enum class InstanceState { Alive, Disposed };
 
-/// A received sample; `cdr` is valid only during the call that delivers it.
+/// Who owns a sample's bytes; the back end's side of Sample::keep().
+class SampleOwner {
+ public:
+  virtual ~SampleOwner() = default;
+  virtual std::shared_ptr<const void> keep() = 0;
+};
+
+/// A received sample; `cdr` is valid only during the call that delivers it, or as long as kept.
 struct Sample {
-  /// With the 4-byte encapsulation header; empty when disposed.
+  /// With the 4-byte encapsulation header, as long as it was written (from foreign writers up to 3
+  /// bytes longer: RTPS pads to 4); empty when disposed.
   std::span<const std::byte> cdr;
   InstanceState state = InstanceState::Alive;
   KeyHash key;
   Guid writer;
+  SampleOwner* owner = nullptr;
+
+  /// Keeps `cdr` valid for as long as the result lives, without a copy: for those who hand a sample to
+  /// another thread. Once, and during the call only.
+  std::shared_ptr<const void> keep() const { return owner->keep(); }
 };
 
 class Reader;
 
-/// Called on the vendor's threads: must return soon, must not write, create or destroy entities.
-/// Taking samples is allowed. Calls for one entity do not overlap.
+/// Called on the vendor's threads; on_data also inside write(), where writer and reader are of one
+/// participant (Cyclone DDS) or on loopback: hold no lock there that it takes. Listeners must return
+/// soon, must not write, create or destroy entities. Taking samples is allowed. Calls of one listener
+/// function do not overlap. Matches and data come in no promised order.
 struct ReaderListener {
+  /// There are new samples; take all: it is not called again for those that were left.
   std::function<void(Reader&)> on_data;
   /// A writer was matched (true) or is gone (false).
   std::function<void(const Guid& writer, bool matched)> on_matched;
@@ -77,12 +101,13 @@ class Writer {
  public:
   virtual ~Writer() = default;
 
-  /// Writes one sample; `cdr` starts with the encapsulation header. Throws Overloaded where there was
-  /// no room within max_blocking, Internal with the vendor's reason otherwise.
+  /// Writes one sample; `cdr` starts with the encapsulation header, whose options must be zero. Throws
+  /// InvalidArgument where that is missing, Overloaded where there was no room within max_blocking,
+  /// Internal with the vendor's reason otherwise.
   virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
 
-  /// Tells the readers that the instance has ended. Keyed topics only. (No vendor does this by itself
-  /// for a writer that goes, so that it reaches every reader.)
+  /// Tells the readers that the instance has ended, also those that never knew it; late joiners are
+  /// told that or nothing. Keyed topics only. Without it an instance outlives its writer.
   virtual void dispose(const KeyHash& key) = 0;
 
   /// Waits until every matched reliable reader has acknowledged everything, or `timeout`; false then.

@@ -43,6 +43,9 @@ ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
   // A malformed sample passes here and is counted by the reader's queue: only that knows the reader.
   Blob* blob = Blob::make(type, kind, size);
   copy_fragments(fragments, blob, size);
+  if (kind == SDK_DATA && size >= kHeaderSize) {
+    blob->length = static_cast<std::uint32_t>(without_padding(blob->bytes(), size).size());
+  }
   const ddsi_keyhash* hash = ddsi_serdata_keyhash_from_fragchain(fragments);
   blob->set_key(hash != nullptr && type->typekind_no_key == 0 ? to_key(hash) : KeyHash{});
   blob->has_key = hash != nullptr || type->typekind_no_key != 0;
@@ -174,7 +177,27 @@ Blob* Blob::make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t s
   Blob* blob = new (memory) Blob;
   ddsi_serdata_init(blob, type, kind);
   blob->size = static_cast<std::uint32_t>(size);
+  blob->length = blob->size;
   blob->has_key = true;
+  blob->outgoing = false;
+  return blob;
+}
+
+Blob* Blob::make_outgoing(const ddsi_sertype* type, std::span<const std::byte> cdr,
+                          const KeyHash& key) {
+  Blob* blob = make(type, SDK_DATA, padded(cdr.size()));
+  copy_padded(cdr, blob->bytes());
+  blob->length = static_cast<std::uint32_t>(cdr.size());
+  blob->outgoing = true;
+  blob->set_key(key);
+  return blob;
+}
+
+Blob* Blob::copy_incoming() const {
+  Blob* blob = make(type, SDK_DATA, size);
+  std::memcpy(blob->bytes(), bytes(), size);
+  blob->length = static_cast<std::uint32_t>(without_padding(blob->bytes(), size).size());
+  blob->set_key(key_hash);
   return blob;
 }
 

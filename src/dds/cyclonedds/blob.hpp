@@ -16,14 +16,23 @@ namespace skein::dds::cyclonedds {
 /// identity. Cyclone counts references to it; the bytes follow the object in the same allocation.
 struct Blob : ddsi_serdata {
   KeyHash key_hash;
-  std::uint32_t size;  // a multiple of 4, as on the wire
+  std::uint32_t size;    // as on the wire: what we write is a multiple of 4
+  std::uint32_t length;  // without padding
   bool has_key;
+  bool outgoing;  // its header carries the mark of its padding
 
   std::byte* bytes() noexcept { return reinterpret_cast<std::byte*>(this + 1); }
   const std::byte* bytes() const noexcept { return reinterpret_cast<const std::byte*>(this + 1); }
 
   /// With one reference, which the caller owns, and its bytes not yet set.
   static Blob* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size);
+
+  /// A sample to be written.
+  static Blob* make_outgoing(const ddsi_sertype* type, std::span<const std::byte> cdr,
+                             const KeyHash& key);
+
+  /// The same sample as a remote reader would receive it.
+  Blob* copy_incoming() const;
 
   /// The key decides the hash that Cyclone looks instances up by: it must be set before use.
   void set_key(const KeyHash& key) noexcept;
@@ -32,6 +41,9 @@ struct Blob : ddsi_serdata {
 /// One reference to a blob.
 class BlobReference {
  public:
+  /// Takes over one that the caller owns.
+  static BlobReference adopt(Blob* blob) noexcept { return BlobReference(blob, nullptr); }
+  /// Adds one.
   explicit BlobReference(Blob* blob) noexcept
       : blob_(static_cast<Blob*>(ddsi_serdata_ref(blob))) {}
   BlobReference(BlobReference&& other) noexcept : blob_(std::exchange(other.blob_, nullptr)) {}
@@ -46,6 +58,7 @@ class BlobReference {
   Blob* operator->() const noexcept { return blob_; }
 
  private:
+  BlobReference(Blob* blob, std::nullptr_t) noexcept : blob_(blob) {}
   Blob* blob_;
 };
 

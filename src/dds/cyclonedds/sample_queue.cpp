@@ -17,6 +17,18 @@ int32_t no_blobs(dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, uint32_t, u
   return 0;
 }
 
+/// Lends out a queued item's reference.
+class Owner final : public SampleOwner {
+ public:
+  explicit Owner(BlobReference& blob) : blob_(blob) {}
+  std::shared_ptr<const void> keep() override {
+    return std::make_shared<BlobReference>(std::move(blob_));
+  }
+
+ private:
+  BlobReference& blob_;
+};
+
 }  // namespace
 
 const dds_rhc_ops& SampleQueue::operations() {
@@ -57,8 +69,10 @@ bool SampleQueue::store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_se
     self->malformed_.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
-  self->push({BlobReference(blob), to_guid(writer->guid),
-              disposed ? InstanceState::Disposed : InstanceState::Alive});
+  // A writer of the same participant hands over what it also sends.
+  const bool as_sent = blob->outgoing && blob->length != blob->size;
+  self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob),
+              to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive});
   dds_reader_data_available_cb(self->reader_);
   return true;
 }
@@ -85,10 +99,12 @@ std::size_t SampleQueue::take(const std::function<void(const Sample&)>& consumer
   for (; taken < limit; ++taken) {
     std::optional<Item> item = pop();
     if (!item) break;
-    Blob& blob = *item->blob;
+    const Blob& blob = *item->blob;
     std::span<const std::byte> cdr;
-    if (item->state == InstanceState::Alive) cdr = without_padding(blob.bytes(), blob.size);
-    consumer({cdr, item->state, blob.key_hash, item->writer});
+    if (item->state == InstanceState::Alive) cdr = {blob.bytes(), blob.length};
+    const KeyHash key = blob.key_hash;
+    Owner owner(item->blob);
+    consumer({cdr, item->state, key, item->writer, &owner});
   }
   return taken;
 }

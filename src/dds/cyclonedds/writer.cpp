@@ -57,9 +57,7 @@ Entity CycloneWriter::make() {
 void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
   require_header(cdr, topic_.name);
   wait_for_room();
-  Blob* blob = Blob::make(handle_.type, SDK_DATA, padded(cdr.size()));
-  copy_padded(cdr, blob->bytes());
-  blob->set_key(topic_.keyed ? key : KeyHash{});
+  Blob* blob = Blob::make_outgoing(handle_.type, cdr, topic_.keyed ? key : KeyHash{});
   check_written(dds_writecdr(writer_.handle(), blob));
 }
 

@@ -115,6 +115,8 @@ rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
   fill_endpoint(attributes.endpoint, topic, qos);
   // With 3 s, the default, a late joiner on Cyclone waits that long for the past.
   attributes.times.heartbeatPeriod = duration(kHeartbeatPeriod);
+  // Cyclone ignores a volatile writer until its first heartbeat.
+  attributes.times.initialHeartbeatDelay = duration(0ms);
   attributes.times.nackResponseDelay = duration(0ms);
   attributes.mode = rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
   if (qos.liveliness_lease) {
@@ -128,16 +130,17 @@ rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos) {
   rtps::ReaderAttributes attributes;
   fill_endpoint(attributes.endpoint, topic, qos);
   attributes.times.initialAcknackDelay = duration(10ms);
-  attributes.times.heartbeatResponseDelay = duration(5ms);
+  // A Cyclone writer with a mebibyte unacknowledged stops until it is: 5 ms, the default, each time.
+  attributes.times.heartbeatResponseDelay = duration(0ms);
   if (qos.liveliness_lease) attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
   return attributes;
 }
 
-rtps::HistoryAttributes history_attributes() {
-  // Not a dynamic policy: with one, a disposal of 0 bytes blocks a reader for ever. 0: no limit.
+rtps::HistoryAttributes history_attributes(std::uint32_t max_samples) {
+  // Not a dynamic policy: with one, a disposal of 0 bytes blocks a reader for ever.
   constexpr std::uint32_t kFirstPayload = 512;
-  constexpr std::int32_t kFirstSamples = 4;
-  return {rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, kFirstPayload, kFirstSamples, 0};
+  return {rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE, kFirstPayload, 1,
+          static_cast<std::int32_t>(max_samples)};
 }
 
 eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic) {

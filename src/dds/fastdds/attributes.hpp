@@ -24,7 +24,10 @@ std::shared_ptr<StartupTransportDescriptor> make_transport(const Network& networ
 
 rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos);
 rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos);
-rtps::HistoryAttributes history_attributes();
+
+/// 0: no limit. A writer whose history is full asks for acknowledgment with its last sample.
+rtps::HistoryAttributes history_attributes(std::uint32_t max_samples);
+
 eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic);
 eprosima::fastrtps::WriterQos writer_qos(const Qos& qos);
 eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos);

@@ -14,6 +14,16 @@ namespace {
 /// Buffers kept for the next samples, so that a steady flow allocates nothing.
 constexpr std::size_t kMaxSpares = 4;
 
+/// Lends out a queued item's buffer.
+class Owner final : public SampleOwner {
+ public:
+  explicit Owner(Bytes& cdr) : cdr_(cdr) {}
+  std::shared_ptr<const void> keep() override { return std::make_shared<Bytes>(std::move(cdr_)); }
+
+ private:
+  Bytes& cdr_;
+};
+
 }  // namespace
 
 FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Qos& qos,
@@ -23,7 +33,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
       on_data_(std::move(listener.on_data)),
       events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched),
                                                std::move(listener.on_liveliness))),
-      history_(history_attributes()),
+      history_(history_attributes(0)),
       queue_(qos.history_depth) {
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
@@ -98,6 +108,7 @@ Bytes FastReader::spare_buffer() {
 }
 
 void FastReader::give_back(Bytes buffer) {
+  if (buffer.capacity() == 0) return;  // disposed, or kept by the consumer
   buffer.clear();
   std::lock_guard lock(mutex_);
   if (spares_.size() < kMaxSpares) spares_.push_back(std::move(buffer));
@@ -110,7 +121,8 @@ std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer,
     if (!item) break;
     std::span<const std::byte> cdr;
     if (item->state == InstanceState::Alive) cdr = without_padding(item->cdr.data(), item->cdr.size());
-    consumer({cdr, item->state, item->key, item->writer});
+    Owner owner(item->cdr);
+    consumer({cdr, item->state, item->key, item->writer, &owner});
     give_back(std::move(item->cdr));
   }
   return taken;

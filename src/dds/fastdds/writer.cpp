@@ -33,7 +33,7 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
       topic_(topic),
       qos_(qos),
       events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched))),
-      history_(history_attributes()) {
+      history_(history_attributes(bounded() ? qos.max_samples : 0)) {
   participant_.acquire_topic(topic);
   auto attributes = writer_attributes(topic, qos);
   writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes, &history_,
@@ -88,7 +88,7 @@ rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_
 }
 
 void FastWriter::wait_for_room(Lock& lock) {
-  if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
+  if (!bounded()) return;
   const auto has_room = [&] { return history_.getHistorySize() < qos_.max_samples; };
   if (room_.wait_for(lock, qos_.max_blocking, has_room)) return;
   throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +

@@ -34,6 +34,9 @@ class FastWriter final : public Writer, private rtps::WriterListener {
                        const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
   void onWriterChangeReceivedByAll(rtps::RTPSWriter* writer, rtps::CacheChange_t* change) override;
 
+  bool bounded() const noexcept {
+    return qos_.reliable && !qos_.history_depth && qos_.max_samples > 0;
+  }
   rtps::CacheChange_t* make_change(std::size_t size, rtps::ChangeKind_t kind, const KeyHash& key);
   void wait_for_room(Lock& lock);
   void remember(rtps::CacheChange_t* change, const KeyHash& key);

@@ -62,7 +62,6 @@ struct ReaderCore : EndpointCore {
   ReaderListener listener;
   KeyedQueue<MessagePtr> queue;
   bool told = false;  // an on_data is on its way
-  bool refused = false;  // something did not fit and will be asked for again
   std::uint64_t malformed = 0;
 };
 
@@ -147,7 +146,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void send(Link& link, const MessagePtr& message, std::uint32_t attempt);
   void arrive(const LinkId& id, const MessagePtr& message);
   void deliver_in_order(Link& link);
-  bool accept(ReaderCore& reader, const MessagePtr& message);
+  void accept(ReaderCore& reader, const MessagePtr& message);
   void repeat_later(Link& link);
   void repeat_lost(Link& link);
   void repeat_between(const ParticipantCore& one, const ParticipantCore& other);

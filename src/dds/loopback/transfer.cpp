@@ -2,6 +2,18 @@
 #include "hub.hpp"
 
 namespace skein::dds::loopback {
+namespace {
+
+class Owner final : public SampleOwner {
+ public:
+  explicit Owner(const MessagePtr& message) : message_(message) {}
+  std::shared_ptr<const void> keep() override { return message_; }
+
+ private:
+  const MessagePtr& message_;
+};
+
+}  // namespace
 
 void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
                 InstanceState state) {
@@ -105,7 +117,8 @@ void Hub::arrive(const LinkId& id, const MessagePtr& message) {
     return;
   }
   if (!reliable(link)) {
-    if (message->sequence > link.delivered && accept(*link.reader, message)) {
+    if (message->sequence > link.delivered) {
+      accept(*link.reader, message);
       link.delivered = message->sequence;
     }
   } else if (entry != link.pending.end()) {
@@ -118,11 +131,7 @@ void Hub::deliver_in_order(Link& link) {
   while (!link.pending.empty() && link.pending.begin()->second.arrived) {
     const auto first = link.pending.begin();
     if (first->first > link.delivered) {
-      if (!accept(*link.reader, first->second.message)) {
-        first->second.arrived = false;
-        link.reader->refused = true;
-        return;
-      }
+      accept(*link.reader, first->second.message);
       link.delivered = first->first;
     }
     link.pending.erase(first);
@@ -130,29 +139,22 @@ void Hub::deliver_in_order(Link& link) {
   changed_.notify_all();
 }
 
-/// False where the reader has no room.
-bool Hub::accept(ReaderCore& reader, const MessagePtr& message) {
+void Hub::accept(ReaderCore& reader, const MessagePtr& message) {
   if (message->state == InstanceState::Alive && !is_plain_cdr(message->cdr)) {
     ++reader.malformed;
-    return true;
-  }
-  if (!reader.qos.history_depth && reader.qos.max_samples > 0 &&
-      reader.queue.size() >= reader.qos.max_samples) {
-    return false;
+    return;
   }
   reader.queue.push(message->key, message);
-  if (!reader.told) {
-    reader.told = true;
-    post(&reader, [this, reader = readers_.at(reader.guid)] {
-      {
-        Lock lock(mutex_);
-        reader->told = false;
-        if (reader->closed) return;
-      }
-      if (reader->listener.on_data) reader->listener.on_data(*reader->self);
-    });
-  }
-  return true;
+  if (reader.told) return;
+  reader.told = true;
+  post(&reader, [this, reader = readers_.at(reader.guid)] {
+    {
+      Lock lock(mutex_);
+      reader->told = false;
+      if (reader->closed) return;
+    }
+    if (reader->listener.on_data) reader->listener.on_data(*reader->self);
+  });
 }
 
 void Hub::repeat_later(Link& link) {
@@ -194,16 +196,10 @@ std::size_t Hub::take(ReaderCore& reader, const std::function<void(const Sample&
       if (!message) break;
       taken.push_back(std::move(*message));
     }
-    if (reader.refused && !taken.empty()) {
-      reader.refused = false;
-      for (auto& [id, link] : links_) {
-        if (id.second == reader.guid) repeat_lost(link);
-      }
-      run_callbacks(lock);
-    }
   }
   for (const MessagePtr& message : taken) {
-    consumer({message->cdr, message->state, message->key, message->writer});
+    Owner owner(message);
+    consumer({message->cdr, message->state, message->key, message->writer, &owner});
   }
   return taken.size();
 }
