@@ -151,7 +151,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       if (head.related.number == 0) {
         on_opened(sample.cdr, head);
       } else if (head.operation == wire::kOpen) {
-        lose("it had ended the session before the call arrived");
+        dismissed("it had ended the session before the call arrived");
       } else if (const auto call = remove(head.related.number)) {
         complete(*call, sample.cdr, head);
       }
@@ -172,7 +172,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     // A server that is not built with Skein does not know `open`; that it says so proves it ready.
     const bool known = head.exception != wire::RemoteException::Ok &&
                        head.exception != wire::RemoteException::UnknownOperation;
-    if (known) refused = error_in(message, head);
+    if (known) refused = error_in(message, head, "open");
     {
       std::lock_guard lock(mutex);
       if (phase == Phase::Opening) {
@@ -185,7 +185,12 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
         return;
       }
     }
-    if (refused) lose("it has ended the session, as this side was not heard of for its lease");
+    if (refused) dismissed("it has ended the session, as this side was not heard of for its lease");
+  }
+
+  // In the default partition one of several servers may not know this client, and others do.
+  void dismissed(const std::string& how) {
+    if (!address.provider.is_nil()) lose(how);
   }
 
   void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head) {
@@ -206,7 +211,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   std::exception_ptr read_result(PendingCall& call, std::span<const std::byte> message,
                                  const wire::ReplyHead& head) {
     const OperationInfo& operation = call.operation();
-    if (head.exception != wire::RemoteException::Ok) return error_in(message, head);
+    if (head.exception != wire::RemoteException::Ok) return error_in(message, head, operation.name);
     if (head.operation != operation.hash) {
       throw InvalidArgument("it is the result of another operation");
     }
@@ -234,9 +239,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     }
   }
 
-  std::exception_ptr error_in(std::span<const std::byte> message, const wire::ReplyHead& head) {
+  std::exception_ptr error_in(std::span<const std::byte> message, const wire::ReplyHead& head,
+                              std::string_view operation) {
     ErrorCode code = wire::error_code_of(head.exception);
-    std::string text = "remote exception " + std::to_string(static_cast<int>(head.exception));
+    std::string text = std::string(operation) + " ended with remote exception " +
+                       std::to_string(static_cast<int>(head.exception));
     if (const auto trailer = wire::read_reply_trailer(message, head.result + 1)) {
       code = trailer->code;
       text = trailer->text;

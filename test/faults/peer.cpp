@@ -49,7 +49,6 @@ class Peer {
     if (command == "calls") return "calls " + std::to_string(service_->calls);
     if (command == "services") return services();
     if (command == "connect") return connect({.name = word(rest), .timeout = 20s});
-    if (command == "broadcast") return connect({.timeout = 20s, .foreign = true});
     if (command == "echo") return echo(rest);
     if (command == "octets") return octets(rest);
     if (command == "pour") return pour(rest);

@@ -1,0 +1,240 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <random>
+#include <thread>
+
+#include "exposed_service.hpp"
+#include "messages.hpp"
+#include "processes.hpp"
+#include "skein/idl/type_support.hpp"
+#include "skein/rpc/dds_channel.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::LouderEcho;
+
+namespace {
+
+/// A provider, a good client that calls without pause, and a stranger who writes what he likes.
+class Attacked {
+ public:
+  Attacked()
+      : server(entity_with_lease("server", Pairing::get().server, 1000ms)),
+        client(entity_with_lease("client", Pairing::get().client, 1000ms)),
+        stranger(entity_with_lease("stranger", Pairing::get().client, 1000ms)),
+        service(*server, std::make_shared<EchoService>()),
+        echo_(client->connect<LouderEcho>({.timeout = 20s})) {
+    caller_ = std::thread([this] { call(); });
+  }
+  ~Attacked() {
+    stop_ = true;
+    caller_.join();
+  }
+
+  /// Whether the good client's calls go on, and none has failed.
+  bool unharmed() {
+    const int before = good_;
+    return eventually([&] { return good_ > before + 3; }) && bad_ == 0;
+  }
+
+  std::unique_ptr<Entity> server;
+  std::unique_ptr<Entity> client;
+  std::unique_ptr<Entity> stranger;
+  ExposedService service;
+
+ private:
+  void call() {
+    while (!stop_) {
+      const std::string text = std::to_string(good_);
+      try {
+        ++(echo_.within(20s).echo(text) == text ? good_ : bad_);
+      } catch (const Error&) {
+        ++bad_;
+      }
+    }
+  }
+
+  LouderEcho::Proxy echo_;
+  std::atomic<int> good_{0};
+  std::atomic<int> bad_{0};
+  std::atomic<bool> stop_{false};
+  std::thread caller_;
+};
+
+std::unique_ptr<dds::Writer> matched_writer(Entity& entity, const dds::Topic& topic, const dds::Qos& qos) {
+  auto writer = entity.participant().create_writer(topic, qos);
+  REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
+  return writer;
+}
+
+std::mt19937_64 seeded_random() {
+  const char* given = std::getenv("SKEIN_SEED");
+  const std::uint64_t seed = given ? std::stoull(given) : std::random_device{}();
+  std::printf("SKEIN_SEED=%llu\n", static_cast<unsigned long long>(seed));
+  return std::mt19937_64(seed);
+}
+
+}  // namespace
+
+TEST_CASE("malformed requests are counted and dropped, and a good client does not notice") {
+  Attacked attacked;
+  dds::Qos qos;
+  qos.partitions = {attacked.service.id().hex()};
+  const auto writer = matched_writer(*attacked.stranger, attacked.service.address().request_topic(), qos);
+  auto random = seeded_random();
+  const auto messages = bad_requests(writer->guid(), random);
+  for (const Message& message : messages) writer->write(message.bytes);
+
+  const auto looked_at = [&] {
+    const auto counters = attacked.service.counters();
+    return counters.malformed + counters.refused + counters.unconnected;
+  };
+  CHECK(eventually([&] { return looked_at() >= messages.size(); }));
+  CHECK(attacked.service.counters().malformed > 0);
+  CHECK(attacked.service.counters().refused > 0);
+  CHECK(attacked.unharmed());
+  CHECK(eventually([&] { return attacked.service.counters().active <= 1; }));
+  CHECK(attacked.service.counters().clients == 1);
+}
+
+TEST_CASE("nobody speaks in another client's name") {
+  Attacked attacked;
+  dds::Qos qos;
+  qos.partitions = {attacked.service.id().hex()};
+  const auto writer = matched_writer(*attacked.stranger, attacked.service.address().request_topic(), qos);
+  const auto before = attacked.service.counters();
+  for (const std::uint32_t operation : {rpc::wire::kOpen, rpc::wire::kCancel}) {
+    Bytes message;
+    rpc::wire::begin_request(message, {Guid::random(), 0}, operation);
+    rpc::wire::append_default_branch(message);
+    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1s, 1, {}, ""});
+    writer->write(message);
+  }
+  CHECK(eventually([&] { return attacked.service.counters().malformed == before.malformed + 2; }));
+  CHECK(attacked.service.counters().clients == 1);
+  CHECK(attacked.unharmed());
+}
+
+TEST_CASE("malformed service descriptions are counted and dropped, and every table stays as it is") {
+  Attacked attacked;
+  dds::Qos qos;
+  qos.transient_local = true;
+  qos.history_depth = 1;
+  qos.liveliness_lease = 1000ms;
+  qos.partitions = {""};
+  const auto writer =
+      matched_writer(*attacked.stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+  REQUIRE(eventually([&] { return writer->matched_readers().size() == 3; }));
+  auto random = seeded_random();
+
+  Bytes good{std::span<const std::byte>(idl::kEncapsulation)};
+  auto description = describe_echo(Guid::random(), "stranger");
+  description.system = "uav-1";
+  idl::type_support<brokerless_discovery::ServiceDescription>().encode(&description, good);
+  const auto messages = broken_copies(good, random);
+  for (const Message& message : messages) writer->write(message.bytes, Guid::random());
+
+  for (Entity* entity : {attacked.server.get(), attacked.client.get(), attacked.stranger.get()}) {
+    CHECK(eventually([&] { return entity->broker().malformed() == messages.size(); }));
+    CHECK(entity->broker().all().size() == 1);
+  }
+  CHECK(attacked.unharmed());
+  CHECK(attacked.client->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
+}
+
+namespace {
+
+/// A provider that answers `open` as it should, and each call with the next of its bad replies.
+class RogueServer {
+ public:
+  explicit RogueServer(Entity& entity) : entity_(entity), id_(Guid::random()) {
+    dds::Qos qos;
+    qos.partitions = {id_.hex()};
+    dds::ReaderListener listener;
+    listener.on_data = [this](dds::Reader& reader) {
+      reader.take([this](const dds::Sample& sample) {
+        const auto head = rpc::wire::read_request_head(sample.cdr);
+        worker_.post([this, head] { answer(head); });
+      });
+    };
+    reader_ = entity.participant().create_reader(address().request_topic(), qos, std::move(listener));
+    registration_ = entity.broker().add_service(describe_echo(id_, "rogue"));
+  }
+  ~RogueServer() {
+    registration_.withdraw();
+    reader_.reset();
+    worker_.stop();
+  }
+
+  rpc::DdsAddress address() const { return {"test/LouderEcho", id_}; }
+  const Guid& id() const { return id_; }
+
+  /// What the next call gets. Set before it is made.
+  void answer_with(std::function<Bytes(const rpc::wire::RequestHead&)> reply) { reply_ = std::move(reply); }
+
+ private:
+  void answer(const rpc::wire::RequestHead& head) {
+    if (!writer_) {
+      dds::Qos qos;
+      qos.partitions = {head.id.client.hex()};
+      writer_ = entity_.participant().create_writer(address().reply_topic(), qos);
+    }
+    Bytes message;
+    if (head.operation == rpc::wire::kOpen) {
+      rpc::wire::begin_reply(message, head.id, rpc::wire::RemoteException::Ok, rpc::wire::kOpen);
+      rpc::wire::append_default_branch(message);
+    } else if (head.operation != rpc::wire::kCancel) {
+      message = reply_(head);
+    }
+    if (!message.empty()) writer_->write(message);
+  }
+
+  Entity& entity_;
+  const Guid id_;
+  ThreadExecutor worker_{"rogue"};
+  std::function<Bytes(const rpc::wire::RequestHead&)> reply_;
+  std::unique_ptr<dds::Writer> writer_;
+  std::unique_ptr<dds::Reader> reader_;
+  brokerless_discovery::Broker::Registration registration_;
+};
+
+}  // namespace
+
+TEST_CASE("a server that answers with nonsense: each call ends, with the reason, and none stays pending") {
+  Attacked attacked;
+  RogueServer rogue(*attacked.stranger);
+  REQUIRE(eventually([&] { return attacked.client->broker().knows(rogue.id()); }));
+  const auto description = [&] {
+    for (const auto& known : attacked.client->broker().all()) {
+      if (known->provider == rogue.id().bytes) return known;
+    }
+    throw std::runtime_error("the rogue is not known");
+  }();
+  const auto channel = attacked.client->connector().open_provider(*description, "", 20s);
+  const auto dds_channel = std::dynamic_pointer_cast<rpc::DdsChannel>(channel);
+  REQUIRE(dds_channel);
+  LouderEcho::Proxy proxy(channel, 20s);
+  auto random = seeded_random();
+
+  for (const BadReply& bad : bad_replies(random)) {
+    INFO(bad.name);
+    rogue.answer_with(bad.make);
+    try {
+      proxy.within(bad.tells_the_call ? Duration(20s) : Duration(20ms)).echo("x");
+      FAIL_CHECK("the reply was taken for a good one");
+    } catch (const TimedOut&) {
+      CHECK_FALSE(bad.tells_the_call);
+    } catch (const Internal& error) {
+      CHECK(bad.tells_the_call);
+      CHECK_THAT(error.what(), Catch::Contains("rogue") && Catch::Contains("echo"));
+    }
+    CHECK(dds_channel->pending() == 0);
+  }
+  CHECK(dds_channel->malformed() > 0);
+  CHECK(channel->connected());
+  CHECK(attacked.unharmed());
+
+  rogue.answer_with([](const rpc::wire::RequestHead& head) { return good_reply(head); });
+  CHECK(proxy.within(20s).echo("x") == "x");
+}

@@ -1,0 +1,90 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "../tools/child_process.hpp"
+#include "skein/core/error.hpp"
+#include "skein/entity/component_registry.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / ("skein_modules_" + std::to_string(getpid()))) {
+    fs::create_directory(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// A copy of libskein that does not know where it was built: there stand the modules.
+void copy_library(const fs::path& folder) {
+  const fs::path original = SKEIN_LIBRARY;
+  std::ifstream file(original, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(file), {});
+  const std::string home = original.parent_path().string();
+  for (std::size_t at = 0; (at = bytes.find(home, at)) != std::string::npos; at += home.size()) {
+    bytes.replace(at, home.size(), std::string(home.size(), '_'));
+  }
+  std::ofstream(folder / SKEIN_LIBRARY_SONAME, std::ios::binary) << bytes;
+}
+
+/// What the peer program says when it asks for Fast DDS in that environment; it ends by itself.
+std::string complaint(const std::vector<std::string>& environment) {
+  ChildProcess::Options options;
+  options.arguments = {"vendor=fastdds"};
+  options.environment = environment;
+  ChildProcess peer("faults_peer", options);
+  const std::string line = peer.expect("error");
+  CHECK(peer.finish() == 3);
+  return line;
+}
+
+}  // namespace
+
+TEST_CASE("a vendor's module that is not there is named, with the places looked in and the remedy") {
+  const TemporaryFolder folder;
+  copy_library(folder.path());
+  CHECK_THAT(complaint({"LD_LIBRARY_PATH=" + folder.path().string()}),
+             Contains("Unavailable") && Contains("libskein_fastdds.so") && Contains(folder.path().string()) &&
+                 Contains("package libfastrtps2.9") && Contains("SKEIN_MODULE_PATH"));
+}
+
+TEST_CASE("a file that is no module is named with the loader's reason") {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "libskein_fastdds.so") << "no library";
+  CHECK_THAT(complaint({"SKEIN_MODULE_PATH=" + folder.path().string()}),
+             Contains("Unavailable") && Contains((folder.path() / "libskein_fastdds.so").string()) &&
+                 Contains("cannot be loaded") && Contains("install"));
+}
+
+TEST_CASE("a module of another version is refused with both versions") {
+  CHECK_THAT(complaint({std::string("SKEIN_MODULE_PATH=") + SKEIN_WRONG_MODULES}),
+             Contains("Unavailable") && Contains("ABI 9999") && Contains("build both from one version"));
+}
+
+TEST_CASE("a plugin that is not there, is none, or is of another version is named with the remedy") {
+  ComponentRegistry registry;
+  CHECK_THROWS_AS(registry.load_plugin("skein_nowhere"), Unavailable);
+  CHECK_THROWS_WITH(registry.load_plugin("skein_nowhere"),
+                    Contains("libskein_nowhere.so") && Contains("install the plugin 'skein_nowhere'"));
+  const std::string folder = SKEIN_WRONG_MODULES;
+  CHECK_THROWS_WITH(registry.load_plugin(folder + "/libskein_wrong_plugin.so"),
+                    Contains("ABI 9999") && Contains("build both from one version"));
+  CHECK_THROWS_WITH(registry.load_plugin(folder + "/libskein_no_plugin.so"),
+                    Contains("exports no skein_plugin_abi") && Contains("not made for Skein"));
+  CHECK(registry.names().empty());
+}

@@ -1,0 +1,84 @@
+#include <arpa/inet.h>
+#include <catch2/catch.hpp>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "../connector/echo_service.hpp"
+#include "processes.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::LouderEcho;
+
+namespace {
+
+constexpr std::uint16_t kFirstPort = 7410 + 250 * 17;
+
+/// Takes the ports of the first participants of the tests' domain on loopback.
+class TakenPorts {
+ public:
+  explicit TakenPorts(int participants) {
+    for (int i = 0; i < participants * 2; ++i) {
+      const int taken = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      address.sin_port = htons(static_cast<std::uint16_t>(kFirstPort + i));
+      REQUIRE(bind(taken, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+      sockets_.push_back(taken);
+    }
+  }
+  ~TakenPorts() {
+    for (const int taken : sockets_) close(taken);
+  }
+
+ private:
+  std::vector<int> sockets_;
+};
+
+void call_once() {
+  const auto server = make_server();
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_client();
+  CHECK(client->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
+}
+
+}  // namespace
+
+TEST_CASE("peers find other ports, and each other, where the first ones are taken") {
+  const TakenPorts taken(10);
+  call_once();
+}
+
+TEST_CASE("with all ports taken an entity says so, and comes to be once some are free") {
+  {
+    const TakenPorts taken(120);
+    for (const auto& make : {make_server, make_client}) {
+      CHECK_THROWS_AS(make("late"), Unavailable);
+      CHECK_THROWS_WITH(make("late"), Catch::Contains("domain 17") && Catch::Contains("port"));
+    }
+  }
+  call_once();
+}
+
+TEST_CASE("a domain out of range is refused with the range") {
+  for (const auto& vendor : {Pairing::get().server, Pairing::get().client}) {
+    EntityOptions options;
+    options.name = "lost";
+    options.vendor = vendor;
+    options.domain = 233;
+    CHECK_THROWS_AS(Entity(options), InvalidArgument);
+    CHECK_THROWS_WITH(Entity(options), Catch::Contains("domain 233") && Catch::Contains("232"));
+  }
+}
+
+TEST_CASE("an interface that the host does not have is refused with those that it has") {
+  for (const auto& vendor : {Pairing::get().server, Pairing::get().client}) {
+    EntityOptions options;
+    options.name = "lost";
+    options.vendor = vendor;
+    options.network.interfaces = {"loo"};
+    CHECK_THROWS_WITH(Entity(options), Catch::Contains("'loo'") && Catch::Contains("did you mean 'lo'"));
+  }
+}
