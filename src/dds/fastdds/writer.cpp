@@ -96,6 +96,16 @@ void FastWriter::wait_for_room(Lock& lock) {
                    std::to_string(qos_.max_samples) + " wait for a matched reader's acknowledgment");
 }
 
+/// A volatile Cyclone reader begins behind the first heartbeat that it hears. Were that one sent amid
+/// the fragments of a sample, this sample would be lost; so a heartbeat goes ahead of each sample until
+/// all readers have acknowledged something. ("Liveliness": regardless of what is unacknowledged.)
+void FastWriter::announce_position() {
+  if (!qos_.reliable || new_reader_at_ < 0) return;
+  constexpr bool kFinal = false;
+  constexpr bool kLiveliness = true;
+  static_cast<rtps::StatefulWriter*>(writer_)->send_periodic_heartbeat(kFinal, kLiveliness);
+}
+
 /// Before it is sent: it may be acknowledged, and gone, while it is being sent.
 void FastWriter::remember(rtps::CacheChange_t* change, const KeyHash& key) {
   if (!qos_.history_depth && !qos_.transient_local) return;
@@ -108,6 +118,8 @@ void FastWriter::remember(rtps::CacheChange_t* change, const KeyHash& key) {
 }
 
 void FastWriter::send(rtps::CacheChange_t* change) {
+  announce_position();
+  ++last_sent_;
   history_.add_change(change);
   // Best effort is over when it has been sent, and nothing reports that.
   if (!qos_.reliable && !qos_.transient_local) drop(change);
@@ -131,12 +143,17 @@ void FastWriter::drop_all(const KeyHash& key) {
 
 void FastWriter::onWriterMatched(rtps::RTPSWriter*,
                                  const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
-  events_->matched(to_guid(status.last_subscription_handle), status.current_count_change > 0);
+  const bool matched = status.current_count_change > 0;
+  if (matched) new_reader_at_ = last_sent_.load();
+  events_->matched(to_guid(status.last_subscription_handle), matched);
 }
 
 /// Called with the writer's mutex held.
 void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChange_t* change) {
   if (!qos_.reliable) return;
+  if (static_cast<std::int64_t>(change->sequenceNumber.to64long()) > new_reader_at_) {
+    new_reader_at_ = -1;
+  }
   // Late joiners need what is alive; that an instance has ended, they need not know.
   if (qos_.transient_local && change->kind == rtps::ALIVE) return;
   drop(change);

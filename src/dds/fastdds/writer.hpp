@@ -1,9 +1,10 @@
 #pragma once
 
 #include <fastdds/rtps/history/WriterHistory.h>
-#include <fastdds/rtps/writer/RTPSWriter.h>
+#include <fastdds/rtps/writer/StatefulWriter.h>
 #include <fastdds/rtps/writer/WriterListener.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <unordered_map>
 
@@ -39,6 +40,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   }
   rtps::CacheChange_t* make_change(std::size_t size, rtps::ChangeKind_t kind, const KeyHash& key);
   void wait_for_room(Lock& lock);
+  void announce_position();
   void remember(rtps::CacheChange_t* change, const KeyHash& key);
   void send(rtps::CacheChange_t* change);
   void drop(rtps::CacheChange_t* change);
@@ -52,6 +54,9 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   /// Of each instance, oldest first, where a depth bounds them or late joiners get them.
   std::unordered_map<Guid, Changes> instances_;
   std::condition_variable_any room_;
+  std::atomic<std::int64_t> last_sent_{0};
+  /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged by all.
+  std::atomic<std::int64_t> new_reader_at_{-1};
   rtps::RTPSWriter* writer_ = nullptr;
   Guid guid_;
 };
