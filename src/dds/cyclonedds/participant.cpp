@@ -1,7 +1,5 @@
 #include "participant.hpp"
 
-#include <atomic>
-
 #include "../options_check.hpp"
 #include "blob.hpp"
 #include "configuration.hpp"
@@ -56,22 +54,21 @@ void CycloneParticipant::watch_participants() {
   const dds_entity_t reader = dds_create_reader(participant_.handle(),
                                                 DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, listener);
   dds_delete_listener(listener);
-  {
-    std::lock_guard lock(presence_);
-    watcher_ = Entity(check(reader, "participants cannot be watched"));
-  }
+  watcher_ = Entity(check(reader, "participants cannot be watched"));
+  watcher_handle_ = reader;
   take_presence();  // those found before the reader's handle was known
 }
 
 void CycloneParticipant::take_presence() {
   std::lock_guard lock(presence_);
+  const dds_entity_t watcher = watcher_handle_;
   void* samples[1] = {nullptr};
   dds_sample_info_t info;
-  while (watcher_.handle() > 0 && dds_take(watcher_.handle(), samples, &info, 1, 1) == 1) {
+  while (watcher > 0 && dds_take(watcher, samples, &info, 1, 1) == 1) {
     const auto* found = static_cast<const dds_builtintopic_participant_t*>(samples[0]);
     const Guid guid = to_guid(found->key).participant();
     const bool present = info.instance_state == DDS_IST_ALIVE;
-    dds_return_loan(watcher_.handle(), samples, 1);
+    dds_return_loan(watcher, samples, 1);
     samples[0] = nullptr;
     if (guid == guid_) continue;
     const bool news = present ? present_.insert(guid).second : present_.erase(guid) > 0;

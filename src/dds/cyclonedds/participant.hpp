@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <set>
 
@@ -44,6 +45,7 @@ class CycloneParticipant final : public Participant {
   TopicTable<TopicHandle> topics_;
   std::mutex presence_;  // one call of on_participant at a time
   std::set<Guid> present_;
+  std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first
 };
 

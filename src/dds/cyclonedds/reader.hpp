@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "matches.hpp"
 #include "participant.hpp"
 #include "sample_queue.hpp"
@@ -32,7 +34,7 @@ class CycloneReader final : public Reader {
   Matches matches_;
   std::atomic<bool> made_{false};
   std::mutex data_;  // one on_data at a time
-  dds_entity_t reader_handle_ = 0;
+  std::atomic<dds_entity_t> reader_handle_{0};  // 0 for listeners that come before it is made
   Guid guid_;
   Entity reader_;  // goes first: its listeners use the rest
 };

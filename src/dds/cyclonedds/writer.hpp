@@ -30,7 +30,7 @@ class CycloneWriter final : public Writer {
   const TopicHandle handle_;
   Matches matches_;
   std::atomic<std::uint32_t> written_{0};  // since all was acknowledged
-  dds_entity_t writer_handle_ = 0;
+  std::atomic<dds_entity_t> writer_handle_{0};  // 0 for listeners that come before it is made
   Guid guid_;
   Entity writer_;  // goes first: its listeners use the rest
 };
