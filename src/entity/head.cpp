@@ -19,6 +19,9 @@ constexpr std::size_t kKeptDecisions = 64;
 // What carrying the answer back to the caller may take of the time that it has given.
 constexpr std::chrono::milliseconds kAnswerReserve{3};
 
+// A CSP whose connection is not open by then is passed over: it is about to leave, or was not found.
+constexpr std::chrono::seconds kOpeningPatience{2};
+
 class HeadSession final : public Session {
  public:
   explicit HeadSession(std::shared_ptr<const SelectionStrategy> strategy)
@@ -171,7 +174,7 @@ Head::Verdict Head::try_candidate(const Candidate& candidate, Duration slice, co
   }
   Verdict verdict;
   try {
-    auto channel = channel_to(candidate, slice);
+    auto channel = channel_to(candidate, std::min(slice, Duration(kOpeningPatience)));
     verdict = attempt(std::move(channel), std::max(Duration::zero(), end - clock_.now()), candidate);
   } catch (...) {
     verdict = verdict_of(std::current_exception());
