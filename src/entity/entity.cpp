@@ -129,6 +129,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue);
   rpc::Service::Options service_options;
   service_options.single_threaded = options.threads <= 1;
+  service_options.inline_calls = owner.empty();
   if (owner.empty()) {
     service_options.open = [&head = state_->head](const rpc::OpenRequest& request) {
       return head.initialize(request);

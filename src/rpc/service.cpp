@@ -48,6 +48,7 @@ void Service::submit(std::shared_ptr<Invocation> invocation) {
 
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
                               const Invocation& frame) {
+  if (!options_.inline_calls) return false;
   std::exception_ptr error;
   const bool ran = executor_.try_run_inline([&] {
     try {

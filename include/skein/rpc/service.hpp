@@ -50,6 +50,9 @@ class Service : public std::enable_shared_from_this<Service> {
     Guid strand;
     /// Whether one blocked call blocks all others: then calls that wait for themselves are refused.
     bool single_threaded = true;
+    /// Whether a blocking caller in the same process may run the call on its own thread. Not for an
+    /// implementation that may hang: it would take its caller with it.
+    bool inline_calls = true;
     SessionFactory open;
   };
 
