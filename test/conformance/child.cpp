@@ -66,6 +66,11 @@ std::string Child::read() {
 
 void Child::signal(int number) { kill(pid_, number); }
 
+void Child::stop() {
+  signal(SIGSTOP);
+  waitpid(pid_, nullptr, WUNTRACED);
+}
+
 int Child::finish() {
   std::fclose(in_);
   in_ = nullptr;

@@ -23,6 +23,8 @@ class Child {
   /// The next line, waited for; empty at the end of the output.
   std::string read();
   void signal(int number);
+  /// Stops it, and waits until it stands.
+  void stop();
   /// Closes its input and returns its exit code.
   int finish();
 

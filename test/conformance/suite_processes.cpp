@@ -66,7 +66,7 @@ TEST_CASE("a process that is stopped shortly is silent, and alive again when it 
   Child peer = start("write", domain, "60000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
-  peer.signal(SIGSTOP);
+  peer.stop();
   REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
   CHECK(inbox.reader().matched_writers() == std::vector{writer});
   peer.signal(SIGCONT);
@@ -82,7 +82,7 @@ TEST_CASE("a process that is stopped beyond its lease is found again, and heard"
   Child peer = start("write", domain, "1000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
-  peer.signal(SIGSTOP);
+  peer.stop();
   REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
   peer.signal(SIGCONT);
   REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, true); }));
@@ -129,7 +129,7 @@ TEST_CASE("a stopped reader makes a bounded writer refuse, not hang, and nothing
   const std::string before = peer.read();
   const std::uint32_t heard = static_cast<std::uint32_t>(std::stoul(before.substr(6)));
 
-  peer.signal(SIGSTOP);
+  peer.stop();
   std::uint32_t accepted = 0;
   bool refused = false;
   for (int i = 0; i < 1000 && !refused; ++i) {
@@ -162,7 +162,7 @@ TEST_CASE("one stopped reader does not keep samples from the others") {
   endpoint(peer);
   REQUIRE(matched(outbox, inbox));
   REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
-  peer.signal(SIGSTOP);
+  peer.stop();
   for (std::uint32_t i = 0; i < 200; ++i) outbox.writer().write(make_number(i));
   CHECK(eventually([&] { return inbox.count() == 200; }));
 }

@@ -55,11 +55,13 @@ std::string discovery(const ParticipantOptions& options,
 /// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops a
 /// writer in the middle of a mebibyte.
 /// HeartbeatInterval: a lost last sample is noticed, and an acknowledgment asked for, after so long.
+/// The interval doubles up to `max`; a Fast DDS reader that found this writer anew begins to count its
+/// acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
 std::string internal() {
   return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
                                  element("Watermarks", element("WhcHigh", "4 MiB") +
                                                            element("WhcHighInit", "1 MiB")) +
-                                 element("HeartbeatInterval", "25 ms"));
+                                 "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval>");
 }
 
 }  // namespace
