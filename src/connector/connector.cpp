@@ -61,6 +61,7 @@ std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& prov
   options.strategy = strategy;
   options.peer = peer_name(provider);
   options.timeout = timeout;
+  options.stands = [&broker = parts_.broker, id] { return broker.knows(id); };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
   follow(parts_.broker, channel, id);

@@ -110,12 +110,13 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
                           (matched_servers == 0 ? ": no provider's endpoint was found on this domain"
                                                 : ": its endpoint was found, but it does not reply"));
       }
-      if (matched_servers > 0) {
-        greeted = matched_servers;
-        lock.unlock();
-        send_open();
-        lock.lock();
+      greeted = matched_servers;
+      lock.unlock();
+      if (options.stands && !options.stands()) {
+        throw Unavailable(options.peer + " left while it was being connected");
       }
+      if (greeted > 0) send_open();
+      lock.lock();
       changed.wait_for(lock, kOpenInterval, [&] {
         return phase != Phase::Opening || refusal || matched_servers != greeted;
       });

@@ -18,6 +18,8 @@ class DdsChannel final : public Channel {
     std::string strategy;  ///< See OpenRequest.
     std::string peer;      ///< For messages.
     Duration timeout = std::chrono::seconds(5);
+    /// Asked while opening: whether the provider still stands, as far as is known. Empty: it does.
+    std::function<bool()> stands;
   };
 
   /// Connects: repeats `open` until the provider answers, which proves that both directions work.
