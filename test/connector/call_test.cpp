@@ -213,9 +213,9 @@ TEST_CASE("a service reference can be returned, passed on and connected to") {
   };
   const auto server = make_server();
   const auto introducer = std::make_shared<Introducer>(*server);
-  server->provide<::test::Introducer>(introducer);
   const auto other = make_entity("other", Pairing::get().client, "uav-2");
   introducer->introduced = other->reference<Echo>(other->provide<LouderEcho>(std::make_shared<EchoService>()));
+  server->provide<::test::Introducer>(introducer);
   const auto client = make_client();
   auto proxy = client->connect<::test::Introducer>();
 
