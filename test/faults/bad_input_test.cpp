@@ -1,5 +1,6 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <mutex>
 #include <random>
 #include <thread>
 
@@ -171,7 +172,10 @@ class RogueServer {
   const Guid& id() const { return id_; }
 
   /// What the next call gets. Set before it is made.
-  void answer_with(std::function<Bytes(const rpc::wire::RequestHead&)> reply) { reply_ = std::move(reply); }
+  void answer_with(std::function<Bytes(const rpc::wire::RequestHead&)> reply) {
+    std::lock_guard lock(mutex_);
+    reply_ = std::move(reply);
+  }
 
  private:
   void answer(const rpc::wire::RequestHead& head) {
@@ -185,6 +189,7 @@ class RogueServer {
       rpc::wire::begin_reply(message, head.id, rpc::wire::RemoteException::Ok, rpc::wire::kOpen);
       rpc::wire::append_default_branch(message);
     } else if (head.operation != rpc::wire::kCancel) {
+      std::lock_guard lock(mutex_);
       message = reply_(head);
     }
     if (!message.empty()) writer_->write(message);
@@ -193,6 +198,7 @@ class RogueServer {
   Entity& entity_;
   const Guid id_;
   ThreadExecutor worker_{"rogue"};
+  std::mutex mutex_;  // a sanitizer does not see that a message travels between the two threads
   std::function<Bytes(const rpc::wire::RequestHead&)> reply_;
   std::unique_ptr<dds::Writer> writer_;
   std::unique_ptr<dds::Reader> reader_;
