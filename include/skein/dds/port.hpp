@@ -86,7 +86,8 @@ class Reader;
 struct ReaderListener {
   /// There are new samples; take all: it is not called again for those that were left.
   std::function<void(Reader&)> on_data;
-  /// A writer was matched (true) or is gone (false).
+  /// A writer was matched (true) or is gone (false). One that comes back after its lease had expired
+  /// may not know that it was gone: what it writes once may be lost, what it repeats arrives.
   std::function<void(const Guid& writer, bool matched)> on_matched;
   /// A matched writer's lease expired (false) or it was heard of again (true).
   std::function<void(const Guid& writer, bool alive)> on_liveliness;
