@@ -1,11 +1,14 @@
 #include "transport.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace skein::dds::fastdds {
 namespace {
 
 constexpr std::size_t kMessageHeader = 20;
+constexpr std::size_t kPrefix = 8;  // of the sender's GUID, in the header
+constexpr std::size_t kPrefixSize = 12;
 constexpr std::size_t kSubmessageHeader = 4;
 constexpr unsigned char kAckNack = 0x06;
 constexpr unsigned char kLittleEndian = 0x01;
@@ -18,24 +21,6 @@ std::uint32_t get(const unsigned char* at, bool little) {
 
 void put(unsigned char* at, std::uint32_t value, bool little) {
   for (int i = 0; i < 4; ++i) at[little ? i : 3 - i] = static_cast<unsigned char>(value >> (8 * i));
-}
-
-/// Body: reader and writer id, base (high, low), number of bits, bits, count.
-void repair(unsigned char* submessage, std::size_t body_size) {
-  unsigned char& flags = submessage[1];
-  const bool little = (flags & kLittleEndian) != 0;
-  unsigned char* body = submessage + kSubmessageHeader;
-  if (body_size < 24) return;
-  const std::uint32_t bits = get(body + 16, little);
-  if (bits > 256) return;
-  const std::size_t count_at = 20 + (bits + 31) / 32 * 4;
-  if (count_at + 4 > body_size) return;
-  const std::uint32_t count = get(body + count_at, little);
-  put(body + count_at, count + 1, little);
-  const bool first = count == 0 && bits == 0 && get(body + 8, little) == 0 && get(body + 12, little) == 1;
-  if (!first) return;
-  put(body + 12, 0, little);
-  flags &= static_cast<unsigned char>(~kFinal);
 }
 
 class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport {
@@ -68,17 +53,18 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     // The buffer is the receiving socket's own, which nobody reads before `next`.
-    repair_first_acknack(const_cast<rtps::octet*>(message), size);
+    repair_.repair(const_cast<rtps::octet*>(message), size);
     next->OnDataReceived(message, size, local, remote);
   }
 
  private:
   StartupTransportDescriptor descriptor_;
+  AckNackRepair repair_;
 };
 
 }  // namespace
 
-void repair_first_acknack(unsigned char* message, std::size_t size) {
+void AckNackRepair::repair(unsigned char* message, std::size_t size) {
   constexpr unsigned char kCyclone[] = {0x01, 0x10};
   if (size < kMessageHeader || std::memcmp(message, "RTPS", 4) != 0) return;
   if (std::memcmp(message + 6, kCyclone, sizeof kCyclone) != 0) return;
@@ -88,9 +74,43 @@ void repair_first_acknack(unsigned char* message, std::size_t size) {
     std::size_t body = little ? submessage[2] | submessage[3] << 8 : submessage[3] | submessage[2] << 8;
     const std::size_t left = size - at - kSubmessageHeader;
     if (body == 0 || body > left) body = left;  // the last submessage may leave its length out
-    if (submessage[0] == kAckNack) repair(submessage, body);
+    if (submessage[0] == kAckNack) repair_submessage(message + kPrefix, submessage, body);
     at += kSubmessageHeader + body;
   }
+}
+
+/// Body: reader and writer id, base (high, low), number of bits, bits, count.
+void AckNackRepair::repair_submessage(const unsigned char* sender, unsigned char* submessage,
+                                      std::size_t body_size) {
+  unsigned char& flags = submessage[1];
+  const bool little = (flags & kLittleEndian) != 0;
+  unsigned char* body = submessage + kSubmessageHeader;
+  if (body_size < 24) return;
+  const std::uint32_t bits = get(body + 16, little);
+  if (bits > 256) return;
+  const std::size_t count_at = 20 + (bits + 31) / 32 * 4;
+  if (count_at + 4 > body_size) return;
+  const std::uint32_t count = get(body + count_at, little);
+  const bool first =
+      count == 0 && bits == 0 && get(body + 8, little) == 0 && get(body + 12, little) == 1;
+  std::string endpoints(reinterpret_cast<const char*>(sender), kPrefixSize);
+  endpoints.append(reinterpret_cast<const char*>(body), 8);
+  put(body + count_at, next_count(endpoints, count, first), little);
+  if (!first) return;
+  put(body + 12, 0, little);
+  flags &= static_cast<unsigned char>(~kFinal);
+}
+
+std::uint32_t AckNackRepair::next_count(const std::string& endpoints, std::uint32_t count,
+                                        bool first) {
+  constexpr std::size_t kMany = 65536;  // endpoints that came and went
+  std::lock_guard lock(mutex_);
+  if (counts_.size() > kMany) counts_.clear();
+  Counts& counts = counts_[endpoints];
+  if (first) counts.offset = counts.last + 1;
+  const std::uint32_t result = count + counts.offset;
+  counts.last = std::max(counts.last, result);
+  return result;
 }
 
 eprosima::fastdds::rtps::TransportInterface* StartupTransportDescriptor::create_transport() const {

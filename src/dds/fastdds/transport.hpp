@@ -5,20 +5,41 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
 
 namespace skein::dds::fastdds {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// Stands before Fast DDS's UDP and cures two delays at start-up, which nothing in its attributes does:
+/// Makes Cyclone's ACKNACKs such as Fast DDS understands. Cyclone's first one has the count 0, which
+/// Fast DDS takes for an old one: discovery then waits a second for the next heartbeat. So the counts are
+/// raised by one, and the first ACKNACK is given the form that Fast DDS answers at once. A Cyclone
+/// participant that had forgotten this one (it was stopped beyond the lease) begins at 0 again, and
+/// would be ignored for good: so the counts go on where they were.
 ///
-/// - Cyclone's first ACKNACK to a new participant has the count 0, which Fast DDS takes for an old one:
-///   discovery then waits a second for the next heartbeat. So Cyclone's counts are raised by one, and
-///   that first ACKNACK is given the form in which Fast DDS knows it and answers at once.
-/// - Fast DDS announces itself before it listens; the answers are lost, and nobody repeats them. So
-///   nothing is sent until the participant has been made.
-///
-/// (The first must be left out with DDS Security, whose signatures cover the counts.)
+/// (To be left out with DDS Security, whose signatures cover the counts.)
+class AckNackRepair {
+ public:
+  /// Changes the ACKNACKs of an RTPS message from Cyclone DDS as described above; others are untouched.
+  /// Thread-safe.
+  void repair(unsigned char* message, std::size_t size);
+
+ private:
+  struct Counts {
+    std::uint32_t offset = 1;
+    std::uint32_t last = 0;  // as handed on
+  };
+  void repair_submessage(const unsigned char* sender, unsigned char* submessage, std::size_t body);
+  std::uint32_t next_count(const std::string& endpoints, std::uint32_t count, bool first);
+
+  std::mutex mutex_;
+  std::unordered_map<std::string, Counts> counts_;  // by sender's prefix, reader and writer
+};
+
+/// A transport before Fast DDS's UDP that repairs what is received, and sends nothing until the
+/// participant has been made: Fast DDS announces itself before it listens, and nobody repeats the answers.
 struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   explicit StartupTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> udp)
@@ -32,9 +53,5 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
   };
   std::shared_ptr<State> state;
 };
-
-/// Changes the ACKNACKs of an RTPS message from Cyclone DDS as described above; others are untouched.
-/// Exposed for tests.
-void repair_first_acknack(unsigned char* message, std::size_t size);
 
 }  // namespace skein::dds::fastdds
