@@ -60,6 +60,12 @@ Bytes echo_request(const Guid& client) {
   return bytes;
 }
 
+Bytes unknown_operation(const Guid& client) {
+  Bytes bytes = request(client, 0xDEADBEEF);
+  wire::append_default_branch(bytes);
+  return bytes;
+}
+
 std::vector<Message> broken_copies(const Bytes& good, std::mt19937_64& random) {
   std::vector<Message> messages;
   for (std::size_t size = kHeader; size < good.size(); size += size < 64 ? 1 : 7) {
@@ -85,9 +91,7 @@ std::vector<Message> bad_requests(const Guid& client, std::mt19937_64& random) {
   Bytes huge_text = request(client, echo().hash);
   put_text(huge_text, kHuge, "hello");
   add("a text of 4 GB", std::move(huge_text));
-  Bytes unknown = request(client, 0xDEADBEEF);
-  wire::append_default_branch(unknown);
-  add("an unknown operation", std::move(unknown));
+  add("an unknown operation", unknown_operation(client));
   Bytes huge_instance;
   wire::begin_request(huge_instance, {client, 1}, echo().hash);
   std::memcpy(huge_instance.data() + 28, &kHuge, sizeof kHuge);

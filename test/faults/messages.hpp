@@ -27,6 +27,9 @@ std::vector<Message> bad_requests(const Guid& client, std::mt19937_64& random);
 /// A good call of `echo`, as a client without Skein sends it.
 Bytes echo_request(const Guid& client);
 
+/// A call of an operation that no service has.
+Bytes unknown_operation(const Guid& client);
+
 /// A reply to `echo` that is none.
 struct BadReply {
   std::string name;
