@@ -30,25 +30,6 @@ bool knows(Entity& entity, std::size_t count) {
 /// Keeps a process stopped for another lease after the others forgot it.
 void stay_stopped() { std::this_thread::sleep_for(1000ms); }
 
-/// Stops a provider until it is forgotten and longer, lets it go on, and calls it.
-void stop_and_resume_provider() {
-  auto server = start_peer("server", *Pairing::get().server);
-  const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
-  server.send("provide");
-  server.expect("provided");
-  auto echo = client->connect<LouderEcho>({.timeout = 20s});
-  CHECK(echo.within(20s).echo("before") == "before");
-  server.signal(SIGSTOP);
-  REQUIRE(knows(*client, 0));
-  CHECK_THROWS_AS(echo.within(50ms).echo("meanwhile"), Error);
-  stay_stopped();
-  server.signal(SIGCONT);
-  REQUIRE(knows(*client, 1));
-  CHECK(echo.within(20s).echo("after") == "after");
-}
-
-bool server_is_on(const std::string& vendor) { return Pairing::get().server->name() == vendor; }
-
 /// Answers `shout` with much, once it may.
 struct GatedEcho : EchoService {
   std::string shout(const std::string&) override {
@@ -111,22 +92,19 @@ TEST_CASE("after a provider's death the next call goes to the next provider") {
 
 TEST_CASE("a provider that was stopped for longer than its lease is found again by itself, and answers",
           "[R17]") {
-  if (server_is_on("fastdds")) {
-    WARN("skipped: Fast DDS has a case of its own");
-  } else {
-    stop_and_resume_provider();
-  }
-}
-
-// Fast DDS 2.9, resumed, reads what has waited while it still handles the ends of the others' leases: about
-// one time in ten or twenty it then knows a participant, and does not tell it of its endpoints any more.
-TEST_CASE("a provider on Fast DDS that was stopped for longer than its lease is found again by itself",
-          "[R17][!mayfail]") {
-  if (server_is_on("fastdds")) {
-    stop_and_resume_provider();
-  } else {
-    WARN("skipped: the server of this pairing is not on Fast DDS");
-  }
+  auto server = start_peer("server", *Pairing::get().server);
+  const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
+  server.send("provide");
+  server.expect("provided");
+  auto echo = client->connect<LouderEcho>({.timeout = 20s});
+  CHECK(echo.within(20s).echo("before") == "before");
+  server.signal(SIGSTOP);
+  REQUIRE(knows(*client, 0));
+  CHECK_THROWS_AS(echo.within(50ms).echo("meanwhile"), Error);
+  stay_stopped();
+  server.signal(SIGCONT);
+  REQUIRE(knows(*client, 1));
+  CHECK(echo.within(20s).echo("after") == "after");
 }
 
 TEST_CASE("a client that was stopped for longer than its lease finds its provider again, and calls it") {

@@ -60,14 +60,15 @@ void fill_endpoint(rtps::EndpointAttributes& endpoint, const Topic& topic, const
 
 }  // namespace
 
-std::shared_ptr<StartupTransportDescriptor> make_transport(const Network& network) {
+std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOptions& options) {
+  const Network& network = options.network;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = interface_addresses(network);
   // The kernel gives what it may; with 208 KiB a mebibyte takes three times as long.
   udp->sendBufferSize = kSocketBuffer;
   udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = std::clamp(network.max_participants, 1u, kMaxParticipants);
-  return std::make_shared<StartupTransportDescriptor>(std::move(udp));
+  return std::make_shared<StartupTransportDescriptor>(std::move(udp), options.lease);
 }
 
 rtps::RTPSParticipantAttributes participant_attributes(
@@ -132,7 +133,6 @@ rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos) {
   attributes.times.initialAcknackDelay = duration(10ms);
   // A Cyclone writer with a mebibyte unacknowledged stops until it is: 5 ms, the default, each time.
   attributes.times.heartbeatResponseDelay = duration(0ms);
-  if (qos.liveliness_lease) attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
   return attributes;
 }
 

@@ -20,7 +20,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
     const ParticipantOptions& options, const std::shared_ptr<StartupTransportDescriptor>& transport);
 
 /// UDP alone, on the network's interfaces alone.
-std::shared_ptr<StartupTransportDescriptor> make_transport(const Network& network);
+std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOptions& options);
 
 rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos);
 rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos);

@@ -4,7 +4,8 @@
 
 namespace skein::dds::fastdds {
 
-EventThread::EventThread() : thread_([this] { run(); }) {
+EventThread::EventThread(std::function<void()> tick)
+    : tick_(std::move(tick)), thread_([this] { run(); }) {
   pthread_setname_np(thread_.native_handle(), "skein-dds-event");
 }
 
@@ -25,13 +26,43 @@ void EventThread::post(std::function<void()> event) {
   changed_.notify_one();
 }
 
+void EventThread::tick_every(std::chrono::nanoseconds period) {
+  {
+    std::lock_guard lock(mutex_);
+    if (period_ && *period_ <= period) return;
+    period_ = period;
+    last_tick_ = std::chrono::steady_clock::now();
+  }
+  changed_.notify_one();
+}
+
+std::chrono::steady_clock::time_point EventThread::next_tick() const {
+  using Clock = std::chrono::steady_clock;
+  return period_ ? last_tick_ + std::chrono::duration_cast<Clock::duration>(*period_)
+                 : Clock::time_point::max();
+}
+
 void EventThread::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [&] { return stopping_ || !events_.empty(); });
+    const auto next = next_tick();
+    const auto due = [&] { return stopping_ || !events_.empty() || next_tick() < next; };
+    if (period_) {
+      changed_.wait_until(lock, next, due);
+    } else {
+      changed_.wait(lock, due);
+    }
     if (stopping_) return;
-    auto event = std::move(events_.front());
-    events_.pop_front();
+    std::function<void()> event;
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_tick()) {
+      last_tick_ = now;
+      event = tick_;
+    } else if (!events_.empty()) {
+      event = std::move(events_.front());
+      events_.pop_front();
+    } else {
+      continue;
+    }
     lock.unlock();
     event();
     event = nullptr;

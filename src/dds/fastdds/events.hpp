@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <vector>
@@ -18,17 +20,25 @@ namespace skein::dds::fastdds {
 /// would then never end.
 class EventThread {
  public:
-  EventThread();
+  /// `tick` is called on this thread too, as often as tick_every() says; never without it.
+  explicit EventThread(std::function<void()> tick);
   ~EventThread();
   void post(std::function<void()> event);
 
+  /// The shortest period asked for counts.
+  void tick_every(std::chrono::nanoseconds period);
+
  private:
   void run();
+  std::chrono::steady_clock::time_point next_tick() const;
 
+  const std::function<void()> tick_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> events_;
   bool stopping_ = false;
+  std::optional<std::chrono::nanoseconds> period_;
+  std::chrono::steady_clock::time_point last_tick_{};
   std::thread thread_;
 };
 

@@ -21,21 +21,22 @@ namespace {
 
 }  // namespace
 
-FastParticipant::FastParticipant(const ParticipantOptions& options) : options_(options) {
-  check_options(options);
-  const auto transport = make_transport(options.network);
-  const auto attributes = participant_attributes(options, transport);
+FastParticipant::FastParticipant(const ParticipantOptions& options)
+    : options_((check_options(options), options)),
+      transport_(make_transport(options)),
+      events_([this] { check_liveliness(); }) {
+  const auto attributes = participant_attributes(options, transport_);
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.
   const auto needed = attributes.builtin.metatrafficUnicastLocatorList.size() +
                       attributes.defaultUnicastLocatorList.size();
-  if (transport->state->ports < needed) {
+  if (transport_->state->ports < needed) {
     rtps::RTPSDomain::removeRTPSParticipant(participant_);
     throw_no_participant(options);
   }
   guid_ = to_guid(participant_->getGuid()).participant();
-  transport->state->open = true;
+  transport_->state->open = true;
 }
 
 FastParticipant::~FastParticipant() { rtps::RTPSDomain::removeRTPSParticipant(participant_); }
@@ -43,14 +44,42 @@ FastParticipant::~FastParticipant() { rtps::RTPSDomain::removeRTPSParticipant(pa
 void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
                                              rtps::ParticipantDiscoveryInfo&& info) {
   using Info = rtps::ParticipantDiscoveryInfo;
-  if (!options_.on_participant || info.status == Info::CHANGED_QOS_PARTICIPANT) return;
+  if (info.status == Info::CHANGED_QOS_PARTICIPANT) return;
   const bool present = info.status == Info::DISCOVERED_PARTICIPANT;
   const Guid guid = to_guid(info.info.m_guid).participant();
+  if (!present) signs().forget(guid);
+  if (!options_.on_participant) return;
   {
     std::lock_guard lock(mutex_);
     if (present ? !present_.insert(guid).second : present_.erase(guid) == 0) return;
   }
   events_.post([this, guid, present] { options_.on_participant(guid, present); });
+}
+
+void FastParticipant::watch_liveliness(std::weak_ptr<EndpointEvents> reader,
+                                       std::chrono::nanoseconds lease) {
+  constexpr int kChecksInALease = 8;
+  {
+    std::lock_guard lock(mutex_);
+    watched_.push_back({std::move(reader), lease});
+  }
+  events_.tick_every(lease / kChecksInALease);
+}
+
+void FastParticipant::check_liveliness() {
+  std::vector<Watched> watched;
+  {
+    std::lock_guard lock(mutex_);
+    std::erase_if(watched_, [](const Watched& each) { return each.reader.expired(); });
+    watched = watched_;
+  }
+  for (const Watched& each : watched) {
+    const auto reader = each.reader.lock();
+    if (!reader) continue;
+    for (const Guid& writer : reader->peers()) {
+      reader->alive(writer, signs().alive(writer.participant(), each.lease));
+    }
+  }
 }
 
 void FastParticipant::acquire_topic(const Topic& topic) {

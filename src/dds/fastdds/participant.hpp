@@ -9,6 +9,7 @@
 #include "../topic_table.hpp"
 #include "events.hpp"
 #include "skein/dds/port.hpp"
+#include "transport.hpp"
 
 namespace eprosima::fastrtps::rtps {
 class RTPSParticipant;
@@ -34,17 +35,33 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
 
   rtps::RTPSParticipant* rtps_participant() const noexcept { return participant_; }
   EventThread& events() noexcept { return events_; }
+
+  /// To be held while a reader is created or removed: Fast DDS forgets a local reader without a lock.
+  std::mutex& readers() noexcept { return readers_; }
+
+  /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
+  void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);
+  SignsOfLife& signs() noexcept { return transport_->state->signs; }
   void acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
  private:
   void onParticipantDiscovery(rtps::RTPSParticipant* participant,
                               rtps::ParticipantDiscoveryInfo&& info) override;
+  void check_liveliness();
+
+  struct Watched {
+    std::weak_ptr<EndpointEvents> reader;
+    std::chrono::nanoseconds lease;
+  };
 
   const ParticipantOptions options_;
+  const std::shared_ptr<StartupTransportDescriptor> transport_;
   TopicTable<int> topics_;
+  std::mutex readers_;
   std::mutex mutex_;
   std::set<Guid> present_;
+  std::vector<Watched> watched_;
   EventThread events_;
   rtps::RTPSParticipant* participant_ = nullptr;
   Guid guid_;

@@ -33,10 +33,12 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
       on_data_(std::move(listener.on_data)),
       events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched),
                                                std::move(listener.on_liveliness))),
+      watches_liveliness_(qos.liveliness_lease.has_value()),
       history_(history_attributes(0)),
       queue_(qos.history_depth) {
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
+  std::lock_guard lock(participant.readers());
   reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes, &history_,
                                                this);
   if (reader_ == nullptr) {
@@ -44,29 +46,27 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
   }
   guid_ = to_guid(reader_->getGuid());
+  if (watches_liveliness_) participant_.watch_liveliness(events_, *qos.liveliness_lease);
   participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic), reader_qos(qos));
 }
 
 FastReader::~FastReader() {
   reader_->setListener(nullptr);  // waits for on_data
-  rtps::RTPSDomain::removeRTPSReader(reader_);
+  {
+    std::lock_guard lock(participant_.readers());
+    rtps::RTPSDomain::removeRTPSReader(reader_);
+  }
   events_->close();
   participant_.release_topic(topic_.name);
 }
 
 void FastReader::onReaderMatched(rtps::RTPSReader*,
                                  const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
-  events_->matched(to_guid(status.last_publication_handle), status.current_count_change > 0);
-}
-
-void FastReader::on_liveliness_changed(
-    rtps::RTPSReader*, const eprosima::fastdds::dds::LivelinessChangedStatus& status) {
   const Guid writer = to_guid(status.last_publication_handle);
-  if (status.not_alive_count_change > 0) {
-    events_->alive(writer, false);
-  } else if (status.alive_count_change > 0) {
-    events_->alive(writer, true);
-  }
+  const bool now = status.current_count_change > 0;
+  const bool own = writer.participant() == participant_.guid();
+  if (now && watches_liveliness_ && !own) participant_.signs().follow(writer.participant());
+  events_->matched(writer, now);
 }
 
 /// Called with the RTPS reader's mutex held.

@@ -36,9 +36,6 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   void onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo&) override {}
   void onReaderMatched(rtps::RTPSReader* reader,
                        const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
-  void on_liveliness_changed(
-      rtps::RTPSReader* reader,
-      const eprosima::fastdds::dds::LivelinessChangedStatus& status) override;
   void onNewCacheChangeAdded(rtps::RTPSReader* reader,
                              const rtps::CacheChange_t* const change) override;
 
@@ -51,6 +48,7 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   const Topic topic_;
   const std::function<void(Reader&)> on_data_;
   const std::shared_ptr<EndpointEvents> events_;
+  const bool watches_liveliness_;
   rtps::ReaderHistory history_;
   std::mutex mutex_;
   KeyedQueue<Item> queue_;

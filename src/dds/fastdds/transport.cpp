@@ -46,12 +46,15 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
             const std::chrono::steady_clock::time_point& limit) override {
     // "Sent" although dropped: a failure would only be logged.
     if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
+    if (!descriptor_.state->watch.may_pass()) return true;
     return sender->send(message, size, first, last, limit);
   }
 
   void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next, const rtps::octet* message,
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
+    if (!descriptor_.state->watch.may_pass()) return;
+    descriptor_.state->signs.heard(message, size);
     // The buffer is the receiving socket's own, which nobody reads before `next`.
     repair_.repair(const_cast<rtps::octet*>(message), size);
     next->OnDataReceived(message, size, local, remote);
@@ -111,6 +114,14 @@ std::uint32_t AckNackRepair::next_count(const std::string& endpoints, std::uint3
   const std::uint32_t result = count + counts.offset;
   counts.last = std::max(counts.last, result);
   return result;
+}
+
+bool WakeWatch::may_pass() {
+  constexpr std::chrono::nanoseconds kSilence = std::chrono::milliseconds(100);
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const auto last = last_.exchange(now, std::memory_order_relaxed);
+  if (last != 0 && now - last > longest_pause_.count()) silent_until_ = now + kSilence.count();
+  return now >= silent_until_.load(std::memory_order_relaxed);
 }
 
 eprosima::fastdds::rtps::TransportInterface* StartupTransportDescriptor::create_transport() const {
