@@ -97,8 +97,10 @@ Route Navigator::decide(const AE_navigatorI::RouteRequest& request, DecisionReco
   const ParameterValues parameters = parameters_.resolve({values_of(request), profile_});
   Problem problem = request.problem;
   problem.limits = flight_limits();
+  const Duration limit = duration_of(parameters, "Time limit").value_or(kLongestRequest);
   try {
-    return plan(problem, parameters, record);
+    if (!request.own_planner.is_nil()) return ask(request.own_planner, problem, limit, record);
+    return plan(problem, parameters, limit, record);
   } catch (const UserException&) {
     throw;
   } catch (const Error&) {
@@ -109,7 +111,7 @@ Route Navigator::decide(const AE_navigatorI::RouteRequest& request, DecisionReco
 }
 
 Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
-                      DecisionRecord& record) {
+                      Duration limit, DecisionRecord& record) {
   const auto terrain = terrains_->load(problem.terrain);
   Task<IPlanner, Route> task;
   // Asynchronous, so that a planner in this process that hangs holds up its own thread and not this.
@@ -126,7 +128,6 @@ Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
   if (const auto planner = parameters.find("Planner"); planner != parameters.end()) {
     task.only = planner->second;
   }
-  const Duration limit = duration_of(parameters, "Time limit").value_or(kLongestRequest);
   try {
     Route route = entity_.head().perform(task, &record, limit);
     use_own_words(record, refusals);
@@ -135,6 +136,33 @@ Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
     use_own_words(record, refusals);
     throw;
   }
+}
+
+// A planner that the caller chose: no candidates, no choice, but the same judgement.
+Route Navigator::ask(const Reference<IPlanner>& planner, const Problem& problem, Duration limit,
+                     DecisionRecord& record) {
+  const Instant began = entity_.clock().now();
+  Attempt attempt;
+  attempt.csp = to_string(planner);
+  attempt.reason = "the caller brought it";
+  const auto note = [&](Attempt::Outcome outcome, const std::string& text) {
+    attempt.outcome = outcome;
+    attempt.text = text;
+    attempt.took = record.took = entity_.clock().now() - began;
+    record.attempts.push_back(attempt);
+  };
+  const auto terrain = terrains_->load(problem.terrain);
+  Problem timed = problem;
+  const CallContext* const call = CallContext::current();
+  const Duration budget = call ? std::min(limit, call->remaining()) : limit;
+  timed.time_limit_ms = planning_time_ms(budget);
+  Route route = entity_.connect(planner, {.timeout = budget}).within(budget).plan(timed);
+  if (const auto flaw = judge_route(*terrain, problem, route)) {
+    note(Attempt::Outcome::Rejected, *flaw);
+    throw_no_usable_route(record);
+  }
+  note(Attempt::Outcome::Accepted, "");
+  return route;
 }
 
 FlightLimits Navigator::flight_limits() {

@@ -39,7 +39,10 @@ class Navigator final : public AE_navigatorI::INavigator {
  private:
   AE_navigator::Route decide(const AE_navigatorI::RouteRequest& request, DecisionRecord& record);
   AE_navigator::Route plan(const AE_navigator::Problem& problem, const ParameterValues& parameters,
-                           DecisionRecord& record);
+                           Duration limit, DecisionRecord& record);
+  AE_navigator::Route ask(const skein::Reference<AE_navigator::IPlanner>& planner,
+                          const AE_navigator::Problem& problem, Duration limit,
+                          DecisionRecord& record);
   AE_flightControllerI::FlightLimits flight_limits();
 
   Entity& entity_;
