@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <thread>
 
-#include "skein/discovery.idl.hpp"
 #include "failover_channel.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/rpc/dds_channel.hpp"
@@ -16,6 +16,7 @@ namespace {
 using brokerless_discovery::Change;
 using brokerless_discovery::Query;
 using brokerless_discovery::ServiceDescription;
+using brokerless_discovery::Table;
 
 std::string peer_name(const ServiceDescription& provider) {
   return scoped_interface_name(provider.service) + " of " + provider.entity + " (" + provider.system + ")";
@@ -48,6 +49,16 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
   if (!broker.knows(provider)) channel->provider_gone("it ended while it was being connected");
 }
 
+bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {
+  return std::find(providers.begin(), providers.end(), Guid{provider.provider}) != providers.end();
+}
+
+void arrange(Table::Found& providers, const Wanted& wanted) {
+  std::erase_if(providers, [&](const auto& provider) { return contains(wanted.excluded, *provider); });
+  std::stable_partition(providers.begin(), providers.end(),
+                        [&](const auto& provider) { return !contains(wanted.last, *provider); });
+}
+
 }  // namespace
 
 std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
@@ -77,10 +88,11 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
   if (options.system) {
     query.system = *options.system == ConnectOptions::kAnySystem ? std::nullopt : options.system;
   }
-  const auto connect_next = [connector = *this, query, strategy = options.strategy](Duration timeout) {
-    return connector.open_first(query, strategy, timeout);
+  const auto connect = [connector = *this, query, strategy = options.strategy](const Wanted& wanted) {
+    return connector.open_next(query, strategy, wanted);
   };
-  return std::make_shared<FailoverChannel>(connect_next(options.timeout), connect_next);
+  const Instant deadline = parts_.clock.now() + options.timeout;
+  return std::make_shared<FailoverChannel>(connect({deadline}), connect);
 }
 
 ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions options) {
@@ -103,23 +115,26 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
                                {service, Guid{}}, std::move(dds_options));
 }
 
-// The first provider, in the Broker's order, that answers.
-std::shared_ptr<Channel> Connector::open_first(const Query& query, const std::string& strategy,
-                                               Duration timeout) const {
-  const Instant deadline = parts_.clock.now() + timeout;
-  const auto left = [&] { return std::max(Duration::zero(), deadline - parts_.clock.now()); };
-  while (true) {
-    const auto providers = parts_.broker.await_service(query, deadline);
+// The first provider that answers: in the Broker's order, those to be asked last at the end.
+Link Connector::open_next(const Query& query, const std::string& strategy, const Wanted& wanted) const {
+  const auto left = [&] { return std::max(Duration::zero(), wanted.deadline - parts_.clock.now()); };
+  std::exception_ptr failure;
+  do {
+    if (failure) std::this_thread::sleep_for(kRetryPause);
+    auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
+                                 : parts_.broker.find_service(query);
+    arrange(providers, wanted);
     for (const auto& provider : providers) {
       try {
         const Duration patience = providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
-        return open_provider(*provider, strategy, patience);
+        return {Guid{provider->provider}, open_provider(*provider, strategy, patience)};
       } catch (const Unavailable&) {
-        if (left() == Duration::zero()) throw;
+        failure = std::current_exception();
       }
     }
-    std::this_thread::sleep_for(kRetryPause);
-  }
+  } while (wanted.wait && left() > Duration::zero());
+  if (failure) std::rethrow_exception(failure);
+  throw Unavailable("no other provider of " + query.name + " stands by");
 }
 
 }  // namespace skein

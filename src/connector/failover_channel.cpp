@@ -3,68 +3,145 @@
 #include <algorithm>
 #include <utility>
 
+#include "moving_call.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein {
+namespace {
 
-FailoverChannel::FailoverChannel(std::shared_ptr<Channel> first, ConnectNext connect_next)
-    : connect_next_(std::move(connect_next)),
-      clock_(first->clock()),
-      continuations_(first->continuations()),
-      channel_(std::move(first)) {}
+bool contains(const std::vector<Guid>& providers, const Guid& provider) {
+  return std::find(providers.begin(), providers.end(), provider) != providers.end();
+}
+
+bool suits(const Link& link, const Wanted& wanted) {
+  return link.channel->connected() && !contains(wanted.excluded, link.provider);
+}
+
+}  // namespace
+
+std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
+  std::shared_ptr<void> copy(type.make(), type.destroy);
+  type.assign(copy.get(), value);
+  return copy;
+}
+
+FailoverChannel::FailoverChannel(Link first, Connect connect)
+    : connect_(std::move(connect)),
+      clock_(first.channel->clock()),
+      continuations_(first.channel->continuations()),
+      main_(std::move(first)) {}
 
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
-  if (const auto channel = current()) return channel->start(call, in);
+  const OperationInfo& operation = call->operation();
+  if (operation.idempotent && !operation.oneway) {
+    if (call->blocking()) return call_here(call, in);
+    return call->attempt([&] { MovingCall::start(shared_from_this(), call, in); });
+  }
+  const Wanted wanted{call->deadline()};
+  if (const auto link = ready(wanted)) return link->channel->start(call, in);
   if (call->blocking()) {
-    call->attempt([&] { reconnect(call->deadline())->start(call, in); });
-    return;
+    return call->attempt([&] { acquire(wanted).channel->start(call, in); });
   }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
-  const TypeSupport& type = *call->operation().in;
-  const std::shared_ptr<void> copy(type.make(), type.destroy);
-  type.assign(copy.get(), in);
-  const bool posted = continuations_.post([self = shared_from_this(), call, copy] {
-    call->attempt([&] { self->reconnect(call->deadline())->start(call, copy.get()); });
+  const auto copy = copy_of(*operation.in, in);
+  const bool posted = continuations_.post([self = shared_from_this(), call, copy, wanted] {
+    call->attempt([&] { self->acquire(wanted).channel->start(call, copy.get()); });
   });
   if (!posted) {
     call->fail(std::make_exception_ptr(Overloaded("too many calls wait for a new provider")));
   }
 }
 
+// The caller waits anyway, so its own thread tries one provider after the other, without a copy.
+void FailoverChannel::call_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+  Retries retries(call->deadline());
+  std::exception_ptr error;
+  do {
+    Link link;
+    try {
+      link = acquire(retries.wanted());
+    } catch (...) {
+      if (!error) error = std::current_exception();
+      break;
+    }
+    const auto attempt = std::make_shared<Attempt>(call, true);
+    link.channel->start(attempt, in);
+    attempt->wait();
+    error = attempt->take_error();
+    if (!error) {
+      if (call->claim()) call->finish();
+      return;
+    }
+    if (!retries.admit(error, link.provider, clock_.now())) break;
+  } while (true);
+  call->fail(std::move(error));
+}
+
 std::string FailoverChannel::peer() const {
   std::lock_guard lock(mutex_);
-  return channel_->peer();
+  return main_.channel->peer();
 }
 
 bool FailoverChannel::connected() const {
   std::lock_guard lock(mutex_);
-  return !closed_ && channel_->connected();
+  return !closed_ && main_.channel->connected();
 }
 
 void FailoverChannel::disconnect() {
-  std::shared_ptr<Channel> channel;
+  std::vector<Link> links;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
-    channel = channel_;
+    links = others_;
+    links.push_back(main_);
   }
-  channel->disconnect();
+  for (const Link& link : links) link.channel->disconnect();
 }
 
-// The present connection, or nullptr where it is lost and another must be found.
-std::shared_ptr<Channel> FailoverChannel::current() const {
+std::optional<Link> FailoverChannel::ready(const Wanted& wanted) {
+  Link lost;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
-  return closed_ || channel_->connected() ? channel_ : nullptr;
+  if (closed_ || suits(main_, wanted)) return main_;
+  const auto other = std::find_if(others_.begin(), others_.end(),
+                                  [&](const Link& link) { return suits(link, wanted); });
+  if (other == others_.end()) return std::nullopt;
+  const Link link = *other;
+  if (!main_.channel->connected()) {
+    lost = std::exchange(main_, link);
+    others_.erase(other);
+  }
+  return link;
 }
 
-std::shared_ptr<Channel> FailoverChannel::reconnect(Instant deadline) {
-  std::lock_guard one_at_a_time(reconnecting_);
-  if (auto channel = current()) return channel;
-  auto next = connect_next_(std::max(Duration::zero(), deadline - clock_.now()));
-  std::shared_ptr<Channel> old;  // destroyed outside the lock
+Link FailoverChannel::acquire(const Wanted& wanted) {
+  if (auto link = ready(wanted)) return *link;
+  std::lock_guard one_at_a_time(connecting_);
+  if (auto link = ready(wanted)) return *link;
+  Wanted next = wanted;
+  {
+    std::lock_guard lock(mutex_);
+    if (!main_.channel->connected()) next.last.push_back(main_.provider);
+  }
+  const Link link = connect_(next);
+  keep(link);
+  return link;
+}
+
+// A lost main link is replaced by the new one; beside one that stands, the new one is kept for the next
+// call that needs it.
+void FailoverChannel::keep(const Link& link) {
+  std::vector<Link> ended;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
-  old = std::exchange(channel_, next);
-  return next;
+  const auto lost = std::stable_partition(others_.begin(), others_.end(),
+                                          [](const Link& other) { return other.channel->connected(); });
+  ended.assign(std::make_move_iterator(lost), std::make_move_iterator(others_.end()));
+  others_.erase(lost, others_.end());
+  if (main_.channel->connected()) {
+    others_.push_back(link);
+  } else {
+    ended.push_back(std::exchange(main_, link));
+  }
+  if (closed_) link.channel->disconnect();
 }
 
 }  // namespace skein

@@ -3,22 +3,29 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <vector>
 
+#include "link.hpp"
 #include "skein/core/channel.hpp"
 #include "skein/core/clock.hpp"
 #include "skein/core/executor.hpp"
 
 namespace skein {
 
-/// A connection that outlives its provider: `connect_next` is asked for a new one when the present one
-/// is found lost. A call that was on its way when the provider died ends as Disconnected; it is not
-/// repeated, since whether it ran is unknown.
+/// A connection that outlives its provider: `connect` is asked for a new link when the present one is
+/// found lost. A call to an idempotent operation whose provider is lost or refuses it is made again at
+/// the next one, within its deadline. Any other that was on its way when its provider died ends as
+/// Disconnected; it is not repeated, since whether it ran is unknown.
+///
+/// What that costs an idempotent call: one more object, and, where its caller does not wait, a copy of
+/// its in struct.
 class FailoverChannel final : public Channel, public std::enable_shared_from_this<FailoverChannel> {
  public:
-  /// Blocks for at most the given time; throws Unavailable.
-  using ConnectNext = std::function<std::shared_ptr<Channel>(Duration timeout)>;
+  /// Blocks until the deadline at most; throws Unavailable.
+  using Connect = std::function<Link(const Wanted& wanted)>;
 
-  FailoverChannel(std::shared_ptr<Channel> first, ConnectNext connect_next);
+  FailoverChannel(Link first, Connect connect);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   Clock& clock() const noexcept override { return clock_; }
@@ -27,17 +34,27 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   bool connected() const override;
   void disconnect() override;
 
- private:
-  std::shared_ptr<Channel> current() const;
-  std::shared_ptr<Channel> reconnect(Instant deadline);
+  /// A link that stands now, or nothing.
+  std::optional<Link> ready(const Wanted& wanted);
 
-  ConnectNext connect_next_;
+  /// A link, newly opened where none stands. Blocks; throws what `connect` throws.
+  Link acquire(const Wanted& wanted);
+
+ private:
+  void call_here(const std::shared_ptr<PendingCall>& call, const void* in);
+  void keep(const Link& link);
+
+  Connect connect_;
   Clock& clock_;
   Executor& continuations_;
-  std::mutex reconnecting_;
-  mutable std::mutex mutex_;
-  std::shared_ptr<Channel> channel_;
+  std::mutex connecting_;
+  mutable std::mutex mutex_;  // guards what follows
+  Link main_;                 // where calls go as long as it stands
+  std::vector<Link> others_;  // opened for calls that the main one failed
   bool closed_ = false;
 };
+
+/// A copy that lives as long as the pointer.
+std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value);
 
 }  // namespace skein

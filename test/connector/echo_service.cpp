@@ -84,6 +84,11 @@ void EchoService::label(const std::string& value) {
   label_ = value;
 }
 
+std::string EchoService::who(std::uint32_t time_ms) {
+  wait(time_ms);
+  return name_;
+}
+
 std::string EchoService::shout(const std::string& text) {
   std::string loud = text;
   std::transform(loud.begin(), loud.end(), loud.begin(), [](unsigned char c) { return std::toupper(c); });

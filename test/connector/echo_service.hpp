@@ -10,6 +10,8 @@ namespace skein::test {
 /// Implements test::LouderEcho, counts its calls, and tells whether two ever ran at once.
 class EchoService : public ::test::LouderEcho {
  public:
+  explicit EchoService(std::string name = "echo") : name_(std::move(name)) {}
+
   std::string echo(const std::string& text) override;
   std::vector<std::uint8_t> echo_octets(const std::vector<std::uint8_t>& content) override;
   std::int32_t divide(std::int32_t dividend, std::int32_t divisor, std::int32_t& remainder) override;
@@ -20,6 +22,7 @@ class EchoService : public ::test::LouderEcho {
   std::uint64_t count() override;
   std::string label() override;
   void label(const std::string& value) override;
+  std::string who(std::uint32_t time_ms) override;
   std::string shout(const std::string& text) override;
 
   std::atomic<std::uint64_t> calls{0};
@@ -28,6 +31,7 @@ class EchoService : public ::test::LouderEcho {
   std::atomic<bool> saw_cancellation{false};
 
  private:
+  const std::string name_;
   std::mutex mutex_;
   std::uint32_t noted_ = 0;
   std::string label_ = "echo";

@@ -11,6 +11,9 @@
 
 namespace skein {
 
+struct Link;
+struct Wanted;
+
 /// Where and how to connect. The defaults reach the first provider of the interface in one's own system.
 struct ConnectOptions {
   /// An interface's or an entity's name; empty means the proxy's own interface.
@@ -62,7 +65,9 @@ class Connector {
   }
 
   /// The connection without its type: each call goes to the provider connected now; a lost one is
-  /// replaced by the next at the next call.
+  /// replaced by the next at the next call. A call to an operation that IDL declares idempotent, and whose
+  /// provider is lost (Disconnected) or refuses it (Unavailable, Overloaded), is made again at the next
+  /// provider that stands by, within its deadline; without one it ends as it would have ended.
   std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
 
   /// One connection to exactly this provider, without replacement.
@@ -73,8 +78,8 @@ class Connector {
   static ConnectOptions to(const ServiceReference& reference, ConnectOptions options);
   std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
                                         const ConnectOptions& options) const;
-  std::shared_ptr<Channel> open_first(const brokerless_discovery::Query& query,
-                                      const std::string& strategy, Duration timeout) const;
+  Link open_next(const brokerless_discovery::Query& query, const std::string& strategy,
+                 const Wanted& wanted) const;
 
   Parts parts_;
 };

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "skein/core/channel.hpp"
+#include "skein/core/clock.hpp"
+#include "skein/core/guid.hpp"
+
+namespace skein {
+
+/// An open connection to one provider.
+struct Link {
+  Guid provider;
+  std::shared_ptr<Channel> channel;
+};
+
+/// What kind of provider is looked for, and for how long.
+struct Wanted {
+  Instant deadline;
+  std::vector<Guid> last{};      ///< Only where no other answers.
+  std::vector<Guid> excluded{};  ///< In no case.
+  bool wait = true;              ///< Until a provider appears; otherwise only those that stand now.
+};
+
+}  // namespace skein

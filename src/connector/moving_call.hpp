@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "retries.hpp"
+#include "skein/core/channel.hpp"
+
+namespace skein {
+
+class FailoverChannel;
+
+/// One try of a call, at one provider. The call's own out struct is filled: no try begins before the
+/// one before it has ended.
+class Attempt final : public PendingCall {
+ public:
+  Attempt(std::shared_ptr<PendingCall> call, bool blocking)
+      : PendingCall(call->operation(), call->out(), call->deadline(), blocking), call_(std::move(call)) {}
+
+ private:
+  std::shared_ptr<PendingCall> call_;  // owns the out struct
+};
+
+/// A call to an idempotent operation for which no thread waits: it keeps a copy of its in struct, and
+/// where a provider fails it moves to the next one. A failure arrives on whichever thread tells of it
+/// (a vendor's, the timer's); what connects and sends again is a task of the connection's continuations.
+class MovingCall final : public std::enable_shared_from_this<MovingCall> {
+ public:
+  static void start(const std::shared_ptr<FailoverChannel>& channel,
+                    const std::shared_ptr<PendingCall>& call, const void* in);
+
+  MovingCall(const std::shared_ptr<FailoverChannel>& channel, std::shared_ptr<PendingCall> call,
+             const void* in);
+  ~MovingCall();
+
+ private:
+  void try_at(const Link& link);
+  void ended(Attempt& attempt, const Guid& provider);
+  void move(std::exception_ptr why);
+  void go_on(std::exception_ptr why);
+  void cancel();
+
+  // Weak: the last to let go of a call may be a vendor's thread, which must not end a connection.
+  const std::weak_ptr<FailoverChannel> channel_;
+  Clock& clock_;
+  Executor& continuations_;
+  const std::shared_ptr<PendingCall> call_;
+  const std::shared_ptr<void> in_;
+  std::mutex mutex_;  // guards what follows
+  Retries retries_;
+  std::vector<std::shared_ptr<Attempt>> attempts_;
+  TimerId deadline_timer_ = 0;
+  bool cancelled_ = false;
+};
+
+}  // namespace skein

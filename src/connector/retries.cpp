@@ -1,0 +1,37 @@
+#include "retries.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "skein/core/error.hpp"
+
+namespace skein {
+namespace {
+
+// A request that kills whoever executes it must not kill them all.
+constexpr int kMaxFailures = 4;
+
+std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const Error& failure) {
+    return failure.code();
+  } catch (...) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Instant now) {
+  const auto code = code_of(error);
+  const bool refused = code == ErrorCode::Unavailable || code == ErrorCode::Overloaded;
+  if (!refused && code != ErrorCode::Disconnected) return false;
+  wanted_.wait = false;
+  const bool lost_before =
+      std::find(wanted_.last.begin(), wanted_.last.end(), provider) != wanted_.last.end();
+  (refused || lost_before ? wanted_.excluded : wanted_.last).push_back(provider);
+  return ++failures_ < kMaxFailures && now < wanted_.deadline;
+}
+
+}  // namespace skein

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <exception>
+
+#include "link.hpp"
+
+namespace skein {
+
+/// How often, and by whom, one call to an idempotent operation may still be tried. Not thread-safe.
+class Retries {
+ public:
+  explicit Retries(Instant deadline) { wanted_.deadline = deadline; }
+
+  /// Whether another provider may do what `provider` failed to do. Notes who failed: who refused is not
+  /// asked again; who was lost may be, once more, where nobody else stands by.
+  bool admit(const std::exception_ptr& error, const Guid& provider, Instant now);
+
+  /// Who is to be asked next; before the first failure, anybody who comes.
+  const Wanted& wanted() const noexcept { return wanted_; }
+
+ private:
+  Wanted wanted_;
+  int failures_ = 0;
+};
+
+}  // namespace skein

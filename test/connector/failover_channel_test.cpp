@@ -1,0 +1,145 @@
+#include "failover_channel.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "../brokerless_discovery/descriptions.hpp"
+#include "fake_provider.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+struct NumberCall final : PendingCall {
+  NumberCall(const OperationInfo& operation, Instant deadline) : PendingCall(operation, &value, deadline, false) {}
+  int value = 0;
+};
+
+/// Providers 1, 2, ... that are connected to in this order, with invented time.
+struct World {
+  explicit World(int count) {
+    for (int i = 0; i < count; ++i) providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
+    channel = std::make_shared<FailoverChannel>(Link{guid(1), providers[0]},
+                                                [this](const Wanted& wanted) { return connect(wanted); });
+  }
+
+  Link connect(const Wanted& wanted) {
+    const auto found = [](const std::vector<Guid>& list, const Guid& id) {
+      return std::find(list.begin(), list.end(), id) != list.end();
+    };
+    for (const bool last : {false, true}) {
+      for (std::size_t i = 0; i < providers.size(); ++i) {
+        const Guid id = guid(static_cast<std::uint8_t>(i + 1));
+        if (found(wanted.excluded, id) || found(wanted.last, id) != last || !providers[i]->stands) continue;
+        return {id, providers[i]};
+      }
+    }
+    throw Unavailable("nobody is left");
+  }
+
+  std::shared_ptr<NumberCall> call(const OperationInfo& operation) {
+    auto call = std::make_shared<NumberCall>(operation, clock.now() + 10s);
+    int in = 7;
+    channel->start(call, &in);
+    in = 0;
+    return call;
+  }
+
+  FakeChannel& provider(int number) { return *providers[static_cast<std::size_t>(number - 1)]; }
+
+  ManualClock clock;
+  ManualExecutor continuations;
+  std::vector<std::shared_ptr<FakeChannel>> providers;
+  std::shared_ptr<FailoverChannel> channel;
+};
+
+const OperationInfo kIdempotent = number_operation(true);
+const OperationInfo kOther = number_operation(false);
+
+}  // namespace
+
+TEST_CASE("an idempotent call moves with its arguments, and the thread that told of the failure connects "
+          "to nobody") {
+  World world(2);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  CHECK(world.provider(2).calls.empty());
+  CHECK_FALSE(call->finished());
+  world.continuations.run_all();
+  REQUIRE(world.provider(2).calls.size() == 1);
+  CHECK(world.provider(2).arguments[0] == 7);
+  world.provider(2).answer(0, 5);
+  CHECK(call->finished());
+  CHECK(call->take_error() == nullptr);
+  CHECK(call->value == 5);
+}
+
+TEST_CASE("a call that is not idempotent does not move") {
+  World world(2);
+  const auto call = world.call(kOther);
+  world.provider(1).lose();
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Disconnected);
+}
+
+TEST_CASE("a call that was cancelled does not move any more, and what comes late is not taken") {
+  World world(2);
+  const auto call = world.call(kIdempotent);
+  SECTION("before its provider fails") {
+    call->cancel();
+    world.provider(1).lose();
+  }
+  SECTION("while it moves") {
+    world.provider(1).lose();
+    call->cancel();
+  }
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+  world.provider(1).answer(0, 5);
+  CHECK(call->value == 0);
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Cancelled);
+}
+
+TEST_CASE("a call that finds no thread to move it ends at its deadline") {
+  World world(2);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.clock.advance(9s);
+  CHECK_FALSE(call->finished());
+  world.clock.advance(1s);
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), TimedOut);
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+}
+
+TEST_CASE("a call that every provider refuses is tried by four of them at most") {
+  World world(9);
+  for (const auto& provider : world.providers) provider->refuses = true;
+  const auto call = world.call(kIdempotent);
+  world.continuations.run_all();
+  REQUIRE(call->finished());
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Overloaded);
+  std::size_t tries = 0;
+  for (const auto& provider : world.providers) tries += provider->calls.size();
+  CHECK(tries == 4);
+}
+
+TEST_CASE("who was lost and comes back is asked once more, where nobody else stands by") {
+  World world(1);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.provider(1).stands = true;
+  world.continuations.run_all();
+  REQUIRE(world.provider(1).calls.size() == 2);
+  world.provider(1).answer(1, 5);
+  CHECK(call->value == 5);
+}
+
+TEST_CASE("a failure that another provider would not mend ends the call at once") {
+  World world(2);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).calls[0]->fail(std::make_exception_ptr(InvalidArgument("wrong")));
+  CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), InvalidArgument);
+}

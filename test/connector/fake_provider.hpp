@@ -1,0 +1,58 @@
+#pragma once
+
+#include <deque>
+
+#include "link.hpp"
+#include "skein/core/error.hpp"
+
+namespace skein::test {
+
+/// An operation from a number to a number.
+inline const TypeSupport& number_type() {
+  static const TypeSupport type{
+      "Number",
+      [] { return static_cast<void*>(new int{}); },
+      [](void* value) noexcept { delete static_cast<int*>(value); },
+      [](void* to, const void* from) { *static_cast<int*>(to) = *static_cast<const int*>(from); },
+      nullptr, nullptr, nullptr, nullptr};
+  return type;
+}
+
+inline OperationInfo number_operation(bool idempotent) {
+  return {"count", 1, 1, false, idempotent, &number_type(), &number_type(), {}, ""};
+}
+
+/// A connection whose calls wait until the test ends them.
+struct FakeChannel final : Channel {
+  FakeChannel(Clock& own_clock, Executor& executor) : clock_(own_clock), continuations_(executor) {}
+
+  void start(const std::shared_ptr<PendingCall>& call, const void* in) override {
+    calls.push_back(call);
+    arguments.push_back(*static_cast<const int*>(in));
+    if (refuses) call->fail(std::make_exception_ptr(Overloaded("full")));
+  }
+  Clock& clock() const noexcept override { return clock_; }
+  Executor& continuations() const noexcept override { return continuations_; }
+  std::string peer() const override { return "fake"; }
+  bool connected() const override { return stands; }
+  void disconnect() override { stands = false; }
+
+  void answer(std::size_t index, int result) {
+    if (!calls.at(index)->claim()) return;
+    *static_cast<int*>(calls[index]->out()) = result;
+    calls[index]->finish();
+  }
+  void lose() {
+    stands = false;
+    for (const auto& call : calls) call->fail(std::make_exception_ptr(Disconnected("gone")));
+  }
+
+  Clock& clock_;
+  Executor& continuations_;
+  std::deque<std::shared_ptr<PendingCall>> calls;
+  std::deque<int> arguments;
+  bool stands = true;
+  bool refuses = false;
+};
+
+}  // namespace skein::test
