@@ -114,43 +114,61 @@ Table::Changes Table::remove_if(auto predicate, Departure departure) {
   return changes;
 }
 
+bool Table::suits(const Entry& entry, const Query& query) {
+  const ServiceDescription& description = *entry.description;
+  return !entry.suspect && in_system(description, query) && visible(description, query) &&
+         wanted(description, query) && !(query.client && missing_operation(*query.client, description)) &&
+         std::all_of(query.constraints.begin(), query.constraints.end(),
+                     [&](const Constraint& constraint) { return meets(description, constraint); });
+}
+
 Table::Found Table::find(const Query& query) const {
+  for (const Constraint& constraint : query.constraints) check(constraint);
   Found found;
   const auto* entries = named(query.name);
   if (!entries) entries = named(resolve(query.name));
   if (!entries) return found;
   for (const Entry* entry : *entries) {
-    const ServiceDescription& description = *entry->description;
-    if (entry->suspect || !in_system(description, query) || !visible(description, query)) continue;
-    if (!wanted(description, query)) continue;
-    if (query.client && missing_operation(*query.client, description)) continue;
-    found.push_back(entry->description);
+    if (suits(*entry, query)) found.push_back(entry->description);
+  }
+  if (!query.preferred_host.empty()) {
+    std::stable_partition(found.begin(), found.end(), [&](const auto& description) {
+      return description->host == query.preferred_host;
+    });
   }
   return found;
+}
+
+// Why an entry of the wanted name does not suit; empty where it does, or where it was not asked for.
+std::string Table::obstacle(const Entry& entry, const Query& query) {
+  const ServiceDescription& description = *entry.description;
+  const std::string who = description.entity + " (" + description.system + ")";
+  if (!wanted(description, query)) return {};
+  if (!visible(description, query)) {
+    return who + " is managed by " + description.owner + ", and only that entity may use it";
+  }
+  if (!in_system(description, query)) return "only " + who + " offers it; name that system to use it";
+  if (entry.suspect) return who + " has not been heard of for its lease";
+  if (const auto* operation = query.client ? missing_operation(*query.client, description) : nullptr) {
+    return who + " offers another version of it: operation '" + std::string(operation->name) +
+           "' is missing there or has another signature; build both sides from the same IDL";
+  }
+  for (const Constraint& constraint : query.constraints) {
+    if (!meets(description, constraint)) return who + " does not suit: " + shortfall(description, constraint);
+  }
+  return {};
 }
 
 std::string Table::explain(const Query& query) const {
   const std::string place = query.system ? " in system '" + *query.system + "'" : "";
   const auto* entries = named(query.name);
   if (!entries) entries = named(resolve(query.name));
-  std::string reason;
+  std::string reasons;
   for (const Entry* entry : entries ? *entries : std::vector<const Entry*>()) {
-    const ServiceDescription& description = *entry->description;
-    const std::string who = description.entity + " (" + description.system + ")";
-    if (!wanted(description, query)) continue;
-    if (!visible(description, query)) {
-      reason = who + " is managed by " + description.owner + ", and only that entity may use it";
-    } else if (!in_system(description, query)) {
-      reason = "only " + who + " offers it; name that system to use it";
-    } else if (entry->suspect) {
-      reason = who + " has not been heard of for its lease";
-    } else if (const auto* operation = query.client ? missing_operation(*query.client, description)
-                                                    : nullptr) {
-      reason = who + " offers another version of it: operation '" + std::string(operation->name) +
-               "' is missing there or has another signature; build both sides from the same IDL";
-    }
+    const std::string reason = obstacle(*entry, query);
+    if (!reason.empty()) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
-  if (!reason.empty()) return "no provider of '" + query.name + "'" + place + ": " + reason;
+  if (!reasons.empty()) return "no provider of '" + query.name + "'" + place + ": " + reasons;
 
   if (is_interface_name(query.name)) {
     const std::string canonical = resolve(query.name);

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "failover_channel.hpp"
+#include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
@@ -35,18 +36,22 @@ const char* ending_of(brokerless_discovery::Departure departure) {
   return "its process ended";
 }
 
-// The kernel and the Broker know of a provider's end before DDS does.
+// The kernel and the Broker know of a provider's end, or of its silence, before DDS does.
 void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::DdsChannel>& channel,
-            const Guid& provider) {
+            const Link& link) {
   using brokerless_discovery::Broker;
-  auto registration = std::make_shared<Broker::Registration>(
-      broker.observe([weak = std::weak_ptr(channel), provider](const Change& change) {
-        if (change.kind != Change::Kind::Removed || change.description->provider != provider.bytes) return;
-        if (const auto gone = weak.lock()) gone->provider_gone(ending_of(change.departure));
+  auto registration = std::make_shared<Broker::Registration>(broker.observe(
+      [weak = std::weak_ptr(channel), provider = link.provider, suspect = link.suspect](const Change& change) {
+        if (change.description->provider != provider.bytes) return;
+        if (change.kind != Change::Kind::Removed) {
+          *suspect = change.kind == Change::Kind::Suspect;
+        } else if (const auto gone = weak.lock()) {
+          gone->provider_gone(ending_of(change.departure));
+        }
       }));
   channel->attach(registration);
   // It may have gone between the answer to `open` and the first look.
-  if (!broker.knows(provider)) channel->provider_gone("it ended while it was being connected");
+  if (!broker.knows(link.provider)) channel->provider_gone("it ended while it was being connected");
 }
 
 bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {
@@ -64,9 +69,14 @@ void arrange(Table::Found& providers, const Wanted& wanted) {
 std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
                                                   const std::string& strategy,
                                                   Duration timeout) const {
+  return open_link(provider, strategy, timeout).channel;
+}
+
+Link Connector::open_link(const ServiceDescription& provider, const std::string& strategy,
+                          Duration timeout) const {
   const Guid id{provider.provider};
   if (const auto service = parts_.directory->find(id)) {
-    return rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy);
+    return {id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
   }
   rpc::DdsChannel::Options options;
   options.strategy = strategy;
@@ -75,20 +85,29 @@ std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& prov
   options.stands = [&broker = parts_.broker, id] { return broker.knows(id); };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
-  follow(parts_.broker, channel, id);
-  return channel;
+  Link link{id, channel};
+  follow(parts_.broker, channel, link);
+  return link;
+}
+
+Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& options) const {
+  Query query = parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
+  query.client = &interface;
+  query.provider = options.provider;
+  query.constraints = options.constraints;
+  query.preferred_host = options.preferred_host == ConnectOptions::kOwnHost
+                             ? brokerless_discovery::ProcessWatch::host()
+                             : options.preferred_host;
+  if (options.system) {
+    query.system = *options.system == ConnectOptions::kAnySystem ? std::nullopt : options.system;
+  }
+  return query;
 }
 
 std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
   if (options.foreign) return open_foreign(interface, options);
-  Query query = parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
-  query.client = &interface;
-  query.provider = options.provider;
-  if (options.system) {
-    query.system = *options.system == ConnectOptions::kAnySystem ? std::nullopt : options.system;
-  }
-  const auto connect = [connector = *this, query, strategy = options.strategy](const Wanted& wanted) {
+  const auto connect = [connector = *this, query = query(interface, options), strategy = options.strategy](const Wanted& wanted) {
     return connector.open_next(query, strategy, wanted);
   };
   const Instant deadline = parts_.clock.now() + options.timeout;
@@ -127,7 +146,7 @@ Link Connector::open_next(const Query& query, const std::string& strategy, const
     for (const auto& provider : providers) {
       try {
         const Duration patience = providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
-        return {Guid{provider->provider}, open_provider(*provider, strategy, patience)};
+        return open_link(*provider, strategy, patience);
       } catch (const Unavailable&) {
         failure = std::current_exception();
       }

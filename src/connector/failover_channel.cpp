@@ -14,7 +14,7 @@ bool contains(const std::vector<Guid>& providers, const Guid& provider) {
 }
 
 bool suits(const Link& link, const Wanted& wanted) {
-  return link.channel->connected() && !contains(wanted.excluded, link.provider);
+  return link.trusted() && !contains(wanted.excluded, link.provider);
 }
 
 }  // namespace
@@ -99,16 +99,19 @@ void FailoverChannel::disconnect() {
 }
 
 std::optional<Link> FailoverChannel::ready(const Wanted& wanted) {
-  Link lost;  // destroyed outside the lock
+  std::optional<Link> lost;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
   if (closed_ || suits(main_, wanted)) return main_;
   const auto other = std::find_if(others_.begin(), others_.end(),
                                   [&](const Link& link) { return suits(link, wanted); });
   if (other == others_.end()) return std::nullopt;
   const Link link = *other;
-  if (!main_.channel->connected()) {
-    lost = std::exchange(main_, link);
-    others_.erase(other);
+  if (!main_.trusted()) {
+    std::swap(main_, *other);
+    if (!other->channel->connected()) {
+      lost = std::move(*other);
+      others_.erase(other);
+    }
   }
   return link;
 }
@@ -117,18 +120,27 @@ Link FailoverChannel::acquire(const Wanted& wanted) {
   if (auto link = ready(wanted)) return *link;
   std::lock_guard one_at_a_time(connecting_);
   if (auto link = ready(wanted)) return *link;
-  Wanted next = wanted;
-  {
+  const Link main = [&] {
     std::lock_guard lock(mutex_);
-    if (!main_.channel->connected()) next.last.push_back(main_.provider);
+    return main_;
+  }();
+  // A suspect provider is better than none, but not worth waiting for another.
+  const bool fall_back = main.channel->connected() && !contains(wanted.excluded, main.provider);
+  Wanted next = wanted;
+  if (fall_back) next.wait = false;
+  if (!main.channel->connected()) next.last.push_back(main.provider);
+  try {
+    const Link link = connect_(next);
+    keep(link);
+    return link;
+  } catch (const Unavailable&) {
+    if (!fall_back) throw;
+    return main;
   }
-  const Link link = connect_(next);
-  keep(link);
-  return link;
 }
 
-// A lost main link is replaced by the new one; beside one that stands, the new one is kept for the next
-// call that needs it.
+// A main link that is lost or suspect is replaced by the new one; beside one that stands, the new one is
+// kept for the next call that needs it.
 void FailoverChannel::keep(const Link& link) {
   std::vector<Link> ended;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
@@ -136,10 +148,11 @@ void FailoverChannel::keep(const Link& link) {
                                           [](const Link& other) { return other.channel->connected(); });
   ended.assign(std::make_move_iterator(lost), std::make_move_iterator(others_.end()));
   others_.erase(lost, others_.end());
-  if (main_.channel->connected()) {
+  if (main_.trusted()) {
     others_.push_back(link);
   } else {
-    ended.push_back(std::exchange(main_, link));
+    const Link old = std::exchange(main_, link);
+    (old.channel->connected() ? others_ : ended).push_back(old);
   }
   if (closed_) link.channel->disconnect();
 }

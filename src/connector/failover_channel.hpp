@@ -14,7 +14,8 @@
 namespace skein {
 
 /// A connection that outlives its provider: `connect` is asked for a new link when the present one is
-/// found lost. A call to an idempotent operation whose provider is lost or refuses it is made again at
+/// found lost, or when its provider is suspect; a suspect provider has calls only where no other stands
+/// by. A call to an idempotent operation whose provider is lost or refuses it is made again at
 /// the next one, within its deadline. Any other that was on its way when its provider died ends as
 /// Disconnected; it is not repeated, since whether it ran is unknown.
 ///
@@ -34,10 +35,11 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   bool connected() const override;
   void disconnect() override;
 
-  /// A link that stands now, or nothing.
+  /// A link to a trusted provider that stands now, or nothing.
   std::optional<Link> ready(const Wanted& wanted);
 
-  /// A link, newly opened where none stands. Blocks; throws what `connect` throws.
+  /// A link, newly opened where none stands; a suspect one where that cannot be had. Blocks; throws
+  /// what `connect` throws.
   Link acquire(const Wanted& wanted);
 
  private:

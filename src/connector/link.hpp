@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace skein {
 struct Link {
   Guid provider;
   std::shared_ptr<Channel> channel;
+  /// Not heard of for its lease, and not known to be gone.
+  std::shared_ptr<std::atomic<bool>> suspect = std::make_shared<std::atomic<bool>>(false);
+
+  bool trusted() const { return channel->connected() && !*suspect; }
 };
 
 /// What kind of provider is looked for, and for how long.

@@ -1,7 +1,6 @@
 #include "skein/entity/head.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "skein/discovery.idl.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
@@ -12,6 +11,7 @@
 namespace skein {
 namespace {
 
+using brokerless_discovery::number_attribute;
 using brokerless_discovery::ServiceDescription;
 
 constexpr std::size_t kKeptDecisions = 64;
@@ -31,17 +31,6 @@ class HeadSession final : public Session {
  private:
   std::shared_ptr<const SelectionStrategy> strategy_;
 };
-
-std::optional<double> number_attribute(const ServiceDescription& description, std::string_view name) {
-  for (const auto& attribute : description.attributes) {
-    if (attribute.name != name) continue;
-    double value = 0;
-    const char* const end = attribute.value.data() + attribute.value.size();
-    const auto [stop, error] = std::from_chars(attribute.value.data(), end, value);
-    if (error == std::errc() && stop == end) return value;
-  }
-  return std::nullopt;
-}
 
 Candidate candidate_of(const ServiceDescription& description, bool in_process) {
   Candidate candidate;

@@ -225,3 +225,74 @@ TEST_CASE("a description with a malformed interface name is refused") {
   CHECK_THROWS_AS(table.on_description(description(1, "A//I", "one"), kWriter), InvalidArgument);
   CHECK(table.all().empty());
 }
+
+TEST_CASE("a provider is offered only if its attributes meet all constraints", "[R18]") {
+  Table table;
+  auto slow = description(1, "A/I", "slow");
+  slow.attributes = {{"latency", "1000"}, {"quality", "1.0"}, {"reach", "2 min"}, {"kind", "grid"}};
+  table.on_description(slow, kWriter);
+  auto fast = description(2, "A/I", "fast");
+  fast.attributes = {{"latency", "90"}, {"quality", "0.5"}, {"reach", "30 s"}, {"kind", "tree"}};
+  table.on_description(fast, kWriter);
+  table.on_description(description(3, "A/I", "plain"), kWriter);
+
+  const auto with = [&](std::vector<Constraint> constraints) {
+    Query asked = query("A/I");
+    asked.constraints = std::move(constraints);
+    return entities(table, asked);
+  };
+  CHECK(with({{"latency", Relation::AtMost, "300"}}) == Names{"fast"});
+  CHECK(with({{"latency", Relation::AtLeast, "90.0"}}) == Names{"fast", "slow"});
+  CHECK(with({{"quality", Relation::Equal, "1"}}) == Names{"slow"});
+  CHECK(with({{"kind", Relation::Equal, "tree"}}) == Names{"fast"});
+  CHECK(with({{"kind", Relation::NotEqual, "tree"}}) == Names{"slow"});
+  CHECK(with({{"reach", Relation::AtMost, "1 min"}}) == Names{"fast"});
+  CHECK(with({{"latency", Relation::AtMost, "2000"}, {"quality", Relation::AtLeast, "0.9"}}) == Names{"slow"});
+}
+
+TEST_CASE("numbers do not compare with lengths of time, nor words by order", "[R18]") {
+  Table table;
+  auto provider = description(1, "A/I", "one");
+  provider.attributes = {{"latency", "100 ms"}, {"kind", "grid"}};
+  table.on_description(provider, kWriter);
+  Query asked = query("A/I");
+  asked.constraints = {{"latency", Relation::AtMost, "300"}};
+  CHECK(table.find(asked).empty());
+  asked.constraints = {{"latency", Relation::AtMost, "0.3 s"}};
+  CHECK(table.find(asked).size() == 1);
+  asked.constraints = {{"kind", Relation::AtMost, "300"}};
+  CHECK(table.find(asked).empty());
+  asked.constraints = {{"latency", Relation::AtMost, "fast"}};
+  CHECK_THROWS_WITH(table.find(asked), Catch::Contains("'fast' is no number"));
+}
+
+TEST_CASE("for each provider that was passed over the reason is given", "[R9][R18]") {
+  Table table;
+  auto slow = description(1, "A/I", "slow");
+  slow.attributes = {{"latency", "1000"}};
+  table.on_description(slow, kWriter);
+  table.on_description(description(2, "A/I", "plain"), kWriter);
+  table.on_description(description(3, "A/I", "silent"), kOtherWriter);
+  table.on_writer_alive(kOtherWriter, false);
+  Query asked = query("A/I");
+  asked.constraints = {{"latency", Relation::AtMost, "300"}};
+  CHECK_THAT(table.explain(asked),
+             Catch::Contains("plain (uav-1) does not suit: it declares no latency, which must be at most 300") &&
+                 Catch::Contains("slow (uav-1) does not suit: its latency is 1000, not at most 300") &&
+                 Catch::Contains("silent (uav-1) has not been heard of"));
+}
+
+TEST_CASE("providers on the preferred host come first, others follow", "[R19]") {
+  Table table;
+  for (const auto& [number, entity, host] :
+       {std::tuple{1, "a", "far"}, {2, "b", "near"}, {3, "c", "far"}, {4, "d", "near"}}) {
+    auto provider = description(static_cast<std::uint8_t>(number), "A/I", entity);
+    provider.host = host;
+    table.on_description(provider, kWriter);
+  }
+  Query asked = query("A/I");
+  asked.preferred_host = "near";
+  CHECK(entities(table, asked) == Names{"b", "d", "a", "c"});
+  asked.preferred_host = "nowhere";
+  CHECK(entities(table, asked) == Names{"a", "b", "c", "d"});
+}

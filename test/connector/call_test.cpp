@@ -188,6 +188,18 @@ TEST_CASE("connecting by interface, entity and base finds the provider; what is 
                     Catch::Contains("system 'uav-9'"));
 }
 
+TEST_CASE("connecting with constraints finds a provider that declares so; otherwise each one's reason is given") {
+  ServiceOptions options;
+  options.attributes = {{"latency", "500"}};
+  Pair pair(options);
+  CHECK(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "500"}},
+                                    .preferred_host = ConnectOptions::kOwnHost})
+            .echo("x") == "x");
+  CHECK_THROWS_WITH(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "300"}}, .timeout = 50ms}),
+                    Catch::Contains("server (uav-1) does not suit: its latency is 500, not at most 300"));
+  CHECK_THROWS_AS(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "soon"}}}), InvalidArgument);
+}
+
 TEST_CASE("a client with another version of the interface is told which operation differs") {
   Pair pair;
   CHECK_THROWS_WITH(pair.client->connect<changed::Echo>({.name = "test::Echo", .timeout = 50ms}),

@@ -20,8 +20,13 @@ struct NumberCall final : PendingCall {
 struct World {
   explicit World(int count) {
     for (int i = 0; i < count; ++i) providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
-    channel = std::make_shared<FailoverChannel>(Link{guid(1), providers[0]},
+    channel = std::make_shared<FailoverChannel>(link_to(1),
                                                 [this](const Wanted& wanted) { return connect(wanted); });
+  }
+
+  Link link_to(int number) {
+    return {guid(static_cast<std::uint8_t>(number)), providers[static_cast<std::size_t>(number - 1)],
+            provider(number).suspect};
   }
 
   Link connect(const Wanted& wanted) {
@@ -32,7 +37,8 @@ struct World {
       for (std::size_t i = 0; i < providers.size(); ++i) {
         const Guid id = guid(static_cast<std::uint8_t>(i + 1));
         if (found(wanted.excluded, id) || found(wanted.last, id) != last || !providers[i]->stands) continue;
-        return {id, providers[i]};
+        if (*providers[i]->suspect) continue;
+        return link_to(static_cast<int>(i + 1));
       }
     }
     throw Unavailable("nobody is left");
@@ -142,4 +148,31 @@ TEST_CASE("a failure that another provider would not mend ends the call at once"
   const auto call = world.call(kIdempotent);
   world.provider(1).calls[0]->fail(std::make_exception_ptr(InvalidArgument("wrong")));
   CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), InvalidArgument);
+}
+
+TEST_CASE("while another provider stands a suspect one gets no new calls", "[R20]") {
+  World world(2);
+  const OperationInfo& operation = GENERATE(std::cref(kIdempotent), std::cref(kOther)).get();
+  const auto on_its_way = world.call(operation);
+  *world.provider(1).suspect = true;
+  world.call(operation);
+  world.continuations.run_all();
+  CHECK(world.provider(1).calls.size() == 1);
+  CHECK(world.provider(2).calls.size() == 1);
+  CHECK_FALSE(on_its_way->finished());
+
+  *world.provider(1).suspect = false;
+  *world.provider(2).suspect = true;
+  world.call(operation);
+  world.continuations.run_all();
+  CHECK(world.provider(1).calls.size() == 2);
+}
+
+TEST_CASE("with nobody else to ask calls go to a suspect provider", "[R20]") {
+  World world(1);
+  const OperationInfo& operation = GENERATE(std::cref(kIdempotent), std::cref(kOther)).get();
+  *world.provider(1).suspect = true;
+  world.call(operation);
+  world.continuations.run_all();
+  CHECK(world.provider(1).calls.size() == 1);
 }

@@ -53,6 +53,7 @@ struct FakeChannel final : Channel {
   std::deque<int> arguments;
   bool stands = true;
   bool refuses = false;
+  std::shared_ptr<std::atomic<bool>> suspect = std::make_shared<std::atomic<bool>>(false);
 };
 
 }  // namespace skein::test

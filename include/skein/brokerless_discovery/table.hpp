@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "skein/brokerless_discovery/constraint.hpp"
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
 
@@ -31,6 +32,10 @@ struct Query {
   const InterfaceInfo* client = nullptr;
   /// Only this provider; nil means all.
   Guid provider;
+  /// All of them must be met.
+  std::vector<Constraint> constraints{};
+  /// Providers whose description names this host come first; empty means none.
+  std::string preferred_host{};
 };
 
 /// Why a description is no longer in the table.
@@ -56,10 +61,10 @@ class Table {
   Changes on_writer_gone(const Guid& writer);
   Changes on_process_ended(const std::string& process);
 
-  /// Throws InvalidArgument for an ambiguous short name (R3).
+  /// Throws InvalidArgument for an ambiguous short name (R3) or a constraint that makes no sense (R18).
   Found find(const Query& query) const;
 
-  /// One sentence: why find() gave nothing (R9).
+  /// Why find() gave nothing: for each provider of that name, why it was passed over (R9).
   std::string explain(const Query& query) const;
 
   /// Everything that stands, suspects included, ordered by provider.
@@ -82,6 +87,8 @@ class Table {
   };
   using Entries = std::map<Guid, Entry>;
 
+  static bool suits(const Entry& entry, const Query& query);
+  static std::string obstacle(const Entry& entry, const Query& query);
   std::string resolve(const std::string& name) const;
   const std::vector<const Entry*>* named(const std::string& name) const;
   Changes remove_if(auto predicate, Departure departure);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skein/brokerless_discovery/broker.hpp"
 #include "skein/core/call.hpp"
@@ -13,6 +14,8 @@ namespace skein {
 
 struct Link;
 struct Wanted;
+using brokerless_discovery::Constraint;
+using brokerless_discovery::Relation;
 
 /// Where and how to connect. The defaults reach the first provider of the interface in one's own system.
 struct ConnectOptions {
@@ -22,6 +25,12 @@ struct ConnectOptions {
   std::optional<std::string> system{};
   /// Only this provider, as a service reference names it; nil means any.
   Guid provider{};
+  /// What the provider must declare: `{{"latency", Relation::AtMost, "300"}}`. Where no provider meets
+  /// all, connect() says for each why it was passed over.
+  std::vector<Constraint> constraints{};
+  /// Providers on this host come first, others only where it has none: kOwnHost, or what a
+  /// ServiceDescription calls its host.
+  std::string preferred_host{};
   /// The Head's selection strategy for this session; empty means the provider's default.
   std::string strategy{};
   /// For finding a provider and opening the connection.
@@ -31,6 +40,7 @@ struct ConnectOptions {
   bool foreign = false;
 
   static constexpr const char* kAnySystem = "*";
+  static constexpr const char* kOwnHost = ".";
 };
 
 /// The paper's connector: turns `connect(name)` into a typed proxy. Looks the name up in the Broker's
@@ -78,6 +88,9 @@ class Connector {
   static ConnectOptions to(const ServiceReference& reference, ConnectOptions options);
   std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
                                         const ConnectOptions& options) const;
+  brokerless_discovery::Query query(const InterfaceInfo& interface, const ConnectOptions& options) const;
+  Link open_link(const brokerless_discovery::ServiceDescription& provider, const std::string& strategy,
+                 Duration timeout) const;
   Link open_next(const brokerless_discovery::Query& query, const std::string& strategy,
                  const Wanted& wanted) const;
 

@@ -1,0 +1,96 @@
+#include "skein/brokerless_discovery/constraint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include "skein/core/error.hpp"
+#include "skein/discovery.idl.hpp"
+
+namespace skein::brokerless_discovery {
+namespace {
+
+using discovery::ServiceDescription;
+
+constexpr std::array<std::pair<std::string_view, double>, 6> kTimeUnits{
+    {{"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}}};
+
+/// A number, and whether it is a length of time (then in seconds).
+struct Quantity {
+  double value = 0;
+  bool time = false;
+};
+
+std::optional<Quantity> maybe_quantity(std::string_view text) {
+  Quantity quantity;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, quantity.value);
+  if (error != std::errc()) return std::nullopt;
+  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  if (unit.empty()) return quantity;
+  unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+  const auto* const known = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
+                                         [&](const auto& entry) { return entry.first == unit; });
+  if (known == kTimeUnits.end()) return std::nullopt;
+  return Quantity{quantity.value * known->second, true};
+}
+
+bool is_order(Relation relation) { return relation == Relation::AtMost || relation == Relation::AtLeast; }
+
+const char* words_of(Relation relation) {
+  switch (relation) {
+    case Relation::Equal: return "";
+    case Relation::NotEqual: return "anything but ";
+    case Relation::AtMost: return "at most ";
+    case Relation::AtLeast: break;
+  }
+  return "at least ";
+}
+
+}  // namespace
+
+void check(const Constraint& constraint) {
+  if (!is_order(constraint.relation) || maybe_quantity(constraint.value)) return;
+  throw InvalidArgument("the constraint '" + constraint.attribute + "' " + words_of(constraint.relation) +
+                        "'" + constraint.value + "' asks for an order, and '" + constraint.value +
+                        "' is no number; write a number, or a length of time such as '100 ms'");
+}
+
+bool meets(const ServiceDescription& provider, const Constraint& constraint) {
+  const std::string* const declared = find_attribute(provider, constraint.attribute);
+  if (!declared) return false;
+  const auto have = maybe_quantity(*declared);
+  const auto want = maybe_quantity(constraint.value);
+  const bool numbers = have && want && have->time == want->time;
+  switch (constraint.relation) {
+    case Relation::Equal: return numbers ? have->value == want->value : *declared == constraint.value;
+    case Relation::NotEqual: return numbers ? have->value != want->value : *declared != constraint.value;
+    case Relation::AtMost: return numbers && have->value <= want->value;
+    case Relation::AtLeast: break;
+  }
+  return numbers && have->value >= want->value;
+}
+
+std::string shortfall(const ServiceDescription& provider, const Constraint& constraint) {
+  const std::string wanted = words_of(constraint.relation) + constraint.value;
+  const std::string* const declared = find_attribute(provider, constraint.attribute);
+  if (!declared) return "it declares no " + constraint.attribute + ", which must be " + wanted;
+  return "its " + constraint.attribute + " is " + *declared + ", not " + wanted;
+}
+
+const std::string* find_attribute(const ServiceDescription& provider, std::string_view name) {
+  for (const auto& attribute : provider.attributes) {
+    if (attribute.name == name) return &attribute.value;
+  }
+  return nullptr;
+}
+
+std::optional<double> number_attribute(const ServiceDescription& provider, std::string_view name) {
+  const std::string* const declared = find_attribute(provider, name);
+  if (!declared) return std::nullopt;
+  const auto quantity = maybe_quantity(*declared);
+  return quantity && !quantity->time ? std::optional(quantity->value) : std::nullopt;
+}
+
+}  // namespace skein::brokerless_discovery
