@@ -1,5 +1,7 @@
 #include "skein/core/channel.hpp"
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "skein/core/error.hpp"
@@ -32,8 +34,14 @@ bool PendingCall::finished() const {
 }
 
 void PendingCall::wait() const {
+  if (const auto spin = spin_.load(); spin.count() > 0) {
+    const auto end = std::chrono::steady_clock::now() + spin;
+    while (!finished_.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < end) {
+      std::this_thread::yield();
+    }
+  }
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return finished_; });
+  changed_.wait(lock, [&] { return finished_.load(); });
 }
 
 std::exception_ptr PendingCall::take_error() {

@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <utility>
 
@@ -24,28 +25,50 @@ class Entered {
 
 // Shared with the threads, so that one of them can be left behind.
 struct ThreadExecutor::State {
-  State(const ThreadExecutor* executor, std::size_t capacity, std::size_t concurrency)
-      : identity(executor), capacity(capacity), concurrency(concurrency) {}
+  State(const ThreadExecutor* executor, std::size_t capacity, std::size_t concurrency,
+        const ThreadSettings& settings)
+      : identity(executor), capacity(capacity), concurrency(concurrency), settings(settings) {}
 
   const Executor* const identity;  // compared, never followed
   const std::size_t capacity;
   const std::size_t concurrency;
+  const ThreadSettings settings;
   std::mutex mutex;
   std::condition_variable changed;
   std::deque<std::function<void()>> tasks;
   std::size_t running = 0;
   std::size_t threads = 0;
   bool stopping = false;
+  std::atomic<bool> called{false};  // a task waits, or the end is near: what a spinning thread looks at
+
+  // Under the lock, after each change of `tasks` or `stopping`.
+  void note_change() { called.store(stopping || !tasks.empty(), std::memory_order_release); }
+
+  void await_task(std::unique_lock<std::mutex>& lock) {
+    const auto ready = [&] { return stopping || (!tasks.empty() && running < concurrency); };
+    if (settings.spin.count() > 0 && !ready()) {
+      lock.unlock();
+      const auto end = std::chrono::steady_clock::now() + settings.spin;
+      // Yielding lets whoever shares the processor make the work that is waited for.
+      while (!called.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < end) {
+        std::this_thread::yield();
+      }
+      lock.lock();
+    }
+    changed.wait(lock, ready);
+  }
 
   void work(const std::string& name) {
     pthread_setname_np(pthread_self(), name.c_str());
+    apply(settings, name);
     const Entered here(identity);
     std::unique_lock lock(mutex);
     while (true) {
-      changed.wait(lock, [&] { return stopping || (!tasks.empty() && running < concurrency); });
+      await_task(lock);
       if (stopping) break;
       auto task = std::move(tasks.front());
       tasks.pop_front();
+      note_change();
       ++running;
       lock.unlock();
       task();
@@ -60,8 +83,10 @@ struct ThreadExecutor::State {
   bool idle() const { return threads == 0 && running == 0; }
 };
 
-ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity)
-    : state_(std::make_shared<State>(this, capacity, std::max<std::size_t>(threads, 1))) {
+ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity,
+                               const ThreadSettings& settings)
+    : state_(std::make_shared<State>(this, capacity, std::max<std::size_t>(threads, 1), settings)) {
+  check(settings, name);
   name.resize(std::min<std::size_t>(name.size(), 15));
   state_->threads = state_->concurrency;
   for (std::size_t i = 0; i < state_->concurrency; ++i) {
@@ -76,6 +101,7 @@ void ThreadExecutor::request_stop() {
   std::lock_guard lock(state_->mutex);
   state_->stopping = true;
   dropped.swap(state_->tasks);
+  state_->note_change();
   state_->changed.notify_all();
 }
 
@@ -108,6 +134,7 @@ bool ThreadExecutor::post(std::function<void()> task) {
     std::lock_guard lock(state_->mutex);
     if (state_->stopping || state_->tasks.size() >= state_->capacity) return false;
     state_->tasks.push_back(std::move(task));
+    state_->note_change();
     if (state_->running == state_->concurrency) return true;  // whoever ends next looks at the queue
   }
   state_->changed.notify_one();

@@ -64,7 +64,8 @@ struct Entity::State {
         participant(make_participant()),
         broker(*participant, process->clock(), control, process->watch(),
                {options.system, options.name, options.vendor->name(), options.lease}),
-        connector({*participant, broker, process->directory(), control, continuations, process->clock()}),
+        connector({*participant, broker, process->directory(), control, continuations, process->clock(),
+                   options.spin}),
         head(connector, broker, process->directory(), process->clock()) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
@@ -126,7 +127,8 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   const InterfaceInfo& interface = servant->interface_info();
   auto provided = std::make_unique<Provided>();
   provided->name = name;
-  provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue);
+  provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue,
+                                                         options.scheduling);
   rpc::Service::Options service_options;
   service_options.single_threaded = options.threads <= 1;
   service_options.inline_calls = owner.empty();

@@ -39,12 +39,14 @@ sigset_t ending_signals() {
 }
 
 EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer,
-                             const std::string& name, const std::string& vendor) {
+                             const std::string& name, const std::string& vendor,
+                             std::chrono::microseconds spin) {
   EntityOptions options;
   options.name = name;
   options.system = peer.system;
   options.vendor = dds::load_vendor(vendor);
   options.domain = static_cast<std::uint32_t>(mission.domain);
+  options.spin = spin;
   if (!peer.interface.empty()) options.network.interfaces = {peer.interface};
   return options;
 }
@@ -87,8 +89,19 @@ void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp
   const auto& factory =
       required(registry.find_csp(csp.component->name), csp.component->name, "CSP", registry);
   auto servant = factory(values_of(csp.parameters));
-  const ServiceOptions options = service_options(*csp.component, *servant);
+  ServiceOptions options = service_options(*csp.component, *servant);
+  options.scheduling = csp.threads.settings;
   entity.provide_csp(csp.name, owner, std::move(servant), options);
+}
+
+// The implementation knows how many threads it bears, the profile how many it is to have.
+std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& body) {
+  if (peer.threads.count == 0) return body.threads;
+  if (peer.threads.count <= 1 || body.threads > 1) return peer.threads.count;
+  throw InvalidArgument(profile::to_text(peer.where) + ": " + std::to_string(peer.threads.count) +
+                        " threads for '" + peer.name + "', but the implementation of '" +
+                        peer.component->name +
+                        "' is made for one; remove threads=, or register a Body with more");
 }
 
 void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
@@ -96,7 +109,8 @@ void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegist
                                  "component", registry);
   ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
   ServiceOptions options = service_options(*peer.component, *body.servant);
-  options.threads = body.threads;
+  options.threads = threads_of(peer, body);
+  options.scheduling = peer.threads.settings;
   entity.provide(std::move(body.servant), options);
 }
 
@@ -124,7 +138,8 @@ void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
 int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
             ComponentRegistry& registry) {
   load_plugin(registry, csp.plugin);
-  Entity entity(entity_options(mission, peer, peer.name + "." + csp.name, csp.vendor));
+  Entity entity(entity_options(mission, peer, peer.name + "." + csp.name, csp.vendor,
+                               csp.threads.settings.spin));
   provide_csp(entity, peer.system + "/" + peer.name, csp, registry);
   report_ready();
   return await_end();
@@ -141,7 +156,7 @@ void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
 
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
   load_plugins(registry, peer);
-  Entity entity(entity_options(mission, peer, peer.name, peer.vendor));
+  Entity entity(entity_options(mission, peer, peer.name, peer.vendor, peer.threads.settings.spin));
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);
@@ -166,6 +181,7 @@ int run_process(const MissionProfile& mission, const std::string& process,
       slash == std::string::npos ? nullptr : peer->find_csp(process.substr(slash + 1));
   if (slash != std::string::npos && !csp) refuse_process(mission, process);
 
+  if (csp ? csp->threads.lock_memory : peer->threads.lock_memory) lock_memory();
   // A mission has no place at which it could notice a signal: it dies of it, as programs do.
   if (!peer->runs_mission) {
     const sigset_t signals = ending_signals();

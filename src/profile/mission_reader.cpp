@@ -6,6 +6,7 @@
 #include "rules_reader.hpp"
 #include "skein/profile/mission_profile.hpp"
 #include "text_file.hpp"
+#include "thread_rules_reader.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -125,7 +126,8 @@ class MissionReader {
   PeerProfile peer_of(const XmlElement& element, const Defaults& mission) {
     element.allow({"name", "component", "vendor", "system", "host", "interface", "plugin", "role",
                    "required", "restart", "restart_delay", "max_restart_delay", "max_restarts",
-                   "restart_window", "ready_timeout", "stop_timeout"},
+                   "restart_window", "ready_timeout", "stop_timeout", "threads", "scheduling", "priority",
+                   "nice", "cpus", "spin", "lock_memory"},
                   {"csp", "parameter"});
     PeerProfile peer;
     peer.where = element.where();
@@ -144,6 +146,7 @@ class MissionReader {
     peer.runs_mission = runs_mission(element);
     peer.required = read_boolean(element, "required", true);
     peer.rules = read_process_rules(element);
+    peer.threads = read_thread_rules(element);
     peer.parameters = parameters_of(element);
     for (const auto& child : element.children("csp")) peer.csps.push_back(csp_of(child, peer));
     return peer;
@@ -162,7 +165,8 @@ class MissionReader {
   CspProfile csp_of(const XmlElement& element, const PeerProfile& peer) {
     element.allow(
         {"name", "component", "process", "vendor", "plugin", "required", "restart", "restart_delay",
-         "max_restart_delay", "max_restarts", "restart_window", "ready_timeout", "stop_timeout"},
+         "max_restart_delay", "max_restarts", "restart_window", "ready_timeout", "stop_timeout",
+         "scheduling", "priority", "nice", "cpus", "spin", "lock_memory"},
         {"parameter"});
     CspProfile csp;
     csp.where = element.where();
@@ -177,6 +181,7 @@ class MissionReader {
     csp.plugin = value_or(element, "plugin", peer.plugin);
     csp.required = read_boolean(element, "required", false);
     csp.rules = read_process_rules(element);
+    csp.threads = read_thread_rules(element);
     csp.parameters = parameters_of(element);
     if (csp.process == CspProcess::InOwner) refuse_process_rules(element);
     return csp;

@@ -11,9 +11,9 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-constexpr std::array<const char*, 7> kNames{"restart",      "restart_delay",  "max_restart_delay",
+constexpr std::array<const char*, 8> kNames{"restart",      "restart_delay",  "max_restart_delay",
                                             "max_restarts", "restart_window", "ready_timeout",
-                                            "stop_timeout"};
+                                            "stop_timeout", "lock_memory"};
 
 nanoseconds read_time(const XmlElement& element, const char* name, nanoseconds fallback) {
   const auto text = element.maybe_attribute(name);

@@ -259,6 +259,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   // ---- calls
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) {
+    if (options.spin.count() > 0) call->set_spin(options.spin);
     std::uint64_t number = 0;
     bool sent = false;
     call->attempt([&] {
@@ -275,6 +276,10 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     std::lock_guard lock(mutex);
     if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
     if (phase != Phase::Open) throw Unavailable("no connection to " + options.peer + ": disconnected");
+    if (entries.size() >= options.calls_in_flight) {
+      throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
+                       " already wait for their answers; the call was not sent");
+    }
     number = ++last_number;
     Entry& entry = entries[number];
     entry.call = call;

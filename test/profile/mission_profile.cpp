@@ -58,6 +58,54 @@ TEST_CASE("Restart rules are read with their units") {
   CHECK(rules.stop_timeout == 500ms);
 }
 
+TEST_CASE("How threads run is read for peers and CSPs") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="n" component="n.xml" threads="4" scheduling="fifo" priority="20" cpus="0, 2-3"
+           spin="50 us" lock_memory="true">
+           <csp component="p.xml" nice="5"/>
+         </peer>)"));
+  const auto& threads = mission.peers.at(0).threads;
+  CHECK(threads.count == 4);
+  CHECK(threads.lock_memory);
+  CHECK(threads.settings.scheduling == skein::ThreadSettings::Scheduling::Fifo);
+  CHECK(threads.settings.priority == 20);
+  CHECK(threads.settings.cpus == std::vector<unsigned>{0, 2, 3});
+  CHECK(threads.settings.spin == 50us);
+  CHECK(mission.peers.at(0).csps.at(0).threads.settings.nice == 5);
+  CHECK(mission.peers.at(0).csps.at(0).threads.count == 0);
+}
+
+TEST_CASE("Threads that cannot run as the profile says are found, with their place") {
+  ProfileFolder folder;
+  const auto [attributes, finding] = GENERATE(table<std::string, std::string>({
+      {R"(scheduling="fifa" priority="1")", "\"fifa\" is no scheduling; did you mean 'fifo'?"},
+      {R"(scheduling="fifo")", "this scheduling needs a priority"},
+      {R"(scheduling="fifo" priority="100")", "priority is \"100\"; write a number from 1 to 99"},
+      {R"(priority="5")", "priority is for fifo and round-robin scheduling"},
+      {R"(scheduling="round-robin" priority="1" nice="2")", "nice is for normal scheduling"},
+      {R"(nice="20")", "nice is \"20\"; write a number from -20 to 19"},
+      {R"(cpus="0,")", "\"0,\" is no list of CPUs"},
+      {R"(cpus="3-1")", "\"3-1\" is no list of CPUs"},
+      {R"(cpus="0-99999999999")", "is no list of CPUs"},
+      {R"(threads="0")", "threads is \"0\"; write a number from 1 to 256"},
+      {R"(spin="2 s")", "more than 100 ms"},
+      {R"(spin="soon")", "\"soon\" is no length of time"},
+      {R"(lock_memory="yes")", "lock_memory is \"yes\"; write true or false"},
+  }));
+  const std::string peer = R"(<peer name="f" component="f.xml" )" + attributes + "/>";
+  CHECK_THAT(folder.check(peer), Catch::Contains("m.xml:2:") && Catch::Contains(finding));
+}
+
+TEST_CASE("A CSP without a process cannot lock memory, and none has more than one thread") {
+  ProfileFolder folder;
+  const auto text = folder.check(R"(<peer name="n" component="n.xml">
+    <csp component="p.xml" lock_memory="true"/>
+    <csp name="q" component="p.xml" threads="2"/></peer>)");
+  CHECK_THAT(text, Catch::Contains("m.xml:3:28: error: lock_memory is for processes"));
+  CHECK_THAT(text, Catch::Contains("m.xml:4:") && Catch::Contains("<csp> has no \"threads\""));
+}
+
 TEST_CASE("What the mission says holds for every peer that does not say otherwise") {
   ProfileFolder folder;
   folder.write("m.xml", R"(<mission name="m" vendor="cyclonedds" system="uav" interface="lan0">

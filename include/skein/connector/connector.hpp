@@ -55,6 +55,7 @@ class Connector {
     Executor& control;
     Executor& continuations;
     Clock& clock;
+    std::chrono::microseconds spin{0};  ///< See EntityOptions.
   };
 
   /// The parts outlive the connector and every connection that it made.

@@ -43,6 +43,9 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   /// Blocks until finished; the lane guarantees that this happens at the latest at the deadline.
   void wait() const;
 
+  /// Set by the lane: how long wait() looks for the end before it sleeps.
+  void set_spin(std::chrono::microseconds budget) noexcept { spin_ = budget; }
+
   /// The error that ended the call, handed over (not copied: an exception shared by two threads would
   /// be released by whichever lets go last); null after a success. Only once finished.
   std::exception_ptr take_error();
@@ -74,10 +77,11 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   void* const out_;
   const Instant deadline_;
   const bool blocking_;
+  std::atomic<std::chrono::microseconds> spin_{std::chrono::microseconds(0)};
   std::atomic<bool> claimed_{false};
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  bool finished_ = false;
+  std::atomic<bool> finished_{false};  // written under the lock
   std::exception_ptr error_;
   std::function<void()> action_;
   std::function<void()> canceller_;

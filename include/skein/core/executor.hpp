@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "skein/core/thread_settings.hpp"
+
 namespace skein {
 
 /// Runs tasks for those who may not run them on their own thread. Every queue is bounded.
@@ -32,8 +34,10 @@ class Executor {
 /// a strand: no two tasks at once, inline ones included.
 class ThreadExecutor final : public Executor {
  public:
-  /// `name` shows in the debugger (15 characters at most are kept).
-  explicit ThreadExecutor(std::string name, std::size_t threads = 1, std::size_t capacity = 4096);
+  /// `name` shows in the debugger (15 characters at most are kept). Throws InvalidArgument for settings
+  /// that can never work; see ThreadSettings.
+  explicit ThreadExecutor(std::string name, std::size_t threads = 1, std::size_t capacity = 4096,
+                          const ThreadSettings& settings = {});
   /// Runs no task that has not begun; waits for those that have.
   ~ThreadExecutor() override;
 

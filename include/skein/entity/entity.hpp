@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "skein/connector/connector.hpp"
+#include "skein/core/thread_settings.hpp"
 #include "skein/dds/port.hpp"
 #include "skein/entity/head.hpp"
 #include "skein/entity/process.hpp"
@@ -25,6 +26,9 @@ struct EntityOptions {
   std::shared_ptr<Process> process{};
   /// How long a peer that is not heard of is trusted.
   std::chrono::milliseconds lease{1000};
+  /// How long a thread that waits for the answer of a blocking call to another process looks for it
+  /// before it sleeps: a wake-up saved for a processor spent.
+  std::chrono::microseconds spin{0};
 };
 
 struct ServiceAttribute {
@@ -37,6 +41,8 @@ struct ServiceOptions {
   std::vector<ServiceAttribute> attributes{};
   /// Threads that run this service's calls.
   std::size_t threads = 1;
+  /// How the system runs these threads.
+  ThreadSettings scheduling{};
   /// Requests that may wait for a thread before others are refused as Overloaded.
   std::size_t queue = 1024;
   /// The component description as XML, for those who look the service up.

@@ -9,6 +9,7 @@
 #include "skein/profile/component_description.hpp"
 #include "skein/profile/dictionary.hpp"
 #include "skein/profile/restart_rules.hpp"
+#include "skein/profile/thread_rules.hpp"
 
 namespace skein::profile {
 
@@ -34,6 +35,7 @@ struct CspProfile {
   std::string vendor;     ///< The peer's, unless the profile says otherwise.
   std::string plugin;     ///< The peer's, unless the profile says otherwise.
   ProcessRules rules;     ///< Of a process of its own.
+  ThreadRules threads;    ///< Of the thread that runs it.
   bool required = false;  ///< Whether its loss ends the mission.
   std::vector<Setting> parameters;
   SourcePosition where;
@@ -56,6 +58,7 @@ struct PeerProfile {
   bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
   bool required = true;       ///< Whether its loss ends the mission.
   ProcessRules rules;
+  ThreadRules threads;  ///< Of its public service.
   std::vector<CspProfile> csps;
   std::vector<Setting> parameters;
   SourcePosition where;

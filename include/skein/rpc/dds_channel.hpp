@@ -18,6 +18,10 @@ class DdsChannel final : public Channel {
     std::string strategy;  ///< See OpenRequest.
     std::string peer;      ///< For messages.
     Duration timeout = std::chrono::seconds(5);
+    /// How long a thread that waits for an answer looks for it before it sleeps.
+    std::chrono::microseconds spin{0};
+    /// Calls that may wait for their answers; beyond it a call is refused as Overloaded, unsent.
+    std::size_t calls_in_flight = 4096;
     /// Asked while opening: whether the provider still stands, as far as is known. Empty: it does.
     std::function<bool()> stands;
   };

@@ -1,0 +1,126 @@
+#include "thread_rules_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "rules_reader.hpp"
+#include "skein/profile/dictionary.hpp"
+#include "words.hpp"
+
+namespace skein::profile {
+namespace {
+
+using Scheduling = ThreadSettings::Scheduling;
+
+constexpr unsigned kLargestCpu = 1023;
+constexpr std::chrono::milliseconds kLongestSpin{100};
+
+Scheduling read_scheduling(const XmlElement& element) {
+  const auto word = element.maybe_attribute("scheduling");
+  if (!word || word->value == "normal") return Scheduling::Normal;
+  if (word->value == "fifo") return Scheduling::Fifo;
+  if (word->value == "round-robin") return Scheduling::RoundRobin;
+  element.findings().error(word->where, in_quotes(word->value) + " is no scheduling",
+                           remedy_for(word->value, {"normal", "fifo", "round-robin"}));
+  return Scheduling::Normal;
+}
+
+int read_number(const XmlElement& element, const char* name, int least, int greatest) {
+  const auto text = element.maybe_attribute(name);
+  if (!text) return 0;
+  int number = 0;
+  const char* const end = text->value.data() + text->value.size();
+  const auto result = std::from_chars(text->value.data(), end, number);
+  if (result.ec == std::errc() && result.ptr == end && number >= least && number <= greatest) {
+    return number;
+  }
+  element.findings().error(text->where, std::string(name) + " is " + in_quotes(text->value),
+                           "write a number from " + std::to_string(least) + " to " +
+                               std::to_string(greatest));
+  return 0;
+}
+
+/// `2` or `0-3`; false where the text is neither.
+bool add_range(std::string_view text, std::vector<unsigned>& cpus) {
+  const char* const end = text.data() + text.size();
+  unsigned first = 0;
+  auto result = std::from_chars(text.data(), end, first);
+  if (result.ec != std::errc()) return false;
+  unsigned last = first;
+  if (result.ptr != end) {
+    if (*result.ptr != '-') return false;
+    result = std::from_chars(result.ptr + 1, end, last);
+  }
+  if (result.ec != std::errc() || result.ptr != end || last < first || last > kLargestCpu) return false;
+  for (unsigned cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
+  return true;
+}
+
+std::vector<unsigned> read_cpus(const XmlElement& element) {
+  const auto list = element.maybe_attribute("cpus");
+  if (!list) return {};
+  std::vector<unsigned> cpus;
+  std::string_view rest = list->value;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    if (!add_range(trimmed(rest.substr(0, comma)), cpus)) {
+      element.findings().error(list->where, in_quotes(list->value) + " is no list of CPUs",
+                               "write their numbers, as in \"0\" or \"0,2-3\"");
+      return {};
+    }
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  std::sort(cpus.begin(), cpus.end());
+  cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
+  return cpus;
+}
+
+std::chrono::microseconds read_spin(const XmlElement& element) {
+  const auto text = element.maybe_attribute("spin");
+  if (!text) return {};
+  try {
+    const auto spin = parse_duration(text->value);
+    if (spin <= kLongestSpin) return std::chrono::duration_cast<std::chrono::microseconds>(spin);
+    element.findings().error(text->where, "spin is " + in_quotes(text->value) + ", more than 100 ms",
+                             "write what a wake-up costs, as in \"50 us\"");
+  } catch (const InvalidArgument& error) {
+    element.findings().error(text->where, error.what());
+  }
+  return {};
+}
+
+/// Which of `priority` and `nice` has a meaning follows from the scheduling.
+void demand_agreement(const XmlElement& element, Scheduling scheduling) {
+  const bool real_time = scheduling != Scheduling::Normal;
+  if (const auto nice = element.maybe_attribute("nice"); nice && real_time) {
+    element.findings().error(nice->where, "nice is for normal scheduling", "write priority instead");
+  }
+  const auto priority = element.maybe_attribute("priority");
+  if (priority && !real_time) {
+    element.findings().error(priority->where, "priority is for fifo and round-robin scheduling",
+                             "write scheduling=\"fifo\", or nice instead");
+  }
+  if (!priority && real_time) {
+    element.findings().error(element.maybe_attribute("scheduling")->where,
+                             "this scheduling needs a priority", "write priority=\"1\" to \"99\"");
+  }
+}
+
+}  // namespace
+
+ThreadRules read_thread_rules(const XmlElement& element) {
+  ThreadRules rules;
+  rules.count = static_cast<std::size_t>(read_number(element, "threads", 1, 256));
+  ThreadSettings& settings = rules.settings;
+  settings.scheduling = read_scheduling(element);
+  settings.priority = read_number(element, "priority", 1, 99);
+  settings.nice = read_number(element, "nice", -20, 19);
+  settings.cpus = read_cpus(element);
+  settings.spin = read_spin(element);
+  rules.lock_memory = read_boolean(element, "lock_memory", false);
+  demand_agreement(element, settings.scheduling);
+  return rules;
+}
+
+}  // namespace skein::profile
