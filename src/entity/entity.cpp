@@ -5,6 +5,7 @@
 
 #include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/rpc/dds_server.hpp"
 
@@ -32,6 +33,16 @@ ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider
   description.subcomponents = options.subcomponents;
   description.component = options.component;
   return description;
+}
+
+// A service of its own strand is known by its provider; empty where this entity does not know it.
+std::string name_of(const Broker& broker, const Guid& provider) {
+  for (const auto& description : broker.all()) {
+    if (description->provider != provider.bytes) continue;
+    return scoped_interface_name(description->service) + " of " + description->entity + " (" +
+           description->system + ")";
+  }
+  return {};
 }
 
 }  // namespace
@@ -130,7 +141,11 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue,
                                                          options.scheduling);
   rpc::Service::Options service_options;
-  service_options.single_threaded = options.threads <= 1;
+  service_options.threads = options.threads;
+  service_options.queue = options.queue;
+  service_options.name_of = [&broker = state_->broker](const Guid& strand) {
+    return name_of(broker, strand);
+  };
   service_options.inline_calls = owner.empty();
   if (owner.empty()) {
     service_options.open = [&head = state_->head](const rpc::OpenRequest& request) {

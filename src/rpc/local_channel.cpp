@@ -55,6 +55,7 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   const OperationInfo& operation = call->operation();
   auto invocation = std::make_shared<Invocation>();
   invocation->operation = &operation;
+  invocation->connection = id_;
   invocation->in = {operation.in->make(), operation.in->destroy};
   operation.in->assign(invocation->in.get(), in);
   invocation->deadline = call->deadline();

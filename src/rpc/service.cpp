@@ -30,7 +30,8 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clo
     : servant_(std::move(servant)),
       executor_(executor),
       clock_(clock),
-      options_(std::move(options)) {
+      options_(std::move(options)),
+      queue_(options_.queue) {
   if (options_.strand.is_nil()) options_.strand = options_.id;
 }
 
@@ -40,10 +41,22 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
 
 void Service::submit(std::shared_ptr<Invocation> invocation) {
   refuse_self_wait(invocation->chain);
-  if (!executor_.post([self = shared_from_this(), invocation] { self->execute(*invocation); })) {
+  std::lock_guard lock(queue_mutex_);  // until the invocation is there, the task finds nothing
+  if (!queue_.has_room(invocation->connection) ||
+      !executor_.post([self = shared_from_this()] { self->execute_next(); })) {
     throw Overloaded("the queue of " + std::string(interface_info().name) +
                      " is full; the call was not executed");
   }
+  queue_.push(std::move(invocation));
+}
+
+void Service::execute_next() {
+  std::shared_ptr<Invocation> next;
+  {
+    std::lock_guard lock(queue_mutex_);
+    next = queue_.pop();
+  }
+  if (next) execute(*next);
 }
 
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
@@ -62,12 +75,23 @@ bool Service::try_call_inline(const OperationInfo& operation, const void* in, vo
 }
 
 void Service::refuse_self_wait(const std::vector<Guid>& chain) const {
-  if (!options_.single_threaded) return;
-  if (std::find(chain.begin(), chain.end(), options_.strand) == chain.end()) return;
-  throw Unavailable("the call to " + std::string(interface_info().name) +
-                    " would wait for itself: the only thread that could answer it is blocked in a call "
-                    "that led to this one; make the inner call asynchronous or give the service more "
-                    "threads");
+  const auto blocked = std::count(chain.begin(), chain.end(), options_.strand);
+  if (blocked < static_cast<std::ptrdiff_t>(std::max<std::size_t>(options_.threads, 1))) return;
+  throw Unavailable("the call to " + std::string(interface_info().name) + " would wait for itself (" +
+                    circle(chain) +
+                    "): every thread that could answer it is blocked in a call that led to this one; "
+                    "make the inner call asynchronous or give the service more threads");
+}
+
+// From where the chain first enters this service, back to it.
+std::string Service::circle(const std::vector<Guid>& chain) const {
+  std::string text;
+  const auto first = std::find(chain.begin(), chain.end(), options_.strand);
+  for (auto strand = first; strand != chain.end(); ++strand) {
+    const std::string name = options_.name_of ? options_.name_of(*strand) : std::string();
+    text += (name.empty() ? "service " + strand->hex() : name) + " -> ";
+  }
+  return text + "the first again";
 }
 
 void Service::close() { closed_ = true; }

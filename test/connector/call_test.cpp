@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <condition_variable>
 #include <thread>
 
 #include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
+#include "skein/rpc/dds_channel.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -163,7 +166,7 @@ TEST_CASE("oneway calls are executed in order without an answer") {
 
 TEST_CASE("calls beyond a service's queue are refused as Overloaded, and none of them is executed") {
   ServiceOptions options;
-  options.queue = 2;
+  options.queue = 4;  // half of it for one client
   Pair pair(options);
   auto running = pair.echo->within(60s).async_wait(60'000);
   REQUIRE(eventually([&] { return pair.service->inside == 1; }));
@@ -174,6 +177,85 @@ TEST_CASE("calls beyond a service's queue are refused as Overloaded, and none of
   running.cancel();
   for (int i = 0; i < 2; ++i) CHECK(calls[i].get() == "x");
   CHECK(pair.service->calls == 3);
+}
+
+TEST_CASE("a client with one call does not wait behind another's thousands, and each of these is answered") {
+  struct Gated : EchoService {
+    std::string echo(const std::string& text) override {
+      std::unique_lock lock(mutex);
+      order.push_back(text);
+      changed.wait(lock, [&] { return open; });
+      return text;
+    }
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool open = false;
+    std::vector<std::string> order;
+  };
+  const auto server = make_server();
+  const auto service = std::make_shared<Gated>();
+  ServiceOptions options;
+  options.queue = 64;
+  server->provide<LouderEcho>(service, options);
+  const auto greedy = make_client("greedy");
+  const auto polite = make_client("polite");
+  auto many = greedy->connect<Echo>().within(60s);
+  auto one = polite->connect<Echo>().within(60s);
+
+  auto running = many.async_echo("greedy");
+  const auto inside = [&] {
+    std::lock_guard lock(service->mutex);
+    return service->order.size() == 1;
+  };
+  REQUIRE(eventually(inside));
+  // The last of each is refused as there is no room any more, so what was sent first waits in line.
+  std::vector<Call<std::string>> flood;
+  for (int i = 0; i < 2000; ++i) flood.push_back(many.async_echo("greedy"));
+  REQUIRE(eventually([&] { return flood.back().ready(); }));
+  std::vector<Call<std::string>> few;
+  for (int i = 0; i < 40; ++i) few.push_back(one.async_echo("polite"));
+  REQUIRE(eventually([&] { return few.back().ready(); }));
+  CHECK_THROWS_AS(few.back().get(), Overloaded);
+  {
+    std::lock_guard lock(service->mutex);
+    service->open = true;
+    service->changed.notify_all();
+  }
+  CHECK(running.get() == "greedy");
+  CHECK(few.front().get() == "polite");
+  std::size_t executed = 0;
+  std::size_t refused = 0;
+  for (auto& call : flood) {
+    try {
+      executed += call.get() == "greedy";
+    } catch (const Overloaded&) {
+      ++refused;
+    }
+  }
+  CHECK(executed + refused == 2000);
+  CHECK(executed == 32);  // half of the queue
+  std::lock_guard lock(service->mutex);
+  CHECK(std::find(service->order.begin(), service->order.end(), "polite") <= service->order.begin() + 2);
+}
+
+TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not sent") {
+  Pair pair;
+  ThreadExecutor control("control");
+  ThreadExecutor continuations("continue");
+  rpc::DdsChannel::Options options;
+  options.peer = "server";
+  options.calls_in_flight = 2;
+  Echo::Proxy echo(rpc::DdsChannel::open(pair.client->participant(), control, continuations,
+                                         pair.client->clock(),
+                                         {std::string(LouderEcho::interface_info().name), pair.id}, options));
+  auto first = echo.within(60s).async_wait(60'000);
+  auto second = echo.within(60s).async_wait(60'000);
+  CHECK_THROWS_AS(echo.echo("third"), Overloaded);
+  CHECK_THROWS_WITH(echo.echo("third"), Catch::Contains("2 calls to server") && Catch::Contains("was not sent"));
+  first.cancel();
+  second.cancel();
+  CHECK(echo.within(30s).echo("fourth") == "fourth");
+  CHECK(pair.service->calls <= 3);
 }
 
 TEST_CASE("connecting by interface, entity and base finds the provider; what is not there gives the reason") {

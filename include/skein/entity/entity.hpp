@@ -43,8 +43,9 @@ struct ServiceOptions {
   std::size_t threads = 1;
   /// How the system runs these threads.
   ThreadSettings scheduling{};
-  /// Requests that may wait for a thread before others are refused as Overloaded.
-  std::size_t queue = 1024;
+  /// Requests that may wait for a thread, over all clients; others are refused as Overloaded. A client
+  /// alone may have half of them waiting, several share: there is always room for one more client.
+  std::size_t queue = 2048;
   /// The component description as XML, for those who look the service up.
   std::string component{};
   /// Managed interfaces for which the entity keeps CSPs.

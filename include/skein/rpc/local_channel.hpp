@@ -28,6 +28,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   bool call_inline(Service& service, PendingCall& call, const void* in);
   void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
 
+  const Guid id_ = Guid::random();
   std::weak_ptr<Service> service_;
   Clock& clock_;
   Executor& continuations_;

@@ -13,6 +13,7 @@
 #include "skein/core/executor.hpp"
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
+#include "skein/rpc/fair_queue.hpp"
 
 namespace skein::rpc {
 
@@ -31,12 +32,14 @@ struct Invocation {
   /// The in struct; freed by the operation's own TypeSupport.
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;
+  Guid connection;  ///< With whose other invocations it waits in line.
   Instant deadline;
   std::vector<Guid> chain;
   std::shared_ptr<Session> session;
   std::atomic<bool> cancelled{false};
   /// Called once, on the executor's thread: the out struct, or what was thrown.
   std::function<void(const void* out, std::exception_ptr error)> respond;
+  std::shared_ptr<Invocation> next;  ///< The FairQueue's.
 };
 
 /// A provided service, whatever lane its calls come by: the implementation and the threads that run
@@ -48,8 +51,13 @@ class Service : public std::enable_shared_from_this<Service> {
     Guid id = Guid::random();
     /// Identity of the threads: services that share one executor share it. Nil: the service's own.
     Guid strand;
-    /// Whether one blocked call blocks all others: then calls that wait for themselves are refused.
-    bool single_threaded = true;
+    /// How many calls the executor runs at once: a call is refused that would wait for itself, as all
+    /// these threads are blocked in calls that led to it.
+    std::size_t threads = 1;
+    /// Invocations that may wait in all; see FairQueue.
+    std::size_t queue = 2048;
+    /// What people call a strand, for messages; empty: its number.
+    std::function<std::string(const Guid& strand)> name_of;
     /// Whether a blocking caller in the same process may run the call on its own thread. Not for an
     /// implementation that may hang: it would take its caller with it.
     bool inline_calls = true;
@@ -68,8 +76,8 @@ class Service : public std::enable_shared_from_this<Service> {
   /// A session for a new client (nullptr where the service has no Head).
   std::shared_ptr<Session> open(const OpenRequest& request) const;
 
-  /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where the queue is
-  /// full and Unavailable where the call chain shows that it would wait for itself; respond() is not
+  /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
+  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait for itself; respond() is not
   /// called then.
   void submit(std::shared_ptr<Invocation> invocation);
 
@@ -78,7 +86,8 @@ class Service : public std::enable_shared_from_this<Service> {
   bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
                        const Invocation& frame);
 
-  /// Throws Unavailable where a call with this chain would wait for itself.
+  /// Throws Unavailable, which names the services of the circle, where a call with this chain would
+  /// wait for itself.
   void refuse_self_wait(const std::vector<Guid>& chain) const;
 
   /// Whether an invocation is still inside the implementation although its deadline has passed.
@@ -89,7 +98,9 @@ class Service : public std::enable_shared_from_this<Service> {
 
  private:
   class Running;
+  void execute_next();
   void execute(Invocation& invocation);
+  std::string circle(const std::vector<Guid>& chain) const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, const Invocation& frame);
 
   std::shared_ptr<Servant> servant_;
@@ -97,6 +108,8 @@ class Service : public std::enable_shared_from_this<Service> {
   const Clock& clock_;
   Options options_;
   std::atomic<bool> closed_{false};
+  std::mutex queue_mutex_;
+  FairQueue queue_;
   mutable std::mutex mutex_;
   std::multiset<Instant> running_;  // deadlines
 };

@@ -1,0 +1,21 @@
+// An entity with a relay: VENDOR NAME. It says `ready`, and ends with its standard input.
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "relay_service.hpp"
+
+int main(int count, char** given) {
+  if (count != 3) return 2;
+  skein::EntityOptions options;
+  options.vendor = skein::dds::load_vendor(given[1]);
+  options.name = given[2];
+  options.system = "uav-1";
+  options.domain = 17;
+  skein::Entity entity(std::move(options));
+  entity.provide<test::Relay>(std::make_shared<skein::test::RelayService>(entity));
+  std::cout << "ready" << std::endl;
+  for (std::string line; std::getline(std::cin, line);) {
+  }
+  return 0;
+}
