@@ -136,10 +136,10 @@ Guid Entity::provide_csp(const std::string& name, const std::string& owner,
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
   const InterfaceInfo& interface = servant->interface_info();
+  auto executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
-  provided->executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue,
-                                                         options.scheduling);
+  provided->executor = std::move(executor);
   rpc::Service::Options service_options;
   service_options.threads = options.threads;
   service_options.queue = options.queue;

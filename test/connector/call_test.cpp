@@ -258,6 +258,14 @@ TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not s
   CHECK(pair.service->calls <= 3);
 }
 
+TEST_CASE("a service whose threads can never run as told is not provided, and the entity goes on") {
+  Pair pair;
+  ServiceOptions options;
+  options.scheduling.cpus = {4000};
+  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(pair.service, options), Catch::Contains("no CPU 4000"));
+  CHECK(pair.echo->echo("still here") == "still here");
+}
+
 TEST_CASE("connecting by interface, entity and base finds the provider; what is not there gives the reason") {
   Pair pair;
   CHECK(pair.client->connect<LouderEcho>().shout("hey") == "HEY");

@@ -77,8 +77,8 @@ class Service : public std::enable_shared_from_this<Service> {
   std::shared_ptr<Session> open(const OpenRequest& request) const;
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
-  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait for itself; respond() is not
-  /// called then.
+  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait for
+  /// itself; respond() is not called then.
   void submit(std::shared_ptr<Invocation> invocation);
 
   /// Runs the operation on the calling thread where the executor is idle; false otherwise.
