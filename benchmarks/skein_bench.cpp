@@ -16,20 +16,21 @@ namespace {
 
 struct Plan {
   CallPlan calls;
+  RivalPlan rivals;
   std::size_t cold_starts;
   std::size_t kills_on_one_host;
   std::size_t kills_across_hosts;
 };
 
 Plan full_plan() {
-  return {{{{64, 400}, {1024, 400}, {65'536, 120}, {1'048'576, 40}}, 40}, 25, 20, 6};
+  const std::vector<CallPlan::Size> sizes{{16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
+  return {{sizes, 25}, {sizes, 15, 400, 320, 1000, 200, 3000}, 20, 15, 5};
 }
 
 /// Shows that everything runs; its figures mean nothing.
-Plan quick_plan() { return {{{{64, 5}, {1024, 5}, {65'536, 5}, {1'048'576, 3}}, 1}, 1, 1, 1}; }
-
-void append(std::vector<Comparison>& all, std::vector<Comparison> more) {
-  for (Comparison& comparison : more) all.push_back(std::move(comparison));
+Plan quick_plan() {
+  const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
+  return {{sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, 1, 1, 1};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -53,7 +54,7 @@ void print_summary(const std::vector<Comparison>& comparisons) {
   }
 }
 
-const std::vector<std::string> kParts{"calls", "cold_starts", "deaths"};
+const std::vector<std::string> kParts{"calls", "rivals", "in_process", "idle_clients", "cold_starts", "deaths"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -64,6 +65,9 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   std::vector<Comparison> comparisons;
   const auto wanted = [&](const char* part) { return std::ranges::find(parts, part) != parts.end(); };
   if (wanted("calls")) append(comparisons, compare_calls(configurations, plan.calls));
+  if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
+  if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
+  if (wanted("idle_clients")) append(comparisons, compare_idle_clients(configurations, plan.rivals));
   if (wanted("cold_starts")) {
     append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
   }
@@ -92,8 +96,8 @@ int main(int argc, char** argv) {
   SkeinPeer peer;
   CLI::App* as_peer = app.add_subcommand("peer", "One process of a measured configuration")->group("");
   as_peer->add_option("--role", peer.role)->required();
-  as_peer->add_option("--vendor", peer.vendor)->required();
-  as_peer->add_option("--domain", peer.domain)->required();
+  as_peer->add_option("--vendor", peer.vendor);
+  as_peer->add_option("--domain", peer.domain);
   as_peer->add_option("--threads", peer.threads);
   as_peer->add_option("--interface", peer.interface);
   as_peer->add_option("--peer", peer.peer);

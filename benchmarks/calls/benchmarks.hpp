@@ -5,8 +5,8 @@
 #include "calls/configuration.hpp"
 #include "harness/comparison.hpp"
 
-/// The first benchmarks: what a call costs, how long the first one takes, and how soon a caller knows
-/// that its provider is dead.
+/// What a call costs, beside the raw vendors and beside other middleware, how long the first one takes, and
+/// how soon a caller knows that its provider is dead.
 namespace skein::benchmarks {
 
 struct CallPlan {
@@ -18,9 +18,30 @@ struct CallPlan {
   std::size_t rounds;
 };
 
+/// What is measured beside other middleware; small calls carry 64 octets.
+struct RivalPlan {
+  std::vector<CallPlan::Size> sizes;
+  std::size_t rounds;
+  std::size_t paced_calls;
+  std::size_t crowd_calls;
+  std::size_t pipelined_calls;
+  std::size_t cpu_calls;
+  std::size_t in_process_calls;
+};
+
 /// Calls through Skein, raw calls and a Unix socket, all processes alive and taking turns.
 /// One comparison for each pair of vendors, size and rival.
 std::vector<Comparison> compare_calls(Configurations& configurations, const CallPlan& plan);
+
+/// Skein beside omniORB, gRPC and ZeroMQ: one after the other, at a fixed rate, with several clients, with
+/// many calls in flight, and the processor time of both sides.
+std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan);
+
+/// A call that does not leave its process, beside omniORB's.
+std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan);
+
+/// A call while 32 other clients of the same service do nothing, beside one without them.
+std::vector<Comparison> compare_idle_clients(Configurations& configurations, const RivalPlan& plan);
 
 /// Fresh pairs of processes; the provider is up, the client's process begins.
 std::vector<Comparison> compare_cold_starts(Configurations& configurations, std::size_t starts);

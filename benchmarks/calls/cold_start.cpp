@@ -43,7 +43,7 @@ std::vector<Comparison> compare_cold_starts(Configurations& configurations, std:
 
   std::vector<Comparison> comparisons;
   for (const auto& [server, client] : vendor_pairs()) {
-    const std::string pair = server == client ? server : server + "-" + client;
+    const std::string pair = pair_name(server, client);
     const Starter& own = starters.at("skein " + pair);
     const Starter& raw = starters.at("raw " + pair);
     Comparison comparison{kClaim, own.configuration.name, raw.configuration.name};

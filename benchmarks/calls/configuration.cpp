@@ -2,18 +2,24 @@
 
 #include <sstream>
 
+#include "harness/placement.hpp"
+#include "harness/skipped.hpp"
+
 namespace skein::benchmarks {
 namespace {
 
 using Words = std::vector<std::string>;
 
-std::string pair_name(const std::string& server, const std::string& client) {
-  return server == client ? server : server + "-" + client;
-}
-
-Child ready(Child child) {
+std::optional<Child> ready_server(const Words& command, int network) {
+  if (command.empty()) return std::nullopt;
+  Child child(command, network);
   child.receive();
   return child;
+}
+
+double cpu_us_of(Child& child) {
+  child.send("cpu");
+  return std::stod(child.receive().substr(4)) / 1000;
 }
 
 void add_place(Words& command, const std::optional<Place>& place) {
@@ -53,27 +59,71 @@ Configuration Configurations::raw(const std::string& server, const std::string& 
           {folder_ + "/skein_bench_raw_" + client, "client", domain}};
 }
 
-Configuration Configurations::unix_socket() {
+Configuration Configurations::floor(const std::string& name, const std::string& program) {
   const std::string domain = next_domain();
-  const std::string program = folder_ + "/skein_bench_raw_unix";
-  return {"unix socket", {program, "server", domain}, {program, "client", domain}};
+  const std::string path = folder_ + "/skein_bench_raw_" + program;
+  return {name, {path, "server", domain}, {path, "client", domain}, false};
+}
+
+Configuration Configurations::unix_socket() { return floor("unix socket", "unix"); }
+
+Configuration Configurations::shared_memory() {
+  Configuration made = floor("spinning shared memory", "shared_memory");
+  made.needs_a_core_each = true;
+  return made;
+}
+
+Configuration Configurations::rival(const std::string& rival, const std::string& transport) {
+  const std::string number = next_domain();
+  const std::string program = folder_ + "/skein_bench_" + rival;
+  return {rival + " " + transport, {program, "server", number, transport}, {program, "client", number, transport}};
+}
+
+Configuration Configurations::skein_in_process() {
+  return {"skein in one process", {}, {folder_ + "/skein_bench", "peer", "--role", "local"}};
+}
+
+Configuration Configurations::omniorb_in_process(const std::string& transport) {
+  return {"omniorb " + transport, {}, {folder_ + "/skein_bench_omniorb", "collocated", next_domain(), transport}};
 }
 
 Running::Running(const Configuration& configuration, int server_network, int client_network)
-    : server(ready(Child(configuration.server, server_network))),
+    : server(ready_server(configuration.server, server_network)),
       client(configuration.client, client_network) {
   const std::string line = client.receive();  // `ready TIME`
   first_reply_us = between_us(client.started(), line.substr(line.find(' ') + 1));
 }
 
 std::vector<double> Running::call(std::size_t size_bytes, std::size_t count) {
-  client.send("call " + std::to_string(size_bytes) + " " + std::to_string(count));
+  return times("call " + std::to_string(size_bytes) + " " + std::to_string(count));
+}
+
+std::vector<double> Running::times(const std::string& command) {
+  client.send(command);
   std::istringstream words(client.receive());
   std::string title;
   words >> title;
   std::vector<double> samples_us;
   for (double time_ns; words >> time_ns;) samples_us.push_back(time_ns / 1000);
   return samples_us;
+}
+
+void Running::place(Placement placement) {
+  static const std::vector<int> cores = allowed_cores();
+  if (placement == Placement::OneCoreEach && cores.size() < 2) throw Skipped("there is but one core here");
+  const auto put = [](Child& child, int core) {
+    child.send("place " + std::to_string(core));
+    child.receive();
+  };
+  const int servers_core = placement == Placement::Anywhere ? -1 : cores[0];
+  if (server) put(*server, servers_core);
+  put(client, placement == Placement::OneCoreEach ? cores[1] : servers_core);
+}
+
+double Running::cpu_us() { return (server ? cpu_us_of(*server) : 0) + cpu_us_of(client); }
+
+std::string pair_name(const std::string& server, const std::string& client) {
+  return server == client ? server : server + "-" + client;
 }
 
 std::vector<std::pair<std::string, std::string>> vendor_pairs() {

@@ -12,12 +12,14 @@ namespace skein::benchmarks {
 
 inline constexpr std::array<const char*, 2> kVendors{"fastdds", "cyclonedds"};
 
-/// A provider and a caller: how their processes are started. `skein fastdds-cyclonedds` is a Skein
+/// A provider and a caller (or one process that is both: then `server` is empty): how their processes are started. `skein fastdds-cyclonedds` is a Skein
 /// provider on Fast DDS and a Skein client on Cyclone DDS; pairs of one vendor are `skein fastdds`.
 struct Configuration {
   std::string name;
   std::vector<std::string> server;
   std::vector<std::string> client;
+  /// Spins, so that it says nothing where both processes share a core.
+  bool needs_a_core_each = false;
 };
 
 /// Where an entity of a configuration speaks, if not on loopback.
@@ -37,15 +39,26 @@ class Configurations {
                       const std::optional<Place>& client_place = {});
   Configuration raw(const std::string& server, const std::string& client);
   Configuration unix_socket();
+  Configuration shared_memory();
+  /// `rival` is `omniorb`, `grpc` or `zeromq`; transports are those of its peer's command line.
+  Configuration rival(const std::string& rival, const std::string& transport);
+  /// Caller and provider in one process, without DDS.
+  Configuration skein_in_process();
+  /// `transport` is `shortcut` for a POA whose calls within the process pass by the ORB.
+  Configuration omniorb_in_process(const std::string& transport);
 
  private:
+  Configuration floor(const std::string& name, const std::string& program);
   std::string next_domain() { return std::to_string(++last_domain_); }
 
   std::string folder_;
   std::uint32_t last_domain_ = 30;
 };
 
-/// Both processes of a configuration, ready for calls.
+/// Where the two processes of a configuration run.
+enum class Placement { Anywhere, OneCore, OneCoreEach };
+
+/// The processes of a configuration, ready for calls.
 struct Running {
   /// Starts the server, then the client; throws what Child throws.
   explicit Running(const Configuration& configuration, int server_network = -1,
@@ -53,12 +66,21 @@ struct Running {
 
   /// `count` calls with `size_bytes` of content each way; microseconds.
   std::vector<double> call(std::size_t size_bytes, std::size_t count);
+  /// What the client answers to any command whose answer are times; microseconds.
+  std::vector<double> times(const std::string& command);
+  /// Throws Skipped where there is but one core for OneCoreEach.
+  void place(Placement placement);
+  /// Processor time of both processes so far, microseconds.
+  double cpu_us();
 
-  Child server;
+  std::optional<Child> server;
   Child client;
   /// From just before the client's process was made until its first reply.
   double first_reply_us = 0;
 };
+
+/// `fastdds`, `fastdds-cyclonedds`.
+std::string pair_name(const std::string& server, const std::string& client);
 
 /// Both vendors paired with themselves and each other, provider first.
 std::vector<std::pair<std::string, std::string>> vendor_pairs();

@@ -46,7 +46,7 @@ struct Victim {
     running.client.send("told");
     // At a random phase of heartbeats and announcements, with the caller already waiting.
     std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 400));
-    const Instant killed = running.server.kill();
+    const Instant killed = running.server->kill();
     std::istringstream words(running.client.receive());
     std::string title;
     long long told_ns = 0, gone_ns = 0;

@@ -7,6 +7,7 @@
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
 #include "skein/brokerless_discovery/broker.hpp"
+#include "skein/dds/loopback.hpp"
 #include "skein/entity/entity.hpp"
 
 namespace skein::benchmarks {
@@ -92,20 +93,53 @@ class Held {
   brokerless_discovery::Broker::Registration observation_;
 };
 
-void call(const SkeinPeer& peer) {
-  Entity entity(entity_options(peer));
+Echo::Proxy connected(Entity& entity) {
   auto proxy = entity.connect<Echo>({.timeout = 20s}).within(10s);
   proxy.echo({});
+  return proxy;
+}
+
+EchoCall call_of(const Echo::Proxy& made) {
+  return [proxy = made](const Content& content, const Seen& seen) mutable { seen(proxy.echo(content)); };
+}
+
+Client client_of(Entity& entity, const Echo::Proxy& proxy) {
+  return {call_of(proxy), [&entity] { return call_of(connected(entity)); },
+          [proxy](const Content& content) mutable {
+            auto call = std::make_shared<Call<Content>>(proxy.async_echo(content));
+            return [call] { call->get(); };
+          }};
+}
+
+void call(const SkeinPeer& peer) {
+  Entity entity(entity_options(peer));
+  auto proxy = connected(entity);
   Held held(entity, proxy);
-  run_client([&](const Content& content) { return proxy.echo(content); },
-             {{"hold", [&](const std::string&) { return held.hold(); }},
-              {"told", [&](const std::string&) { return held.told(); }}});
+  Client client = client_of(entity, proxy);
+  client.extra = {{"hold", [&](const std::string&) { return held.hold(); }},
+                  {"told", [&](const std::string&) { return held.told(); }}};
+  run_client(client);
+}
+
+/// Both ends in one process: the lane without DDS.
+void call_in_process() {
+  SystemClock clock;
+  dds::LoopbackNetwork network(clock);
+  EntityOptions options;
+  options.name = "both";
+  options.vendor = network.vendor();
+  Entity entity(options);
+  entity.provide<Echo>(std::make_shared<EchoBody>());
+  run_client(client_of(entity, connected(entity)));
 }
 
 }  // namespace
 
 int run_skein_peer(const SkeinPeer& peer) {
-  return run_peer([&] { peer.role == "server" ? serve(peer) : call(peer); });
+  return run_peer([&] {
+    if (peer.role == "server") return serve(peer);
+    peer.role == "local" ? call_in_process() : call(peer);
+  });
 }
 
 }  // namespace skein::benchmarks

@@ -45,6 +45,10 @@ json to_json(const Comparison& comparison) {
   return object;
 }
 
+void append(std::vector<Comparison>& all, std::vector<Comparison> more) {
+  for (Comparison& comparison : more) all.push_back(std::move(comparison));
+}
+
 void write_results(const std::vector<Comparison>& comparisons, const std::string& path) {
   json all = json::array();
   for (const Comparison& comparison : comparisons) all.push_back(to_json(comparison));

@@ -3,72 +3,72 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <sstream>
 
+#include "harness/load.hpp"
+#include "harness/placement.hpp"
 #include "harness/skipped.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein::benchmarks {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 void say(const std::string& line) { std::cout << line << '\n' << std::flush; }
-
-// The last octet too: a truncated or stale reply differs in it.
-Content content_of(std::size_t size, std::size_t turn) {
-  Content content(size, static_cast<std::uint8_t>(turn));
-  for (std::size_t i = 0; i < size; i += 97) content[i] = static_cast<std::uint8_t>(i / 97 + turn);
-  return content;
-}
-
-std::string measure(const EchoCall& call, const std::string& what, std::size_t turn) {
-  std::istringstream words(what);
-  std::size_t size = 0, count = 0;
-  words >> size >> count;
-  const Content content = content_of(size, turn);
-  std::string times = "times";
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto begin = Clock::now();
-    const Content reply = call(content);
-    const auto took = Clock::now() - begin;
-    if (reply != content) throw Internal("a reply differs from what was sent");
-    times += ' ' + std::to_string(std::chrono::nanoseconds(took).count());
-  }
-  return times;
-}
 
 std::string one_line(std::string text) {
   for (char& letter : text) letter = letter == '\n' ? ' ' : letter;
   return text;
 }
 
+// One command that cannot be obeyed here is no reason to end.
+std::string answer(const Command& command, const std::string& rest) {
+  try {
+    return command(rest);
+  } catch (const Skipped& reason) {
+    return "skipped " + one_line(reason.what());
+  }
+}
+
+Commands known_to_all() {
+  return {{"place", [](const std::string& core) {
+             place_all_threads(std::stoi(core));
+             return "placed";
+           }},
+          {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }}};
+}
+
+const Command& find(const Commands& commands, const std::string& name) {
+  for (const auto& [known, command] : commands) {
+    if (known == name) return command;
+  }
+  throw Internal("the command '" + name + "' is unknown here");
+}
+
 }  // namespace
 
 std::string now_text() {
-  return std::to_string(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count());
+  return std::to_string(
+      std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count());
 }
 
-void run_client(const EchoCall& call, const std::vector<std::pair<std::string, Command>>& extra) {
+void run_commands(const Commands& commands) {
+  Commands all = known_to_all();
+  all.insert(all.end(), commands.begin(), commands.end());
   say("ready " + now_text());
-  std::string line;
-  for (std::size_t turn = 0; std::getline(std::cin, line); ++turn) {
+  for (std::string line; std::getline(std::cin, line);) {
     const std::size_t space = line.find(' ');
-    const std::string name = line.substr(0, space);
     const std::string rest = space == std::string::npos ? "" : line.substr(space + 1);
-    if (name == "call") say(measure(call, rest, turn));
-    for (const auto& [known, command] : extra) {
-      if (name == known) say(command(rest));
-    }
+    say(answer(find(all, line.substr(0, space)), rest));
   }
 }
 
-void run_server() {
-  say("ready " + now_text());
-  std::string line;
-  while (std::getline(std::cin, line)) {
-  }
+void run_client(const Client& client) {
+  Load load(client);
+  Commands commands = load.commands();
+  commands.insert(commands.end(), client.extra.begin(), client.extra.end());
+  run_commands(commands);
 }
+
+void run_server() { run_commands({}); }
 
 int run_peer(const std::function<void()>& peer) {
   try {

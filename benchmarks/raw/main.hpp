@@ -25,11 +25,11 @@ inline void run_raw_client(const TryCall& call) {
   while (!call({}, kOpenInterval)) {
     if (std::chrono::steady_clock::now() > end) throw Internal("no first reply within 10 s");
   }
-  run_client([&](const Content& content) {
-    auto reply = call(content, kPatience);
+  run_client({[&](const Content& content, const Seen& seen) {
+    const auto reply = call(content, kPatience);
     if (!reply) throw Internal("no reply within 10 s");
-    return std::move(*reply);
-  });
+    seen(*reply);
+  }});
 }
 
 /// `server` serves while the function that it is given runs.

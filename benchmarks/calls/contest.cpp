@@ -1,0 +1,129 @@
+#include "calls/contest.hpp"
+
+#include <cstdio>
+
+#include "harness/skipped.hpp"
+#include "harness/turns.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr std::uint32_t kSeed = 17;
+
+const char* text_of(Placement placement) {
+  switch (placement) {
+    case Placement::OneCore: return "both on one core";
+    case Placement::OneCoreEach: return "one core each";
+    case Placement::Anywhere: return "anywhere";
+  }
+  return "";
+}
+
+}  // namespace
+
+struct Contest::Contender {
+  bool needs_a_core_each = false;
+  std::optional<Running> running;
+  std::string skipped;
+  std::map<std::pair<std::size_t, Placement>, Outcome> outcomes;
+};
+
+Contest::Contest(std::string name, std::vector<Trial> trials, std::vector<Placement> placements)
+    : name_(std::move(name)), trials_(std::move(trials)), placements_(std::move(placements)) {}
+
+Contest::~Contest() = default;
+
+bool Contest::enter(const Configuration& configuration) {
+  std::fprintf(stderr, "starting: %s\n", configuration.name.c_str());
+  Contender& contender = contenders_[configuration.name];
+  contender.needs_a_core_each = configuration.needs_a_core_each;
+  try {
+    contender.running.emplace(configuration);
+    return true;
+  } catch (const Skipped& reason) {
+    contender.skipped = reason.what();
+    return false;
+  }
+}
+
+void Contest::take_turn(Contender& contender, std::size_t trial, Placement placement) {
+  Outcome& outcome = contender.outcomes[{trial, placement}];
+  outcome.skipped = contender.skipped;
+  if (outcome.skipped.empty() && contender.needs_a_core_each && placement != Placement::OneCoreEach) {
+    outcome.skipped = "it spins: both sides need a core of their own";
+  }
+  if (!outcome.skipped.empty()) return;
+  try {
+    contender.running->place(placement);
+    const auto measured = trials_[trial].take(*contender.running);
+    outcome.samples.insert(outcome.samples.end(), measured.begin(), measured.end());
+  } catch (const Skipped& reason) {
+    outcome.skipped = reason.what();
+  }
+}
+
+void Contest::run(std::size_t rounds) {
+  std::vector<std::function<void()>> turns;
+  for (auto& [name, contender] : contenders_) {
+    for (std::size_t trial = 0; trial < trials_.size(); ++trial) {
+      for (const Placement placement : placements_) {
+        turns.push_back([this, &contender = contender, trial, placement] {
+          take_turn(contender, trial, placement);
+        });
+      }
+    }
+  }
+  take_turns(rounds, std::move(turns), kSeed, [&](std::size_t round) {
+    std::fprintf(stderr, "\r%s: round %zu of %zu ", name_.c_str(), round + 1, rounds);
+  });
+  std::fputc('\n', stderr);
+  for (auto& [name, contender] : contenders_) contender.running.reset();
+}
+
+template <class Fill>
+std::vector<Comparison> Contest::compared(const std::string& subject, const std::string& rival,
+                                          Fill fill) const {
+  std::vector<Comparison> comparisons;
+  for (std::size_t trial = 0; trial < trials_.size(); ++trial) {
+    for (const Placement placement : placements_) {
+      Comparison comparison{trials_[trial].claim, subject, rival, trials_[trial].parameters};
+      comparison.parameters["placement"] = text_of(placement);
+      const Outcome& own = contenders_.at(subject).outcomes.at({trial, placement});
+      const Outcome other = fill(trial, placement);
+      comparison.skipped = own.skipped.empty() ? other.skipped : own.skipped;
+      if (comparison.skipped.empty()) {
+        comparison.samples = own.samples;
+        comparison.rival_samples = other.samples;
+      }
+      comparisons.push_back(std::move(comparison));
+    }
+  }
+  return comparisons;
+}
+
+std::vector<Comparison> Contest::compare(const std::string& subject, const std::string& rival) const {
+  return compared(subject, rival, [&](std::size_t trial, Placement placement) {
+    return contenders_.at(rival).outcomes.at({trial, placement});
+  });
+}
+
+std::vector<Comparison> Contest::compare(const std::string& subject, const Limit& limit) const {
+  return compared(subject, limit.name, [&](std::size_t, Placement) { return Outcome{{limit.time_us}, ""}; });
+}
+
+Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count) {
+  return {claim, {{"size_bytes", size}}, [=](Running& running) {
+            running.call(size, count / 10 + 1);  // wakes the processes up
+            return running.call(size, count);
+          }};
+}
+
+std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50, std::optional<double> p99) {
+  for (Comparison& comparison : comparisons) {
+    comparison.goal_p50 = p50;
+    comparison.goal_p99 = p99;
+  }
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calls/configuration.hpp"
+#include "harness/comparison.hpp"
+
+namespace skein::benchmarks {
+
+/// One way to measure whatever configuration: one claim, one set of parameters.
+struct Trial {
+  std::string claim;
+  nlohmann::json parameters;
+  std::function<std::vector<double>(Running&)> take;  ///< Microseconds.
+};
+
+/// One call after the other, after some that wake the processes up.
+Trial closed_loop(const std::string& claim, std::size_t size_bytes, std::size_t count);
+
+/// A promise to compare with, instead of a rival.
+struct Limit {
+  std::string name;
+  double time_us = 0;
+};
+
+/// Configurations that are all alive and take turns at the same trials, at each of the same placements.
+class Contest {
+ public:
+  /// `name` is for the progress line.
+  Contest(std::string name, std::vector<Trial> trials, std::vector<Placement> placements);
+  ~Contest();
+
+  /// Starts its processes; false where it has to be skipped.
+  bool enter(const Configuration& configuration);
+
+  /// Every contender takes every trial at every placement once a round, in a new random order.
+  void run(std::size_t rounds);
+
+  /// A comparison for each trial and placement, in one order whoever is compared; parameters tell which.
+  std::vector<Comparison> compare(const std::string& subject, const std::string& rival) const;
+  std::vector<Comparison> compare(const std::string& subject, const Limit& limit) const;
+
+ private:
+  struct Contender;
+  struct Outcome {
+    std::vector<double> samples;
+    std::string skipped;
+  };
+
+  void take_turn(Contender& contender, std::size_t trial, Placement placement);
+  template <class Fill>
+  std::vector<Comparison> compared(const std::string& subject, const std::string& rival, Fill fill) const;
+
+  const std::string name_;
+  const std::vector<Trial> trials_;
+  const std::vector<Placement> placements_;
+  std::map<std::string, Contender> contenders_;
+};
+
+/// The same comparisons with the greatest ratios that the project is content with.
+std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50,
+                                  std::optional<double> p99 = {});
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,135 @@
+#include <list>
+
+#include "calls/benchmarks.hpp"
+#include "calls/contest.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr const char* kSkeins[]{"skein fastdds", "skein cyclonedds"};
+constexpr std::size_t kSmall = 64;
+
+std::string words(std::initializer_list<std::size_t> numbers) {
+  std::string text;
+  for (const std::size_t number : numbers) text += " " + std::to_string(number);
+  return text;
+}
+
+Trial paced(std::size_t count, std::size_t interval_us) {
+  return {"at a fixed rate, from the intended send",
+          {{"calls_per_second", 1'000'000 / interval_us}},
+          [=](Running& running) {
+            running.call(kSmall, 10);
+            return running.times("paced" + words({kSmall, count, interval_us}));
+          }};
+}
+
+Trial crowd(std::size_t clients, std::size_t count) {
+  return {"clients that call at once", {{"clients", clients}}, [=](Running& running) {
+            running.times("crowd" + words({clients, kSmall, 2}));
+            return running.times("crowd" + words({clients, kSmall, count / clients + 1}));
+          }};
+}
+
+Trial pipelined(std::size_t count, std::size_t depth) {
+  return {"time per call, many in flight", {{"calls_in_flight", depth}}, [=](Running& running) {
+            running.times("pipelined" + words({kSmall, depth, depth}));
+            return running.times("pipelined" + words({kSmall, count, depth}));
+          }};
+}
+
+Trial cpu(std::size_t size, std::size_t count) {
+  return {"processor time per call, both sides", {{"size_bytes", size}}, [=](Running& running) {
+            running.call(size, count / 10 + 1);
+            const double before = running.cpu_us();
+            running.call(size, count);
+            return std::vector{(running.cpu_us() - before) / static_cast<double>(count)};
+          }};
+}
+
+std::vector<Trial> trials_of(const RivalPlan& plan) {
+  std::vector<Trial> trials;
+  for (const auto& size : plan.sizes) trials.push_back(closed_loop("one call after the other", size.size_bytes, size.calls_per_turn));
+  trials.push_back(paced(plan.paced_calls, 500));
+  for (const std::size_t clients : {1, 4, 32}) trials.push_back(crowd(clients, plan.crowd_calls));
+  trials.push_back(pipelined(plan.pipelined_calls, 64));
+  for (const std::size_t size : {std::size_t{64}, std::size_t{65'536}}) {
+    trials.push_back(cpu(size, plan.cpu_calls));
+  }
+  return trials;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan) {
+  Contest contest("rivals", trials_of(plan), {Placement::OneCore, Placement::OneCoreEach});
+  std::vector<std::string> rivals;
+  const auto enter_rival = [&](const Configuration& rival) {
+    rivals.push_back(rival.name);
+    contest.enter(rival);
+  };
+  for (const char* vendor : kVendors) contest.enter(configurations.skein(vendor, vendor));
+  for (const char* transport : {"unix", "tcp"}) enter_rival(configurations.rival("omniorb", transport));
+  for (const char* transport : {"unix", "tcp"}) enter_rival(configurations.rival("grpc", transport));
+  for (const char* transport : {"ipc", "tcp"}) enter_rival(configurations.rival("zeromq", transport));
+  contest.enter(configurations.unix_socket());
+  contest.enter(configurations.shared_memory());
+  contest.run(plan.rounds);
+  std::vector<Comparison> comparisons;
+  for (const char* skein : kSkeins) {
+    for (const std::string& rival : rivals) append(comparisons, with_goal(contest.compare(skein, rival), 1.0));
+    for (const char* floor : {"unix socket", "spinning shared memory"}) {
+      append(comparisons, contest.compare(skein, std::string(floor)));
+    }
+  }
+  return comparisons;
+}
+
+std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan) {
+  std::vector<Trial> trials;
+  for (const std::size_t size : {16, 64, 1024}) {
+    trials.push_back({"a call in the same process", {{"size_bytes", size}}, [&, size](Running& running) {
+                        running.call(size, plan.in_process_calls / 10 + 1);
+                        return running.call(size, plan.in_process_calls);
+                      }});
+  }
+  Contest contest("in one process", std::move(trials), {Placement::OneCore});
+  const Configuration skein = configurations.skein_in_process();
+  const Configuration collocated = configurations.omniorb_in_process("collocated");
+  const Configuration shortcut = configurations.omniorb_in_process("shortcut");
+  for (const Configuration& each : {skein, collocated, shortcut}) contest.enter(each);
+  contest.run(plan.rounds);
+  std::vector<Comparison> comparisons;
+  append(comparisons, with_goal(contest.compare(skein.name, Limit{"limit 1 us", 1.0}), 1.0));
+  append(comparisons, with_goal(contest.compare(skein.name, collocated.name), 1.0));
+  append(comparisons, contest.compare(skein.name, shortcut.name));
+  return comparisons;
+}
+
+std::vector<Comparison> compare_idle_clients(Configurations& configurations, const RivalPlan& plan) {
+  Contest contest("idle clients", {closed_loop("a call beside idle clients", kSmall, plan.crowd_calls)},
+                  {Placement::OneCore, Placement::OneCoreEach});
+  std::list<Child> crowds;
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const char* vendor : kVendors) {
+    Configuration alone = configurations.skein(vendor, vendor);
+    Configuration crowded = configurations.skein(vendor, vendor);
+    alone.name += ", no idle clients";
+    crowded.name += ", 32 idle clients";
+    pairs.emplace_back(crowded.name, alone.name);
+    contest.enter(alone);
+    if (!contest.enter(crowded)) continue;
+    crowds.emplace_back(crowded.client);
+    crowds.back().receive();
+    crowds.back().send("idle 31");
+    crowds.back().receive();
+  }
+  contest.run(plan.rounds);
+  std::vector<Comparison> comparisons;
+  for (const auto& [crowded, alone] : pairs) {
+    append(comparisons, with_goal(contest.compare(crowded, alone), 1.05));
+  }
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks
