@@ -99,14 +99,39 @@ TEST_CASE("no pair of vendors, size or way to die is missing") {
   const json& results = QuickRun::get().results;
   for (const std::string& pair : kPairs) {
     CAPTURE(pair);
-    for (const int size : {64, 1024, 65'536, 1'048'576}) {
-      CHECK(has(results, "a call over DDS", "skein " + pair, {{"size_bytes", size}}));
-      CHECK(has(results, "a call over DDS", "skein " + pair, {{"size_bytes", size}}, "unix socket"));
+    for (const int size : {16, 64, 1024, 65'536, 1'048'576}) {
+      for (const char* placement : {"both on one core", "one core each"}) {
+        const json parameters{{"size_bytes", size}, {"placement", placement}};
+        CHECK(has(results, "a call over DDS", "skein " + pair, parameters));
+        CHECK(has(results, "a call over DDS", "skein " + pair, parameters, "unix socket"));
+      }
     }
     CHECK(has(results, "process start to first reply", "skein " + pair, json::object()));
     for (const char* where : {"one host", "across two hosts"}) {
       CHECK(has(results, "provider killed to caller told", "skein " + pair, {{"where", where}}));
     }
+  }
+}
+
+TEST_CASE("no rival and no way to call is missing") {
+  const json& results = QuickRun::get().results;
+  for (const char* vendor : {"skein fastdds", "skein cyclonedds"}) {
+    for (const char* rival : {"omniorb unix", "omniorb tcp", "grpc unix", "grpc tcp", "zeromq ipc", "zeromq tcp"}) {
+      CAPTURE(vendor, rival);
+      for (const int size : {16, 64, 1024, 65'536, 1'048'576}) {
+        CHECK(has(results, "one call after the other", vendor, {{"size_bytes", size}}, rival));
+      }
+      for (const int clients : {1, 4, 32}) {
+        CHECK(has(results, "clients that call at once", vendor, {{"clients", clients}}, rival));
+      }
+      CHECK(has(results, "at a fixed rate, from the intended send", vendor, {{"calls_per_second", 2000}}, rival));
+      CHECK(has(results, "time per call, many in flight", vendor, {{"calls_in_flight", 64}}, rival));
+      CHECK(has(results, "processor time per call, both sides", vendor, {{"size_bytes", 64}}, rival));
+    }
+  }
+  CHECK(has(results, "a call in the same process", "skein in one process", json::object(), "omniorb collocated"));
+  for (const int count : {10, 100, 1000, 10'000}) {
+    CHECK(has(results, "find_service among many descriptions", "skein", {{"descriptions", count}}));
   }
 }
 

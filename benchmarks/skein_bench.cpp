@@ -9,6 +9,7 @@
 #include "calls/skein_peer.hpp"
 #include "harness/private_network.hpp"
 #include "report/report.hpp"
+#include "report/sections.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein::benchmarks {
@@ -17,6 +18,7 @@ namespace {
 struct Plan {
   CallPlan calls;
   RivalPlan rivals;
+  FindPlan find;
   std::size_t cold_starts;
   std::size_t kills_on_one_host;
   std::size_t kills_across_hosts;
@@ -24,37 +26,33 @@ struct Plan {
 
 Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
-  return {{sizes, 25}, {sizes, 15, 400, 320, 1000, 200, 3000}, 20, 15, 5};
+  return {{sizes, 25}, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, 15, 5};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, 1, 1, 1};
+  return {{sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, 1, 1};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
-  std::printf("%-32s %-28s %-26s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us", "p99 us",
-              "p50 x", "p99 x");
+  std::printf("%-72s %-30s %-24s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us", "p99 us", "p50 x",
+              "p99 x");
   for (const Comparison& comparison : comparisons) {
     if (!comparison.goal_p50) continue;
-    const auto& parameters = comparison.parameters;
-    const std::string claim =
-        comparison.claim +
-        (parameters.contains("size_bytes") ? ", " + parameters["size_bytes"].dump() + " B" : "");
+    const std::string claim = comparison.claim + ", " + place_of(comparison);
     if (!comparison.skipped.empty()) {
-      std::printf("%-32.32s %-28s skipped: %s\n", claim.c_str(), comparison.subject.c_str(),
+      std::printf("%-72.72s %-30s skipped: %s\n", claim.c_str(), comparison.subject.c_str(),
                   comparison.skipped.c_str());
       continue;
     }
     const Summary own = comparison.summary(), rival = comparison.rival_summary();
-    std::printf("%-32.32s %-28s %-26s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(),
-                comparison.subject.c_str(), comparison.rival.c_str(), own.p50, own.p99,
-                own.p50 / rival.p50, own.p99 / rival.p99);
+    std::printf("%-72.72s %-30s %-24s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(), comparison.subject.c_str(),
+                comparison.rival.c_str(), own.p50, own.p99, own.p50 / rival.p50, own.p99 / rival.p99);
   }
 }
 
-const std::vector<std::string> kParts{"calls", "rivals", "in_process", "idle_clients", "cold_starts", "deaths"};
+const std::vector<std::string> kParts{"calls", "rivals", "in_process", "idle_clients", "find_service", "cold_starts", "deaths"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -68,6 +66,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
   if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
   if (wanted("idle_clients")) append(comparisons, compare_idle_clients(configurations, plan.rivals));
+  if (wanted("find_service")) append(comparisons, compare_find_service(configurations, plan.find));
   if (wanted("cold_starts")) {
     append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
   }

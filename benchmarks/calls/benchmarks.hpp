@@ -43,6 +43,14 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
 /// A call while 32 other clients of the same service do nothing, beside one without them.
 std::vector<Comparison> compare_idle_clients(Configurations& configurations, const RivalPlan& plan);
 
+struct FindPlan {
+  std::size_t searches;
+  std::size_t rounds;
+};
+
+/// Looking one service up among 10 to 10,000, beside omniORB's name server.
+std::vector<Comparison> compare_find_service(Configurations& configurations, const FindPlan& plan);
+
 /// Fresh pairs of processes; the provider is up, the client's process begins.
 std::vector<Comparison> compare_cold_starts(Configurations& configurations, std::size_t starts);
 

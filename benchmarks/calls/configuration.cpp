@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "harness/placement.hpp"
+#include "rivals/main.hpp"
 #include "harness/skipped.hpp"
 
 namespace skein::benchmarks {
@@ -87,6 +88,19 @@ Configuration Configurations::omniorb_in_process(const std::string& transport) {
   return {"omniorb " + transport, {}, {folder_ + "/skein_bench_omniorb", "collocated", next_domain(), transport}};
 }
 
+Configuration Configurations::skein_finder() {
+  return {"skein", {}, {folder_ + "/skein_bench", "peer", "--role", "finder"}};
+}
+
+Configuration Configurations::name_server(const std::string& log_folder) {
+  const int number = std::stoi(next_domain());
+  const std::string port = std::to_string(rivals::kFirstPort + number);
+  return {"omniORB's name server",
+          {"/usr/bin/omniNames", "-start", port, "-logdir", log_folder, "-ignoreport", "-ORBendPoint",
+           "giop:tcp:127.0.0.1:" + port},
+          {folder_ + "/skein_bench_omniorb", "names", std::to_string(number), "tcp"}};
+}
+
 Running::Running(const Configuration& configuration, int server_network, int client_network)
     : server(ready_server(configuration.server, server_network)),
       client(configuration.client, client_network) {
@@ -100,12 +114,7 @@ std::vector<double> Running::call(std::size_t size_bytes, std::size_t count) {
 
 std::vector<double> Running::times(const std::string& command) {
   client.send(command);
-  std::istringstream words(client.receive());
-  std::string title;
-  words >> title;
-  std::vector<double> samples_us;
-  for (double time_ns; words >> time_ns;) samples_us.push_back(time_ns / 1000);
-  return samples_us;
+  return times_us(client.receive());
 }
 
 void Running::place(Placement placement) {
@@ -121,6 +130,15 @@ void Running::place(Placement placement) {
 }
 
 double Running::cpu_us() { return (server ? cpu_us_of(*server) : 0) + cpu_us_of(client); }
+
+std::vector<double> times_us(const std::string& answer) {
+  std::istringstream words(answer);
+  std::string title;
+  words >> title;
+  std::vector<double> samples_us;
+  for (double time_ns; words >> time_ns;) samples_us.push_back(time_ns / 1000);
+  return samples_us;
+}
 
 std::string pair_name(const std::string& server, const std::string& client) {
   return server == client ? server : server + "-" + client;

@@ -46,6 +46,9 @@ class Configurations {
   Configuration skein_in_process();
   /// `transport` is `shortcut` for a POA whose calls within the process pass by the ORB.
   Configuration omniorb_in_process(const std::string& transport);
+  /// Clients that know `bind COUNT` and `find COUNT`: of a Broker's table, and of omniORB's name server.
+  Configuration skein_finder();
+  Configuration name_server(const std::string& log_folder);
 
  private:
   Configuration floor(const std::string& name, const std::string& program);
@@ -78,6 +81,9 @@ struct Running {
   /// From just before the client's process was made until its first reply.
   double first_reply_us = 0;
 };
+
+/// The times that a peer answered with; microseconds.
+std::vector<double> times_us(const std::string& answer);
 
 /// `fastdds`, `fastdds-cyclonedds`.
 std::string pair_name(const std::string& server, const std::string& client);

@@ -1,8 +1,11 @@
 #include "calls/skein_peer.hpp"
 
+#include <algorithm>
 #include <future>
+#include <random>
 #include <thread>
 
+#include "skein/discovery.idl.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
@@ -103,9 +106,9 @@ EchoCall call_of(const Echo::Proxy& made) {
   return [proxy = made](const Content& content, const Seen& seen) mutable { seen(proxy.echo(content)); };
 }
 
-Client client_of(Entity& entity, const Echo::Proxy& proxy) {
-  return {call_of(proxy), [&entity] { return call_of(connected(entity)); },
-          [proxy](const Content& content) mutable {
+Client client_of(Entity& entity, const Echo::Proxy& made) {
+  return {call_of(made), [&entity] { return call_of(connected(entity)); },
+          [proxy = made](const Content& content) mutable {
             auto call = std::make_shared<Call<Content>>(proxy.async_echo(content));
             return [call] { call->get(); };
           }};
@@ -121,16 +124,71 @@ void call(const SkeinPeer& peer) {
   run_client(client);
 }
 
+/// An entity that needs no vendor, because it speaks to nobody outside its process.
+struct Alone {
+  SystemClock clock{};
+  dds::LoopbackNetwork network{clock};
+  std::optional<Entity> entity{};
+
+  Alone() {
+    EntityOptions options;
+    options.name = "alone";
+    options.vendor = network.vendor();
+    entity.emplace(options);
+  }
+};
+
 /// Both ends in one process: the lane without DDS.
 void call_in_process() {
-  SystemClock clock;
-  dds::LoopbackNetwork network(clock);
-  EntityOptions options;
-  options.name = "both";
-  options.vendor = network.vendor();
-  Entity entity(options);
-  entity.provide<Echo>(std::make_shared<EchoBody>());
-  run_client(client_of(entity, connected(entity)));
+  Alone alone;
+  alone.entity->provide<Echo>(std::make_shared<EchoBody>());
+  run_client(client_of(*alone.entity, connected(*alone.entity)));
+}
+
+std::string service_name(std::size_t number) { return "benchmark/IService" + std::to_string(number); }
+
+/// A Broker with many descriptions, and how long it takes to find one.
+class Finder {
+ public:
+  explicit Finder(brokerless_discovery::Broker& broker) : broker_(broker) {}
+
+  std::string bind(std::size_t count) {
+    while (registrations_.size() < count) {
+      brokerless_discovery::ServiceDescription description;
+      const Guid provider = Guid::random();
+      std::copy(provider.bytes.begin(), provider.bytes.end(), description.provider.begin());
+      description.service = service_name(registrations_.size());
+      description.entity = "entity" + std::to_string(registrations_.size());
+      registrations_.push_back(broker_.add_service(description));
+    }
+    while (broker_.all().size() < count) std::this_thread::sleep_for(1ms);
+    return "bound";
+  }
+
+  std::string find(std::size_t count) {
+    std::mt19937 random(1);
+    std::string times = "times";
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string name = service_name(random() % registrations_.size());
+      const auto begin = std::chrono::steady_clock::now();
+      const auto found = broker_.find_service(broker_.query(name));
+      const auto took = std::chrono::steady_clock::now() - begin;
+      if (found.size() != 1) throw Internal(name + " was not found");
+      times += ' ' + std::to_string(std::chrono::nanoseconds(took).count());
+    }
+    return times;
+  }
+
+ private:
+  brokerless_discovery::Broker& broker_;
+  std::vector<brokerless_discovery::Broker::Registration> registrations_;
+};
+
+void find_services() {
+  Alone alone;
+  Finder finder(alone.entity->broker());
+  run_commands({{"bind", [&](const std::string& count) { return finder.bind(std::stoul(count)); }},
+                {"find", [&](const std::string& count) { return finder.find(std::stoul(count)); }}});
 }
 
 }  // namespace
@@ -138,6 +196,7 @@ void call_in_process() {
 int run_skein_peer(const SkeinPeer& peer) {
   return run_peer([&] {
     if (peer.role == "server") return serve(peer);
+    if (peer.role == "finder") return find_services();
     peer.role == "local" ? call_in_process() : call(peer);
   });
 }

@@ -8,7 +8,7 @@ namespace skein::benchmarks {
 
 /// One process of a Skein configuration.
 struct SkeinPeer {
-  std::string role;  ///< `server`, `client`, or `local`: both in one process.
+  std::string role;  ///< `server`, `client`, or `local`: both in one process; or `finder`.
   std::string vendor;
   std::uint32_t domain = 0;
   std::size_t threads = 1;

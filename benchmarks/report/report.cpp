@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "report/plot.hpp"
+#include "report/rivals.hpp"
 #include "report/sections.hpp"
 #include "skein/core/error.hpp"
 
@@ -33,19 +34,34 @@ across runs. <b>Raw</b> is the vendor's own API with the same transport settings
 (nothing of the user's runs on the vendor's threads but a notification; the server answers from a thread of its own),
 and encodes with Fast CDR. A mixed pair is compared with the slower vendor's raw call, and for information with a raw
 mixed pair. The service is the same function everywhere: it returns a copy of what it gets. Times are round trips as
-the caller sees them; the content travels both ways.</p>
+the caller sees them; the content travels both ways. Both processes of a contender stand on the same cores as
+their rivals', either sharing one or on one each: where the scheduler may choose, its whim rules at small sizes.</p>
 )";
+
+/// What has a plot for each placement is a section for each.
+std::string title_of(const Comparison& comparison) {
+  const bool one_placement = comparison.parameters.contains("placement") && !is_of_matrix(comparison);
+  return comparison.claim +
+         (one_placement ? ", " + comparison.parameters.at("placement").get<std::string>() : "");
+}
 
 /// Claims in the order in which they first appear.
 std::vector<std::pair<std::string, Comparisons>> by_claim(const std::vector<Comparison>& comparisons) {
   std::vector<std::pair<std::string, Comparisons>> claims;
   for (const Comparison& comparison : comparisons) {
+    const std::string claim = title_of(comparison);
     auto found = claims.begin();
-    while (found != claims.end() && found->first != comparison.claim) ++found;
-    if (found == claims.end()) found = claims.insert(claims.end(), {comparison.claim, {}});
+    while (found != claims.end() && found->first != claim) ++found;
+    if (found == claims.end()) found = claims.insert(claims.end(), {claim, {}});
     found->second.push_back(&comparison);
   }
   return claims;
+}
+
+std::string section_of(const std::string& claim, const Comparisons& members) {
+  if (is_of_matrix(*members.front())) return section_of_rivals(claim, members);
+  const bool by_size = members.front()->parameters.contains("size_bytes");
+  return by_size ? section_by_size(claim, members) : section_of_times(claim, members);
 }
 
 std::string machine_section(const RunFacts& run) {
@@ -69,8 +85,7 @@ void write_report(const std::vector<Comparison>& comparisons, const RunFacts& ru
   }
   page += verdict_section(comparisons);
   for (const auto& [claim, members] : by_claim(comparisons)) {
-    const bool by_size = members.front()->parameters.contains("size_bytes");
-    page += by_size ? section_by_size(claim, members) : section_of_times(claim, members);
+    page += section_of(claim, members);
   }
   page += machine_section(run) + "</body></html>\n";
   std::ofstream file(path);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "report/plot.hpp"
+#include "report/rivals.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -27,12 +28,6 @@ double ratio_p50(const Comparison& comparison) {
 }
 double ratio_p99(const Comparison& comparison) {
   return comparison.summary().p99 / comparison.rival_summary().p99;
-}
-
-std::string place_of(const Comparison& comparison) {
-  const auto& parameters = comparison.parameters;
-  if (parameters.contains("size_bytes")) return size_text(size_of(comparison));
-  return parameters.contains("where") ? parameters.at("where").get<std::string>() : "";
 }
 
 const char* colour_of(const std::string& name) {
@@ -115,8 +110,8 @@ std::string ratio_bars(const Comparisons& comparisons) {
   std::vector<BarGroup> bars;
   for (auto& [size, group] : groups) bars.push_back(std::move(group));
   return bar_plot("Skein / raw (less is better; mixed pairs against the slower vendor)", "ratio of times",
-                  bars, {{1.0, "1 = raw"}, {1.2, "1.2 goal"}}) +
-         "<p class='key'>" + key + "bar: p50, dot: p99 (cut off at 4)</p>";
+                  bars, {{1.0, "1 = raw"}, {1.05, ""}}) +
+         "<p class='key'>" + key + "bar: p50 (goal: 1.05), dot: p99 (goal: 1.15; cut off at 4)</p>";
 }
 
 std::string tail_panels(const Comparisons& comparisons) {
@@ -197,13 +192,24 @@ std::string size_text(std::size_t size_bytes) {
   return fmt::format("{} B", size_bytes);
 }
 
+std::string place_of(const Comparison& comparison) {
+  const auto& parameters = comparison.parameters;
+  if (parameters.contains("placement")) {
+    return variant_of(comparison) + ", " + parameters.at("placement").get<std::string>();
+  }
+  if (parameters.contains("size_bytes")) return size_text(size_of(comparison));
+  return parameters.contains("where") ? parameters.at("where").get<std::string>() : "";
+}
+
 std::string verdict_section(const std::vector<Comparison>& comparisons) {
-  std::string beyond, slower, faster, skipped;
+  std::string beyond, slower, faster;
+  std::set<std::string> skipped;
   for (const Comparison& comparison : comparisons) {
     if (!measured(comparison)) {
-      skipped += fmt::format("<li>{}, {}: {}</li>", escaped(comparison.claim), escaped(comparison.subject),
-                             escaped(comparison.skipped));
-    } else if (has_goal(comparison)) {
+      skipped.insert(fmt::format("<li>{}, {} beside {}: {}</li>", escaped(comparison.claim),
+                                 escaped(comparison.subject), escaped(comparison.rival),
+                                 escaped(comparison.skipped)));
+    } else if (has_goal(comparison) && !is_of_matrix(comparison)) {
       const bool within = ratio_p50(comparison) <= *comparison.goal_p50 &&
                           (!comparison.goal_p99 || ratio_p99(comparison) <= *comparison.goal_p99);
       (!within ? beyond : ratio_p50(comparison) > 1 ? slower : faster) += sentence_of(comparison);
@@ -212,7 +218,10 @@ std::string verdict_section(const std::vector<Comparison>& comparisons) {
   std::string html = list_of("Skein misses its goal", beyond, "Nowhere.") +
                      list_of("Skein loses, within its goal", slower, "Nowhere.") +
                      list_of("Skein is level or ahead", faster, "Nowhere.");
-  if (!skipped.empty()) html += list_of("Not measured here", skipped, "");
+  html += rivals_verdict(comparisons);
+  std::string missing;
+  for (const std::string& item : skipped) missing += item;
+  if (!missing.empty()) html += list_of("Not measured here", missing, "");
   return "<section><h2>Where Skein loses</h2>" + html + "</section>";
 }
 

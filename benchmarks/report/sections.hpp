@@ -13,6 +13,9 @@ using Comparisons = std::vector<const Comparison*>;
 /// `1 KiB`.
 std::string size_text(std::size_t size_bytes);
 
+/// What tells a comparison from others of its claim: `1 KiB, one core each`.
+std::string place_of(const Comparison& comparison);
+
 /// Verdicts in words: every comparison beyond its goal, and what was skipped.
 std::string verdict_section(const std::vector<Comparison>& comparisons);
 

@@ -12,13 +12,15 @@
 /// that are alive at once from each other.
 namespace skein::benchmarks::rivals {
 
+inline constexpr int kFirstPort = 20'000;
+
 struct Arguments {
   std::string role;
   int number = 0;
   std::string transport;
 
   /// For transports over TCP, on loopback.
-  int port() const { return 20'000 + number; }
+  int port() const { return kFirstPort + number; }
   /// A name in the file system for sockets and references; the server removes it.
   std::string path() const {
     return std::filesystem::temp_directory_path() / ("skein-benchmark-" + std::to_string(number));

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <random>
+#include <thread>
 
 #include "echo.hh"
 #include "omniORB4/Naming.hh"
@@ -105,13 +106,25 @@ CosNaming::Name name_of(std::size_t number) {
   return name;
 }
 
+/// The name server's process has only just begun.
+CosNaming::NamingContext_ptr when_up(CORBA::Object_ptr object) {
+  for (int attempt = 0;; ++attempt) {
+    try {
+      return CosNaming::NamingContext::_narrow(object);
+    } catch (const CORBA::TRANSIENT&) {
+      if (attempt == 500) throw;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
 void names(const Arguments& arguments) {
   const CORBA::ORB_var orb = make_orb("giop:tcp:127.0.0.1:");
   const PortableServer::POA_var poa = make_poa(orb, false);
   const corba::Echo_var echo = activate(poa, new EchoServant);
   const CORBA::Object_var object = orb->string_to_object(
       ("corbaloc::127.0.0.1:" + std::to_string(arguments.port()) + "/NameService").c_str());
-  const CosNaming::NamingContext_var context = CosNaming::NamingContext::_narrow(object);
+  const CosNaming::NamingContext_var context = when_up(object);
   std::size_t bound = 0;
   const auto bind = [&](const std::string& count) {
     for (; bound < std::stoul(count); ++bound) context->rebind(name_of(bound), echo);
