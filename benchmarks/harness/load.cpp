@@ -114,9 +114,12 @@ Content Load::next_content(std::size_t size) {
   return content;
 }
 
-void Load::have_clients(std::size_t count) {
+std::vector<const EchoCall*> Load::clients(std::size_t count) {
   if (count > 1 && !client_.another) throw Skipped("this program has but one client");
   while (1 + others_.size() < count) others_.push_back(client_.another());
+  std::vector<const EchoCall*> calls{&client_.call};
+  for (std::size_t i = 1; i < count; ++i) calls.push_back(&others_[i - 1]);
+  return calls;
 }
 
 std::string Load::one_by_one(const std::string& what) {
@@ -140,28 +143,26 @@ std::string Load::paced(const std::string& what) {
 
 std::string Load::crowd(const std::string& what) {
   const auto numbers = numbers_of(what, 3);
-  have_clients(numbers[0]);
-  std::vector<const EchoCall*> calls{&client_.call};
-  for (std::size_t i = 1; i < numbers[0]; ++i) calls.push_back(&others_[i - 1]);
-  return times_text(all_at_once(calls, next_content(numbers[1]), numbers[2]));
+  return times_text(all_at_once(clients(numbers[0]), next_content(numbers[1]), numbers[2]));
 }
 
 std::string Load::pipelined(const std::string& what) {
   const auto numbers = numbers_of(what, 3);
   const std::size_t count = numbers[1], depth = numbers[2];
   const Content content = next_content(numbers[0]);
+  const auto threads = client_.start ? std::vector<const EchoCall*>() : clients(depth);
   const auto begin = Clock::now();
   if (client_.start) {
     keep_in_flight(client_.start, content, count, depth);
   } else {
-    all_at_once(std::vector<const EchoCall*>(depth, &client_.call), content, (count + depth - 1) / depth);
+    all_at_once(threads, content, (count + depth - 1) / depth);
   }
   const auto took = std::chrono::nanoseconds(Clock::now() - begin).count();
   return times_text({took / static_cast<std::int64_t>(count)});
 }
 
 std::string Load::idle(const std::string& what) {
-  have_clients(1 + numbers_of(what, 1)[0]);
+  clients(1 + numbers_of(what, 1)[0]);
   return "idle";
 }
 

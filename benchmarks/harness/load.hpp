@@ -18,8 +18,8 @@ class Load {
   std::string pipelined(const std::string& what);
   std::string idle(const std::string& what);
 
-  /// At least so many clients, each with a connection of its own.
-  void have_clients(std::size_t count);
+  /// So many clients, each with a connection of its own; the program's first client is one of them.
+  std::vector<const EchoCall*> clients(std::size_t count);
   Content next_content(std::size_t size);
 
   const Client& client_;

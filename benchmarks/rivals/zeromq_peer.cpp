@@ -37,6 +37,7 @@ void server(const Arguments& arguments) {
   run_server();
   context.shutdown();
   thread.join();
+  std::filesystem::remove(arguments.path());  // ZeroMQ leaves its sockets behind
 }
 
 /// A client: one socket, used by one thread at a time.
