@@ -20,7 +20,8 @@ struct QuickRun {
 
   QuickRun() {
     std::filesystem::remove_all(folder);
-    exit_code = std::system((std::string(SKEIN_BENCH) + " --quick --output '" + folder.string() + "'").c_str());
+    exit_code = std::system(
+        (std::string(SKEIN_BENCH) + " --quick --output '" + folder.string() + "'").c_str());
     std::ifstream file(folder / "results.json");
     results = json::parse(file, nullptr, false);
   }
@@ -31,10 +32,11 @@ struct QuickRun {
   }
 };
 
-const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds", "cyclonedds-fastdds"};
+const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds",
+                                   "cyclonedds-fastdds"};
 
-bool has(const json& results, const std::string& claim, const std::string& subject, const json& parameters,
-         const std::string& rival = "") {
+bool has(const json& results, const std::string& claim, const std::string& subject,
+         const json& parameters, const std::string& rival = "") {
   for (const json& row : results) {
     bool same = row.at("claim") == claim && row.at("subject") == subject;
     same = same && (rival.empty() || row.at("rival") == rival);
@@ -83,15 +85,17 @@ TEST_CASE("a quick run writes every row of results.json in the common shape") {
   REQUIRE(run.results.is_array());
   for (const json& row : run.results) {
     CAPTURE(row.dump());
-    for (const char* name : {"claim", "subject", "rival"}) CHECK_FALSE(row.at(name).get<std::string>().empty());
+    for (const char* name : {"claim", "subject", "rival"})
+      CHECK_FALSE(row.at(name).get<std::string>().empty());
     CHECK(row.at("parameters").is_object());
     const bool skipped = row.contains("skipped");
     CHECK((row.at("samples") > 0) != skipped);
-    for (const char* name : {"p50_us", "p90_us", "p99_us", "p999_us", "rival_p50_us", "rival_p99_us",
-                             "ratio_p50", "ratio_p99"}) {
+    for (const char* name : {"p50_us", "p90_us", "p99_us", "p999_us", "rival_p50_us",
+                             "rival_p99_us", "ratio_p50", "ratio_p99"}) {
       CHECK(row.at(name).is_number() != skipped);
     }
-    if (skipped) WARN(row.at("claim") << ", " << row.at("subject") << " skipped: " << row.at("skipped"));
+    if (skipped)
+      WARN(row.at("claim") << ", " << row.at("subject") << " skipped: " << row.at("skipped"));
   }
 }
 
@@ -116,7 +120,8 @@ TEST_CASE("no pair of vendors, size or way to die is missing") {
 TEST_CASE("no rival and no way to call is missing") {
   const json& results = QuickRun::get().results;
   for (const char* vendor : {"skein fastdds", "skein cyclonedds"}) {
-    for (const char* rival : {"omniorb unix", "omniorb tcp", "grpc unix", "grpc tcp", "zeromq ipc", "zeromq tcp"}) {
+    for (const char* rival :
+         {"omniorb unix", "omniorb tcp", "grpc unix", "grpc tcp", "zeromq ipc", "zeromq tcp"}) {
       CAPTURE(vendor, rival);
       for (const int size : {16, 64, 1024, 65'536, 1'048'576}) {
         CHECK(has(results, "one call after the other", vendor, {{"size_bytes", size}}, rival));
@@ -124,12 +129,16 @@ TEST_CASE("no rival and no way to call is missing") {
       for (const int clients : {1, 4, 32}) {
         CHECK(has(results, "clients that call at once", vendor, {{"clients", clients}}, rival));
       }
-      CHECK(has(results, "at a fixed rate, from the intended send", vendor, {{"calls_per_second", 2000}}, rival));
-      CHECK(has(results, "time per call, many in flight", vendor, {{"calls_in_flight", 64}}, rival));
-      CHECK(has(results, "processor time per call, both sides", vendor, {{"size_bytes", 64}}, rival));
+      CHECK(has(results, "at a fixed rate, from the intended send", vendor,
+                {{"calls_per_second", 2000}}, rival));
+      CHECK(
+          has(results, "time per call, many in flight", vendor, {{"calls_in_flight", 64}}, rival));
+      CHECK(
+          has(results, "processor time per call, both sides", vendor, {{"size_bytes", 64}}, rival));
     }
   }
-  CHECK(has(results, "a call in the same process", "skein in one process", json::object(), "omniorb collocated"));
+  CHECK(has(results, "a call in the same process", "skein in one process", json::object(),
+            "omniorb collocated"));
   for (const int count : {10, 100, 1000, 10'000}) {
     CHECK(has(results, "find_service among many descriptions", "skein", {{"descriptions", count}}));
   }

@@ -25,7 +25,8 @@ struct Plan {
 };
 
 Plan full_plan() {
-  const std::vector<CallPlan::Size> sizes{{16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
+  const std::vector<CallPlan::Size> sizes{
+      {16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
   return {{sizes, 25}, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, 15, 5};
 }
 
@@ -36,8 +37,8 @@ Plan quick_plan() {
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
-  std::printf("%-72s %-30s %-24s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us", "p99 us", "p50 x",
-              "p99 x");
+  std::printf("%-72s %-30s %-24s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us",
+              "p99 us", "p50 x", "p99 x");
   for (const Comparison& comparison : comparisons) {
     if (!comparison.goal_p50) continue;
     const std::string claim = comparison.claim + ", " + place_of(comparison);
@@ -47,12 +48,14 @@ void print_summary(const std::vector<Comparison>& comparisons) {
       continue;
     }
     const Summary own = comparison.summary(), rival = comparison.rival_summary();
-    std::printf("%-72.72s %-30s %-24s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(), comparison.subject.c_str(),
-                comparison.rival.c_str(), own.p50, own.p99, own.p50 / rival.p50, own.p99 / rival.p99);
+    std::printf("%-72.72s %-30s %-24s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(),
+                comparison.subject.c_str(), comparison.rival.c_str(), own.p50, own.p99,
+                own.p50 / rival.p50, own.p99 / rival.p99);
   }
 }
 
-const std::vector<std::string> kParts{"calls", "rivals", "in_process", "idle_clients", "find_service", "cold_starts", "deaths"};
+const std::vector<std::string> kParts{"calls",        "rivals",      "in_process", "idle_clients",
+                                      "find_service", "cold_starts", "deaths"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -61,11 +64,14 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   const Plan plan = quick ? quick_plan() : full_plan();
   Configurations configurations(std::filesystem::read_symlink("/proc/self/exe").parent_path());
   std::vector<Comparison> comparisons;
-  const auto wanted = [&](const char* part) { return std::ranges::find(parts, part) != parts.end(); };
+  const auto wanted = [&](const char* part) {
+    return std::ranges::find(parts, part) != parts.end();
+  };
   if (wanted("calls")) append(comparisons, compare_calls(configurations, plan.calls));
   if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
   if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
-  if (wanted("idle_clients")) append(comparisons, compare_idle_clients(configurations, plan.rivals));
+  if (wanted("idle_clients"))
+    append(comparisons, compare_idle_clients(configurations, plan.rivals));
   if (wanted("find_service")) append(comparisons, compare_find_service(configurations, plan.find));
   if (wanted("cold_starts")) {
     append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
@@ -93,7 +99,8 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", quick, "A smoke test of a few seconds");
   app.add_option("--only", parts, "Parts of the run")->check(CLI::IsMember(kParts));
   SkeinPeer peer;
-  CLI::App* as_peer = app.add_subcommand("peer", "One process of a measured configuration")->group("");
+  CLI::App* as_peer =
+      app.add_subcommand("peer", "One process of a measured configuration")->group("");
   as_peer->add_option("--role", peer.role)->required();
   as_peer->add_option("--vendor", peer.vendor);
   as_peer->add_option("--domain", peer.domain);

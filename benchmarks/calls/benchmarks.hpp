@@ -5,8 +5,8 @@
 #include "calls/configuration.hpp"
 #include "harness/comparison.hpp"
 
-/// What a call costs, beside the raw vendors and beside other middleware, how long the first one takes, and
-/// how soon a caller knows that its provider is dead.
+/// What a call costs, beside the raw vendors and beside other middleware, how long the first one
+/// takes, and how soon a caller knows that its provider is dead.
 namespace skein::benchmarks {
 
 struct CallPlan {
@@ -33,8 +33,8 @@ struct RivalPlan {
 /// One comparison for each pair of vendors, size and rival.
 std::vector<Comparison> compare_calls(Configurations& configurations, const CallPlan& plan);
 
-/// Skein beside omniORB, gRPC and ZeroMQ: one after the other, at a fixed rate, with several clients, with
-/// many calls in flight, and the processor time of both sides.
+/// Skein beside omniORB, gRPC and ZeroMQ: one after the other, at a fixed rate, with several
+/// clients, with many calls in flight, and the processor time of both sides.
 std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan);
 
 /// A call that does not leave its process, beside omniORB's.
@@ -56,7 +56,9 @@ std::vector<Comparison> compare_cold_starts(Configurations& configurations, std:
 
 /// SIGKILL to a provider with a call pending: until the caller has Disconnected, and until the
 /// description has gone.
-std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations, std::size_t kills);
-std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations, std::size_t kills);
+std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations,
+                                                   std::size_t kills);
+std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
+                                                    std::size_t kills);
 
 }  // namespace skein::benchmarks

@@ -5,7 +5,8 @@ namespace skein::benchmarks {
 namespace {
 
 /// Each comparison with whichever rival is slower there: a mixed pair can be no better.
-std::vector<Comparison> with_slower_rival(std::vector<Comparison> one, std::vector<Comparison> other) {
+std::vector<Comparison> with_slower_rival(std::vector<Comparison> one,
+                                          std::vector<Comparison> other) {
   for (std::size_t i = 0; i < one.size(); ++i) {
     if (other[i].rival_summary().p50 > one[i].rival_summary().p50) one[i] = std::move(other[i]);
   }

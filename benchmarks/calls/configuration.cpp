@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "harness/placement.hpp"
-#include "rivals/main.hpp"
 #include "harness/skipped.hpp"
+#include "rivals/main.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -25,8 +25,8 @@ double cpu_us_of(Child& child) {
 
 void add_place(Words& command, const std::optional<Place>& place) {
   if (!place) return;
-  for (const std::string& word : {std::string("--interface"), place->interface, std::string("--peer"),
-                                  place->peer}) {
+  for (const std::string& word :
+       {std::string("--interface"), place->interface, std::string("--peer"), place->peer}) {
     command.push_back(word);
   }
 }
@@ -43,7 +43,8 @@ Configuration Configurations::skein(const std::string& server, const std::string
                                     const std::optional<Place>& client_place) {
   const std::string domain = next_domain();
   const auto command = [&](const char* role, const std::string& vendor) {
-    return Words{folder_ + "/skein_bench", "peer", "--role", role, "--vendor", vendor, "--domain", domain};
+    return Words{
+        folder_ + "/skein_bench", "peer", "--role", role, "--vendor", vendor, "--domain", domain};
   };
   Configuration made{"skein " + pair_name(server, client), command("server", server),
                      command("client", client)};
@@ -77,7 +78,9 @@ Configuration Configurations::shared_memory() {
 Configuration Configurations::rival(const std::string& rival, const std::string& transport) {
   const std::string number = next_domain();
   const std::string program = folder_ + "/skein_bench_" + rival;
-  return {rival + " " + transport, {program, "server", number, transport}, {program, "client", number, transport}};
+  return {rival + " " + transport,
+          {program, "server", number, transport},
+          {program, "client", number, transport}};
 }
 
 Configuration Configurations::skein_in_process() {
@@ -85,7 +88,9 @@ Configuration Configurations::skein_in_process() {
 }
 
 Configuration Configurations::omniorb_in_process(const std::string& transport) {
-  return {"omniorb " + transport, {}, {folder_ + "/skein_bench_omniorb", "collocated", next_domain(), transport}};
+  return {"omniorb " + transport,
+          {},
+          {folder_ + "/skein_bench_omniorb", "collocated", next_domain(), transport}};
 }
 
 Configuration Configurations::skein_finder() {
@@ -96,8 +101,8 @@ Configuration Configurations::name_server(const std::string& log_folder) {
   const int number = std::stoi(next_domain());
   const std::string port = std::to_string(rivals::kFirstPort + number);
   return {"omniORB's name server",
-          {"/usr/bin/omniNames", "-start", port, "-logdir", log_folder, "-ignoreport", "-ORBendPoint",
-           "giop:tcp:127.0.0.1:" + port},
+          {"/usr/bin/omniNames", "-start", port, "-logdir", log_folder, "-ignoreport",
+           "-ORBendPoint", "giop:tcp:127.0.0.1:" + port},
           {folder_ + "/skein_bench_omniorb", "names", std::to_string(number), "tcp"}};
 }
 
@@ -119,7 +124,8 @@ std::vector<double> Running::times(const std::string& command) {
 
 void Running::place(Placement placement) {
   static const std::vector<int> cores = allowed_cores();
-  if (placement == Placement::OneCoreEach && cores.size() < 2) throw Skipped("there is but one core here");
+  if (placement == Placement::OneCoreEach && cores.size() < 2)
+    throw Skipped("there is but one core here");
   const auto put = [](Child& child, int core) {
     child.send("place " + std::to_string(core));
     child.receive();

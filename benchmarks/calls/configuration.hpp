@@ -12,8 +12,9 @@ namespace skein::benchmarks {
 
 inline constexpr std::array<const char*, 2> kVendors{"fastdds", "cyclonedds"};
 
-/// A provider and a caller (or one process that is both: then `server` is empty): how their processes are started. `skein fastdds-cyclonedds` is a Skein
-/// provider on Fast DDS and a Skein client on Cyclone DDS; pairs of one vendor are `skein fastdds`.
+/// A provider and a caller (or one process that is both: then `server` is empty): how their
+/// processes are started. `skein fastdds-cyclonedds` is a Skein provider on Fast DDS and a Skein
+/// client on Cyclone DDS; pairs of one vendor are `skein fastdds`.
 struct Configuration {
   std::string name;
   std::vector<std::string> server;
@@ -46,7 +47,8 @@ class Configurations {
   Configuration skein_in_process();
   /// `transport` is `shortcut` for a POA whose calls within the process pass by the ORB.
   Configuration omniorb_in_process(const std::string& transport);
-  /// Clients that know `bind COUNT` and `find COUNT`: of a Broker's table, and of omniORB's name server.
+  /// Clients that know `bind COUNT` and `find COUNT`: of a Broker's table, and of omniORB's name
+  /// server.
   Configuration skein_finder();
   Configuration name_server(const std::string& log_folder);
 

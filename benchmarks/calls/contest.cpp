@@ -12,9 +12,12 @@ constexpr std::uint32_t kSeed = 17;
 
 const char* text_of(Placement placement) {
   switch (placement) {
-    case Placement::OneCore: return "both on one core";
-    case Placement::OneCoreEach: return "one core each";
-    case Placement::Anywhere: return "anywhere";
+    case Placement::OneCore:
+      return "both on one core";
+    case Placement::OneCoreEach:
+      return "one core each";
+    case Placement::Anywhere:
+      return "anywhere";
   }
   return "";
 }
@@ -49,7 +52,8 @@ bool Contest::enter(const Configuration& configuration) {
 void Contest::take_turn(Contender& contender, std::size_t trial, Placement placement) {
   Outcome& outcome = contender.outcomes[{trial, placement}];
   outcome.skipped = contender.skipped;
-  if (outcome.skipped.empty() && contender.needs_a_core_each && placement != Placement::OneCoreEach) {
+  if (outcome.skipped.empty() && contender.needs_a_core_each &&
+      placement != Placement::OneCoreEach) {
     outcome.skipped = "it spins: both sides need a core of their own";
   }
   if (!outcome.skipped.empty()) return;
@@ -101,14 +105,17 @@ std::vector<Comparison> Contest::compared(const std::string& subject, const std:
   return comparisons;
 }
 
-std::vector<Comparison> Contest::compare(const std::string& subject, const std::string& rival) const {
+std::vector<Comparison> Contest::compare(const std::string& subject,
+                                         const std::string& rival) const {
   return compared(subject, rival, [&](std::size_t trial, Placement placement) {
     return contenders_.at(rival).outcomes.at({trial, placement});
   });
 }
 
 std::vector<Comparison> Contest::compare(const std::string& subject, const Limit& limit) const {
-  return compared(subject, limit.name, [&](std::size_t, Placement) { return Outcome{{limit.time_us}, ""}; });
+  return compared(subject, limit.name, [&](std::size_t, Placement) {
+    return Outcome{{limit.time_us}, ""};
+  });
 }
 
 Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count) {
@@ -118,7 +125,8 @@ Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count)
           }};
 }
 
-std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50, std::optional<double> p99) {
+std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50,
+                                  std::optional<double> p99) {
   for (Comparison& comparison : comparisons) {
     comparison.goal_p50 = p50;
     comparison.goal_p99 = p99;

@@ -26,7 +26,8 @@ struct Limit {
   double time_us = 0;
 };
 
-/// Configurations that are all alive and take turns at the same trials, at each of the same placements.
+/// Configurations that are all alive and take turns at the same trials, at each of the same
+/// placements.
 class Contest {
  public:
   /// `name` is for the progress line.
@@ -39,7 +40,8 @@ class Contest {
   /// Every contender takes every trial at every placement once a round, in a new random order.
   void run(std::size_t rounds);
 
-  /// A comparison for each trial and placement, in one order whoever is compared; parameters tell which.
+  /// A comparison for each trial and placement, in one order whoever is compared; parameters tell
+  /// which.
   std::vector<Comparison> compare(const std::string& subject, const std::string& rival) const;
   std::vector<Comparison> compare(const std::string& subject, const Limit& limit) const;
 
@@ -52,7 +54,8 @@ class Contest {
 
   void take_turn(Contender& contender, std::size_t trial, Placement placement);
   template <class Fill>
-  std::vector<Comparison> compared(const std::string& subject, const std::string& rival, Fill fill) const;
+  std::vector<Comparison> compared(const std::string& subject, const std::string& rival,
+                                   Fill fill) const;
 
   const std::string name_;
   const std::vector<Trial> trials_;

@@ -57,8 +57,9 @@ struct Victim {
   }
 };
 
-Comparison comparison_of(const char* claim, const Victim& victim, const std::vector<double>& samples,
-                         const Limit& limit, const std::string& where) {
+Comparison comparison_of(const char* claim, const Victim& victim,
+                         const std::vector<double>& samples, const Limit& limit,
+                         const std::string& where) {
   Comparison comparison{claim, victim.configuration.name, limit.name, {{"where", where}}};
   comparison.goal_p50 = comparison.goal_p99 = 1.0;
   comparison.skipped = victim.skipped;
@@ -78,7 +79,8 @@ std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t 
     turns.push_back([&] { victim.kill_once(hosts, random); });
   }
   take_turns(kills, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rproviders killed, %s: round %zu of %zu ", where.c_str(), round + 1, kills);
+    std::fprintf(stderr, "\rproviders killed, %s: round %zu of %zu ", where.c_str(), round + 1,
+                 kills);
   });
   std::fputc('\n', stderr);
   std::vector<Comparison> comparisons;
@@ -91,7 +93,8 @@ std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t 
 
 }  // namespace
 
-std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations, std::size_t kills) {
+std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations,
+                                                   std::size_t kills) {
   std::vector<Victim> victims;
   for (const auto& [server, client] : vendor_pairs()) {
     victims.push_back({configurations.skein(server, client, 2)});

@@ -25,8 +25,8 @@ class LogFolder {
   std::string path() const { return path_.string(); }
 
  private:
-  const std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() / ("skein-benchmark-names-" + std::to_string(getpid()));
+  const std::filesystem::path path_ = std::filesystem::temp_directory_path() /
+                                      ("skein-benchmark-names-" + std::to_string(getpid()));
 };
 
 /// A process that knows `bind COUNT` and `find COUNT`, and what it needs beside it.
@@ -68,7 +68,8 @@ Comparison measure(Finder& own, Finder& other, std::size_t count, const FindPlan
     for (const double time : finder.find(plan.searches)) samples.push_back(time);
   };
   take_turns(plan.rounds,
-             {[&] { add(comparison.samples, own); }, [&] { add(comparison.rival_samples, other); }}, kSeed);
+             {[&] { add(comparison.samples, own); }, [&] { add(comparison.rival_samples, other); }},
+             kSeed);
   return comparison;
 }
 

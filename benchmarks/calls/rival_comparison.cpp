@@ -49,7 +49,8 @@ Trial cpu(std::size_t size, std::size_t count) {
 
 std::vector<Trial> trials_of(const RivalPlan& plan) {
   std::vector<Trial> trials;
-  for (const auto& size : plan.sizes) trials.push_back(closed_loop("one call after the other", size.size_bytes, size.calls_per_turn));
+  for (const auto& size : plan.sizes)
+    trials.push_back(closed_loop("one call after the other", size.size_bytes, size.calls_per_turn));
   trials.push_back(paced(plan.paced_calls, 500));
   for (const std::size_t clients : {1, 4, 32}) trials.push_back(crowd(clients, plan.crowd_calls));
   trials.push_back(pipelined(plan.pipelined_calls, 64));
@@ -69,15 +70,19 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
     contest.enter(rival);
   };
   for (const char* vendor : kVendors) contest.enter(configurations.skein(vendor, vendor));
-  for (const char* transport : {"unix", "tcp"}) enter_rival(configurations.rival("omniorb", transport));
-  for (const char* transport : {"unix", "tcp"}) enter_rival(configurations.rival("grpc", transport));
-  for (const char* transport : {"ipc", "tcp"}) enter_rival(configurations.rival("zeromq", transport));
+  for (const char* transport : {"unix", "tcp"})
+    enter_rival(configurations.rival("omniorb", transport));
+  for (const char* transport : {"unix", "tcp"})
+    enter_rival(configurations.rival("grpc", transport));
+  for (const char* transport : {"ipc", "tcp"})
+    enter_rival(configurations.rival("zeromq", transport));
   contest.enter(configurations.unix_socket());
   contest.enter(configurations.shared_memory());
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
   for (const char* skein : kSkeins) {
-    for (const std::string& rival : rivals) append(comparisons, with_goal(contest.compare(skein, rival), 1.0));
+    for (const std::string& rival : rivals)
+      append(comparisons, with_goal(contest.compare(skein, rival), 1.0));
     for (const char* floor : {"unix socket", "spinning shared memory"}) {
       append(comparisons, contest.compare(skein, std::string(floor)));
     }
@@ -88,10 +93,11 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
 std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan) {
   std::vector<Trial> trials;
   for (const std::size_t size : {16, 64, 1024}) {
-    trials.push_back({"a call in the same process", {{"size_bytes", size}}, [&, size](Running& running) {
-                        running.call(size, plan.in_process_calls / 10 + 1);
-                        return running.call(size, plan.in_process_calls);
-                      }});
+    trials.push_back(
+        {"a call in the same process", {{"size_bytes", size}}, [&, size](Running& running) {
+           running.call(size, plan.in_process_calls / 10 + 1);
+           return running.call(size, plan.in_process_calls);
+         }});
   }
   Contest contest("in one process", std::move(trials), {Placement::OneCore});
   const Configuration skein = configurations.skein_in_process();
@@ -106,8 +112,10 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
   return comparisons;
 }
 
-std::vector<Comparison> compare_idle_clients(Configurations& configurations, const RivalPlan& plan) {
-  Contest contest("idle clients", {closed_loop("a call beside idle clients", kSmall, plan.crowd_calls)},
+std::vector<Comparison> compare_idle_clients(Configurations& configurations,
+                                             const RivalPlan& plan) {
+  Contest contest("idle clients",
+                  {closed_loop("a call beside idle clients", kSmall, plan.crowd_calls)},
                   {Placement::OneCore, Placement::OneCoreEach});
   std::list<Child> crowds;
   std::vector<std::pair<std::string, std::string>> pairs;

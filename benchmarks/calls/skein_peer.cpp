@@ -5,12 +5,12 @@
 #include <random>
 #include <thread>
 
-#include "skein/discovery.idl.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
 #include "skein/brokerless_discovery/broker.hpp"
 #include "skein/dds/loopback.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/entity/entity.hpp"
 
 namespace skein::benchmarks {
@@ -71,7 +71,8 @@ class Held {
 
   std::string hold() {
     observation_ = entity_.broker().observe([this](const brokerless_discovery::Change& change) {
-      if (change.kind == brokerless_discovery::Change::Kind::Removed) removed_.set_value(now_text());
+      if (change.kind == brokerless_discovery::Change::Kind::Removed)
+        removed_.set_value(now_text());
     });
     call_.emplace(proxy_.within(60s).async_hold());
     while (!proxy_.holding()) std::this_thread::sleep_for(1ms);
@@ -103,7 +104,9 @@ Echo::Proxy connected(Entity& entity) {
 }
 
 EchoCall call_of(const Echo::Proxy& made) {
-  return [proxy = made](const Content& content, const Seen& seen) mutable { seen(proxy.echo(content)); };
+  return [proxy = made](const Content& content, const Seen& seen) mutable {
+    seen(proxy.echo(content));
+  };
 }
 
 Client client_of(Entity& entity, const Echo::Proxy& made) {
@@ -145,7 +148,9 @@ void call_in_process() {
   run_client(client_of(*alone.entity, connected(*alone.entity)));
 }
 
-std::string service_name(std::size_t number) { return "benchmark/IService" + std::to_string(number); }
+std::string service_name(std::size_t number) {
+  return "benchmark/IService" + std::to_string(number);
+}
 
 /// A Broker with many descriptions, and how long it takes to find one.
 class Finder {
@@ -187,8 +192,9 @@ class Finder {
 void find_services() {
   Alone alone;
   Finder finder(alone.entity->broker());
-  run_commands({{"bind", [&](const std::string& count) { return finder.bind(std::stoul(count)); }},
-                {"find", [&](const std::string& count) { return finder.find(std::stoul(count)); }}});
+  run_commands(
+      {{"bind", [&](const std::string& count) { return finder.bind(std::stoul(count)); }},
+       {"find", [&](const std::string& count) { return finder.find(std::stoul(count)); }}});
 }
 
 }  // namespace

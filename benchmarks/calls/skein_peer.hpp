@@ -16,9 +16,9 @@ struct SkeinPeer {
   std::string peer;       ///< Address of the other host, with `interface`.
 };
 
-/// Serves, or calls and obeys. Besides `call` a client knows `hold` (starts a call that does not return;
-/// answers `holding` when the provider is at it) and `told` (waits for that call's end and for the
-/// provider's description to go; answers with the times of both, in ns).
+/// Serves, or calls and obeys. Besides `call` a client knows `hold` (starts a call that does not
+/// return; answers `holding` when the provider is at it) and `told` (waits for that call's end and
+/// for the provider's description to go; answers with the times of both, in ns).
 int run_skein_peer(const SkeinPeer& peer);
 
 }  // namespace skein::benchmarks

@@ -17,8 +17,8 @@ class Child {
  public:
   static constexpr std::chrono::milliseconds kPatience{30'000};
 
-  /// `network` is an open network namespace for the child, -1 for this process's own. Throws Skipped
-  /// where the program does not exist, Internal where it cannot be started.
+  /// `network` is an open network namespace for the child, -1 for this process's own. Throws
+  /// Skipped where the program does not exist, Internal where it cannot be started.
   explicit Child(std::vector<std::string> command, int network = -1);
   Child(Child&& other) noexcept;
   Child& operator=(Child&&) = delete;
@@ -30,8 +30,8 @@ class Child {
 
   void send(const std::string& line);
 
-  /// The next line, without its end. Throws Skipped where it says so (`skipped REASON`), Internal where
-  /// the child has ended, says `failed REASON`, or is silent for longer than `patience`.
+  /// The next line, without its end. Throws Skipped where it says so (`skipped REASON`), Internal
+  /// where the child has ended, says `failed REASON`, or is silent for longer than `patience`.
   std::string receive(std::chrono::milliseconds patience = kPatience);
 
   /// SIGKILL. Returns the instant just before.

@@ -29,12 +29,9 @@ json ratio(double subject, double rival) {
 json to_json(const Comparison& comparison) {
   const Summary own = comparison.summary();
   const Summary rival = comparison.rival_summary();
-  json object{{"claim", comparison.claim},
-              {"subject", comparison.subject},
-              {"rival", comparison.rival},
-              {"parameters", comparison.parameters},
-              {"samples", own.samples},
-              {"rival_samples", rival.samples}};
+  json object{{"claim", comparison.claim}, {"subject", comparison.subject},
+              {"rival", comparison.rival}, {"parameters", comparison.parameters},
+              {"samples", own.samples},    {"rival_samples", rival.samples}};
   put_times(object, "", own);
   put_times(object, "rival_", rival);
   object["ratio_p50"] = ratio(own.p50, rival.p50);

@@ -31,8 +31,8 @@ struct Comparison {
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 
 /// Times in microseconds: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us`, the same with `rival_`
-/// before it, and the quotients `ratio_p50` and `ratio_p99`, below 1 where the subject is faster. All
-/// of them null in a skipped comparison, which says why in `skipped`.
+/// before it, and the quotients `ratio_p50` and `ratio_p99`, below 1 where the subject is faster.
+/// All of them null in a skipped comparison, which says why in `skipped`.
 nlohmann::json to_json(const Comparison& comparison);
 
 /// Writes results.json: an array of all comparisons. Throws Error where the file cannot be written.

@@ -59,7 +59,8 @@ void sleep_until(Clock::time_point instant) {
 }
 
 /// Clients that call at once, a thread each.
-Times all_at_once(const std::vector<const EchoCall*>& calls, const Content& content, std::size_t count) {
+Times all_at_once(const std::vector<const EchoCall*>& calls, const Content& content,
+                  std::size_t count) {
   std::vector<Times> times(calls.size());
   std::vector<std::exception_ptr> errors(calls.size());
   std::vector<std::thread> threads;
@@ -81,7 +82,8 @@ Times all_at_once(const std::vector<const EchoCall*>& calls, const Content& cont
   return all;
 }
 
-void keep_in_flight(const StartEcho& start, const Content& content, std::size_t count, std::size_t depth) {
+void keep_in_flight(const StartEcho& start, const Content& content, std::size_t count,
+                    std::size_t depth) {
   std::deque<std::function<void()>> waiting;
   for (std::size_t i = 0; i < count; ++i) {
     if (waiting.size() == depth) {

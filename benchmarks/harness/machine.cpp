@@ -40,18 +40,20 @@ std::string time_text() {
 MachineFacts machine_facts() {
   utsname system{};
   uname(&system);
-  const bool virtual_machine = field("/proc/cpuinfo", "flags").find(" hypervisor") != std::string::npos;
-  return {{"When", time_text()},
-          {"Processor", field("/proc/cpuinfo", "model name") +
-                            (virtual_machine ? " (a virtual machine)" : "")},
-          {"Cores", std::to_string(std::thread::hardware_concurrency())},
-          {"Governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
-          {"Memory", field("/proc/meminfo", "MemTotal")},
-          {"Kernel", std::string(system.sysname) + " " + system.release},
-          {"Distribution", field("/etc/os-release", "PRETTY_NAME=")},
-          {"Greatest receive buffer (net.core.rmem_max)", first_line("/proc/sys/net/core/rmem_max")},
-          {"Greatest send buffer (net.core.wmem_max)", first_line("/proc/sys/net/core/wmem_max")},
-          {"Load average at the start", first_line("/proc/loadavg")}};
+  const bool virtual_machine =
+      field("/proc/cpuinfo", "flags").find(" hypervisor") != std::string::npos;
+  return {
+      {"When", time_text()},
+      {"Processor",
+       field("/proc/cpuinfo", "model name") + (virtual_machine ? " (a virtual machine)" : "")},
+      {"Cores", std::to_string(std::thread::hardware_concurrency())},
+      {"Governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
+      {"Memory", field("/proc/meminfo", "MemTotal")},
+      {"Kernel", std::string(system.sysname) + " " + system.release},
+      {"Distribution", field("/etc/os-release", "PRETTY_NAME=")},
+      {"Greatest receive buffer (net.core.rmem_max)", first_line("/proc/sys/net/core/rmem_max")},
+      {"Greatest send buffer (net.core.wmem_max)", first_line("/proc/sys/net/core/wmem_max")},
+      {"Load average at the start", first_line("/proc/loadavg")}};
 }
 
 }  // namespace skein::benchmarks

@@ -29,7 +29,8 @@ std::string answer(const Command& command, const std::string& rest) {
 }
 
 Commands known_to_all() {
-  return {{"place", [](const std::string& core) {
+  return {{"place",
+           [](const std::string& core) {
              place_all_threads(std::stoi(core));
              return "placed";
            }},

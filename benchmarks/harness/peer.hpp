@@ -14,15 +14,16 @@ using Content = std::vector<std::uint8_t>;
 /// The service of every configuration: application code, the same whatever carries the call.
 inline Content echo(const Content& content) { return content; }
 
-/// Is given the reply's octets where they lie, at the moment the caller can read them. The clock stops
-/// here, so nobody pays for copying them into a type that his users would not use.
+/// Is given the reply's octets where they lie, at the moment the caller can read them. The clock
+/// stops here, so nobody pays for copying them into a type that his users would not use.
 using Seen = std::function<void(std::span<const std::uint8_t>)>;
 
-/// The client's view of the service: blocks until the reply has been seen, throws where there is none.
+/// The client's view of the service: blocks until the reply has been seen, throws where there is
+/// none.
 using EchoCall = std::function<void(const Content&, const Seen&)>;
 
-/// Sends a call without waiting; what it returns waits for the reply, and throws where there is none.
-/// Replies are waited for in the order of the calls.
+/// Sends a call without waiting; what it returns waits for the reply, and throws where there is
+/// none. Replies are waited for in the order of the calls.
 using StartEcho = std::function<std::function<void()>(const Content&)>;
 
 /// What else a peer obeys, by its first word; gets the rest of the line, returns the answer.
@@ -38,19 +39,20 @@ struct Client {
   Commands extra{};
 };
 
-/// A client's life after its first reply: says `ready` with the time, then obeys until its input ends.
-/// A reply that is not the request's content ends it as failed.
+/// A client's life after its first reply: says `ready` with the time, then obeys until its input
+/// ends. A reply that is not the request's content ends it as failed.
 ///
 /// | command | answer |
 /// |---|---|
 /// | `call SIZE COUNT` | `times`, COUNT of them: one call after the other |
-/// | `paced SIZE COUNT INTERVAL` | `times`, each from when the call should have been sent (every INTERVAL us) |
-/// | `crowd CLIENTS SIZE COUNT` | `times`, COUNT for each of so many clients that call at once |
-/// | `pipelined SIZE COUNT DEPTH` | `times`, one: all calls' time by COUNT, with DEPTH in flight |
-/// | `idle CLIENTS` | `idle`: has so many more connections from now on, over which nothing goes |
+/// | `paced SIZE COUNT INTERVAL` | `times`, each from when the call should have been sent (every
+/// INTERVAL us) | | `crowd CLIENTS SIZE COUNT` | `times`, COUNT for each of so many clients that
+/// call at once | | `pipelined SIZE COUNT DEPTH` | `times`, one: all calls' time by COUNT, with
+/// DEPTH in flight | | `idle CLIENTS` | `idle`: has so many more connections from now on, over
+/// which nothing goes |
 ///
-/// Times are in ns. Every peer, server or client, also knows `place CORE` (-1: any; for all its threads)
-/// and `cpu` (processor time that it has used, in ns).
+/// Times are in ns. Every peer, server or client, also knows `place CORE` (-1: any; for all its
+/// threads) and `cpu` (processor time that it has used, in ns).
 void run_client(const Client& client);
 
 /// A server's: says `ready`, obeys until its input ends.
@@ -59,8 +61,8 @@ void run_server();
 /// Any other peer's: says `ready` with the time, obeys `commands` and what every peer knows.
 void run_commands(const Commands& commands);
 
-/// Runs `peer` and turns what it throws into a last line: `skipped` for Skipped, `failed` for the rest.
-/// The program's exit code.
+/// Runs `peer` and turns what it throws into a last line: `skipped` for Skipped, `failed` for the
+/// rest. The program's exit code.
 int run_peer(const std::function<void()>& peer);
 
 /// Now in ns on the clock that all processes of a host share.

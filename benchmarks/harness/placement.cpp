@@ -14,7 +14,8 @@ namespace {
 cpu_set_t cores_of_this_process() {
   cpu_set_t cores;
   CPU_ZERO(&cores);
-  if (sched_getaffinity(0, sizeof cores, &cores) != 0) throw Internal("the process's cores cannot be asked for");
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0)
+    throw Internal("the process's cores cannot be asked for");
   return cores;
 }
 
@@ -24,7 +25,9 @@ const cpu_set_t& cores_at_the_start() {
   return cores;
 }
 
-std::int64_t nanoseconds(const timeval& time) { return time.tv_sec * 1'000'000'000LL + time.tv_usec * 1000LL; }
+std::int64_t nanoseconds(const timeval& time) {
+  return time.tv_sec * 1'000'000'000LL + time.tv_usec * 1000LL;
+}
 
 }  // namespace
 
@@ -44,7 +47,8 @@ void place_all_threads(int core) {
   }
   for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
     const int id = std::atoi(thread.path().filename().c_str());
-    if (sched_setaffinity(id, sizeof cores, &cores) != 0 && std::filesystem::exists(thread.path())) {
+    if (sched_setaffinity(id, sizeof cores, &cores) != 0 &&
+        std::filesystem::exists(thread.path())) {
       throw Internal("a thread cannot be put onto core " + std::to_string(core));
     }
   }

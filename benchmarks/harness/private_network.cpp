@@ -75,7 +75,8 @@ bool is_running(int network, const char* interface) {
   const int socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   ifreq request{};
   std::strcpy(request.ifr_name, interface);
-  const bool running = ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_RUNNING);
+  const bool running =
+      ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_RUNNING);
   close(socket_);
   setns(own, CLONE_NEWNET);
   close(own);

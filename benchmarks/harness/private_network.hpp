@@ -4,12 +4,13 @@
 
 namespace skein::benchmarks {
 
-/// Moves this process into a network of its own that has nothing but loopback, so that a run neither
-/// disturbs others nor is disturbed. Before any thread exists. Returns what stood in the way, or "".
+/// Moves this process into a network of its own that has nothing but loopback, so that a run
+/// neither disturbs others nor is disturbed. Before any thread exists. Returns what stood in the
+/// way, or "".
 std::string enter_private_network();
 
-/// Two hosts for this kernel: network namespaces with one cable (veth) between them. They vanish with
-/// this object.
+/// Two hosts for this kernel: network namespaces with one cable (veth) between them. They vanish
+/// with this object.
 class TwoHosts {
  public:
   /// Throws Skipped where the kernel or the rights do not allow it or `ip` is not installed.

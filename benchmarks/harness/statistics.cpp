@@ -15,8 +15,8 @@ Summary summarize(std::vector<double> samples) {
   if (samples.empty()) return {};
   std::sort(samples.begin(), samples.end());
   const auto at = [&](double q) { return quantile(samples, q); };
-  return {samples.size(), at(0.5),         at(0.9),       at(0.95),
-          at(0.99),       at(0.999),       samples.front(), samples.back()};
+  return {samples.size(), at(0.5),   at(0.9),         at(0.95),
+          at(0.99),       at(0.999), samples.front(), samples.back()};
 }
 
 }  // namespace skein::benchmarks

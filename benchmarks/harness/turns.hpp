@@ -8,10 +8,11 @@
 
 namespace skein::benchmarks {
 
-/// Lets all turns run once a round, in a new random order each round: what disturbs the machine for a
-/// while disturbs all that are compared, and none always follows the same other.
+/// Lets all turns run once a round, in a new random order each round: what disturbs the machine for
+/// a while disturbs all that are compared, and none always follows the same other.
 inline void take_turns(std::size_t rounds, std::vector<std::function<void()>> turns,
-                       std::uint32_t seed, const std::function<void(std::size_t)>& after_round = {}) {
+                       std::uint32_t seed,
+                       const std::function<void(std::size_t)>& after_round = {}) {
   std::mt19937 random(seed);
   for (std::size_t round = 0; round < rounds; ++round) {
     std::shuffle(turns.begin(), turns.end(), random);

@@ -18,7 +18,8 @@ constexpr const char* kConfiguration =
     "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
     "<NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65000 B</MaxMessageSize>"
-    "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize></General>"
+    "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 "
+    "B</MaxRexmitMessageSize></General>"
     "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>3</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
     "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
@@ -122,9 +123,8 @@ class Client {
         request_topic_(participant_.topic(kRequestTopic)),
         requests_(participant_.writer(request_topic_)) {
     dds_listener_t* listener = dds_create_listener(this);
-    dds_lset_data_available(listener, [](dds_entity_t, void* self) {
-      static_cast<Client*>(self)->data_available();
-    });
+    dds_lset_data_available(
+        listener, [](dds_entity_t, void* self) { static_cast<Client*>(self)->data_available(); });
     replies_ = participant_.reader(participant_.topic(kReplyTopic), listener);
     dds_delete_listener(listener);
     dds_guid_t guid;
@@ -141,7 +141,8 @@ class Client {
       lock.unlock();
       Message reply;
       while (take(replies_, reply)) {
-        if (reply.head.client == id_ && reply.head.number == number_) return std::move(reply.content);
+        if (reply.head.client == id_ && reply.head.number == number_)
+          return std::move(reply.content);
       }
       lock.lock();
     }

@@ -25,8 +25,9 @@ ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, c
   return sample;
 }
 
-ddsi_serdata* from_buffers(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
-                           const ddsrt_iovec_t* buffers, std::size_t size) {
+ddsi_serdata* from_buffers(const ddsi_sertype* type, ddsi_serdata_kind kind,
+                           ddsrt_msg_iovlen_t count, const ddsrt_iovec_t* buffers,
+                           std::size_t size) {
   Sample* sample = Sample::make(type, kind, size);
   char* to = sample->bytes();
   for (ddsrt_msg_iovlen_t i = 0; i < count; to += buffers[i++].iov_len) {
@@ -50,7 +51,8 @@ ddsi_serdata* without_key(const ddsi_serdata* data) {
 
 const ddsi_serdata_ops kSampleOperations{
     .eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; },
-    .get_size = [](const ddsi_serdata* data) { return static_cast<std::uint32_t>(sample_of(data)->size); },
+    .get_size =
+        [](const ddsi_serdata* data) { return static_cast<std::uint32_t>(sample_of(data)->size); },
     .from_ser = from_fragments,
     .from_ser_iov = from_buffers,
     .from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
@@ -68,7 +70,8 @@ const ddsi_serdata_ops kSampleOperations{
     .untyped_to_sample = [](const ddsi_sertype*, const ddsi_serdata*, void*, void**,
                             void*) { return false; },
     .free = [](ddsi_serdata* data) { ::operator delete(sample_of(data)); },
-    .print = [](const ddsi_sertype*, const ddsi_serdata*, char*, std::size_t) { return std::size_t{0}; },
+    .print = [](const ddsi_sertype*, const ddsi_serdata*, char*,
+                std::size_t) { return std::size_t{0}; },
     .get_keyhash = [](const ddsi_serdata*, ddsi_keyhash* hash,
                       bool) { std::memset(hash->value, 0, sizeof hash->value); },
     .get_sample_size = nullptr,

@@ -1,6 +1,12 @@
-// A call written with Fast DDS's own API, in the way that a careful user writes one, with the transport
-// of Skein's back end: no code of the user's on Fast DDS's threads but a notification.
+// A call written with Fast DDS's own API, in the way that a careful user writes one, with the
+// transport of Skein's back end: no code of the user's on Fast DDS's threads but a notification.
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -11,12 +17,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
-#include <atomic>
-#include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <thread>
 
@@ -49,7 +49,8 @@ class MessageType final : public dds::TopicDataType {
     return true;
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(encoded_size(*static_cast<Outgoing*>(data))); };
+    return
+        [data] { return static_cast<std::uint32_t>(encoded_size(*static_cast<Outgoing*>(data))); };
   }
   void* createData() override { return new Message; }
   void deleteData(void* data) override { delete static_cast<Message*>(data); }
@@ -92,8 +93,7 @@ class Participant {
     builtin.discovery_config.leaseDuration = Duration_t(1, 0);
     builtin.discovery_config.leaseDuration_announcementperiod = Duration_t(0, 250'000'000);
     builtin.discovery_config.initial_announcements = {5, Duration_t(0, 10'000'000)};
-    participant_ =
-        dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
+    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
     if (participant_ == nullptr) throw Internal("no Fast DDS participant");
     dds::TypeSupport(new MessageType).register_type(participant_);
     publisher_ = participant_->create_publisher(dds::PublisherQos());
@@ -106,8 +106,8 @@ class Participant {
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
     qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
-    return publisher_->create_datawriter(
-        participant_->create_topic(topic, kType, dds::TopicQos()), qos);
+    return publisher_->create_datawriter(participant_->create_topic(topic, kType, dds::TopicQos()),
+                                         qos);
   }
 
   dds::DataReader* reader(const char* topic, dds::DataReaderListener* listener = nullptr) {
@@ -136,7 +136,8 @@ void serve(dds::DataReader& requests, dds::DataWriter& replies, const std::atomi
     waiting.wait(active, Duration_t(0, 100'000'000));
     Message request;
     dds::SampleInfo info;
-    while (requests.take_next_sample(&request, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    while (requests.take_next_sample(&request, &info) ==
+           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       const Content result = echo(request.content);
       Outgoing reply{request.head, &result};
@@ -175,7 +176,8 @@ class Client final : private dds::DataReaderListener {
       lock.unlock();
       Message reply;
       dds::SampleInfo info;
-      while (replies_->take_next_sample(&reply, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      while (replies_->take_next_sample(&reply, &info) ==
+             eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
         if (info.valid_data && reply.head.client == id_ && reply.head.number == number_) {
           return std::move(reply.content);
         }

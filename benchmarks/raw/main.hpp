@@ -17,7 +17,8 @@ namespace skein::benchmarks::raw {
 using TryCall =
     std::function<std::optional<Content>(const Content&, std::chrono::milliseconds patience)>;
 
-/// Connects as DDS makes one do it: an empty request is repeated until a reply comes; then measures.
+/// Connects as DDS makes one do it: an empty request is repeated until a reply comes; then
+/// measures.
 inline void run_raw_client(const TryCall& call) {
   constexpr std::chrono::milliseconds kOpenInterval{20};
   constexpr std::chrono::milliseconds kPatience{10'000};
@@ -33,9 +34,10 @@ inline void run_raw_client(const TryCall& call) {
 }
 
 /// `server` serves while the function that it is given runs.
-inline int raw_main(int argc, char** argv,
-                    const std::function<void(std::uint32_t domain, const std::function<void()>&)>& server,
-                    const std::function<void(std::uint32_t domain)>& client) {
+inline int raw_main(
+    int argc, char** argv,
+    const std::function<void(std::uint32_t domain, const std::function<void()>&)>& server,
+    const std::function<void(std::uint32_t domain)>& client) {
   return run_peer([&] {
     if (argc != 3) throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN");
     const auto domain = static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10));

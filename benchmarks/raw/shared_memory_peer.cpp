@@ -1,5 +1,5 @@
-// The other floor: both sides spin on a shared page, nothing sleeps and nothing is encoded. Between turns
-// the server dozes, so that it takes no core from other contenders.
+// The other floor: both sides spin on a shared page, nothing sleeps and nothing is encoded. Between
+// turns the server dozes, so that it takes no core from other contenders.
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -35,7 +35,8 @@ std::string name_of(std::uint32_t domain) { return "/skein-benchmark-" + std::to
 
 Shared* map(std::uint32_t domain, int flags) {
   const int file = shm_open(name_of(domain).c_str(), O_RDWR | flags, 0600);
-  if (file < 0 || ftruncate(file, sizeof(Shared)) != 0) throw Internal("shared memory cannot be had");
+  if (file < 0 || ftruncate(file, sizeof(Shared)) != 0)
+    throw Internal("shared memory cannot be had");
   void* const memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   close(file);
   if (memory == MAP_FAILED) throw Internal("shared memory cannot be mapped");
@@ -78,14 +79,15 @@ void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
 void client(std::uint32_t domain) {
   Shared& shared = *map(domain, 0);
   std::uint32_t number = 0;
-  run_raw_client([&](const Content& content, std::chrono::milliseconds patience) -> std::optional<Content> {
-    const auto end = Clock::now() + patience;
-    put(shared.request, ++number, content);
-    while (shared.reply.number.load(std::memory_order_acquire) != number) {
-      if (Clock::now() > end) return std::nullopt;
-    }
-    return get(shared.reply);
-  });
+  run_raw_client(
+      [&](const Content& content, std::chrono::milliseconds patience) -> std::optional<Content> {
+        const auto end = Clock::now() + patience;
+        put(shared.request, ++number, content);
+        while (shared.reply.number.load(std::memory_order_acquire) != number) {
+          if (Clock::now() > end) return std::nullopt;
+        }
+        return get(shared.reply);
+      });
 }
 
 }  // namespace

@@ -81,10 +81,11 @@ void client(std::uint32_t domain) {
   if (connect(server, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
     throw Internal("the Unix socket's server is not there");
   }
-  run_raw_client([server](const Content& content, std::chrono::milliseconds) -> std::optional<Content> {
-    if (!send_content(server, content)) return std::nullopt;
-    return receive_content(server);
-  });
+  run_raw_client(
+      [server](const Content& content, std::chrono::milliseconds) -> std::optional<Content> {
+        if (!send_content(server, content)) return std::nullopt;
+        return receive_content(server);
+      });
 }
 
 }  // namespace

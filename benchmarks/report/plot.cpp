@@ -30,19 +30,20 @@ double y_at(const Frame& frame, const Axis& axis, double value) {
 
 std::string text(double x, double y, const std::string& content, const char* anchor,
                  const char* kind = "tick") {
-  return fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}' class='{}'>{}</text>", x, y, anchor,
-                     kind, escaped(content));
+  return fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}' class='{}'>{}</text>", x, y,
+                     anchor, kind, escaped(content));
 }
 
 std::string stroke(double x1, double y1, double x2, double y2, const char* kind) {
-  return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' class='{}'/>", x1, y1, x2,
-                     y2, kind);
+  return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' class='{}'/>", x1, y1,
+                     x2, y2, kind);
 }
 
 std::string open(double width, double height, const std::string& title) {
-  return fmt::format("<svg viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' role='img' "
-                     "aria-label='{2}'>",
-                     width, height, escaped(title)) +
+  return fmt::format(
+             "<svg viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' role='img' "
+             "aria-label='{2}'>",
+             width, height, escaped(title)) +
          text(8, 16, title, "start", "title");
 }
 
@@ -50,16 +51,19 @@ std::string x_axis(const Frame& frame, const Axis& axis) {
   std::string svg;
   for (const auto& [at, label] : axis.ticks) {
     const double x = x_at(frame, axis, at);
-    svg += stroke(x, frame.top, x, frame.bottom(), "grid") + text(x, frame.bottom() + 15, label, "middle");
+    svg += stroke(x, frame.top, x, frame.bottom(), "grid") +
+           text(x, frame.bottom() + 15, label, "middle");
   }
-  return svg + text(frame.left + frame.width / 2, frame.bottom() + 31, axis.label, "middle", "label");
+  return svg +
+         text(frame.left + frame.width / 2, frame.bottom() + 31, axis.label, "middle", "label");
 }
 
 std::string y_axis(const Frame& frame, const Axis& axis) {
   std::string svg;
   for (const auto& [at, label] : axis.ticks) {
     const double y = y_at(frame, axis, at);
-    svg += stroke(frame.left, y, frame.right(), y, "grid") + text(frame.left - 5, y + 4, label, "end");
+    svg +=
+        stroke(frame.left, y, frame.right(), y, "grid") + text(frame.left - 5, y + 4, label, "end");
   }
   return svg;
 }
@@ -69,8 +73,9 @@ std::string polyline(const Frame& frame, const Axis& x, const Axis& y, const Lin
   for (const auto& [at, value] : line.points) {
     const double dot_x = x_at(frame, x, at), dot_y = y_at(frame, y, value);
     points += fmt::format("{:.1f},{:.1f} ", dot_x, dot_y);
-    dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.4' fill='{}'><title>{}: {}</title></circle>",
-                        dot_x, dot_y, line.colour, escaped(line.label), time_text(value));
+    dots += fmt::format(
+        "<circle cx='{:.1f}' cy='{:.1f}' r='2.4' fill='{}'><title>{}: {}</title></circle>", dot_x,
+        dot_y, line.colour, escaped(line.label), time_text(value));
   }
   return fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.8'{}/>", points,
                      line.colour, line.dashed ? " stroke-dasharray='5 4'" : "") +
@@ -81,15 +86,16 @@ std::vector<std::pair<double, std::string>> even_ticks(double high) {
   double step = 0.25;
   while (high / step > 8) step *= 2;
   std::vector<std::pair<double, std::string>> ticks;
-  for (double at = 0; at <= high + 1e-9; at += step) ticks.emplace_back(at, fmt::format("{:g}", at));
+  for (double at = 0; at <= high + 1e-9; at += step)
+    ticks.emplace_back(at, fmt::format("{:g}", at));
   return ticks;
 }
 
 }  // namespace
 
 Axis Axis::times(const std::string& label, double low, double high) {
-  Axis axis{label, std::pow(10, std::floor(std::log10(low))), std::pow(10, std::ceil(std::log10(high))),
-            true};
+  Axis axis{label, std::pow(10, std::floor(std::log10(low))),
+            std::pow(10, std::ceil(std::log10(high))), true};
   // A decade that is nearly empty is cut.
   if (axis.high / high > 4) axis.high = high * 1.5;
   if (low / axis.low > 4) axis.low = low / 1.5;
@@ -97,7 +103,8 @@ Axis Axis::times(const std::string& label, double low, double high) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double at = decade * factor;
       const bool crowded = axis.high / axis.low > 300 && factor != 1;
-      if (at >= axis.low && at <= axis.high * 1.001 && !crowded) axis.ticks.emplace_back(at, time_text(at));
+      if (at >= axis.low && at <= axis.high * 1.001 && !crowded)
+        axis.ticks.emplace_back(at, time_text(at));
     }
   }
   return axis;
@@ -116,23 +123,27 @@ std::string bar_plot(const std::string& title, const std::string& y_label,
                      const std::vector<std::pair<double, std::string>>& marks) {
   double high = 1.4;
   for (const BarGroup& group : groups) {
-    for (const Bar& bar : group.bars) high = std::max({high, bar.value * 1.1, bar.dot.value_or(0) * 1.1});
+    for (const Bar& bar : group.bars)
+      high = std::max({high, bar.value * 1.1, bar.dot.value_or(0) * 1.1});
   }
   high = std::min(high, 4.0);
   const Axis y{y_label, 0, high, false, even_ticks(high)};
   const Frame frame{46, 34, 680, 230};
-  std::string svg = open(790, 300, title) + text(8, 30, y_label, "start", "label") + y_axis(frame, y);
-  const double group_width = frame.width / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
+  std::string svg =
+      open(790, 300, title) + text(8, 30, y_label, "start", "label") + y_axis(frame, y);
+  const double group_width =
+      frame.width / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto& bars = groups[g].bars;
     const double left = frame.left + group_width * static_cast<double>(g);
-    const double width = group_width * 0.84 / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
+    const double width =
+        group_width * 0.84 / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
     for (std::size_t b = 0; b < bars.size(); ++b) {
       const Bar& bar = bars[b];
       const double x = left + group_width * 0.08 + width * static_cast<double>(b);
       const double top = y_at(frame, y, std::min(bar.value, high));
-      svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='{}'/>", x, top,
-                         width * 0.8, frame.bottom() - top, bar.colour);
+      svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='{}'/>",
+                         x, top, width * 0.8, frame.bottom() - top, bar.colour);
       svg += text(x + width * 0.4, top - 4, fmt::format("{:.2f}", bar.value), "middle", "value");
       if (bar.dot) {
         svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3' class='dot'/>", x + width * 0.4,
@@ -158,7 +169,8 @@ std::string strip_plot(const std::string& title, const Axis& x, const std::vecto
     const double middle = frame.top + kRow * (static_cast<double>(row) + 0.5);
     svg += text(frame.left - 8, middle + 4, strip.label, "end", "label");
     for (std::size_t i = 0; i < strip.values.size(); ++i) {
-      const double offset = (static_cast<double>(i * 7 % 11) - 5) * 1.4;  // so that dots do not hide dots
+      const double offset =
+          (static_cast<double>(i * 7 % 11) - 5) * 1.4;  // so that dots do not hide dots
       svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.6' fill='{}' fill-opacity='0.6'/>",
                          x_at(frame, x, strip.values[i]), middle + offset, strip.colour);
     }
@@ -184,12 +196,23 @@ std::string escaped(const std::string& text) {
   std::string result;
   for (const char letter : text) {
     switch (letter) {
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '&': result += "&amp;"; break;
-      case '\'': result += "&#39;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += letter;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += letter;
     }
   }
   return result;

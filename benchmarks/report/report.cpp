@@ -40,13 +40,15 @@ their rivals', either sharing one or on one each: where the scheduler may choose
 
 /// What has a plot for each placement is a section for each.
 std::string title_of(const Comparison& comparison) {
-  const bool one_placement = comparison.parameters.contains("placement") && !is_of_matrix(comparison);
+  const bool one_placement =
+      comparison.parameters.contains("placement") && !is_of_matrix(comparison);
   return comparison.claim +
          (one_placement ? ", " + comparison.parameters.at("placement").get<std::string>() : "");
 }
 
 /// Claims in the order in which they first appear.
-std::vector<std::pair<std::string, Comparisons>> by_claim(const std::vector<Comparison>& comparisons) {
+std::vector<std::pair<std::string, Comparisons>> by_claim(
+    const std::vector<Comparison>& comparisons) {
   std::vector<std::pair<std::string, Comparisons>> claims;
   for (const Comparison& comparison : comparisons) {
     const std::string claim = title_of(comparison);

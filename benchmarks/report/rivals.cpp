@@ -50,7 +50,8 @@ Ordered<Matrix> matrices_of(const Comparisons& comparisons) {
       matrix.variants.push_back(variant);
     }
     // Of a skipped pair it is the rival that was not measured, unless the subject never was.
-    const auto put = [&](const std::string& name, const Summary& summary, const std::string& skipped) {
+    const auto put = [&](const std::string& name, const Summary& summary,
+                         const std::string& skipped) {
       Cell& cell = matrix.contenders[name][variant];
       if (cell.summary.samples == 0) cell = {summary, skipped};
     };
@@ -65,7 +66,8 @@ double best_of(const Matrix& matrix, const std::string& variant, bool skein) {
   for (const auto& [name, cells] : matrix.contenders) {
     const auto found = cells.find(variant);
     const bool measured = found != cells.end() && found->second.summary.samples > 0;
-    if (measured && name.starts_with("skein") == skein) best = std::min(best, found->second.summary.p50);
+    if (measured && name.starts_with("skein") == skein)
+      best = std::min(best, found->second.summary.p50);
   }
   return best;
 }
@@ -78,8 +80,8 @@ std::string cell_text(const Matrix& matrix, const std::string& name, const std::
   const bool skein = name.starts_with("skein");
   const double other = best_of(matrix, variant, !skein);
   const char* look = !skein || other > 1e17 ? "" : cell.summary.p50 <= other ? "good" : "bad";
-  return fmt::format("<td class='{}'>{} <small>({})</small></td>", look, time_text(cell.summary.p50),
-                     time_text(cell.summary.p99));
+  return fmt::format("<td class='{}'>{} <small>({})</small></td>", look,
+                     time_text(cell.summary.p50), time_text(cell.summary.p99));
 }
 
 std::string table_of_matrix(const std::string& placement, const Matrix& matrix) {
@@ -116,8 +118,8 @@ std::string variant_of(const Comparison& comparison) {
     if (name == "placement") continue;
     std::string words = name;
     std::ranges::replace(words, '_', ' ');
-    text += (text.empty() ? "" : ", ") +
-            (name == "size_bytes" ? size_text(value.get<std::size_t>()) : value.dump() + " " + words);
+    text += (text.empty() ? "" : ", ") + (name == "size_bytes" ? size_text(value.get<std::size_t>())
+                                                               : value.dump() + " " + words);
   }
   return text;
 }
@@ -132,8 +134,9 @@ std::string rivals_verdict(const std::vector<Comparison>& comparisons) {
   for (const Comparison& comparison : comparisons) {
     if (!is_of_matrix(comparison) || !comparison.goal_p50 || !comparison.skipped.empty()) continue;
     const double ratio = comparison.summary().p50 / comparison.rival_summary().p50;
-    Verdict& verdict = verdicts[fmt::format("{}, {}, {}: {}", comparison.claim, variant_of(comparison),
-                                            placement_of(comparison), comparison.subject)];
+    Verdict& verdict =
+        verdicts[fmt::format("{}, {}, {}: {}", comparison.claim, variant_of(comparison),
+                             placement_of(comparison), comparison.subject)];
     (ratio > *comparison.goal_p50 ? verdict.behind : verdict.ahead)
         .push_back(fmt::format("{} ({:.2f}×)", comparison.rival, ratio));
   }
@@ -143,8 +146,9 @@ std::string rivals_verdict(const std::vector<Comparison>& comparisons) {
     if (verdict.behind.empty()) {
       winning += fmt::format("<li>{} is {}</li>", escaped(what), escaped(ahead));
     } else {
-      losing += fmt::format("<li>{} is <b>behind {}</b>{}</li>", escaped(what), escaped(joined(verdict.behind)),
-                            escaped(ahead.empty() ? "" : "; " + ahead));
+      losing +=
+          fmt::format("<li>{} is <b>behind {}</b>{}</li>", escaped(what),
+                      escaped(joined(verdict.behind)), escaped(ahead.empty() ? "" : "; " + ahead));
     }
   }
   if (losing.empty() && winning.empty()) return "";
@@ -152,15 +156,17 @@ std::string rivals_verdict(const std::vector<Comparison>& comparisons) {
     return fmt::format("<details open><summary>{}</summary><ul>{}</ul></details>", title,
                        items.empty() ? "<li>Nowhere.</li>" : items);
   };
-  return "<h3>Beside others (Skein's median by theirs, or by the goal's)</h3>" + list("Skein loses", losing) +
-         list("Skein wins", winning);
+  return "<h3>Beside others (Skein's median by theirs, or by the goal's)</h3>" +
+         list("Skein loses", losing) + list("Skein wins", winning);
 }
 
 std::string section_of_rivals(const std::string& claim, const Comparisons& comparisons) {
-  std::string html = fmt::format("<section><h2>{}</h2><p class='note'>Median, and in brackets the 99th "
-                                 "percentile. Red: some other contender's median is shorter.</p>",
-                                 escaped(claim));
-  for (const auto& [placement, matrix] : matrices_of(comparisons)) html += table_of_matrix(placement, matrix);
+  std::string html = fmt::format(
+      "<section><h2>{}</h2><p class='note'>Median, and in brackets the 99th "
+      "percentile. Red: some other contender's median is shorter.</p>",
+      escaped(claim));
+  for (const auto& [placement, matrix] : matrices_of(comparisons))
+    html += table_of_matrix(placement, matrix);
   return html + "</section>";
 }
 

@@ -31,9 +31,10 @@ double ratio_p99(const Comparison& comparison) {
 }
 
 const char* colour_of(const std::string& name) {
-  static const std::map<std::string, const char*> kColours{
-      {"fastdds", "#0b6bcb"},           {"cyclonedds", "#0a8f5b"},
-      {"fastdds-cyclonedds", "#c4581a"}, {"cyclonedds-fastdds", "#8a3ab9"}};
+  static const std::map<std::string, const char*> kColours{{"fastdds", "#0b6bcb"},
+                                                           {"cyclonedds", "#0a8f5b"},
+                                                           {"fastdds-cyclonedds", "#c4581a"},
+                                                           {"cyclonedds-fastdds", "#8a3ab9"}};
   const auto found = kColours.find(name.substr(name.find(' ') + 1));
   return found == kColours.end() ? "#777777" : found->second;
 }
@@ -87,12 +88,14 @@ std::string latency_panels(const Comparisons& comparisons) {
   std::string html = "<div class='panels'>";
   for (const std::string& subject : subjects_with_goal(comparisons)) {
     const std::string pair = subject.substr(subject.find(' ') + 1);
-    html += line_plot(pair + ": median", size_axis(sizes), Axis::times("", low, high),
-                      {line_of("unix socket", "#999999", false),
-                       line_of("raw " + pair, "#d08700", true), line_of(subject, colour_of(subject), false)});
+    html += line_plot(
+        pair + ": median", size_axis(sizes), Axis::times("", low, high),
+        {line_of("unix socket", "#999999", false), line_of("raw " + pair, "#d08700", true),
+         line_of(subject, colour_of(subject), false)});
   }
-  return html + "</div><p class='key'><b class='skein'>━ Skein</b> <b class='raw'>╍ raw</b> "
-                "<b class='floor'>━ Unix socket</b></p>";
+  return html +
+         "</div><p class='key'><b class='skein'>━ Skein</b> <b class='raw'>╍ raw</b> "
+         "<b class='floor'>━ Unix socket</b></p>";
 }
 
 std::string ratio_bars(const Comparisons& comparisons) {
@@ -102,15 +105,16 @@ std::string ratio_bars(const Comparisons& comparisons) {
     if (!has_goal(*comparison) || !measured(*comparison)) continue;
     BarGroup& group = groups[size_of(*comparison)];
     group.label = size_text(size_of(*comparison));
-    group.bars.push_back({colour_of(comparison->subject), ratio_p50(*comparison), ratio_p99(*comparison)});
+    group.bars.push_back(
+        {colour_of(comparison->subject), ratio_p50(*comparison), ratio_p99(*comparison)});
   }
   for (const std::string& subject : subjects_with_goal(comparisons)) {
     key += fmt::format("<b style='color:{}'>■ {}</b> ", colour_of(subject), escaped(subject));
   }
   std::vector<BarGroup> bars;
   for (auto& [size, group] : groups) bars.push_back(std::move(group));
-  return bar_plot("Skein / raw (less is better; mixed pairs against the slower vendor)", "ratio of times",
-                  bars, {{1.0, "1 = raw"}, {1.05, ""}}) +
+  return bar_plot("Skein / raw (less is better; mixed pairs against the slower vendor)",
+                  "ratio of times", bars, {{1.0, "1 = raw"}, {1.05, ""}}) +
          "<p class='key'>" + key + "bar: p50 (goal: 1.05), dot: p99 (goal: 1.15; cut off at 4)</p>";
 }
 
@@ -132,7 +136,8 @@ std::string tail_panels(const Comparisons& comparisons) {
     };
     const std::string pair = comparison->subject.substr(comparison->subject.find(' ') + 1);
     add(comparison->subject, comparison->samples, false);
-    if (pair.find('-') == std::string::npos) add(comparison->rival, comparison->rival_samples, true);
+    if (pair.find('-') == std::string::npos)
+      add(comparison->rival, comparison->rival_samples, true);
   }
   std::string html = "<div class='panels'>";
   for (const auto& [size, lines] : panels) {
@@ -141,9 +146,13 @@ std::string tail_panels(const Comparisons& comparisons) {
       panel_low = std::min(panel_low, line.points.front().second);
       panel_high = std::max(panel_high, line.points.back().second);
     }
-    Axis x{"share of calls that are faster", 1.9, 1100, true,
+    Axis x{"share of calls that are faster",
+           1.9,
+           1100,
+           true,
            {{2, "50 %"}, {10, "90 %"}, {100, "99 %"}, {1000, "99.9 %"}}};
-    html += line_plot(size_text(size) + ": the tail", x, Axis::times("", panel_low, panel_high), lines);
+    html +=
+        line_plot(size_text(size) + ": the tail", x, Axis::times("", panel_low, panel_high), lines);
   }
   return html + "</div><p class='key'>Colours as above; dashed: the same vendor raw.</p>";
 }
@@ -155,8 +164,9 @@ std::string goal_text(const Comparison& comparison) {
 }
 
 std::string row_of(const Comparison& comparison) {
-  std::string row = fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>", escaped(comparison.subject),
-                                escaped(comparison.rival), place_of(comparison));
+  std::string row =
+      fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>", escaped(comparison.subject),
+                  escaped(comparison.rival), place_of(comparison));
   if (!measured(comparison)) {
     return row + fmt::format("<td colspan='12' class='skipped'>skipped: {}</td></tr>",
                              escaped(comparison.skipped));
@@ -166,17 +176,19 @@ std::string row_of(const Comparison& comparison) {
   for (const double time : {own.p50, own.p90, own.p95, own.p99, own.p999}) {
     row += "<td>" + time_text(time) + "</td>";
   }
-  for (const double time : {rival.p50, rival.p95, rival.p99}) row += "<td class='rival'>" + time_text(time) + "</td>";
-  row += fmt::format("<td><b>{:.2f}</b></td><td>{:.2f}</td>", ratio_p50(comparison), ratio_p99(comparison));
+  for (const double time : {rival.p50, rival.p95, rival.p99})
+    row += "<td class='rival'>" + time_text(time) + "</td>";
+  row += fmt::format("<td><b>{:.2f}</b></td><td>{:.2f}</td>", ratio_p50(comparison),
+                     ratio_p99(comparison));
   return row + (has_goal(comparison) ? goal_text(comparison) : "<td></td>") + "</tr>";
 }
 
 std::string sentence_of(const Comparison& comparison) {
   return fmt::format("<li>{}{}{}, {}: p50 {} against {} of {}: <b>{:.2f}×</b>; p99 {:.2f}×</li>",
                      escaped(comparison.claim), place_of(comparison).empty() ? "" : ", ",
-                     place_of(comparison), escaped(comparison.subject), time_text(comparison.summary().p50),
-                     time_text(comparison.rival_summary().p50), escaped(comparison.rival),
-                     ratio_p50(comparison), ratio_p99(comparison));
+                     place_of(comparison), escaped(comparison.subject),
+                     time_text(comparison.summary().p50), time_text(comparison.rival_summary().p50),
+                     escaped(comparison.rival), ratio_p50(comparison), ratio_p99(comparison));
 }
 
 std::string list_of(const char* title, const std::string& items, const char* nothing) {
@@ -226,13 +238,15 @@ std::string verdict_section(const std::vector<Comparison>& comparisons) {
 }
 
 std::string section_by_size(const std::string& claim, const Comparisons& comparisons) {
-  return fmt::format("<section><h2>{}</h2>{}{}{}{}</section>", escaped(claim), ratio_bars(comparisons),
-                     latency_panels(comparisons), tail_panels(comparisons), table_of(comparisons));
+  return fmt::format("<section><h2>{}</h2>{}{}{}{}</section>", escaped(claim),
+                     ratio_bars(comparisons), latency_panels(comparisons), tail_panels(comparisons),
+                     table_of(comparisons));
 }
 
 std::string section_of_times(const std::string& claim, const Comparisons& comparisons) {
   std::map<std::string, std::vector<const Comparison*>> by_place;
-  for (const Comparison* comparison : comparisons) by_place[place_of(*comparison)].push_back(comparison);
+  for (const Comparison* comparison : comparisons)
+    by_place[place_of(*comparison)].push_back(comparison);
   std::string html;
   for (const auto& [place, group] : by_place) {
     std::vector<Strip> strips;
@@ -252,18 +266,22 @@ std::string section_of_times(const std::string& claim, const Comparisons& compar
       }
     }
     if (strips.empty()) continue;
-    html += strip_plot(place.empty() ? claim : claim + ", " + place, Axis::times("time", low, high), strips,
-                       marks);
+    html += strip_plot(place.empty() ? claim : claim + ", " + place, Axis::times("time", low, high),
+                       strips, marks);
   }
-  return fmt::format("<section><h2>{}</h2>{}{}</section>", escaped(claim), html, table_of(comparisons));
+  return fmt::format("<section><h2>{}</h2>{}{}</section>", escaped(claim), html,
+                     table_of(comparisons));
 }
 
 std::string table_of(const Comparisons& comparisons) {
   std::string rows;
   for (const Comparison* comparison : comparisons) rows += row_of(*comparison);
-  return "<details open><summary>All figures</summary><table><thead><tr><th>subject</th><th>rival</th><th></th>"
-         "<th>samples</th><th>p50</th><th>p90</th><th>p95</th><th>p99</th><th>p99.9</th><th>rival p50</th>"
-         "<th>rival p95</th><th>rival p99</th><th>ratio p50</th><th>ratio p99</th><th>goal</th></tr></thead>"
+  return "<details open><summary>All "
+         "figures</summary><table><thead><tr><th>subject</th><th>rival</th><th></th>"
+         "<th>samples</th><th>p50</th><th>p90</th><th>p95</th><th>p99</th><th>p99.9</th><th>rival "
+         "p50</th>"
+         "<th>rival p95</th><th>rival p99</th><th>ratio p50</th><th>ratio "
+         "p99</th><th>goal</th></tr></thead>"
          "<tbody>" +
          rows + "</tbody></table></details>";
 }

@@ -1,5 +1,5 @@
-// gRPC's C++ API as its examples use it: a synchronous server, blocking calls, and for calls in flight
-// its callback API.
+// gRPC's C++ API as its examples use it: a synchronous server, blocking calls, and for calls in
+// flight its callback API.
 
 #include <grpcpp/grpcpp.h>
 

@@ -8,8 +8,8 @@
 #include "harness/peer.hpp"
 #include "skein/core/error.hpp"
 
-/// The command line of a rival's peer: `server|client NUMBER TRANSPORT`. The number tells configurations
-/// that are alive at once from each other.
+/// The command line of a rival's peer: `server|client NUMBER TRANSPORT`. The number tells
+/// configurations that are alive at once from each other.
 namespace skein::benchmarks::rivals {
 
 inline constexpr int kFirstPort = 20'000;

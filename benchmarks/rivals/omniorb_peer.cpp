@@ -1,5 +1,5 @@
-// omniORB by its C++ mapping, from the same IDL as Skein. `names` is a client of its name server. omniORB
-// 4.2 has no asynchronous calls: calls in flight have a thread each.
+// omniORB by its C++ mapping, from the same IDL as Skein. `names` is a client of its name server.
+// omniORB 4.2 has no asynchronous calls: calls in flight have a thread each.
 
 #include <cstdio>
 #include <fstream>

@@ -1,4 +1,5 @@
-// ZeroMQ as its guide advises for services: a ROUTER that serves all clients, a DEALER in each of them.
+// ZeroMQ as its guide advises for services: a ROUTER that serves all clients, a DEALER in each of
+// them.
 
 #include <string>
 #include <thread>
@@ -43,7 +44,8 @@ void server(const Arguments& arguments) {
 /// A client: one socket, used by one thread at a time.
 class Caller {
  public:
-  Caller(zmq::context_t& context, const std::string& address) : socket_(context, zmq::socket_type::dealer) {
+  Caller(zmq::context_t& context, const std::string& address)
+      : socket_(context, zmq::socket_type::dealer) {
     socket_.set(zmq::sockopt::linger, 0);
     socket_.connect(address);
   }
