@@ -144,6 +144,30 @@ TEST_CASE("no rival and no way to call is missing") {
   }
 }
 
+TEST_CASE("a user measures calls by the command, and compares what it saved") {
+  const auto folder = std::filesystem::current_path() / "command_bench";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const std::string command = std::string(SKEIN_COMMAND) + " bench ";
+  const auto file = [&](const std::string& name) {
+    return " '" + (folder / (name + ".json")).string() + "'";
+  };
+  for (const std::string what :
+       {"latency --payload 64 1024 --count 20", "throughput --payload 64 --count 200"}) {
+    for (const std::string vendor : {"fastdds", "cyclonedds"}) {
+      CAPTURE(what, vendor);
+      REQUIRE(std::system(
+                  (command + what + " --vendor " + vendor + " --output" + file(vendor)).c_str()) ==
+              0);
+      std::ifstream saved(folder / (vendor + ".json"));
+      for (const json& row : json::parse(saved)) CHECK(row.at("p50_us") > 0);
+    }
+    CHECK(std::system((command + "compare" + file("fastdds") + file("cyclonedds")).c_str()) == 0);
+  }
+  std::ofstream(folder / "broken.json") << "{}";
+  CHECK(std::system((command + "compare" + file("fastdds") + file("broken")).c_str()) != 0);
+}
+
 TEST_CASE("the report is one page that refers to nothing outside") {
   std::ifstream file(QuickRun::get().folder / "report.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};

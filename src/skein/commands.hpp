@@ -5,6 +5,9 @@
 /// The subcommands of `skein`; each sets `result` to the exit code when it has run.
 namespace skein::command {
 
+/// `skein bench latency|throughput|discovery|compare`: what calls cost here.
+void add_bench(CLI::App& app, int& result);
+
 /// `skein check PROFILE`: everything that is wrong with a mission profile.
 void add_check(CLI::App& app, int& result);
 
