@@ -42,7 +42,7 @@ HOMES = {
     "OMPL": (r"ompl/", ["src/navigation"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/navigation"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
-    "JSON": (r"nlohmann/", ["src/idl", "test", "benchmarks"]),
+    "JSON": (r"nlohmann/", ["src/idl", "src/skein", "test", "benchmarks"]),
     "the command line": (r"CLI/", ["src/skein", "benchmarks", "examples"]),
 }
 
