@@ -11,26 +11,25 @@
 
 namespace skein::dds {
 
-/// First in, first out, with at most `depth` items of each key: one more replaces the key's oldest.
-/// Without a depth it holds everything, and costs no more than a deque.
+/// First in, first out, with at most `depth` items of each key: one more replaces the key's oldest. And at
+/// most `capacity` in all, where that is not 0: one more replaces the oldest of all. Without a depth it
+/// costs no more than a deque.
 template <class Item>
 class KeyedQueue {
  public:
-  explicit KeyedQueue(std::optional<std::uint32_t> depth) : depth_(depth) {}
+  explicit KeyedQueue(std::optional<std::uint32_t> depth, std::size_t capacity = 0)
+      : depth_(depth), capacity_(capacity) {}
 
-  void push(const Guid& key, Item item) {
-    if (depth_) {
-      auto& places = places_[key];
-      if (places.size() >= *depth_) {
-        entries_[places.front() - first_].item.reset();
-        places.erase(places.begin());
-        --size_;
-      }
-      places.push_back(first_ + entries_.size());
-    }
+  /// Whether an item was replaced.
+  bool push(const Guid& key, Item item) {
+    const std::size_t before = size_;
+    make_room(key);
+    const bool replaced = size_ < before;
+    if (depth_) places_[key].push_back(first_ + entries_.size());
     entries_.push_back({key, std::move(item)});
     ++size_;
     if (entries_.size() > 2 * size_ + 64) compact();
+    return replaced;
   }
 
   /// The oldest item, or nothing.
@@ -73,6 +72,19 @@ class KeyedQueue {
     std::optional<Item> item;
   };
 
+  void make_room(const Guid& key) {
+    if (depth_) {
+      const auto found = places_.find(key);
+      if (found != places_.end() && found->second.size() >= *depth_) {
+        entries_[found->second.front() - first_].item.reset();
+        found->second.erase(found->second.begin());
+        --size_;
+        return;
+      }
+    }
+    if (capacity_ > 0 && size_ >= capacity_) pop();
+  }
+
   void forget_first_place(const Guid& key) {
     const auto found = places_.find(key);
     found->second.erase(found->second.begin());
@@ -93,6 +105,7 @@ class KeyedQueue {
   }
 
   std::optional<std::uint32_t> depth_;
+  std::size_t capacity_;
   std::deque<Entry> entries_;
   std::uint64_t first_ = 0;  // the number of entries_.front()
   std::size_t size_ = 0;

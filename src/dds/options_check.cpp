@@ -140,6 +140,12 @@ void check_qos(const Topic& topic, const Qos& qos) {
   if (qos.liveliness_lease && qos.liveliness_lease->count() <= 0) {
     refuse("a liveliness lease must be longer than 0");
   }
+  if (qos.deadline && qos.deadline->count() <= 0) refuse("a deadline must be longer than 0");
+  if (qos.lifespan && qos.lifespan->count() <= 0) refuse("a lifespan must be longer than 0");
+  if (qos.strength < 0) refuse("an ownership strength must not be negative");
+  if (qos.strength > 0 && !qos.exclusive) {
+    refuse("a strength means nothing without exclusive ownership; set `exclusive` too");
+  }
   for (const std::string& partition : qos.partitions) {
     if (partition.find_first_of("*?[]") != std::string::npos) {
       refuse("partition '" + partition + "' has a wildcard; vendors differ in what they match");

@@ -101,6 +101,7 @@ struct Entity::State {
   Connector connector;
   Head head;
   std::mutex mutex;
+  std::unique_ptr<ThreadExecutor> topics;  // once there is a subscription
   std::map<Guid, std::unique_ptr<Provided>> provided;
 };
 
@@ -123,6 +124,17 @@ Broker& Entity::broker() noexcept { return state_->broker; }
 Head& Entity::head() noexcept { return state_->head; }
 Clock& Entity::clock() noexcept { return state_->process->clock(); }
 dds::Participant& Entity::participant() noexcept { return *state_->participant; }
+
+TopicQos Entity::with_system(TopicQos qos) const {
+  if (qos.systems.empty()) qos.systems = {state_->options.system};
+  return qos;
+}
+
+Executor& Entity::topic_executor() {
+  std::lock_guard lock(state_->mutex);
+  if (!state_->topics) state_->topics = std::make_unique<ThreadExecutor>("skein-topics");
+  return *state_->topics;
+}
 
 Guid Entity::provide(std::shared_ptr<Servant> servant, const ServiceOptions& options) {
   return add(std::move(servant), options, state_->options.name, "");

@@ -14,6 +14,7 @@ FLOORS = {
     "dds/fastdds": 2.5,
     "dds/cyclonedds": 2.5,
     "rpc": 3,
+    "topics": 3,
     "brokerless_discovery": 4,
     "connector": 5,
     "entity": 6,

@@ -39,6 +39,7 @@ struct Pair {
     ReaderListener listener;
     listener.on_matched = [this](const Guid&, bool matched) { events += matched ? "+" : "-"; };
     listener.on_liveliness = [this](const Guid&, bool alive) { events += alive ? "alive " : "lost "; };
+    listener.on_deadline_missed = [this](const KeyHash&) { events += "missed "; };
     reader = two.participant->create_reader(kTopic, qos, listener);
   }
   ManualClock clock;
@@ -195,6 +196,71 @@ TEST_CASE("a full writer refuses at once where time stands still") {
   CHECK_THROWS_AS(pair.writer->write(number(3)), Overloaded);
   pair.clock.advance(1s);
   CHECK_NOTHROW(pair.writer->write(number(4)));
+}
+
+TEST_CASE("a deadline is missed when its period is over, and again after each further one") {
+  Qos qos;
+  qos.deadline = 100ms;
+  Pair pair(qos);
+  pair.clock.advance(1s);
+  CHECK(pair.events == "+");  // no sample yet: nothing is expected
+  pair.writer->write(number(1));
+  pair.clock.advance(60ms);
+  pair.writer->write(number(2));
+  pair.clock.advance(99ms);
+  CHECK(pair.events == "+");
+  pair.clock.advance(1ms);
+  CHECK(pair.events == "+missed ");
+  pair.clock.advance(200ms);
+  CHECK(pair.events == "+missed missed missed ");
+  pair.reader.reset();
+  pair.clock.advance(1s);
+  CHECK(pair.events == "+missed missed missed ");
+}
+
+TEST_CASE("a sample expires to the instant, on its way and in the reader") {
+  Qos qos;
+  qos.lifespan = 100ms;
+  Pair pair(qos);
+  pair.network.judge_transfers([](const Transfer& transfer) {
+    return transfer.sequence == 1 ? Fate::late(100ms) : Fate::deliver();
+  });
+  pair.writer->write(number(1));
+  pair.clock.advance(1ms);
+  pair.writer->write(number(2));
+  pair.clock.advance(99ms);
+  CHECK(take_all(*pair.reader) == std::vector{2});
+  CHECK(pair.reader->expired() == 1);
+  pair.writer->write(number(3));
+  pair.clock.advance(100ms);
+  CHECK(take_all(*pair.reader).empty());
+  CHECK(pair.reader->expired() == 2);
+}
+
+TEST_CASE("an owner that is silent for its lease hands over, and takes again when it is back") {
+  Qos qos;
+  qos.exclusive = true;
+  qos.strength = 2;
+  qos.liveliness_lease = 200ms;
+  Pair pair(qos);
+  Peer third(pair.network);
+  qos.strength = 1;
+  const auto weak = third.participant->create_writer(kTopic, qos);
+  weak->write(number(1));
+  pair.writer->write(number(2));
+  weak->write(number(3));
+  CHECK(take_all(*pair.reader) == std::vector{1, 2});
+  pair.network.pause(pair.one.participant->guid());
+  pair.clock.advance(199ms);
+  weak->write(number(4));
+  CHECK(take_all(*pair.reader).empty());
+  pair.clock.advance(1ms);
+  weak->write(number(5));
+  CHECK(take_all(*pair.reader) == std::vector{5});
+  pair.network.resume(pair.one.participant->guid());
+  pair.writer->write(number(6));
+  weak->write(number(7));
+  CHECK(take_all(*pair.reader) == std::vector{6});
 }
 
 TEST_CASE("two runs see the same GUIDs") {

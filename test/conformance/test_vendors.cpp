@@ -78,3 +78,19 @@ TEST_CASE("a keyed queue keeps the newest of each key, in order of arrival") {
   CHECK(queue.pop() == 2);
   CHECK(queue.empty());
 }
+
+TEST_CASE("a keyed queue with a capacity gives up its oldest item, of whichever key") {
+  KeyedQueue<int> queue(2, 3);
+  Guid one;
+  Guid two;
+  two.bytes[0] = 1;
+  CHECK_FALSE(queue.push(one, 1));
+  CHECK_FALSE(queue.push(two, 2));
+  CHECK_FALSE(queue.push(two, 3));
+  CHECK(queue.push(one, 4));
+  CHECK(queue.push(two, 5));
+  CHECK(queue.size() == 3);
+  CHECK(queue.pop() == 3);
+  CHECK(queue.pop() == 4);
+  CHECK(queue.pop() == 5);
+}

@@ -49,6 +49,14 @@ Inbox::Inbox(Participant& participant, const Topic& topic, const Qos& qos) {
     std::lock_guard lock(mutex_);
     liveliness_.emplace_back(writer, alive);
   };
+  listener.on_deadline_missed = [this](const KeyHash& key) {
+    std::lock_guard lock(mutex_);
+    missed_deadlines_.push_back(key);
+  };
+  listener.on_incompatible = [this](const Incompatibility& why) {
+    std::lock_guard lock(mutex_);
+    incompatible_.push_back(why);
+  };
   reader_ = participant.create_reader(topic, qos, std::move(listener));
 }
 
@@ -77,11 +85,29 @@ std::vector<std::pair<Guid, bool>> Inbox::liveliness() const {
   return liveliness_;
 }
 
+std::vector<KeyHash> Inbox::missed_deadlines() const {
+  std::lock_guard lock(mutex_);
+  return missed_deadlines_;
+}
+
+std::vector<Incompatibility> Inbox::incompatible() const {
+  std::lock_guard lock(mutex_);
+  return incompatible_;
+}
+
 Outbox::Outbox(Participant& participant, const Topic& topic, const Qos& qos) {
   WriterListener listener;
   listener.on_matched = [this](const Guid& reader, bool matched) {
     std::lock_guard lock(mutex_);
     matches_.emplace_back(reader, matched);
+  };
+  listener.on_deadline_missed = [this](const KeyHash& key) {
+    std::lock_guard lock(mutex_);
+    missed_deadlines_.push_back(key);
+  };
+  listener.on_incompatible = [this](const Incompatibility& why) {
+    std::lock_guard lock(mutex_);
+    incompatible_.push_back(why);
   };
   writer_ = participant.create_writer(topic, qos, std::move(listener));
 }
@@ -89,6 +115,16 @@ Outbox::Outbox(Participant& participant, const Topic& topic, const Qos& qos) {
 std::vector<std::pair<Guid, bool>> Outbox::matches() const {
   std::lock_guard lock(mutex_);
   return matches_;
+}
+
+std::vector<KeyHash> Outbox::missed_deadlines() const {
+  std::lock_guard lock(mutex_);
+  return missed_deadlines_;
+}
+
+std::vector<Incompatibility> Outbox::incompatible() const {
+  std::lock_guard lock(mutex_);
+  return incompatible_;
 }
 
 bool matched(Outbox& outbox, Inbox& inbox) {

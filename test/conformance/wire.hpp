@@ -53,9 +53,13 @@ class Inbox {
   void forget_samples();
   std::vector<std::pair<Guid, bool>> matches() const;
   std::vector<std::pair<Guid, bool>> liveliness() const;
+  std::vector<KeyHash> missed_deadlines() const;
+  std::vector<Incompatibility> incompatible() const;
 
  private:
   mutable std::mutex mutex_;
+  std::vector<KeyHash> missed_deadlines_;
+  std::vector<Incompatibility> incompatible_;
   std::vector<Received> received_;
   std::vector<std::pair<Guid, bool>> matches_;
   std::vector<std::pair<Guid, bool>> liveliness_;
@@ -70,9 +74,13 @@ class Outbox {
   Writer& writer() { return *writer_; }
   void close() { writer_.reset(); }
   std::vector<std::pair<Guid, bool>> matches() const;
+  std::vector<KeyHash> missed_deadlines() const;
+  std::vector<Incompatibility> incompatible() const;
 
  private:
   mutable std::mutex mutex_;
+  std::vector<KeyHash> missed_deadlines_;
+  std::vector<Incompatibility> incompatible_;
   std::vector<std::pair<Guid, bool>> matches_;
   std::unique_ptr<Writer> writer_;
 };

@@ -43,11 +43,26 @@ struct Qos {
   /// no limit on their number (Cyclone DDS still bounds their bytes, at 4 MiB). Readers have no limit:
   /// a full one would stop a participant's reception, and its leases with it.
   std::uint32_t max_samples = 0;
+  /// A reader's: how many samples may wait to be taken; one more takes the oldest one's place. 0: no limit.
+  std::uint32_t max_waiting = 0;
   /// How long a write may wait for room before it throws Overloaded.
   std::chrono::milliseconds max_blocking{100};
   /// Automatic liveliness: a writer not heard of for so long is reported as not alive. Nothing: never.
   /// Give both sides the same: a reader's must not be shorter than a writer's.
   std::optional<std::chrono::milliseconds> liveliness_lease;
+  /// A sample of each instance, once begun and not disposed, is promised by a writer and expected by a
+  /// reader at least so often; each period without one is told on either side. Nothing: never. A
+  /// reader's must not be shorter than a writer's.
+  std::optional<std::chrono::milliseconds> deadline;
+  /// A writer's: what is older than this, counted from the moment it was written, no reader is given.
+  /// Between hosts it is only as good as their clocks agree. Nothing: samples never expire.
+  std::optional<std::chrono::milliseconds> lifespan;
+  /// Each instance is owned by the strongest living writer (of equals by the lesser GUID), and readers
+  /// are given its samples only. It passes on when that one is unmatched, silent for its lease, or
+  /// misses the reader's deadline. Both sides must agree.
+  bool exclusive = false;
+  /// A writer's, with `exclusive`; 0 or more.
+  std::int32_t strength = 0;
   /// Only endpoints that share a partition match. Exact names, no wildcards (vendors differ); empty
   /// means the default partition, which is called "". Fixed at creation.
   std::vector<std::string> partitions;
@@ -77,6 +92,19 @@ struct Sample {
   std::shared_ptr<const void> keep() const { return owner->keep(); }
 };
 
+/// Why a writer and a reader of one topic, type and partition do not match: what is offered is less than
+/// what is requested.
+struct Incompatibility {
+  Guid peer;
+  /// `reliability`, `durability`, `deadline`, `liveliness` or `ownership`.
+  std::string policy;
+  /// The writer's and the reader's value.
+  std::string offered;
+  std::string requested;
+  /// All of it, and what to do, in a sentence.
+  std::string explanation;
+};
+
 class Reader;
 
 /// Called on the vendor's threads; on_data also inside write(), where writer and reader are of one
@@ -91,10 +119,21 @@ struct ReaderListener {
   std::function<void(const Guid& writer, bool matched)> on_matched;
   /// A matched writer's lease expired (false) or it was heard of again (true).
   std::function<void(const Guid& writer, bool alive)> on_liveliness;
+  /// The key of a sample that came without its hash, as some foreign peers send them; nothing where it is
+  /// malformed. Without this function all such samples are malformed.
+  std::function<std::optional<KeyHash>(std::span<const std::byte> cdr)> find_key{};
+  /// No sample of the instance came for the reader's deadline; again after each further one.
+  std::function<void(const KeyHash& key)> on_deadline_missed{};
+  /// A writer was found that cannot be matched; once for each.
+  std::function<void(const Incompatibility&)> on_incompatible{};
 };
 
 struct WriterListener {
   std::function<void(const Guid& reader, bool matched)> on_matched;
+  /// No sample of the instance was written for the writer's deadline; again after each further one.
+  std::function<void(const KeyHash& key)> on_deadline_missed{};
+  /// A reader was found that cannot be matched; once for each.
+  std::function<void(const Incompatibility&)> on_incompatible{};
 };
 
 /// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
@@ -133,6 +172,12 @@ class Reader {
 
   /// Samples dropped because they were malformed, since creation.
   virtual std::uint64_t malformed() const = 0;
+
+  /// Samples dropped because their lifespan was over, since creation.
+  virtual std::uint64_t expired() const = 0;
+
+  /// Samples whose place newer ones took before they were taken, since creation.
+  virtual std::uint64_t replaced() const = 0;
 };
 
 /// Where a participant speaks.

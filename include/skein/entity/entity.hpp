@@ -9,6 +9,8 @@
 #include "skein/dds/port.hpp"
 #include "skein/entity/head.hpp"
 #include "skein/entity/process.hpp"
+#include "skein/topics/publisher.hpp"
+#include "skein/topics/subscription.hpp"
 
 namespace skein {
 
@@ -53,9 +55,9 @@ struct ServiceOptions {
 };
 
 /// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that implement its
-/// public services, and CSPs that implement its managed ones. Members are thread-safe. Proxies,
-/// implementations and continuations must be done with before the entity is destroyed; what it was given
-/// to provide it releases itself.
+/// public services, and CSPs that implement its managed ones; it also publishes and subscribes. Members are
+/// thread-safe. Proxies, implementations, continuations, publishers and subscriptions must be done with
+/// before the entity is destroyed; what it was given to provide it releases itself.
 class Entity {
  public:
   /// Joins the mission. Throws what the port throws, InvalidArgument for a name that is none.
@@ -104,6 +106,22 @@ class Entity {
     return Reference<Interface>({std::string(Interface::interface_info().name), provider, options().name});
   }
 
+  /// Publishes on the topic `name` of the entity's own system, unless `qos` names others.
+  template <class T>
+  Publisher<T> publisher(const std::string& name, const TopicQos& qos = {}) {
+    return Publisher<T>(participant(), name, with_system(qos));
+  }
+
+  /// Subscribes to it. The callback runs on one thread for all subscriptions of the entity, or on an
+  /// executor that `options` name; without a callback the user polls.
+  template <class T>
+  Subscription<T> subscription(const std::string& name, const TopicQos& qos = {},
+                               typename Subscription<T>::Callback callback = nullptr,
+                               SubscriptionOptions options = {}) {
+    return Subscription<T>(participant(), topic_executor(), name, with_system(qos),
+                           std::move(callback), std::move(options));
+  }
+
   Connector& connector() noexcept;
   brokerless_discovery::Broker& broker() noexcept;
   Head& head() noexcept;
@@ -111,6 +129,9 @@ class Entity {
   dds::Participant& participant() noexcept;
 
  private:
+  TopicQos with_system(TopicQos qos) const;
+  Executor& topic_executor();
+
   struct Provided;
   struct State;
 

@@ -47,6 +47,12 @@ QosSet::QosSet(const Qos& qos) : QosSet() {
   if (qos.liveliness_lease) {
     dds_qset_liveliness(qos_, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(qos.liveliness_lease->count()));
   }
+  if (qos.deadline) dds_qset_deadline(qos_, DDS_MSECS(qos.deadline->count()));
+  if (qos.lifespan) dds_qset_lifespan(qos_, DDS_MSECS(qos.lifespan->count()));
+  if (qos.exclusive) {
+    dds_qset_ownership(qos_, DDS_OWNERSHIP_EXCLUSIVE);
+    dds_qset_ownership_strength(qos_, qos.strength);
+  }
   if (!qos.partitions.empty()) {
     auto names = c_strings(qos.partitions);
     dds_qset_partition(qos_, static_cast<std::uint32_t>(names.size()), names.data());

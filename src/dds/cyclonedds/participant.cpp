@@ -43,6 +43,8 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
 
 CycloneParticipant::~CycloneParticipant() {
   watcher_.reset();
+  publications_.reset();
+  subscriptions_.reset();
   participant_.reset();
 }
 
@@ -74,6 +76,23 @@ void CycloneParticipant::take_presence() {
     const bool news = present ? present_.insert(guid).second : present_.erase(guid) > 0;
     if (news) options_.on_participant(guid, present);
   }
+}
+
+dds_entity_t CycloneParticipant::make_once(Entity& reader, dds_entity_t builtin_topic) {
+  std::lock_guard lock(builtin_);
+  if (reader.handle() == 0) {
+    reader = Entity(check(dds_create_reader(handle(), builtin_topic, nullptr, nullptr),
+                          "endpoints cannot be watched"));
+  }
+  return reader.handle();
+}
+
+dds_entity_t CycloneParticipant::publications() {
+  return make_once(publications_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
+}
+
+dds_entity_t CycloneParticipant::subscriptions() {
+  return make_once(subscriptions_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
 }
 
 TopicHandle CycloneParticipant::acquire_topic(const Topic& topic) {

@@ -34,7 +34,13 @@ class CycloneParticipant final : public Participant {
   TopicHandle acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
+  /// Cyclone's own reader of all publications or all subscriptions; made when first asked for, not
+  /// from a listener.
+  dds_entity_t publications();
+  dds_entity_t subscriptions();
+
  private:
+  dds_entity_t make_once(Entity& reader, dds_entity_t builtin_topic);
   void watch_participants();
   void take_presence();
 
@@ -43,6 +49,9 @@ class CycloneParticipant final : public Participant {
   Entity participant_;
   Guid guid_;
   TopicTable<TopicHandle> topics_;
+  std::mutex builtin_;
+  Entity publications_;
+  Entity subscriptions_;
   std::mutex presence_;  // one call of on_participant at a time
   std::set<Guid> present_;
   std::atomic<dds_entity_t> watcher_handle_{0};

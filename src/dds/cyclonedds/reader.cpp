@@ -10,7 +10,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
       topic_(topic),
       handle_(participant.acquire_topic(topic)),
       listener_(std::move(listener)),
-      queue_(qos.history_depth),
+      queue_(qos, listener_),
       matches_(
           [this](dds_instance_handle_t* handles, std::size_t room) {
             return dds_get_matched_publications(reader_handle_, handles, room);
@@ -22,7 +22,8 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
             dds_builtintopic_free_endpoint(data);
             return guid;
           },
-          listener_.on_matched, listener_.on_liveliness) {
+          listener_.on_matched, listener_.on_liveliness),
+      mismatches_(participant, topic, qos, Mismatches::Side::Reader, listener_.on_incompatible) {
   try {
     reader_ = make(topic, qos);
   } catch (...) {
@@ -34,6 +35,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
   made_ = true;
   // What came while the reader was being made was not told: its listener's user had no reader yet.
   matches_.update();
+  mismatches_.update();
   if (!queue_.empty()) data_available();
 }
 
@@ -51,6 +53,10 @@ Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
   dds_lset_subscription_matched(
       listener, [](dds_entity_t, dds_subscription_matched_status_t, void* self) {
         static_cast<CycloneReader*>(self)->matches_.update();
+      });
+  dds_lset_requested_incompatible_qos(
+      listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t status, void* self) {
+        static_cast<CycloneReader*>(self)->mismatches_.mismatched(status.last_policy_id);
       });
   dds_lset_liveliness_changed(
       listener, [](dds_entity_t, dds_liveliness_changed_status_t status, void* self) {

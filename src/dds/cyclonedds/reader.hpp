@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "matches.hpp"
+#include "mismatches.hpp"
 #include "participant.hpp"
 #include "sample_queue.hpp"
 
@@ -20,6 +21,8 @@ class CycloneReader final : public Reader {
   Guid guid() const override { return guid_; }
   std::vector<Guid> matched_writers() const override { return matches_.current(); }
   std::uint64_t malformed() const override { return queue_.malformed(); }
+  std::uint64_t expired() const override { return queue_.expired(); }
+  std::uint64_t replaced() const override { return queue_.replaced(); }
 
  private:
   Entity make(const Topic& topic, const Qos& qos);
@@ -32,6 +35,7 @@ class CycloneReader final : public Reader {
   const ReaderListener listener_;
   SampleQueue queue_;
   Matches matches_;
+  Mismatches mismatches_;
   std::atomic<bool> made_{false};
   std::mutex data_;  // one on_data at a time
   std::atomic<dds_entity_t> reader_handle_{0};  // 0 for listeners that come before it is made

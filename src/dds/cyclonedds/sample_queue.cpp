@@ -17,6 +17,17 @@ int32_t no_blobs(dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, uint32_t, u
   return 0;
 }
 
+SampleQueue* to_queue(ddsi_rhc* cache) {
+  return static_cast<SampleQueue*>(reinterpret_cast<dds_rhc*>(cache));
+}
+
+/// The writer's lifespan, from what Cyclone makes of it: when a sample that arrives now would expire.
+std::optional<std::chrono::nanoseconds> lifespan_of(const ddsi_writer_info& writer) {
+  if (writer.lifespan_exp.v == DDS_NEVER) return std::nullopt;
+  return std::chrono::nanoseconds(writer.lifespan_exp.v) -
+         std::chrono::steady_clock::now().time_since_epoch();
+}
+
 /// Lends out a queued item's reference.
 class Owner final : public SampleOwner {
  public:
@@ -34,7 +45,7 @@ class Owner final : public SampleOwner {
 const dds_rhc_ops& SampleQueue::operations() {
   static const dds_rhc_ops kOperations{
       .rhc_ops = {.store = &SampleQueue::store,
-                  .unregister_wr = [](ddsi_rhc*, const ddsi_writer_info*) {},
+                  .unregister_wr = &SampleQueue::writer_gone,
                   .relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {},
                   .set_qos = [](ddsi_rhc*, const dds_qos*) {},
                   .free = [](ddsi_rhc*) {}},  // the reader owns the queue
@@ -54,38 +65,87 @@ const dds_rhc_ops& SampleQueue::operations() {
   return kOperations;
 }
 
-SampleQueue::SampleQueue(std::optional<std::uint32_t> depth) : dds_rhc{}, queue_(depth) {
+SampleQueue::SampleQueue(const Qos& qos, const ReaderListener& listener)
+    : dds_rhc{}, find_key_(listener.find_key), queue_(qos.history_depth, qos.max_waiting), gate_(qos) {
   common.ops = &operations();
+  deadline_ = make_deadline_timer(qos, [this, missed = listener.on_deadline_missed](const KeyHash& key) {
+    {
+      std::lock_guard lock(mutex_);
+      gate_.release(key);
+    }
+    if (missed) missed(key);
+  });
 }
 
 bool SampleQueue::store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
                         ddsi_tkmap_instance*) {
-  auto* self = static_cast<SampleQueue*>(reinterpret_cast<dds_rhc*>(cache));
+  auto* self = to_queue(cache);
   auto* blob = static_cast<Blob*>(data);
   const bool disposed = (data->statusinfo & kDisposed) != 0;
-  if (data->kind != SDK_DATA && !disposed) return true;  // a writer lets go of an instance
+  if (data->kind != SDK_DATA && !disposed) {
+    self->let_go(blob->key_hash, to_guid(writer->guid));
+    return true;
+  }
   const bool sound = disposed || is_plain_cdr({blob->bytes(), blob->size});
-  if (!sound || !blob->has_key) {
+  const auto key = sound ? self->key_of(*blob) : std::nullopt;
+  if (!key) {
     self->malformed_.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
   // A writer of the same participant hands over what it also sends.
   const bool as_sent = blob->outgoing && blob->length != blob->size;
-  self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob),
-              to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive});
-  dds_reader_data_available_cb(self->reader_);
+  const bool stored =
+      self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob),
+                  *key, to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive},
+                 *writer);
+  if (stored) dds_reader_data_available_cb(self->reader_);
   return true;
 }
 
-void SampleQueue::push(Item item) {
-  const KeyHash key = item.blob->key_hash;
+std::optional<KeyHash> SampleQueue::key_of(const Blob& blob) const {
+  if (blob.has_key) return blob.key_hash;
+  if (!find_key_ || blob.kind != SDK_DATA) return std::nullopt;
+  return find_key_({blob.bytes(), blob.length});
+}
+
+bool SampleQueue::push(Item item, const ddsi_writer_info& writer) {
+  const KeyHash key = item.key;
+  const InstanceState state = item.state;
+  const SourceTime now = wall_clock_time();
+  const std::int64_t stamp = item.blob->timestamp.v;
+  {
+    std::lock_guard lock(mutex_);
+    const auto expiry =
+        gate_.admit(key, item.writer, {writer.ownership_strength, lifespan_of(writer)},
+                    stamp == DDS_TIME_INVALID ? now : SourceTime(stamp), now);
+    if (!expiry) return false;
+    item.expiry = *expiry;
+    if (queue_.push(key, std::move(item))) ++replaced_;
+  }
+  if (deadline_) state == InstanceState::Alive ? deadline_->heard(key) : deadline_->ended(key);
+  return true;
+}
+
+/// A writer that is unmatched, or silent for its lease.
+void SampleQueue::writer_gone(ddsi_rhc* cache, const ddsi_writer_info* writer) {
+  auto* self = to_queue(cache);
+  std::lock_guard lock(self->mutex_);
+  self->gate_.release_all(to_guid(writer->guid));
+}
+
+/// A writer that unregisters an instance.
+void SampleQueue::let_go(const KeyHash& key, const Guid& writer) {
   std::lock_guard lock(mutex_);
-  queue_.push(key, std::move(item));
+  gate_.release(key, writer);
 }
 
 std::optional<SampleQueue::Item> SampleQueue::pop() {
   std::lock_guard lock(mutex_);
-  return queue_.pop();
+  auto item = queue_.pop();
+  while (item && item->expiry != SampleGate::kNever && !gate_.fresh(item->expiry, wall_clock_time())) {
+    item = queue_.pop();
+  }
+  return item;
 }
 
 bool SampleQueue::empty() {
@@ -102,9 +162,8 @@ std::size_t SampleQueue::take(const std::function<void(const Sample&)>& consumer
     const Blob& blob = *item->blob;
     std::span<const std::byte> cdr;
     if (item->state == InstanceState::Alive) cdr = {blob.bytes(), blob.length};
-    const KeyHash key = blob.key_hash;
     Owner owner(item->blob);
-    consumer({cdr, item->state, key, item->writer, &owner});
+    consumer({cdr, item->state, item->key, item->writer, &owner});
   }
   return taken;
 }

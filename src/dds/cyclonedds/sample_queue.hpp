@@ -7,7 +7,9 @@
 #include <mutex>
 #include <optional>
 
+#include "../deadline_watch.hpp"
 #include "../keyed_queue.hpp"
+#include "../sample_gate.hpp"
 #include "blob.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -19,29 +21,40 @@ namespace skein::dds::cyclonedds {
 /// It never refuses a sample: a refusal stalls Cyclone's receive thread, discovery and leases with it.
 class SampleQueue : public dds_rhc {
  public:
-  explicit SampleQueue(std::optional<std::uint32_t> depth);
+  SampleQueue(const Qos& qos, const ReaderListener& listener);
 
   std::size_t take(const std::function<void(const Sample&)>& consumer, std::size_t limit);
   bool empty();
   std::uint64_t malformed() const noexcept { return malformed_.load(std::memory_order_relaxed); }
+  std::uint64_t expired() const noexcept { return gate_.expired(); }
+  std::uint64_t replaced() const noexcept { return replaced_.load(std::memory_order_relaxed); }
 
  private:
   struct Item {
     BlobReference blob;
+    KeyHash key;
     Guid writer;
     InstanceState state;
+    SourceTime expiry = SampleGate::kNever;
   };
 
   static const dds_rhc_ops& operations();
   static bool store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
                     ddsi_tkmap_instance* instance);
-  void push(Item item);
+  static void writer_gone(ddsi_rhc* cache, const ddsi_writer_info* writer);
+  std::optional<KeyHash> key_of(const Blob& blob) const;
+  bool push(Item item, const ddsi_writer_info& writer);
+  void let_go(const KeyHash& key, const Guid& writer);
   std::optional<Item> pop();
 
+  const decltype(ReaderListener::find_key) find_key_;
   dds_reader* reader_ = nullptr;
   std::mutex mutex_;
   KeyedQueue<Item> queue_;
+  SampleGate gate_;
   std::atomic<std::uint64_t> malformed_{0};
+  std::atomic<std::uint64_t> replaced_{0};
+  std::unique_ptr<DeadlineTimer> deadline_;  // goes first: it uses the rest
 };
 
 }  // namespace skein::dds::cyclonedds

@@ -24,7 +24,10 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
             dds_builtintopic_free_endpoint(data);
             return guid;
           },
-          std::move(listener.on_matched)) {
+          std::move(listener.on_matched)),
+      mismatches_(participant, topic, qos, Mismatches::Side::Writer,
+                  std::move(listener.on_incompatible)),
+      deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   try {
     writer_ = make();
   } catch (...) {
@@ -34,6 +37,7 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
   writer_handle_ = writer_.handle();
   guid_ = writer_.guid();
   matches_.update();
+  mismatches_.update();
 }
 
 CycloneWriter::~CycloneWriter() {
@@ -48,6 +52,10 @@ Entity CycloneWriter::make() {
       listener, [](dds_entity_t, dds_publication_matched_status_t, void* self) {
         static_cast<CycloneWriter*>(self)->matches_.update();
       });
+  dds_lset_offered_incompatible_qos(
+      listener, [](dds_entity_t, dds_offered_incompatible_qos_status_t status, void* self) {
+        static_cast<CycloneWriter*>(self)->mismatches_.mismatched(status.last_policy_id);
+      });
   const dds_entity_t writer =
       dds_create_writer(participant_.handle(), handle_.entity, qos.get(), listener);
   dds_delete_listener(listener);
@@ -59,19 +67,22 @@ void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
   wait_for_room();
   Blob* blob = Blob::make_outgoing(handle_.type, cdr, topic_.keyed ? key : KeyHash{});
   check_written(dds_writecdr(writer_.handle(), blob));
+  if (deadline_) deadline_->heard(topic_.keyed ? key : KeyHash{});
 }
 
 void CycloneWriter::dispose(const KeyHash& key) {
   require_keyed(topic_);
-  // The payload is the key, for peers that look there; its hash travels beside it.
+  // The payload is the key, for peers that look there: a short key's hash is its big-endian CDR, and
+  // travels beside it too.
   Blob* blob = Blob::make(handle_.type, SDK_KEY, kHeaderSize + key.bytes.size());
-  const std::byte header[kHeaderSize] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  const std::byte header[kHeaderSize] = {std::byte{0}, std::byte{0}, std::byte{0}, std::byte{0}};
   std::memcpy(blob->bytes(), header, kHeaderSize);
   std::memcpy(blob->bytes() + kHeaderSize, key.bytes.data(), key.bytes.size());
   blob->set_key(key);
   blob->statusinfo = 1;  // disposed; dds_forwardcdr() keeps it, dds_writecdr() does not
   blob->timestamp.v = dds_time();
   check_written(dds_forwardcdr(writer_.handle(), blob));
+  if (deadline_) deadline_->ended(key);
 }
 
 /// Cyclone itself bounds only the bytes that wait for acknowledgment, so every max_samples writes all

@@ -2,7 +2,9 @@
 
 #include <atomic>
 
+#include "../deadline_watch.hpp"
 #include "matches.hpp"
+#include "mismatches.hpp"
 #include "participant.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -29,6 +31,8 @@ class CycloneWriter final : public Writer {
   const Qos qos_;
   const TopicHandle handle_;
   Matches matches_;
+  Mismatches mismatches_;
+  const std::unique_ptr<DeadlineTimer> deadline_;
   std::atomic<std::uint32_t> written_{0};  // since all was acknowledged
   std::atomic<dds_entity_t> writer_handle_{0};  // 0 for listeners that come before it is made
   Guid guid_;

@@ -46,7 +46,26 @@ void fill_common(EndpointQos& endpoint, const Qos& qos) {
     endpoint.m_liveliness.lease_duration = duration(*qos.liveliness_lease);
     endpoint.m_liveliness.announcement_period = duration(*qos.liveliness_lease * 2 / 5);
   }
+  if (qos.deadline) endpoint.m_deadline.period = duration(*qos.deadline);
+  if (qos.exclusive) endpoint.m_ownership.kind = policies::EXCLUSIVE_OWNERSHIP_QOS;
   endpoint.data_sharing.off();
+}
+
+template <class EndpointQos>
+Qos from_common(const EndpointQos& endpoint) {
+  const auto period = [](const eprosima::fastrtps::Duration_t& time) {
+    const auto finite = from_duration(time);
+    return finite ? std::optional(std::chrono::duration_cast<std::chrono::milliseconds>(*finite))
+                  : std::nullopt;
+  };
+  Qos qos;
+  qos.reliable = endpoint.m_reliability.kind == eprosima::fastrtps::RELIABLE_RELIABILITY_QOS;
+  qos.transient_local = endpoint.m_durability.kind != eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
+  qos.deadline = period(endpoint.m_deadline.period);
+  qos.liveliness_lease = period(endpoint.m_liveliness.lease_duration);
+  qos.exclusive = endpoint.m_ownership.kind == policies::EXCLUSIVE_OWNERSHIP_QOS;
+  for (const auto& partition : endpoint.m_partition.getNames()) qos.partitions.push_back(partition);
+  return qos;
 }
 
 void fill_endpoint(rtps::EndpointAttributes& endpoint, const Topic& topic, const Qos& qos) {
@@ -155,6 +174,8 @@ eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic) {
 eprosima::fastrtps::WriterQos writer_qos(const Qos& qos) {
   eprosima::fastrtps::WriterQos result;
   fill_common(result, qos);
+  if (qos.lifespan) result.m_lifespan.duration = duration(*qos.lifespan);
+  result.m_ownershipStrength.value = static_cast<std::uint32_t>(qos.strength);
   result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
   return result;
 }
@@ -164,6 +185,14 @@ eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
   fill_common(result, qos);
   result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
   return result;
+}
+
+Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos) { return from_common(qos); }
+Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos) { return from_common(qos); }
+
+std::optional<std::chrono::nanoseconds> from_duration(const eprosima::fastrtps::Duration_t& duration) {
+  if (duration == eprosima::fastrtps::c_TimeInfinite) return std::nullopt;
+  return std::chrono::nanoseconds(duration.to_ns());
 }
 
 }  // namespace skein::dds::fastdds

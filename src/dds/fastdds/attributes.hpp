@@ -32,4 +32,11 @@ eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic);
 eprosima::fastrtps::WriterQos writer_qos(const Qos& qos);
 eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos);
 
+/// What a peer announces; only what decides about a match.
+Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos);
+Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos);
+
+/// Nothing where it is infinite.
+std::optional<std::chrono::nanoseconds> from_duration(const eprosima::fastrtps::Duration_t& duration);
+
 }  // namespace skein::dds::fastdds

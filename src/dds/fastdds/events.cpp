@@ -70,10 +70,17 @@ void EventThread::run() {
   }
 }
 
-EndpointEvents::EndpointEvents(EventThread& thread, Told on_matched, Told on_liveliness)
-    : thread_(thread),
-      on_matched_(std::move(on_matched)),
-      on_liveliness_(std::move(on_liveliness)) {}
+EndpointEvents::EndpointEvents(EventThread& thread, EndpointListener listener)
+    : thread_(thread), listener_(std::move(listener)) {}
+
+template <class Function, class... Arguments>
+void EndpointEvents::tell(const Function& function, const Arguments&... arguments) {
+  if (!function) return;
+  thread_.post([self = shared_from_this(), &function, arguments...] {
+    std::lock_guard telling(self->telling_);
+    if (!self->closed_) function(arguments...);
+  });
+}
 
 void EndpointEvents::matched(const Guid& peer, bool now) {
   {
@@ -82,7 +89,7 @@ void EndpointEvents::matched(const Guid& peer, bool now) {
     silent_.erase(peer);
     if (!news) return;
   }
-  tell(on_matched_, peer, now);
+  tell(listener_.on_matched, peer, now);
 }
 
 void EndpointEvents::alive(const Guid& peer, bool now) {
@@ -92,16 +99,10 @@ void EndpointEvents::alive(const Guid& peer, bool now) {
     // A newly matched writer is reported as alive too; only a return is news.
     if (now ? silent_.erase(peer) == 0 : !silent_.insert(peer).second) return;
   }
-  tell(on_liveliness_, peer, now);
+  tell(listener_.on_liveliness, peer, now);
 }
 
-void EndpointEvents::tell(const Told& listener, const Guid& peer, bool now) {
-  if (!listener) return;
-  thread_.post([self = shared_from_this(), &listener, peer, now] {
-    std::lock_guard telling(self->telling_);
-    if (!self->closed_) listener(peer, now);
-  });
-}
+void EndpointEvents::incompatible(const Incompatibility& why) { tell(listener_.on_incompatible, why); }
 
 std::vector<Guid> EndpointEvents::peers() const {
   std::lock_guard lock(mutex_);

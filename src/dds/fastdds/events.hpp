@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "skein/core/guid.hpp"
+#include "skein/dds/port.hpp"
 
 namespace skein::dds::fastdds {
 
@@ -42,26 +43,32 @@ class EventThread {
   std::thread thread_;
 };
 
-/// Who is matched with one endpoint, and whom to tell. Kept alive by the events on their way.
+/// Whom to tell of one endpoint's events.
+struct EndpointListener {
+  std::function<void(const Guid& peer, bool)> on_matched{};
+  std::function<void(const Guid& peer, bool)> on_liveliness{};
+  std::function<void(const Incompatibility&)> on_incompatible{};
+};
+
+/// Who is matched with one endpoint. Kept alive by the events on their way.
 class EndpointEvents : public std::enable_shared_from_this<EndpointEvents> {
  public:
-  using Told = std::function<void(const Guid& peer, bool)>;
-
-  EndpointEvents(EventThread& thread, Told on_matched, Told on_liveliness = {});
+  EndpointEvents(EventThread& thread, EndpointListener listener);
 
   void matched(const Guid& peer, bool now);
   void alive(const Guid& peer, bool now);
+  void incompatible(const Incompatibility& why);
   std::vector<Guid> peers() const;
 
   /// Waits for a running listener; none runs afterwards.
   void close();
 
  private:
-  void tell(const Told& listener, const Guid& peer, bool now);
+  template <class Function, class... Arguments>
+  void tell(const Function& function, const Arguments&... arguments);
 
   EventThread& thread_;
-  const Told on_matched_;
-  const Told on_liveliness_;
+  const EndpointListener listener_;
   mutable std::mutex mutex_;
   std::set<Guid> peers_;
   std::set<Guid> silent_;

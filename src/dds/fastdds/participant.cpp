@@ -56,6 +56,20 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
   events_.post([this, guid, present] { options_.on_participant(guid, present); });
 }
 
+void FastParticipant::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  const Guid guid = to_guid(info.info.guid());
+  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return endpoints_.lost(guid);
+  endpoints_.found(guid, {Side::Writer, info.info.topicName().to_string(),
+                          info.info.typeName().to_string(), from_writer_qos(info.info.m_qos)});
+}
+
+void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
+  const Guid guid = to_guid(info.info.guid());
+  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return endpoints_.lost(guid);
+  endpoints_.found(guid, {Side::Reader, info.info.topicName().to_string(),
+                          info.info.typeName().to_string(), from_reader_qos(info.info.m_qos)});
+}
+
 void FastParticipant::watch_liveliness(std::weak_ptr<EndpointEvents> reader,
                                        std::chrono::nanoseconds lease) {
   constexpr int kChecksInALease = 8;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "../topic_table.hpp"
+#include "endpoints.hpp"
 #include "events.hpp"
 #include "skein/dds/port.hpp"
 #include "transport.hpp"
@@ -42,12 +43,15 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
   void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);
   SignsOfLife& signs() noexcept { return transport_->state->signs; }
+  Endpoints& endpoints() noexcept { return endpoints_; }
   void acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
  private:
   void onParticipantDiscovery(rtps::RTPSParticipant* participant,
                               rtps::ParticipantDiscoveryInfo&& info) override;
+  void onWriterDiscovery(rtps::RTPSParticipant* participant, rtps::WriterDiscoveryInfo&& info) override;
+  void onReaderDiscovery(rtps::RTPSParticipant* participant, rtps::ReaderDiscoveryInfo&& info) override;
   void check_liveliness();
 
   struct Watched {
@@ -58,6 +62,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   const ParticipantOptions options_;
   const std::shared_ptr<StartupTransportDescriptor> transport_;
   TopicTable<int> topics_;
+  Endpoints endpoints_;
   std::mutex readers_;
   std::mutex mutex_;
   std::set<Guid> present_;

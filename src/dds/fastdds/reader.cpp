@@ -31,11 +31,15 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
     : participant_(participant),
       topic_(topic),
       on_data_(std::move(listener.on_data)),
-      events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched),
-                                               std::move(listener.on_liveliness))),
+      find_key_(std::move(listener.find_key)),
+      tells_incompatible_(listener.on_incompatible != nullptr),
+      events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
       watches_liveliness_(qos.liveliness_lease.has_value()),
       history_(history_attributes(0)),
-      queue_(qos.history_depth) {
+      queue_(qos.history_depth, qos.max_waiting),
+      gate_(qos),
+      exclusive_(qos.exclusive),
+      deadline_(deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());
@@ -47,10 +51,14 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   }
   guid_ = to_guid(reader_->getGuid());
   if (watches_liveliness_) participant_.watch_liveliness(events_, *qos.liveliness_lease);
+  if (tells_incompatible_) {
+    participant_.endpoints().watch({Side::Reader, topic.name, topic.type_name, qos}, events_);
+  }
   participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic), reader_qos(qos));
 }
 
 FastReader::~FastReader() {
+  deadline_.reset();
   reader_->setListener(nullptr);  // waits for on_data
   {
     std::lock_guard lock(participant_.readers());
@@ -69,6 +77,47 @@ void FastReader::onReaderMatched(rtps::RTPSReader*,
   events_->matched(writer, now);
 }
 
+EndpointListener FastReader::endpoint_listener(dds::ReaderListener& listener) {
+  auto on_liveliness = std::move(listener.on_liveliness);
+  return {std::move(listener.on_matched),
+          [this, tell = std::move(on_liveliness)](const Guid& writer, bool alive) {
+            if (!alive) {
+              std::lock_guard lock(mutex_);
+              gate_.release_all(writer);
+            }
+            if (tell) tell(writer, alive);
+          },
+          std::move(listener.on_incompatible)};
+}
+
+std::unique_ptr<DeadlineTimer> FastReader::deadline_timer(const Qos& qos,
+                                                          DeadlineTimer::Missed missed) {
+  return make_deadline_timer(qos, [this, tell = std::move(missed)](const KeyHash& key) {
+    {
+      std::lock_guard lock(mutex_);
+      gate_.release(key);
+    }
+    if (tell) tell(key);
+  });
+}
+
+/// Called before the writer's first sample.
+void FastReader::on_writer_discovery(rtps::RTPSReader*,
+                                     rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
+                                     const rtps::GUID_t& writer, const rtps::WriterProxyData* info) {
+  const Guid guid = to_guid(writer);
+  std::lock_guard lock(mutex_);
+  if (reason == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+    writers_.erase(guid);
+    gate_.release_all(guid);
+    return;
+  }
+  const auto& qos = info->m_qos;
+  const auto lifespan = from_duration(qos.m_lifespan.duration);
+  if (!lifespan && !exclusive_) return;
+  writers_[guid] = {static_cast<std::int32_t>(qos.m_ownershipStrength.value), lifespan};
+}
+
 /// Called with the RTPS reader's mutex held.
 void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChange_t* const change) {
   const bool stored = store(*change);
@@ -77,26 +126,59 @@ void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChang
 }
 
 bool FastReader::store(const rtps::CacheChange_t& change) {
-  if (change.kind == rtps::NOT_ALIVE_UNREGISTERED) return false;
+  if (change.kind == rtps::NOT_ALIVE_UNREGISTERED) {
+    std::lock_guard lock(mutex_);
+    gate_.release(to_guid(change.instanceHandle), to_guid(change.writerGUID));
+    return false;
+  }
   const bool alive = change.kind == rtps::ALIVE;
   const auto& payload = change.serializedPayload;
   const std::span received(reinterpret_cast<const std::byte*>(payload.data), payload.length);
-  if ((alive && !is_plain_cdr(received)) || (topic_.keyed && !change.instanceHandle.isDefined())) {
+  const auto found = alive && !is_plain_cdr(received) ? std::nullopt : key_of(change, received);
+  if (!found) {
     malformed_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
   Item item{spare_buffer(), alive ? InstanceState::Alive : InstanceState::Disposed,
-            topic_.keyed ? to_guid(change.instanceHandle) : KeyHash{}, to_guid(change.writerGUID)};
+            *found, to_guid(change.writerGUID)};
   if (alive) item.cdr.append(received);
   const KeyHash key = item.key;
-  std::lock_guard lock(mutex_);
-  queue_.push(key, std::move(item));
+  {
+    std::lock_guard lock(mutex_);
+    if (!admit(item, SourceTime(change.sourceTimestamp.to_ns()))) return false;
+    if (queue_.push(key, std::move(item))) ++replaced_;
+  }
+  if (deadline_) alive ? deadline_->heard(key) : deadline_->ended(key);
   return true;
+}
+
+std::optional<KeyHash> FastReader::key_of(const rtps::CacheChange_t& change,
+                                          std::span<const std::byte> received) const {
+  if (!topic_.keyed) return KeyHash{};
+  if (change.instanceHandle.isDefined()) return to_guid(change.instanceHandle);
+  if (!find_key_ || change.kind != rtps::ALIVE) return std::nullopt;
+  return find_key_(received);
+}
+
+bool FastReader::admit(Item& item, SourceTime written) {
+  if (writers_.empty()) return true;
+  const auto writer = writers_.find(item.writer);
+  if (writer == writers_.end()) return true;
+  const SourceTime now = wall_clock_time();
+  // A peer may leave the time out.
+  if (written <= SourceTime::zero()) written = now;
+  const auto expiry = gate_.admit(item.key, item.writer, writer->second, written, now);
+  if (expiry) item.expiry = *expiry;
+  return expiry.has_value();
 }
 
 std::optional<FastReader::Item> FastReader::pop() {
   std::lock_guard lock(mutex_);
-  return queue_.pop();
+  auto item = queue_.pop();
+  while (item && item->expiry != SampleGate::kNever && !gate_.fresh(item->expiry, wall_clock_time())) {
+    item = queue_.pop();
+  }
+  return item;
 }
 
 Bytes FastReader::spare_buffer() {

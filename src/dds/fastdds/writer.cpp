@@ -32,8 +32,11 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
     : participant_(participant),
       topic_(topic),
       qos_(qos),
-      events_(std::make_shared<EndpointEvents>(participant.events(), std::move(listener.on_matched))),
-      history_(history_attributes(bounded() ? qos.max_samples : 0)) {
+      events_(std::make_shared<EndpointEvents>(
+          participant.events(),
+          EndpointListener{std::move(listener.on_matched), {}, listener.on_incompatible})),
+      history_(history_attributes(bounded() ? qos.max_samples : 0)),
+      deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   participant_.acquire_topic(topic);
   auto attributes = writer_attributes(topic, qos);
   writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes, &history_,
@@ -43,10 +46,20 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a writer");
   }
   guid_ = to_guid(writer_->getGuid());
+  if (qos.lifespan && qos.transient_local) {
+    Qos every_lifespan;
+    every_lifespan.deadline = qos.lifespan;
+    lifespan_ = make_deadline_timer(every_lifespan, [this](const KeyHash& key) { drop_expired(key); });
+  }
+  if (listener.on_incompatible) {
+    participant_.endpoints().watch({Side::Writer, topic.name, topic.type_name, qos}, events_);
+  }
   participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic), writer_qos(qos));
 }
 
 FastWriter::~FastWriter() {
+  deadline_.reset();
+  lifespan_.reset();
   rtps::RTPSDomain::removeRTPSWriter(writer_);
   events_->close();
   participant_.release_topic(topic_.name);
@@ -62,6 +75,9 @@ void FastWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
   if (topic_.keyed) attach_key(*change, key);
   remember(change, key);
   send(change);
+  const KeyHash instance = topic_.keyed ? key : KeyHash{};
+  if (deadline_) deadline_->heard(instance);
+  if (lifespan_) lifespan_->heard(instance);
 }
 
 void FastWriter::dispose(const KeyHash& key) {
@@ -72,6 +88,7 @@ void FastWriter::dispose(const KeyHash& key) {
   if (qos_.transient_local) drop_all(key);
   remember(change, key);
   send(change);
+  if (deadline_) deadline_->ended(key);
 }
 
 rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_t kind,
@@ -139,6 +156,23 @@ void FastWriter::drop_all(const KeyHash& key) {
   if (found == instances_.end()) return;
   for (auto* change : found->second) history_.remove_change(change);
   instances_.erase(found);
+}
+
+/// Readers drop what has expired, but not every vendor's goes by the time at which it was written.
+void FastWriter::drop_expired(const KeyHash& key) {
+  Lock lock(writer_->getMutex());
+  const auto found = instances_.find(key);
+  if (found != instances_.end()) {
+    const auto oldest = std::chrono::system_clock::now().time_since_epoch() - *qos_.lifespan;
+    std::erase_if(found->second, [&](rtps::CacheChange_t* change) {
+      const bool expired = std::chrono::nanoseconds(change->sourceTimestamp.to_ns()) <= oldest;
+      if (expired) history_.remove_change(change);
+      return expired;
+    });
+    if (!found->second.empty()) return;
+    instances_.erase(found);
+  }
+  lifespan_->ended(key);
 }
 
 void FastWriter::onWriterMatched(rtps::RTPSWriter*,

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <unordered_map>
 
+#include "../deadline_watch.hpp"
 #include "participant.hpp"
 
 namespace skein::dds::fastdds {
@@ -45,6 +46,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   void send(rtps::CacheChange_t* change);
   void drop(rtps::CacheChange_t* change);
   void drop_all(const KeyHash& key);
+  void drop_expired(const KeyHash& key);
 
   FastParticipant& participant_;
   const Topic topic_;
@@ -59,6 +61,8 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   std::atomic<std::int64_t> new_reader_at_{-1};
   rtps::RTPSWriter* writer_ = nullptr;
   Guid guid_;
+  std::unique_ptr<DeadlineTimer> deadline_;
+  std::unique_ptr<DeadlineTimer> lifespan_;  // of instances whose past late joiners would get
 };
 
 }  // namespace skein::dds::fastdds

@@ -54,6 +54,8 @@ class LoopbackReader final : public Reader {
   Guid guid() const override { return core_->guid; }
   std::vector<Guid> matched_writers() const override { return hub_->matched_writers(*core_); }
   std::uint64_t malformed() const override { return hub_->malformed(*core_); }
+  std::uint64_t expired() const override { return core_->gate.expired(); }
+  std::uint64_t replaced() const override { return core_->replaced; }
 
  private:
   std::shared_ptr<Hub> hub_;
@@ -78,6 +80,7 @@ void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, co
   endpoint.participant = core_;
   endpoint.topic = topic;
   endpoint.qos = qos;
+  if (qos.deadline) endpoint.deadline.emplace(*qos.deadline);
   endpoint.guid = core_->guid;
   std::lock_guard lock(mutex_);
   const std::uint32_t number = ++core_->last_entity;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -8,7 +9,9 @@
 #include <set>
 #include <thread>
 
+#include "../deadline_watch.hpp"
 #include "../keyed_queue.hpp"
+#include "../sample_gate.hpp"
 #include "../topic_table.hpp"
 #include "skein/core/bytes.hpp"
 #include "skein/dds/loopback.hpp"
@@ -20,6 +23,7 @@ struct Message {
   KeyHash key;
   InstanceState state;
   Guid writer;
+  SourceTime written;
   std::uint64_t sequence;
 };
 using MessagePtr = std::shared_ptr<const Message>;
@@ -47,22 +51,41 @@ struct EndpointCore {
   Topic topic;
   Qos qos;
   bool closed = false;
+  std::optional<DeadlineWatch> deadline;
+  bool deadline_set = false;  // a timer will look for overdue instances
+  std::set<Guid> refused;  // whose incompatibility has been told
+
+  virtual ~EndpointCore() = default;
+  virtual void deadline_missed(const KeyHash& key) = 0;
 };
 
-struct WriterCore : EndpointCore {
+struct WriterCore final : EndpointCore {
   explicit WriterCore(const Qos& qos) : history(qos.history_depth) {}
+  void deadline_missed(const KeyHash& key) override {
+    if (listener.on_deadline_missed) listener.on_deadline_missed(key);
+  }
   WriterListener listener;
   std::uint64_t last_sequence = 0;
   KeyedQueue<MessagePtr> history;  // for late joiners, where the writer is transient-local
 };
 
-struct ReaderCore : EndpointCore {
-  explicit ReaderCore(const Qos& qos) : queue(qos.history_depth) {}
+struct Arrived {
+  MessagePtr message;
+  SourceTime expiry;
+};
+
+struct ReaderCore final : EndpointCore {
+  explicit ReaderCore(const Qos& qos) : gate(qos), queue(qos.history_depth, qos.max_waiting) {}
+  void deadline_missed(const KeyHash& key) override {
+    if (listener.on_deadline_missed) listener.on_deadline_missed(key);
+  }
   Reader* self = nullptr;
   ReaderListener listener;
-  KeyedQueue<MessagePtr> queue;
+  SampleGate gate;
+  KeyedQueue<Arrived> queue;
   bool told = false;  // an on_data is on its way
   std::uint64_t malformed = 0;
+  std::atomic<std::uint64_t> replaced{0};
 };
 
 struct Unacknowledged {
@@ -137,6 +160,8 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void unmatch_reader_side(Link& link);
   void drop_unused_links();
   void replay_history(Link& link);
+  void tell_incompatible(const std::shared_ptr<WriterCore>& writer,
+                         const std::shared_ptr<ReaderCore>& reader);
 
   // How samples travel (transfer.cpp).
   bool reliable(const Link& link) const { return link.reader->qos.reliable; }
@@ -146,10 +171,17 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void send(Link& link, const MessagePtr& message, std::uint32_t attempt);
   void arrive(const LinkId& id, const MessagePtr& message);
   void deliver_in_order(Link& link);
-  void accept(ReaderCore& reader, const MessagePtr& message);
+  void accept(const Link& link, const MessagePtr& message);
   void repeat_later(Link& link);
   void repeat_lost(Link& link);
   void repeat_between(const ParticipantCore& one, const ParticipantCore& other);
+
+  // What time brings (deadlines.cpp).
+  SourceTime source_time() const { return clock_.now().time_since_epoch(); }
+  void watch_deadline(const std::shared_ptr<EndpointCore>& endpoint, const KeyHash& key,
+                      InstanceState state);
+  void schedule_deadline(const std::shared_ptr<EndpointCore>& endpoint);
+  void check_deadline(const std::shared_ptr<EndpointCore>& endpoint);
 
   void post(const EndpointCore* target, std::function<void()> callback);
   void run_callbacks(Lock& lock);

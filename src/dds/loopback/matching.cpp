@@ -1,30 +1,7 @@
-#include <algorithm>
-
+#include "../compatibility.hpp"
 #include "hub.hpp"
 
 namespace skein::dds::loopback {
-namespace {
-
-bool share_partition(const Qos& writer, const Qos& reader) {
-  const std::vector<std::string> standard{""};
-  const auto& offered = writer.partitions.empty() ? standard : writer.partitions;
-  const auto& wanted = reader.partitions.empty() ? standard : reader.partitions;
-  return std::ranges::any_of(offered, [&](const std::string& partition) {
-    return std::ranges::find(wanted, partition) != wanted.end();
-  });
-}
-
-/// What DDS calls requested against offered.
-bool compatible(const WriterCore& writer, const ReaderCore& reader) {
-  if (writer.topic != reader.topic || !share_partition(writer.qos, reader.qos)) return false;
-  if (reader.qos.reliable && !writer.qos.reliable) return false;
-  if (reader.qos.transient_local && !writer.qos.transient_local) return false;
-  if (!reader.qos.liveliness_lease) return true;
-  return writer.qos.liveliness_lease && *writer.qos.liveliness_lease <= *reader.qos.liveliness_lease;
-}
-
-}  // namespace
-
 bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed) const {
   if (&observer == &observed) return true;
   const auto view = observer.views.find(observed.guid);
@@ -32,7 +9,11 @@ bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed
 }
 
 void Hub::match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr<ReaderCore>& reader) {
-  if (!compatible(*writer, *reader)) return;
+  if (writer->topic != reader->topic || !share_partition(writer->qos, reader->qos)) return;
+  if (find_incompatibility(writer->topic.name, {}, writer->qos, reader->qos)) {
+    tell_incompatible(writer, reader);
+    return;
+  }
   const bool by_writer = knows(*writer->participant, *reader->participant);
   const bool by_reader = knows(*reader->participant, *writer->participant);
   if (!by_writer && !by_reader) return;
@@ -44,6 +25,20 @@ void Hub::match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr
   } else if (rematched) {
     replay_history(link);
   }
+}
+
+void Hub::tell_incompatible(const std::shared_ptr<WriterCore>& writer,
+                            const std::shared_ptr<ReaderCore>& reader) {
+  const auto tell = [&](const auto& endpoint, const EndpointCore& peer) {
+    if (!knows(*endpoint->participant, *peer.participant)) return;
+    if (!endpoint->refused.insert(peer.guid).second) return;
+    const auto why = find_incompatibility(peer.topic.name, peer.guid, writer->qos, reader->qos);
+    post(endpoint.get(), [endpoint, why] {
+      if (endpoint->listener.on_incompatible) endpoint->listener.on_incompatible(*why);
+    });
+  };
+  tell(writer, *reader);
+  tell(reader, *writer);
 }
 
 void Hub::match_all(const ParticipantCore& one, const ParticipantCore& other) {
@@ -99,6 +94,7 @@ void Hub::unmatch_writer_side(Link& link) {
 void Hub::unmatch_reader_side(Link& link) {
   if (!link.reader_side) return;
   link.reader_side = false;
+  link.reader->gate.release_all(link.writer->guid);
   if (link.reader->closed) return;
   post(link.reader.get(), [reader = link.reader, writer = link.writer->guid] {
     if (reader->listener.on_matched) reader->listener.on_matched(writer, false);

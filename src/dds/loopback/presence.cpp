@@ -83,6 +83,7 @@ void Hub::expire_liveliness(const LinkId& id, std::uint64_t generation) {
     return;
   }
   link.alive = false;
+  link.reader->gate.release_all(id.first);
   post(link.reader.get(), [reader = link.reader, writer = id.first] {
     if (reader->listener.on_liveliness) reader->listener.on_liveliness(writer, false);
   });

@@ -17,10 +17,14 @@ class Owner final : public SampleOwner {
 
 void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
                 InstanceState state) {
-  auto message = std::make_shared<Message>(Message{Bytes(cdr), key, state, writer.guid, 0});
+  auto message = std::make_shared<Message>(
+      Message{Bytes(cdr), key, state, writer.guid, source_time(), 0});
   Lock lock(mutex_);
   wait_for_room(writer, lock);
   message->sequence = ++writer.last_sequence;
+  if (const auto core = writers_.find(writer.guid); core != writers_.end()) {
+    watch_deadline(core->second, key, state);
+  }
   if (writer.qos.transient_local) {
     if (state == InstanceState::Disposed) writer.history.erase(key);
     else writer.history.push(key, message);
@@ -118,7 +122,7 @@ void Hub::arrive(const LinkId& id, const MessagePtr& message) {
   }
   if (!reliable(link)) {
     if (message->sequence > link.delivered) {
-      accept(*link.reader, message);
+      accept(link, message);
       link.delivered = message->sequence;
     }
   } else if (entry != link.pending.end()) {
@@ -131,7 +135,7 @@ void Hub::deliver_in_order(Link& link) {
   while (!link.pending.empty() && link.pending.begin()->second.arrived) {
     const auto first = link.pending.begin();
     if (first->first > link.delivered) {
-      accept(*link.reader, first->second.message);
+      accept(link, first->second.message);
       link.delivered = first->first;
     }
     link.pending.erase(first);
@@ -139,12 +143,19 @@ void Hub::deliver_in_order(Link& link) {
   changed_.notify_all();
 }
 
-void Hub::accept(ReaderCore& reader, const MessagePtr& message) {
+void Hub::accept(const Link& link, const MessagePtr& message) {
+  ReaderCore& reader = *link.reader;
   if (message->state == InstanceState::Alive && !is_plain_cdr(message->cdr)) {
     ++reader.malformed;
     return;
   }
-  reader.queue.push(message->key, message);
+  const Qos& offered = link.writer->qos;
+  const auto expiry = reader.gate.admit(message->key, message->writer,
+                                        {offered.strength, offered.lifespan}, message->written,
+                                        source_time());
+  if (!expiry) return;
+  watch_deadline(link.reader, message->key, message->state);
+  if (reader.queue.push(message->key, {message, *expiry})) ++reader.replaced;
   if (reader.told) return;
   reader.told = true;
   post(&reader, [this, reader = readers_.at(reader.guid)] {
@@ -192,9 +203,10 @@ std::size_t Hub::take(ReaderCore& reader, const std::function<void(const Sample&
   {
     Lock lock(mutex_);
     while (taken.size() < limit) {
-      auto message = reader.queue.pop();
-      if (!message) break;
-      taken.push_back(std::move(*message));
+      auto arrived = reader.queue.pop();
+      if (!arrived) break;
+      if (!reader.gate.fresh(arrived->expiry, source_time())) continue;
+      taken.push_back(std::move(arrived->message));
     }
   }
   for (const MessagePtr& message : taken) {

@@ -87,6 +87,10 @@ void Endpoints::write(void* sample) {
   if (!writer_->write(sample)) throw std::runtime_error("Fast DDS does not write the sample");
 }
 
+void Endpoints::wait_for_acknowledgments(int patience_ms) {
+  writer_->wait_for_acknowledgments({patience_ms / 1000, 0});
+}
+
 bool Endpoints::take(void* sample, int patience_ms) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(patience_ms);
   while (true) {

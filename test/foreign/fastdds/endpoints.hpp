@@ -25,6 +25,8 @@ class Endpoints {
   /// Takes the next sample into `sample`, waiting up to `patience_ms`; false where none came.
   bool take(void* sample, int patience_ms);
 
+  void wait_for_acknowledgments(int patience_ms);
+
   eprosima::fastrtps::rtps::GUID_t writer_guid() const { return writer_->guid(); }
 
  private:

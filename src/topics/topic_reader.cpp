@@ -1,0 +1,198 @@
+#include <atomic>
+#include <mutex>
+
+#include "skein/core/log.hpp"
+#include "skein/idl/malformed_sample.hpp"
+#include "skein/topics/subscription.hpp"
+#include "wire_topic.hpp"
+
+namespace skein::topics {
+namespace {
+
+/// So many values are handed over before other subscriptions on the executor have their turn.
+constexpr std::size_t kTurn = 32;
+
+}  // namespace
+
+/// Samples wait in the port's reader, which bounds them and drops what has expired, until the
+/// executor has a turn for them.
+struct TopicReader::State : std::enable_shared_from_this<State> {
+  State(Executor& executor_, std::string name_, const TopicType& type_, Consumer consumer_,
+        SubscriptionOptions options_)
+      : executor(options_.executor != nullptr ? *options_.executor : executor_),
+        name(std::move(name_)),
+        type(type_),
+        consumer(std::move(consumer_)),
+        options(std::move(options_)),
+        value(type.support->make(), type.support->destroy) {}
+
+  dds::ReaderListener listener();
+  /// What a callback throws is reported, and harms nobody.
+  template <class Call>
+  void guarded(const Call& call) const;
+  std::optional<Guid> find_key(std::span<const std::byte> cdr) const;
+  /// Runs `tell` on the executor, unless the subscription has gone by then.
+  void post(std::function<void(State&)> tell);
+  void schedule();
+  void hand_over();
+  void hand_over(const dds::Sample& sample);
+  /// False for what is no value: disposals and malformed samples, which it deals with.
+  bool decode(const dds::Sample& sample, void* into);
+  void report_malformed(const std::string& reason);
+
+  Executor& executor;
+  const std::string name;
+  const TopicType type;
+  const Consumer consumer;
+  const SubscriptionOptions options;
+  const std::unique_ptr<void, void (*)(void*) noexcept> value;  // the callback's; under running
+  std::atomic<bool> scheduled{false};
+  std::atomic<std::uint64_t> received{0};
+  std::atomic<std::uint64_t> malformed{0};
+  std::atomic<std::uint64_t> missed_deadlines{0};
+  std::mutex running;   // one callback at a time
+  bool closed = false;  // under running
+  std::unique_ptr<dds::Reader> reader;
+};
+
+TopicReader::TopicReader(dds::Participant& participant, Executor& executor, const std::string& name,
+                         const TopicType& type, const TopicQos& qos, Consumer consumer,
+                         SubscriptionOptions options)
+    : state_(
+          std::make_shared<State>(executor, name, type, std::move(consumer), std::move(options))) {
+  auto reader =
+      participant.create_reader(wire_topic(name, type), wire_qos(qos), state_->listener());
+  {
+    std::lock_guard lock(state_->running);
+    state_->reader = std::move(reader);
+  }
+  // What came before the reader was known here was not told to anybody.
+  state_->schedule();
+}
+
+TopicReader::~TopicReader() {
+  std::unique_ptr<dds::Reader> reader;
+  {
+    std::lock_guard lock(state_->running);
+    state_->closed = true;
+    reader = std::move(state_->reader);
+  }
+}
+
+dds::ReaderListener TopicReader::State::listener() {
+  dds::ReaderListener listener;
+  const std::weak_ptr<State> weak = weak_from_this();
+  listener.on_data = [weak](dds::Reader&) {
+    if (const auto state = weak.lock()) state->schedule();
+  };
+  if (type.key_of != nullptr) {
+    listener.find_key = [weak](std::span<const std::byte> cdr) -> std::optional<Guid> {
+      const auto state = weak.lock();
+      return state ? state->find_key(cdr) : std::nullopt;
+    };
+  }
+  listener.on_deadline_missed = [weak](const Guid& key) {
+    const auto state = weak.lock();
+    if (!state) return;
+    ++state->missed_deadlines;
+    if (!state->options.on_deadline_missed) return;
+    state->post([key](State& self) { self.options.on_deadline_missed(key); });
+  };
+  listener.on_incompatible = [](const dds::Incompatibility& why) {
+    log(LogLevel::Warning, "topics", why.explanation);
+  };
+  return listener;
+}
+
+template <class Call>
+void TopicReader::State::guarded(const Call& call) const {
+  try {
+    call();
+  } catch (const std::exception& error) {
+    log(LogLevel::Error, "topics", "topic '" + name + "': a callback threw: " + error.what());
+  }
+}
+
+std::optional<Guid> TopicReader::State::find_key(std::span<const std::byte> cdr) const {
+  const std::unique_ptr<void, void (*)(void*) noexcept> decoded(type.support->make(),
+                                                                type.support->destroy);
+  try {
+    type.support->decode(decoded.get(), cdr, idl::kEncapsulation.size());
+  } catch (const idl::MalformedSample&) {
+    return std::nullopt;
+  }
+  return type.key_of(decoded.get());
+}
+
+void TopicReader::State::post(std::function<void(State&)> tell) {
+  const bool posted = executor.post([weak = weak_from_this(), tell = std::move(tell)] {
+    const auto state = weak.lock();
+    if (!state) return;
+    std::lock_guard lock(state->running);
+    if (state->closed) return;
+    state->guarded([&] { tell(*state); });
+  });
+  if (!posted) {
+    scheduled = false;
+    log(LogLevel::Error, "topics",
+        "topic '" + name + "': the subscription's executor is full or has stopped");
+  }
+}
+
+void TopicReader::State::schedule() {
+  if (!consumer || scheduled.exchange(true)) return;
+  post([](State& self) { self.hand_over(); });
+}
+
+void TopicReader::State::hand_over() {
+  scheduled = false;  // before taking: what comes from now on asks for another turn
+  if (!reader) return;
+  const auto hand = [this](const dds::Sample& sample) { guarded([&] { hand_over(sample); }); };
+  if (reader->take(hand, kTurn) == kTurn) schedule();
+}
+
+void TopicReader::State::hand_over(const dds::Sample& sample) {
+  if (decode(sample, value.get())) consumer(value.get());
+}
+
+bool TopicReader::State::decode(const dds::Sample& sample, void* into) {
+  if (sample.state == dds::InstanceState::Disposed) {
+    ++received;
+    if (options.on_disposed) options.on_disposed(sample.key);
+    return false;
+  }
+  try {
+    type.support->decode(into, sample.cdr, idl::kEncapsulation.size());
+  } catch (const idl::MalformedSample& error) {
+    report_malformed(error.what());
+    return false;
+  }
+  ++received;
+  return true;
+}
+
+void TopicReader::State::report_malformed(const std::string& reason) {
+  if (malformed.fetch_add(1) > 0) return;
+  log(LogLevel::Warning, "topics",
+      "topic '" + name + "': a sample is no " + std::string(type.support->name) +
+          " and was dropped: " + reason +
+          "; further ones are only counted. Do both sides use the same IDL?");
+}
+
+bool TopicReader::take(void* value) {
+  bool found = false;
+  const auto keep = [&](const dds::Sample& sample) { found = state_->decode(sample, value); };
+  while (!found && state_->reader->take(keep, 1) == 1) {
+  }
+  return found;
+}
+
+std::size_t TopicReader::publishers() const { return state_->reader->matched_writers().size(); }
+
+SubscriptionCounters TopicReader::counters() const {
+  const dds::Reader& reader = *state_->reader;
+  return {state_->received, reader.replaced(), reader.expired(),
+          state_->malformed + reader.malformed(), state_->missed_deadlines};
+}
+
+}  // namespace skein::topics

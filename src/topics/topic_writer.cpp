@@ -1,0 +1,66 @@
+#include <atomic>
+#include <mutex>
+
+#include "skein/core/log.hpp"
+#include "skein/topics/publisher.hpp"
+#include "wire_topic.hpp"
+
+namespace skein::topics {
+
+struct TopicWriter::State {
+  explicit State(const TopicType& type_) : type(type_) {}
+
+  Bytes spare_buffer() {
+    std::lock_guard lock(mutex);
+    return std::move(spare);
+  }
+  void give_back(Bytes buffer) {
+    std::lock_guard lock(mutex);
+    spare = std::move(buffer);
+  }
+
+  const TopicType type;
+  std::mutex mutex;
+  Bytes spare;  // for the next value, so that a steady flow allocates nothing
+  std::atomic<std::uint64_t> published{0};
+  std::atomic<std::uint64_t> missed_deadlines{0};
+  std::unique_ptr<dds::Writer> writer;  // goes first: its listener uses the rest
+};
+
+TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
+                         const TopicType& type, const TopicQos& qos)
+    : state_(std::make_unique<State>(type)) {
+  dds::WriterListener listener;
+  listener.on_deadline_missed = [state = state_.get()](const Guid&) { ++state->missed_deadlines; };
+  listener.on_incompatible = [](const dds::Incompatibility& why) {
+    log(LogLevel::Warning, "topics", why.explanation);
+  };
+  state_->writer =
+      participant.create_writer(wire_topic(name, type), wire_qos(qos), std::move(listener));
+}
+
+TopicWriter::~TopicWriter() = default;
+
+void TopicWriter::publish(const void* value) {
+  Bytes message = state_->spare_buffer();
+  message.clear();
+  message.append(idl::kEncapsulation);
+  state_->type.support->encode(value, message);
+  const auto key_of = state_->type.key_of;
+  state_->writer->write(message, key_of != nullptr ? key_of(value) : Guid{});
+  ++state_->published;
+  state_->give_back(std::move(message));
+}
+
+void TopicWriter::dispose(const void* value) {
+  state_->writer->dispose(state_->type.key_of(value));
+  ++state_->published;
+}
+
+std::size_t TopicWriter::subscribers() const { return state_->writer->matched_readers().size(); }
+
+PublisherCounters TopicWriter::counters() const {
+  return {state_->published, state_->missed_deadlines};
+}
+
+}  // namespace skein::topics

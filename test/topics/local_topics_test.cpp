@@ -1,0 +1,257 @@
+#include <catch2/catch.hpp>
+
+#include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+#include "skein/dds/loopback.hpp"
+#include "skein/topics/publisher.hpp"
+#include "skein/topics/subscription.hpp"
+#include "streams.idl.hpp"
+
+using namespace skein;
+using namespace std::chrono_literals;
+using Catch::Contains;
+using streams::Depth;
+using streams::Rudder;
+
+namespace {
+
+/// Two participants on a network whose time stands still, and callbacks that run when the test says
+/// so.
+struct Sea {
+  Publisher<Rudder> rudder(const TopicQos& qos = {}) { return {*ship, "rudder", qos}; }
+
+  Subscription<Rudder> watch_rudder(const TopicQos& qos = {}, SubscriptionOptions options = {}) {
+    const auto note = [this](const Rudder& value) { angles.push_back(value.angle_deg); };
+    return {*shore, executor, "rudder", qos, note, std::move(options)};
+  }
+
+  ManualClock clock;
+  ManualExecutor executor;
+  dds::LoopbackNetwork network{clock};
+  std::unique_ptr<dds::Participant> ship = network.vendor()->create_participant({});
+  std::unique_ptr<dds::Participant> shore = network.vendor()->create_participant({});
+  std::vector<double> angles;
+};
+
+using Angles = std::vector<double>;
+
+/// Collects the library's messages.
+struct Log {
+  Log() {
+    set_log_sink(
+        [this](LogLevel, std::string_view, std::string_view text) { lines.emplace_back(text); });
+  }
+  ~Log() { set_log_sink(nullptr); }
+  std::vector<std::string> lines;
+};
+
+}  // namespace
+
+TEST_CASE("published values reach the callback in order, on the executor and nowhere else") {
+  Sea sea;
+  auto rudder = sea.rudder();
+  const auto watch = sea.watch_rudder();
+  CHECK(rudder.subscribers() == 1);
+  CHECK(watch.publishers() == 1);
+  for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
+  CHECK(sea.angles.empty());
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{1, 2, 3});
+  CHECK(rudder.counters().published == 3);
+  CHECK(watch.counters().received == 3);
+}
+
+TEST_CASE("a long row of values is handed over whole, in several turns") {
+  Sea sea;
+  auto rudder = sea.rudder();
+  const auto watch = sea.watch_rudder();
+  for (int i = 0; i < 500; ++i) rudder.publish({"helm", static_cast<double>(i)});
+  CHECK(sea.executor.run_all() > 2);
+  REQUIRE(sea.angles.size() == 500);
+  CHECK(sea.angles.back() == 499);
+}
+
+TEST_CASE("without a callback values wait until they are taken") {
+  Sea sea;
+  auto rudder = sea.rudder();
+  Subscription<Rudder> watch(*sea.shore, sea.executor, "rudder", {}, nullptr);
+  CHECK_FALSE(watch.take());
+  for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
+  CHECK(watch.take().value().angle_deg == 1);
+  CHECK(watch.latest().value() == Rudder{"helm", 3});
+  CHECK_FALSE(watch.latest());
+  CHECK(watch.counters().received == 3);
+}
+
+TEST_CASE("a slow subscriber loses its own oldest values, counted, and holds up nobody") {
+  Sea sea;
+  TopicQos qos;
+  qos.max_waiting = 10;
+  auto rudder = sea.rudder(qos);
+  const auto slow = sea.watch_rudder(qos);
+  ManualExecutor prompt_executor;
+  int prompt_values = 0;
+  const Subscription<Rudder> prompt(*sea.shore, prompt_executor, "rudder", qos,
+                                    [&](const Rudder&) { ++prompt_values; });
+  for (int i = 0; i < 100; ++i) {
+    rudder.publish({"helm", static_cast<double>(i)});
+    prompt_executor.run_all();
+  }
+  CHECK(prompt_values == 100);
+  CHECK(prompt.counters().dropped == 0);
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{90, 91, 92, 93, 94, 95, 96, 97, 98, 99});
+  CHECK(slow.counters().dropped == 90);
+  CHECK(slow.counters().received == 10);
+}
+
+TEST_CASE("a sensor's subscriber finds the newest four values, and none that is too old") {
+  Sea sea;
+  auto rudder = sea.rudder(TopicQos::sensor(100ms));
+  const auto watch = sea.watch_rudder(TopicQos::sensor());
+  for (int i = 1; i <= 6; ++i) {
+    rudder.publish({"log", static_cast<double>(i)});
+    sea.clock.advance(30ms);
+  }
+  // 6 is 30 ms old, 5 is 60, 4 is 90, 3 is 120.
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{4, 5, 6});
+  CHECK(watch.counters().dropped == 2);
+  CHECK(watch.counters().expired == 1);
+}
+
+TEST_CASE("of two commands the stronger is heard, and the weaker again once the stronger is late") {
+  Sea sea;
+  const auto watch = sea.watch_rudder(TopicQos::command(0, 50ms));
+  Publisher<Rudder> autopilot(*sea.ship, "rudder", TopicQos::command(1, 50ms));
+  auto other_ship = sea.network.vendor()->create_participant({});
+  Publisher<Rudder> skipper(*other_ship, "rudder", TopicQos::command(2, 50ms));
+  autopilot.publish({"autopilot", 1});
+  skipper.publish({"skipper", 2});
+  autopilot.publish({"autopilot", 3});
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{2});  // depth 1: 2 took the place of 1
+  sea.clock.advance(100ms);
+  CHECK(skipper.counters().missed_deadlines == 1);
+  CHECK(watch.counters().missed_deadlines == 1);
+  autopilot.publish({"autopilot", 4});
+  sea.executor.run_all();
+  skipper.publish({"skipper", 5});
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{2, 4, 5});
+}
+
+TEST_CASE("a missed deadline is told on the executor, with the key") {
+  Sea sea;
+  TopicQos qos;
+  qos.deadline = 100ms;
+  Publisher<Depth> depths(*sea.ship, "depth", qos);
+  std::vector<Guid> missed;
+  SubscriptionOptions options;
+  options.on_deadline_missed = [&](const Guid& key) { missed.push_back(key); };
+  const Subscription<Depth> watch(
+      *sea.shore, sea.executor, "depth", qos, [](const Depth&) {}, options);
+  depths.publish({7, 12.5, ""});
+  sea.executor.run_all();
+  sea.clock.advance(100ms);
+  CHECK(missed.empty());
+  sea.executor.run_all();
+  CHECK(missed == std::vector{key_hash(Depth{7, 0, ""})});
+  CHECK(watch.counters().missed_deadlines == 1);
+}
+
+TEST_CASE("who comes late is given the last state of each key, but not what was disposed") {
+  Sea sea;
+  Publisher<Depth> depths(*sea.ship, "depth", TopicQos::state());
+  for (const std::int32_t sensor : {1, 2, 3}) {
+    depths.publish({sensor, 1, "old"});
+    depths.publish({sensor, 2, "new"});
+  }
+  depths.dispose({2, 0, ""});
+  std::vector<Depth> values;
+  std::vector<Guid> disposed;
+  SubscriptionOptions options;
+  options.on_disposed = [&](const Guid& key) { disposed.push_back(key); };
+  const Subscription<Depth> late(
+      *sea.shore, sea.executor, "depth", TopicQos::state(),
+      [&](const Depth& value) { values.push_back(value); }, options);
+  sea.executor.run_all();
+  CHECK(values == std::vector<Depth>{{1, 2, "new"}, {3, 2, "new"}});
+  depths.dispose({3, 0, ""});
+  sea.executor.run_all();
+  CHECK(disposed == std::vector{key_hash(Depth{3, 0, ""})});
+  CHECK(depths.counters().published == 8);
+}
+
+TEST_CASE("a sample that is no such value is counted, reported once, and stops nothing") {
+  Sea sea;
+  const Log log;
+  const auto watch = sea.watch_rudder();
+  const auto writer = sea.ship->create_writer({"rudder", "streams::Rudder", false}, {});
+  const Bytes no_rudder = idl::encode_message(streams::Sail{{}});
+  writer->write(no_rudder);
+  writer->write(no_rudder);
+  writer->write(idl::encode_message(Rudder{"helm", 5}));
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{5});
+  CHECK(watch.counters().malformed == 2);
+  CHECK(watch.counters().received == 1);
+  REQUIRE(log.lines.size() == 1);
+  CHECK_THAT(log.lines[0],
+             Contains("'rudder'") && Contains("streams::Rudder") && Contains("same IDL"));
+}
+
+TEST_CASE("a callback that throws is reported, and the next value comes") {
+  Sea sea;
+  const Log log;
+  auto rudder = sea.rudder();
+  int calls = 0;
+  const Subscription<Rudder> watch(*sea.shore, sea.executor, "rudder", {}, [&](const Rudder&) {
+    if (++calls == 1) throw std::runtime_error("aground");
+  });
+  rudder.publish({"helm", 1});
+  rudder.publish({"helm", 2});
+  sea.executor.run_all();
+  CHECK(calls == 2);
+  REQUIRE(log.lines.size() == 1);
+  CHECK_THAT(log.lines[0], Contains("'rudder'") && Contains("aground"));
+}
+
+TEST_CASE("no callback runs once the subscription has gone") {
+  Sea sea;
+  auto rudder = sea.rudder();
+  {
+    const auto watch = sea.watch_rudder();
+    rudder.publish({"helm", 1});
+  }
+  sea.executor.run_all();
+  CHECK(sea.angles.empty());
+  CHECK(rudder.subscribers() == 0);
+}
+
+TEST_CASE("profiles that do not fit are named in the log of both sides") {
+  Sea sea;
+  const Log log;
+  auto rudder = sea.rudder(TopicQos::sensor());
+  const auto watch = sea.watch_rudder(TopicQos::state());
+  CHECK(rudder.subscribers() == 0);
+  REQUIRE(log.lines.size() == 2);
+  for (const std::string& line : log.lines) {
+    CHECK_THAT(line, Contains("'rudder'") && Contains("best effort") && Contains("reliable"));
+  }
+}
+
+TEST_CASE("a topic belongs to its systems") {
+  Sea sea;
+  TopicQos own;
+  own.systems = {"uav-1"};
+  TopicQos other;
+  other.systems = {"uav-2"};
+  TopicQos both;
+  both.systems = {"uav-1", "uav-2"};
+  auto rudder = sea.rudder(own);
+  const auto watch = sea.watch_rudder(other);
+  CHECK(rudder.subscribers() == 0);
+  const auto station = sea.watch_rudder(both);
+  CHECK(rudder.subscribers() == 1);
+}

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "../connector/pairing.hpp"
+#include "../tools/eventually.hpp"
+#include "heard.hpp"
+#include "streams.idl.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using streams::Depth;
+using streams::Rudder;
+
+TEST_CASE("a reliable stream arrives complete and in order") {
+  const auto ship = make_server("ship");
+  const auto shore = make_client("shore");
+  Heard<Rudder> heard;
+  const auto watch = shore->subscription<Rudder>("rudder", {}, heard.callback());
+  auto rudder = ship->publisher<Rudder>("rudder");
+  REQUIRE(eventually([&] { return rudder.subscribers() == 1 && watch.publishers() == 1; }));
+  REQUIRE(eventually([&] {
+    rudder.publish({"try", 0});
+    return !heard.values().empty();
+  }));
+  for (int i = 1; i <= 500; ++i) rudder.publish({"helm", static_cast<double>(i)});
+  REQUIRE(eventually([&] { return heard.values().back().angle_deg == 500; }));
+  std::vector<double> angles;
+  for (const Rudder& value : heard.values()) {
+    if (value.source == "helm") angles.push_back(value.angle_deg);
+  }
+  REQUIRE(angles.size() == 500);
+  CHECK(std::is_sorted(angles.begin(), angles.end()));
+  CHECK(watch.counters().dropped == 0);
+  CHECK(watch.counters().received == heard.values().size());
+}
+
+TEST_CASE("a sensor's stream arrives, new values only") {
+  const auto ship = make_server("ship");
+  const auto shore = make_client("shore");
+  Publisher<Depth> depths = ship->publisher<Depth>("depth", TopicQos::sensor());
+  Subscription<Depth> watch = shore->subscription<Depth>("depth", TopicQos::sensor());
+  std::int32_t next = 0;
+  std::vector<double> values;
+  REQUIRE(eventually([&] {
+    depths.publish({1, static_cast<double>(++next), "keel"});
+    while (const auto value = watch.take()) values.push_back(value->depth_m);
+    return values.size() >= 20;
+  }));
+  CHECK(std::is_sorted(values.begin(), values.end()));
+}
+
+TEST_CASE("the state of each key is there for who comes late, until it is disposed") {
+  const auto ship = make_server("ship");
+  auto depths = ship->publisher<Depth>("depth", TopicQos::state());
+  for (const std::int32_t sensor : {1, 2, 3}) depths.publish({sensor, 10.0 * sensor, "keel"});
+  depths.dispose({2, 0, ""});
+  const auto shore = make_client("shore");
+  Heard<Depth> heard;
+  std::atomic<int> disposed = 0;
+  SubscriptionOptions options;
+  options.on_disposed = [&](const Guid& key) {
+    if (key == key_hash(Depth{1, 0, ""})) ++disposed;
+  };
+  const auto watch =
+      shore->subscription<Depth>("depth", TopicQos::state(), heard.callback(), options);
+  REQUIRE(eventually([&] { return heard.values().size() == 2; }));
+  CHECK(heard.values()[0] == Depth{1, 10, "keel"});
+  CHECK(heard.values()[1] == Depth{3, 30, "keel"});
+  depths.dispose({1, 0, ""});
+  CHECK(eventually([&] { return disposed == 1; }));
+}
+
+TEST_CASE("a topic stays in its system, unless others are named") {
+  const auto ship = make_server("ship");
+  const auto other = make_entity("other", Pairing::get().client, "uav-2");
+  const auto shore = make_client("shore");
+  auto depths = ship->publisher<Depth>("depth", TopicQos::state());
+  const auto stranger = other->subscription<Depth>("depth", TopicQos::state());
+  TopicQos fleet = TopicQos::state();
+  fleet.systems = {"uav-1", "uav-2"};
+  const auto station = other->subscription<Depth>("depth", fleet);
+  const auto friendly = shore->subscription<Depth>("depth", TopicQos::state());
+  REQUIRE(eventually([&] { return depths.subscribers() == 2; }));
+  REQUIRE(eventually([&] { return friendly.publishers() == 1 && station.publishers() == 1; }));
+  CHECK(stranger.publishers() == 0);
+}
+
+TEST_CASE("a subscriber that does not return from its callback holds up nobody else") {
+  const auto ship = make_server("ship");
+  const auto stuck_shore = make_client("stuck");
+  const auto shore = make_client("shore");
+  TopicQos qos;
+  qos.max_waiting = 8;
+  std::atomic<bool> go_on = false;
+  const auto stuck = stuck_shore->subscription<Rudder>("rudder", qos, [&](const Rudder&) {
+    while (!go_on) std::this_thread::sleep_for(1ms);
+  });
+  Heard<Rudder> heard;
+  const auto watch = shore->subscription<Rudder>("rudder", {}, heard.callback());
+  auto rudder = ship->publisher<Rudder>("rudder");
+  REQUIRE(eventually([&] { return rudder.subscribers() == 2; }));
+  REQUIRE(eventually([&] { return stuck.publishers() == 1 && watch.publishers() == 1; }));
+  // More than a writer may have unacknowledged.
+  for (int i = 1; i <= 3000; ++i) {
+    rudder.publish({"helm", static_cast<double>(i)});
+    if (i % 500 == 0) {
+      REQUIRE(eventually(
+          [&] { return !heard.values().empty() && heard.values().back().angle_deg == i; }));
+    }
+  }
+  CHECK(stuck.counters().dropped > 2000);
+  CHECK(watch.counters().dropped == 0);
+  go_on = true;
+  CHECK(eventually([&] { return stuck.counters().received >= 8; }));
+}
