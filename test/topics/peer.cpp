@@ -1,14 +1,21 @@
 // The other process of these tests: an entity that commands the rudder, twenty times a second,
 // until it is killed or its standard input ends. Arguments: VENDOR NAME STRENGTH.
-#include <atomic>
+#include <poll.h>
+#include <unistd.h>
+
 #include <iostream>
-#include <thread>
 
 #include "skein/core/error.hpp"
 #include "skein/entity/entity.hpp"
 #include "streams.idl.hpp"
 
 using namespace skein;
+
+namespace {
+
+constexpr int kPeriodMs = 50;
+
+}  // namespace
 
 int main(int count, char** arguments) {
   if (count != 4) return 2;
@@ -21,18 +28,9 @@ int main(int count, char** arguments) {
     Entity entity(options);
     auto rudder =
         entity.publisher<streams::Rudder>("rudder", TopicQos::command(std::stoi(arguments[3])));
-    std::atomic<bool> ended = false;
-    std::thread helm([&] {
-      while (!ended) {
-        rudder.publish({options.name, 1.0});
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      }
-    });
     std::cout << "commanding" << std::endl;
-    std::string line;
-    std::getline(std::cin, line);
-    ended = true;
-    helm.join();
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    while (poll(&input, 1, kPeriodMs) == 0) rudder.publish({options.name, 1.0});
   } catch (const Error& error) {
     std::cout << "error " << error.what() << std::endl;
     return 3;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <thread>
 
 #include "../connector/pairing.hpp"
 #include "../tools/eventually.hpp"
@@ -96,7 +95,7 @@ TEST_CASE("a subscriber that does not return from its callback holds up nobody e
   qos.max_waiting = 8;
   std::atomic<bool> go_on = false;
   const auto stuck = stuck_shore->subscription<Rudder>("rudder", qos, [&](const Rudder&) {
-    while (!go_on) std::this_thread::sleep_for(1ms);
+    go_on.wait(false);
   });
   Heard<Rudder> heard;
   const auto watch = shore->subscription<Rudder>("rudder", {}, heard.callback());
@@ -114,5 +113,6 @@ TEST_CASE("a subscriber that does not return from its callback holds up nobody e
   CHECK(stuck.counters().dropped > 2000);
   CHECK(watch.counters().dropped == 0);
   go_on = true;
+  go_on.notify_all();
   CHECK(eventually([&] { return stuck.counters().received >= 8; }));
 }
