@@ -108,11 +108,30 @@ Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& opt
 std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
   if (options.foreign) return open_foreign(interface, options);
-  const auto connect = [connector = *this, query = query(interface, options), strategy = options.strategy](const Wanted& wanted) {
+  const auto connect = [connector = *this, query = query(interface, options),
+                        strategy = options.strategy](const Wanted& wanted) {
     return connector.open_next(query, strategy, wanted);
   };
   const Instant deadline = parts_.clock.now() + options.timeout;
-  return std::make_shared<FailoverChannel>(connect({deadline}), connect);
+  return std::make_shared<FailoverChannel>(connect({deadline}), connect, options.hedge_after);
+}
+
+std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interface,
+                                                   const ConnectOptions& options) const {
+  const Instant deadline = parts_.clock.now() + options.timeout;
+  std::vector<Opened> all;
+  std::exception_ptr failure;
+  for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
+    const Duration left = std::max(Duration::zero(), deadline - parts_.clock.now());
+    try {
+      all.push_back({Guid{provider->provider}, provider->entity,
+                     open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
+    } catch (const Unavailable&) {
+      failure = std::current_exception();
+    }
+  }
+  if (all.empty()) std::rethrow_exception(failure);
+  return all;
 }
 
 ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions options) {

@@ -25,8 +25,9 @@ std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
   return copy;
 }
 
-FailoverChannel::FailoverChannel(Link first, Connect connect)
+FailoverChannel::FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after)
     : connect_(std::move(connect)),
+      hedge_after_(hedge_after),
       clock_(first.channel->clock()),
       continuations_(first.channel->continuations()),
       main_(std::move(first)) {}
@@ -34,7 +35,7 @@ FailoverChannel::FailoverChannel(Link first, Connect connect)
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   const OperationInfo& operation = call->operation();
   if (operation.idempotent && !operation.oneway) {
-    if (call->blocking()) return call_here(call, in);
+    if (call->blocking() && !hedge_after_) return call_here(call, in);
     return call->attempt([&] { MovingCall::start(shared_from_this(), call, in); });
   }
   const Wanted wanted{call->deadline()};
@@ -64,7 +65,7 @@ void FailoverChannel::call_here(const std::shared_ptr<PendingCall>& call, const 
       if (!error) error = std::current_exception();
       break;
     }
-    const auto attempt = std::make_shared<Attempt>(call, true);
+    const auto attempt = std::make_shared<Attempt>(call, call->out(), true);
     link.channel->start(attempt, in);
     attempt->wait();
     error = attempt->take_error();

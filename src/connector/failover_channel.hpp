@@ -26,7 +26,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   /// Blocks until the deadline at most; throws Unavailable.
   using Connect = std::function<Link(const Wanted& wanted)>;
 
-  FailoverChannel(Link first, Connect connect);
+  FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after = std::nullopt);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   Clock& clock() const noexcept override { return clock_; }
@@ -34,6 +34,9 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   std::string peer() const override;
   bool connected() const override;
   void disconnect() override;
+
+  /// See ConnectOptions.
+  const std::optional<Duration>& hedge_after() const noexcept { return hedge_after_; }
 
   /// A link to a trusted provider that stands now, or nothing.
   std::optional<Link> ready(const Wanted& wanted);
@@ -47,6 +50,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   void keep(const Link& link);
 
   Connect connect_;
+  const std::optional<Duration> hedge_after_;
   Clock& clock_;
   Executor& continuations_;
   std::mutex connecting_;

@@ -1,5 +1,6 @@
 #include "moving_call.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "failover_channel.hpp"
@@ -11,6 +12,7 @@ void MovingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                        const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto moving = std::make_shared<MovingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
+  if (const auto delay = channel->hedge_after()) moving->hedge_later(*delay);
   if (const auto link = channel->ready(moving->retries_.wanted())) {
     moving->try_at(*link);
   } else {
@@ -25,40 +27,82 @@ MovingCall::MovingCall(const std::shared_ptr<FailoverChannel>& channel,
       continuations_(channel->continuations()),
       call_(std::move(call)),
       in_(copy_of(*call_->operation().in, in)),
+      hedged_(channel->hedge_after().has_value()),
       retries_(call_->deadline()) {}
 
-MovingCall::~MovingCall() { clock_.cancel(deadline_timer_); }
+MovingCall::~MovingCall() {
+  clock_.cancel(deadline_timer_);
+  clock_.cancel(hedge_timer_);
+}
 
 void MovingCall::try_at(const Link& link) {
-  const auto attempt = std::make_shared<Attempt>(call_, false);
-  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider] {
-    self->ended(*attempt, provider);
+  const TypeSupport& type = *call_->operation().out;
+  std::shared_ptr<void> own;
+  if (hedged_) own = {type.make(), type.destroy};
+  const auto attempt = std::make_shared<Attempt>(call_, own ? own.get() : call_->out(), false);
+  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider, own] {
+    self->ended(*attempt, provider, own.get());
   });
   link.channel->start(attempt, in_.get());
   bool cancelled;
   {
     std::lock_guard lock(mutex_);
-    attempts_.push_back(attempt);
+    attempts_.emplace_back(link.provider, attempt);
     cancelled = cancelled_;
   }
   if (cancelled) attempt->cancel();
 }
 
-void MovingCall::ended(Attempt& attempt, const Guid& provider) {
+void MovingCall::ended(Attempt& attempt, const Guid& provider, const void* own_out) {
   auto error = attempt.take_error();
   if (!error) {
-    if (call_->claim()) call_->finish();
+    if (!call_->claim()) return;
+    if (own_out) call_->operation().out->assign(call_->out(), own_out);
+    call_->finish();
+    if (hedged_) cancel();
     return;
   }
   bool again;
   {
     std::lock_guard lock(mutex_);
-    again = !cancelled_ && retries_.admit(error, provider, clock_.now());
+    if (cancelled_) return;
+    again = retries_.admit(error, provider, clock_.now());
+    if (again && others_run()) return;
   }
   if (again) {
     move(std::move(error));
   } else {
     call_->fail(std::move(error));
+    cancel();
+  }
+}
+
+bool MovingCall::others_run() const {
+  return std::any_of(attempts_.begin(), attempts_.end(),
+                     [](const auto& attempt) { return !attempt.second->finished(); });
+}
+
+void MovingCall::hedge_later(Duration delay) {
+  hedge_timer_ = clock_.call_after(delay, [weak = weak_from_this()] {
+    const auto self = weak.lock();
+    if (self) self->continuations_.post([self] { self->hedge(); });
+  });
+}
+
+// A second provider that is not to be had is no failure: the first one still has the call.
+void MovingCall::hedge() {
+  const auto channel = channel_.lock();
+  if (!channel || call_->finished()) return;
+  Wanted wanted;
+  {
+    std::lock_guard lock(mutex_);
+    wanted = retries_.wanted();
+    for (const auto& [provider, attempt] : attempts_) wanted.excluded.push_back(provider);
+  }
+  wanted.wait = false;
+  try {
+    try_at(channel->acquire(wanted));
+  } catch (const Error&) {
   }
 }
 
@@ -83,7 +127,8 @@ void MovingCall::move(std::exception_ptr why) {
 
 void MovingCall::go_on(std::exception_ptr why) {
   const auto channel = channel_.lock();
-  if (!channel || call_->finished()) return cancel();
+  if (!channel) return call_->cancel();
+  if (call_->finished()) return;
   Wanted wanted;
   {
     std::lock_guard lock(mutex_);
@@ -99,13 +144,13 @@ void MovingCall::go_on(std::exception_ptr why) {
 }
 
 void MovingCall::cancel() {
-  std::vector<std::shared_ptr<Attempt>> attempts;
+  std::vector<std::pair<Guid, std::shared_ptr<Attempt>>> attempts;
   {
     std::lock_guard lock(mutex_);
     cancelled_ = true;
     attempts = attempts_;
   }
-  for (const auto& attempt : attempts) attempt->cancel();
+  for (const auto& [provider, attempt] : attempts) attempt->cancel();
 }
 
 }  // namespace skein

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "retries.hpp"
@@ -11,19 +12,19 @@ namespace skein {
 
 class FailoverChannel;
 
-/// One try of a call, at one provider. The call's own out struct is filled: no try begins before the
-/// one before it has ended.
+/// One try of a call, at one provider. `out` is the call's own out struct where no two tries are made
+/// at once.
 class Attempt final : public PendingCall {
  public:
-  Attempt(std::shared_ptr<PendingCall> call, bool blocking)
-      : PendingCall(call->operation(), call->out(), call->deadline(), blocking), call_(std::move(call)) {}
+  Attempt(std::shared_ptr<PendingCall> call, void* out, bool blocking)
+      : PendingCall(call->operation(), out, call->deadline(), blocking), call_(std::move(call)) {}
 
  private:
-  std::shared_ptr<PendingCall> call_;  // owns the out struct
+  std::shared_ptr<PendingCall> call_;  // may own the out struct
 };
 
-/// A call to an idempotent operation for which no thread waits: it keeps a copy of its in struct, and
-/// where a provider fails it moves to the next one. A failure arrives on whichever thread tells of it
+/// A call to an idempotent operation that keeps a copy of its in struct: where a provider fails it moves
+/// to the next one, and where one is slow it is made at a second one, too, if the connection wants that. A failure arrives on whichever thread tells of it
 /// (a vendor's, the timer's); what connects and sends again is a task of the connection's continuations.
 class MovingCall final : public std::enable_shared_from_this<MovingCall> {
  public:
@@ -36,7 +37,10 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
 
  private:
   void try_at(const Link& link);
-  void ended(Attempt& attempt, const Guid& provider);
+  void ended(Attempt& attempt, const Guid& provider, const void* own_out);
+  bool others_run() const;
+  void hedge_later(Duration delay);
+  void hedge();
   void move(std::exception_ptr why);
   void go_on(std::exception_ptr why);
   void cancel();
@@ -47,10 +51,12 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
   Executor& continuations_;
   const std::shared_ptr<PendingCall> call_;
   const std::shared_ptr<void> in_;
+  const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
   std::mutex mutex_;  // guards what follows
   Retries retries_;
-  std::vector<std::shared_ptr<Attempt>> attempts_;
+  std::vector<std::pair<Guid, std::shared_ptr<Attempt>>> attempts_;
   TimerId deadline_timer_ = 0;
+  TimerId hedge_timer_ = 0;
   bool cancelled_ = false;
 };
 

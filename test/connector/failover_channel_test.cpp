@@ -18,10 +18,11 @@ struct NumberCall final : PendingCall {
 
 /// Providers 1, 2, ... that are connected to in this order, with invented time.
 struct World {
-  explicit World(int count) {
+  explicit World(int count, std::optional<Duration> hedge_after = std::nullopt) {
     for (int i = 0; i < count; ++i) providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
     channel = std::make_shared<FailoverChannel>(link_to(1),
-                                                [this](const Wanted& wanted) { return connect(wanted); });
+                                                [this](const Wanted& wanted) { return connect(wanted); },
+                                                hedge_after);
   }
 
   Link link_to(int number) {
@@ -175,4 +176,88 @@ TEST_CASE("with nobody else to ask calls go to a suspect provider", "[R20]") {
   world.call(operation);
   world.continuations.run_all();
   CHECK(world.provider(1).calls.size() == 1);
+}
+
+TEST_CASE("a hedged call without an answer in time is made at a second provider; the first answer counts, "
+          "and the other call is cancelled") {
+  World world(3, 50ms);
+  const auto call = world.call(kIdempotent);
+  world.clock.advance(49ms);
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+  world.clock.advance(1ms);
+  world.continuations.run_all();
+  REQUIRE(world.provider(2).calls.size() == 1);
+  CHECK(world.provider(2).arguments[0] == 7);
+  const int quick = GENERATE(1, 2);
+  const int slow = 3 - quick;
+  world.provider(quick).answer(0, quick);
+  CHECK(call->finished());
+  CHECK(call->value == quick);
+  CHECK(call->take_error() == nullptr);
+  CHECK(world.provider(slow).cancelled == 1);
+  CHECK(world.provider(quick).cancelled == 0);
+  world.provider(slow).answer(0, slow);
+  CHECK(call->value == quick);
+  world.clock.advance(10s);
+  world.continuations.run_all();
+  CHECK(world.provider(3).calls.empty());
+}
+
+TEST_CASE("a hedged call that is answered in time is made once") {
+  World world(2, 50ms);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).answer(0, 5);
+  CHECK(call->value == 5);
+  world.clock.advance(1s);
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+}
+
+TEST_CASE("only idempotent calls are hedged") {
+  World world(2, 50ms);
+  world.call(kOther);
+  world.clock.advance(1s);
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.empty());
+}
+
+TEST_CASE("while one provider has a hedged call it does not matter that the other is lost; when both are, "
+          "it moves on") {
+  World world(3, 50ms);
+  const auto call = world.call(kIdempotent);
+  world.clock.advance(50ms);
+  world.continuations.run_all();
+  world.provider(1).lose();
+  world.continuations.run_all();
+  CHECK_FALSE(call->finished());
+  CHECK(world.provider(3).calls.empty());
+  SECTION("the second one answers") { world.provider(2).answer(0, 5); }
+  SECTION("the second one is lost, too") {
+    world.provider(2).lose();
+    world.continuations.run_all();
+    REQUIRE(world.provider(3).calls.size() == 1);
+    world.provider(3).answer(0, 5);
+  }
+  CHECK(call->take_error() == nullptr);
+  CHECK(call->value == 5);
+}
+
+TEST_CASE("cancelling a hedged call cancels it at both providers") {
+  World world(2, 50ms);
+  const auto call = world.call(kIdempotent);
+  world.clock.advance(50ms);
+  world.continuations.run_all();
+  call->cancel();
+  for (const int number : {1, 2}) CHECK(world.provider(number).cancelled == 1);
+}
+
+TEST_CASE("a hedged call with nobody else to ask waits for its provider") {
+  World world(1, 50ms);
+  const auto call = world.call(kIdempotent);
+  world.clock.advance(1s);
+  world.continuations.run_all();
+  CHECK_FALSE(call->finished());
+  world.provider(1).answer(0, 5);
+  CHECK(call->value == 5);
 }

@@ -19,7 +19,11 @@ inline const TypeSupport& number_type() {
 }
 
 inline OperationInfo number_operation(bool idempotent) {
-  return {"count", 1, 1, false, idempotent, &number_type(), &number_type(), {}, ""};
+  OperationInfo operation{};
+  operation.name = "count";
+  operation.idempotent = idempotent;
+  operation.in = operation.out = &number_type();
+  return operation;
 }
 
 /// A connection whose calls wait until the test ends them.
@@ -28,6 +32,7 @@ struct FakeChannel final : Channel {
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override {
     calls.push_back(call);
+    call->set_canceller([this] { ++cancelled; });
     arguments.push_back(*static_cast<const int*>(in));
     if (refuses) call->fail(std::make_exception_ptr(Overloaded("full")));
   }
@@ -53,6 +58,7 @@ struct FakeChannel final : Channel {
   std::deque<int> arguments;
   bool stands = true;
   bool refuses = false;
+  int cancelled = 0;
   std::shared_ptr<std::atomic<bool>> suspect = std::make_shared<std::atomic<bool>>(false);
 };
 

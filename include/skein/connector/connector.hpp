@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skein/brokerless_discovery/broker.hpp"
+#include "skein/connector/gather.hpp"
 #include "skein/core/call.hpp"
 #include "skein/idl/service_reference.hpp"
 #include "skein/rpc/local_directory.hpp"
@@ -33,6 +34,10 @@ struct ConnectOptions {
   std::string preferred_host{};
   /// The Head's selection strategy for this session; empty means the provider's default.
   std::string strategy{};
+  /// A call to an idempotent operation that has no answer after so long is made at a second provider,
+  /// too, where one stands by; the first answer is taken, the other call cancelled. Nothing: never. Each
+  /// such call then copies its in struct and its result.
+  std::optional<Duration> hedge_after{};
   /// For finding a provider and opening the connection.
   Duration timeout = std::chrono::seconds(5);
   /// A server that is not built with Skein: no description tells of it, and it lives in the default
@@ -75,6 +80,18 @@ class Connector {
     return typename Interface::Proxy(open(Interface::interface_info(), to(reference, std::move(options))));
   }
 
+  /// A proxy for each provider that matches now, in the Broker's order, for gather(). Each stays with its
+  /// provider; one that does not answer is left out. Throws as connect() does where none is left.
+  template <class Interface>
+  std::vector<Connected<Interface>> connect_all(const ConnectOptions& options = {}) {
+    std::vector<Connected<Interface>> all;
+    for (Opened& opened : open_all(Interface::interface_info(), options)) {
+      all.push_back({opened.provider, std::move(opened.entity),
+                     typename Interface::Proxy(std::move(opened.channel))});
+    }
+    return all;
+  }
+
   /// The connection without its type: each call goes to the provider connected now; a lost one is
   /// replaced by the next at the next call. A call to an operation that IDL declares idempotent, and whose
   /// provider is lost (Disconnected) or refuses it (Unavailable, Overloaded), is made again at the next
@@ -86,6 +103,13 @@ class Connector {
                                          const std::string& strategy, Duration timeout) const;
 
  private:
+  struct Opened {
+    Guid provider;
+    std::string entity;
+    std::shared_ptr<Channel> channel;
+  };
+
+  std::vector<Opened> open_all(const InterfaceInfo& interface, const ConnectOptions& options) const;
   static ConnectOptions to(const ServiceReference& reference, ConnectOptions options);
   std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
                                         const ConnectOptions& options) const;

@@ -47,6 +47,10 @@ class Call {
   /// Tells the server that nobody waits any more; a later get() throws Cancelled.
   void cancel() { pending_->cancel(); }
 
+  /// Runs `action` once the call is finished, on the thread that finishes it, which may be a vendor's: it
+  /// must neither block nor run user code. One action at most, and no then() or co_await beside it.
+  void notify(std::function<void()> action) { pending_->on_finished(std::move(action)); }
+
   /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor.
   template <class Continuation>
   void then(Continuation continuation) && {

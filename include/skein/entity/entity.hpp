@@ -100,6 +100,12 @@ class Entity {
     return connector().connect(reference, options);
   }
 
+  /// See Connector::connect_all and gather().
+  template <class Interface>
+  std::vector<Connected<Interface>> connect_all(const ConnectOptions& options = {}) {
+    return connector().connect_all<Interface>(options);
+  }
+
   /// A reference to a service that this entity provides, to be passed to others.
   template <class Interface>
   Reference<Interface> reference(const Guid& provider) const {
