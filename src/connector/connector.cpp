@@ -1,6 +1,7 @@
 #include "skein/connector/connector.hpp"
 
 #include <algorithm>
+#include <random>
 #include <thread>
 
 #include "failover_channel.hpp"
@@ -58,10 +59,34 @@ bool contains(const std::vector<Guid>& providers, const ServiceDescription& prov
   return std::find(providers.begin(), providers.end(), Guid{provider.provider}) != providers.end();
 }
 
-void arrange(Table::Found& providers, const Wanted& wanted) {
+// Power of two choices (R22): all clients that look for the least loaded provider at once would find the
+// same one.
+void put_less_loaded_first(Table::Found& providers, std::size_t equals,
+                           const brokerless_discovery::LoadBoard& loads) {
+  const auto load = [&](std::size_t index) { return loads.load_of({providers[index]->provider}); };
+  if (equals < 2) return;
+  thread_local std::minstd_rand random{std::random_device{}()};
+  std::size_t one = std::uniform_int_distribution<std::size_t>(0, equals - 1)(random);
+  std::size_t other = std::uniform_int_distribution<std::size_t>(0, equals - 2)(random);
+  if (other >= one) ++other;
+  if (one > other) std::swap(one, other);
+  bool level = true;
+  for (std::size_t i = 1; i < equals; ++i) level = level && load(i) == load(0);
+  if (level) return;
+  const auto chosen = providers.begin() + static_cast<std::ptrdiff_t>(load(other) < load(one) ? other : one);
+  std::rotate(providers.begin(), chosen, chosen + 1);
+}
+
+void arrange(Table::Found& providers, const Wanted& wanted, const std::string& preferred_host,
+             const brokerless_discovery::LoadBoard& loads) {
   std::erase_if(providers, [&](const auto& provider) { return contains(wanted.excluded, *provider); });
-  std::stable_partition(providers.begin(), providers.end(),
-                        [&](const auto& provider) { return !contains(wanted.last, *provider); });
+  const auto last = std::stable_partition(
+      providers.begin(), providers.end(),
+      [&](const auto& provider) { return !contains(wanted.last, *provider); });
+  const auto preferred = [&](const auto& provider) { return provider->host == preferred_host; };
+  auto equals = std::find_if_not(providers.begin(), last, preferred);
+  if (equals == providers.begin()) equals = last;
+  put_less_loaded_first(providers, static_cast<std::size_t>(equals - providers.begin()), loads);
 }
 
 }  // namespace
@@ -163,7 +188,7 @@ Link Connector::open_next(const Query& query, const std::string& strategy, const
     if (failure) std::this_thread::sleep_for(kRetryPause);
     auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
                                  : parts_.broker.find_service(query);
-    arrange(providers, wanted);
+    arrange(providers, wanted, query.preferred_host, parts_.loads);
     for (const auto& provider : providers) {
       try {
         const Duration patience = providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();

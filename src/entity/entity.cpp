@@ -53,10 +53,12 @@ struct Entity::Provided {
   std::unique_ptr<ThreadExecutor> executor;
   std::shared_ptr<rpc::Service> service;
   std::unique_ptr<rpc::DdsServer> server;
+  Broker::Registration load;
   Broker::Registration registration;
 
   ~Provided() {
     registration.withdraw();
+    load.withdraw();
     server.reset();
     service->close();
     if (!executor->stop_or_abandon(kStopPatience)) {
@@ -75,8 +77,9 @@ struct Entity::State {
         participant(make_participant()),
         broker(*participant, process->clock(), control, process->watch(),
                {options.system, options.name, options.vendor->name(), options.lease}),
-        connector({*participant, broker, process->directory(), control, continuations, process->clock(),
-                   options.spin}),
+        loads(*participant, process->clock(), control),
+        connector({*participant, broker, loads, process->directory(), control, continuations,
+                   process->clock(), options.spin}),
         head(connector, broker, process->directory(), process->clock()) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
@@ -98,6 +101,7 @@ struct Entity::State {
   ThreadExecutor continuations{"skein-continue"};
   ThreadExecutor control{"skein-control"};
   Broker broker;
+  brokerless_discovery::LoadBoard loads;
   Connector connector;
   Head head;
   std::mutex mutex;
@@ -172,6 +176,9 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
     provided->server = std::make_unique<rpc::DdsServer>(
         *state_->participant, state_->control, state_->process->clock(), provided->service,
         rpc::DdsServer::Options{owner.empty()});
+  }
+  if (owner.empty()) {
+    provided->load = state_->loads.tell(id, [&server = *provided->server] { return server.counters().active; });
   }
   state_->process->directory()->add(provided->service);
   ServiceDescription description = describe(interface, id, options);

@@ -112,3 +112,18 @@ TEST_CASE("a hedged call to a slow provider is answered by the second one, and t
   SECTION("its caller does not wait") { CHECK(echo.within(10min).async_who(0).get() == "b"); }
   CHECK(eventually([&] { return crowd.services[0]->saw_cancellation.load(); }));
 }
+
+TEST_CASE("a connection is opened to the provider that is less loaded", "[R22]") {
+  Crowd crowd({{"a", kForEver}, {"b", 0}});
+  auto busy = crowd.client->connect<Echo>().within(10min).async_who(0);
+  REQUIRE(eventually([&] { return crowd.services[0]->inside == 1; }));
+  CHECK(eventually([&] {
+    auto echo = crowd.client->connect<Echo>();
+    return echo.channel()->peer().find(" of b ") != std::string::npos;
+  }));
+  busy.cancel();
+  CHECK(eventually([&] {
+    auto echo = crowd.client->connect<Echo>();
+    return echo.channel()->peer().find(" of a ") != std::string::npos;
+  }));
+}

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skein/brokerless_discovery/broker.hpp"
+#include "skein/brokerless_discovery/load_board.hpp"
 #include "skein/connector/gather.hpp"
 #include "skein/core/call.hpp"
 #include "skein/idl/service_reference.hpp"
@@ -18,7 +19,8 @@ struct Wanted;
 using brokerless_discovery::Constraint;
 using brokerless_discovery::Relation;
 
-/// Where and how to connect. The defaults reach the first provider of the interface in one's own system.
+/// Where and how to connect. The defaults reach the least loaded provider of the interface in one's
+/// own system; where all are idle, the first in the Broker's order.
 struct ConnectOptions {
   /// An interface's or an entity's name; empty means the proxy's own interface.
   std::string name{};
@@ -56,6 +58,7 @@ class Connector {
   struct Parts {
     dds::Participant& participant;
     brokerless_discovery::Broker& broker;
+    const brokerless_discovery::LoadBoard& loads;
     std::shared_ptr<rpc::LocalDirectory> directory;
     Executor& control;
     Executor& continuations;

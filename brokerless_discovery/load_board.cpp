@@ -1,0 +1,169 @@
+#include "skein/brokerless_discovery/load_board.hpp"
+
+#include <map>
+#include <mutex>
+#include <unordered_map>
+
+#include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/idl/type_support.hpp"
+
+namespace skein::brokerless_discovery {
+namespace {
+
+using discovery::ServiceLoad;
+
+const dds::Topic kTopic{"skein/loads", "skein::discovery::ServiceLoad", true};
+
+dds::Qos load_qos() {
+  dds::Qos qos;
+  qos.transient_local = true;
+  qos.history_depth = 1;
+  return qos;
+}
+
+}  // namespace
+
+struct LoadBoard::State : std::enable_shared_from_this<State> {
+  struct Own {
+    std::function<std::size_t()> measure;
+    std::size_t told = 0;
+  };
+  struct Told {
+    std::size_t load = 0;
+    Guid writer;
+  };
+
+  State(dds::Participant& participant_, Clock& clock_, Executor& control_)
+      : participant(participant_), clock(clock_), control(control_) {}
+
+  dds::Participant& participant;
+  Clock& clock;
+  Executor& control;
+
+  mutable std::mutex mutex;
+  std::unordered_map<Guid, Told> loads;
+
+  std::mutex telling;  // guards what follows; never taken by a listener
+  std::map<Guid, Own> own;
+  std::unique_ptr<dds::Writer> writer;  // made when there is something to tell
+  std::unique_ptr<dds::Reader> reader;
+  TimerId timer = 0;
+  bool closed = false;
+
+  // ---- what others tell
+
+  void open() {
+    dds::ReaderListener listener;
+    listener.on_data = [this](dds::Reader& source) {
+      source.take([this](const dds::Sample& sample) { on_sample(sample); });
+    };
+    listener.on_matched = [this](const Guid& gone, bool matched) {
+      std::lock_guard lock(mutex);
+      if (!matched) std::erase_if(loads, [&](const auto& load) { return load.second.writer == gone; });
+    };
+    std::lock_guard lock(telling);
+    reader = participant.create_reader(kTopic, load_qos(), std::move(listener));
+  }
+
+  void on_sample(const dds::Sample& sample) {
+    std::lock_guard lock(mutex);
+    if (sample.state == dds::InstanceState::Disposed) {
+      loads.erase(sample.key);
+      return;
+    }
+    try {
+      ServiceLoad load;
+      idl::type_support<ServiceLoad>().decode(&load, sample.cdr, 4);
+      loads[{load.provider}] = {load.requests, sample.writer};
+    } catch (const std::exception&) {
+      // Who tells what cannot be read is taken for idle.
+    }
+  }
+
+  // ---- what this peer tells
+
+  void arm() {
+    timer = clock.call_after(kInterval, [state = weak_from_this()] {
+      const auto self = state.lock();
+      if (!self) return;
+      self->control.post([state] {
+        if (const auto self = state.lock()) self->tick();
+      });
+    });
+  }
+
+  void tick() {
+    std::lock_guard lock(telling);
+    if (closed) return;
+    timer = 0;
+    for (auto& [provider, mine] : own) {
+      const std::size_t load = mine.measure();
+      if (load == mine.told) continue;
+      mine.told = load;
+      write(provider, load);
+    }
+    if (!own.empty()) arm();
+  }
+
+  void write(const Guid& provider, std::size_t load) {
+    const ServiceLoad sample{provider.bytes, static_cast<std::uint32_t>(load)};
+    Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
+    idl::type_support<ServiceLoad>().encode(&sample, message);
+    try {
+      if (!writer) writer = participant.create_writer(kTopic, load_qos());
+      writer->write(message, provider);
+    } catch (const Error& error) {
+      log(LogLevel::Warning, "broker", std::string("a load was not told: ") + error.what());
+    }
+  }
+
+  void withdraw(const Guid& provider) {
+    std::lock_guard lock(telling);
+    if (own.erase(provider) == 0 || !writer) return;
+    try {
+      writer->dispose(provider);
+    } catch (const Error& error) {
+      log(LogLevel::Warning, "broker", std::string("a load was not withdrawn: ") + error.what());
+    }
+  }
+};
+
+LoadBoard::LoadBoard(dds::Participant& participant, Clock& clock, Executor& control)
+    : state_(std::make_shared<State>(participant, clock, control)) {
+  state_->open();
+}
+
+LoadBoard::~LoadBoard() {
+  TimerId timer;
+  std::unique_ptr<dds::Reader> reader;
+  std::unique_ptr<dds::Writer> writer;
+  {
+    std::lock_guard lock(state_->telling);
+    state_->closed = true;
+    timer = state_->timer;
+    reader.swap(state_->reader);
+    writer.swap(state_->writer);
+  }
+  state_->clock.cancel(timer);
+}
+
+Broker::Registration LoadBoard::tell(const Guid& provider, std::function<std::size_t()> measure) {
+  {
+    std::lock_guard lock(state_->telling);
+    state_->own[provider].measure = std::move(measure);
+    if (state_->timer == 0) state_->arm();
+  }
+  return Broker::Registration([state = std::weak_ptr(state_), provider] {
+    if (const auto self = state.lock()) self->withdraw(provider);
+  });
+}
+
+std::size_t LoadBoard::load_of(const Guid& provider) const {
+  std::lock_guard lock(state_->mutex);
+  const auto found = state_->loads.find(provider);
+  return found == state_->loads.end() ? 0 : found->second.load;
+}
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "skein/brokerless_discovery/broker.hpp"
+
+namespace skein::brokerless_discovery {
+
+/// How busy the providers are, each by its own word: requests that wait or run there. It is measured,
+/// and so travels on a status topic of its own, not in the description: at most once in kInterval, and
+/// only when it has changed. A peer whose services are never called tells nothing. Thread-safe.
+class LoadBoard {
+ public:
+  static constexpr std::chrono::milliseconds kInterval{100};
+
+  /// The references outlive the board; `control` measures and writes.
+  LoadBoard(dds::Participant& participant, Clock& clock, Executor& control);
+  ~LoadBoard();
+
+  /// Tells everybody what `measure` gives, until the registration goes; `measure` does not run then any
+  /// more. It must not block.
+  Broker::Registration tell(const Guid& provider, std::function<std::size_t()> measure);
+
+  /// What the provider told last; 0 where it told nothing.
+  std::size_t load_of(const Guid& provider) const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,93 @@
+#include "skein/brokerless_discovery/load_board.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "descriptions.hpp"
+#include "skein/dds/loopback.hpp"
+
+using namespace skein;
+using namespace skein::brokerless_discovery;
+using namespace std::chrono_literals;
+using skein::test::guid;
+
+namespace {
+
+/// Two peers on a network on which time passes only when told, and what was written there.
+struct World {
+  World() {
+    network.judge_transfers([this](const dds::Transfer& transfer) {
+      if (transfer.topic == "skein/loads") ++written[transfer.writer];
+      return dds::Fate::deliver();
+    });
+  }
+
+  void pass(Duration time) {
+    clock.advance(time);
+    control.run_all();
+  }
+
+  std::size_t transfers() const {
+    std::size_t count = 0;
+    for (const auto& [writer, times] : written) count += times;
+    return count;
+  }
+
+  ManualClock clock;
+  ManualExecutor control;
+  dds::LoopbackNetwork network{clock};
+  std::map<Guid, std::size_t> written;
+  std::unique_ptr<dds::Participant> near = network.vendor()->create_participant({});
+  std::unique_ptr<dds::Participant> far = network.vendor()->create_participant({});
+  LoadBoard provider{*near, clock, control};
+  LoadBoard client{*far, clock, control};
+};
+
+}  // namespace
+
+TEST_CASE("everybody hears of a provider's load, its own peer too, and a late joiner", "[R21]") {
+  World world;
+  std::size_t load = 3;
+  const auto told = world.provider.tell(guid(1), [&] { return load; });
+  CHECK(world.client.load_of(guid(1)) == 0);
+  world.pass(LoadBoard::kInterval);
+  CHECK(world.client.load_of(guid(1)) == 3);
+  CHECK(world.provider.load_of(guid(1)) == 3);
+  const auto participant = world.network.vendor()->create_participant({});
+  const LoadBoard late(*participant, world.clock, world.control);
+  CHECK(late.load_of(guid(1)) == 3);
+  load = 0;
+  world.pass(LoadBoard::kInterval);
+  CHECK(world.client.load_of(guid(1)) == 0);
+}
+
+TEST_CASE("a load is told when it has changed, and at most once in an interval", "[R21]") {
+  World world;
+  std::size_t load = 0;
+  const auto told = world.provider.tell(guid(1), [&] { return load; });
+  world.pass(10 * LoadBoard::kInterval);
+  CHECK(world.transfers() == 0);
+  load = 7;
+  world.pass(LoadBoard::kInterval);
+  const std::size_t once = world.transfers();
+  CHECK(once == 2);  // to the two readers
+  for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
+  CHECK(world.transfers() == once);
+  for (int i = 0; i < 10; ++i) {
+    ++load;
+    world.pass(LoadBoard::kInterval / 10);
+  }
+  CHECK(world.transfers() == 2 * once);
+}
+
+TEST_CASE("of a provider that has withdrawn, or whose peer is gone, no load is known", "[R21]") {
+  World world;
+  auto told = world.provider.tell(guid(1), [] { return std::size_t{3}; });
+  world.pass(LoadBoard::kInterval);
+  REQUIRE(world.client.load_of(guid(1)) == 3);
+  SECTION("it has withdrawn") { told.withdraw(); }
+  SECTION("its peer is gone") {
+    world.network.kill(world.near->guid());
+    world.pass(10s);
+  }
+  CHECK(world.client.load_of(guid(1)) == 0);
+}
