@@ -9,20 +9,28 @@ namespace skein::rpc {
 /// Notes that an invocation is inside the implementation.
 class Service::Running {
  public:
-  Running(Service& service, Instant deadline) : service_(service) {
+  Running(Service& service, Instant deadline) : service_(service), deadline_(deadline) {
     std::lock_guard lock(service_.mutex_);
-    position_ = service_.running_.insert(deadline);
+    next_ = service_.running_;
+    if (next_) next_->before_ = this;
+    service_.running_ = this;
   }
   ~Running() {
     std::lock_guard lock(service_.mutex_);
-    service_.running_.erase(position_);
+    (before_ ? before_->next_ : service_.running_) = next_;
+    if (next_) next_->before_ = before_;
   }
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
+  const Running* next() const noexcept { return next_; }
+  Instant deadline() const noexcept { return deadline_; }
+
  private:
   Service& service_;
-  std::multiset<Instant>::iterator position_;
+  const Instant deadline_;
+  Running* before_ = nullptr;
+  Running* next_ = nullptr;
 };
 
 Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock,
@@ -63,13 +71,14 @@ bool Service::try_call_inline(const OperationInfo& operation, const void* in, vo
                               const Invocation& frame) {
   if (!options_.inline_calls) return false;
   std::exception_ptr error;
-  const bool ran = executor_.try_run_inline([&] {
+  const auto task = [&] {
     try {
       dispatch(operation, in, out, frame);
     } catch (...) {
       error = std::current_exception();
     }
-  });
+  };
+  const bool ran = executor_.try_run_inline(std::cref(task));  // a reference fits into std::function
   if (error) std::rethrow_exception(error);
   return ran;
 }
@@ -137,8 +146,12 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
 }
 
 bool Service::overdue() const {
+  const Instant now = clock_.now();
   std::lock_guard lock(mutex_);
-  return !running_.empty() && *running_.begin() <= clock_.now();
+  for (const Running* each = running_; each; each = each->next()) {
+    if (each->deadline() <= now) return true;
+  }
+  return false;
 }
 
 }  // namespace skein::rpc

@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -111,7 +110,7 @@ class Service : public std::enable_shared_from_this<Service> {
   std::mutex queue_mutex_;
   FairQueue queue_;
   mutable std::mutex mutex_;
-  std::multiset<Instant> running_;  // deadlines
+  Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run
 };
 
 }  // namespace skein::rpc
