@@ -7,7 +7,11 @@
 #include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
+#include "skein/core/stream.hpp"
 #include "skein/rpc/wire.hpp"
+
+#include "common.hpp"
+#include "reply_reading.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -16,23 +20,11 @@ using wire::RequestId;
 
 // DDS tells no one that the other side has matched, so `open` is repeated until it is answered.
 constexpr std::chrono::milliseconds kOpenInterval{20};
-constexpr std::size_t kKeptCapacity = 4 << 20;
-
-dds::Qos call_qos(std::vector<std::string> partitions) {
-  dds::Qos qos;
-  qos.partitions = std::move(partitions);
-  return qos;
-}
-
-std::vector<Guid> inherited_chain(const PendingCall& call) {
-  const CallContext* context = CallContext::current();
-  if (!context || !call.blocking()) return {};
-  return {context->chain().begin(), context->chain().end()};
-}
 
 }  // namespace
 
 struct DdsChannel::State : std::enable_shared_from_this<State> {
+  enum class Keep { Nothing, Streams };
   enum class Phase { Opening, Open, Lost, Closed };
 
   struct Entry {
@@ -129,7 +121,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     Bytes message;
     wire::begin_request(message, {client, 0}, wire::kOpen);
     wire::append_default_branch(message);
-    wire::append_trailer(message, wire::RequestTrailer{options.timeout, 0, {}, options.strategy});
+    wire::append_trailer(message, wire::RequestTrailer{options.timeout, 0, {}, options.strategy, 0});
     requests->write(message);
   }
 
@@ -153,11 +145,22 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
         on_opened(sample.cdr, head);
       } else if (head.operation == wire::kOpen) {
         dismissed("it had ended the session before the call arrived");
-      } else if (const auto call = remove(head.related.number)) {
-        complete(*call, sample.cdr, head);
+      } else {
+        on_reply(sample.cdr, head);
       }
     } catch (const std::exception& error) {
       note_malformed(error.what());
+    }
+  }
+
+  void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head) {
+    const std::uint64_t number = head.related.number;
+    const auto call = remove(number, Keep::Streams);
+    if (!call) return;
+    if (call->operation().stream) {
+      on_stream_reply(number, static_cast<PendingStream&>(*call), message, head);
+    } else {
+      complete(*call, message, head);
     }
   }
 
@@ -173,7 +176,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     // A server that is not built with Skein does not know `open`; that it says so proves it ready.
     const bool known = head.exception != wire::RemoteException::Ok &&
                        head.exception != wire::RemoteException::UnknownOperation;
-    if (known) refused = error_in(message, head, "open");
+    if (known) refused = error_in(message, head, "open", options.peer);
     {
       std::lock_guard lock(mutex);
       if (phase == Phase::Opening) {
@@ -198,62 +201,44 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     if (!call.claim()) return;
     std::exception_ptr error;
     try {
-      error = read_result(call, message, head);
+      error = read_reply(call.operation(), call.out(), message, head, options.peer).error;
     } catch (const std::exception& malformed) {
-      note_malformed(malformed.what());
-      error = std::make_exception_ptr(Internal(options.peer + " answered " +
-                                               std::string(call.operation().name) +
-                                               " with what cannot be read: " + malformed.what()));
+      error = unreadable(call.operation(), malformed);
     }
     call.finish(std::move(error));
   }
 
-  // Fills the call's out struct, or gives what the operation ended with; throws where the bytes are neither.
-  std::exception_ptr read_result(PendingCall& call, std::span<const std::byte> message,
-                                 const wire::ReplyHead& head) {
-    const OperationInfo& operation = call.operation();
-    if (head.exception != wire::RemoteException::Ok) return error_in(message, head, operation.name);
-    if (head.operation != operation.hash) {
-      throw InvalidArgument("it is the result of another operation");
-    }
-    std::size_t offset = head.result;
-    const std::uint32_t which = wire::read_discriminator(message, offset);
-    if (which == 0) {
-      operation.out->decode(call.out(), message, offset);
-      return nullptr;
-    }
-    for (const ExceptionInfo* exception : operation.raises) {
-      if (exception->hash != which) continue;
-      const std::unique_ptr<void, void (*)(void*)> value(exception->type->make(),
-                                                         exception->type->destroy);
-      exception->type->decode(value.get(), message, offset);
-      return raised(*exception, value.get());
-    }
-    throw InvalidArgument("it is an exception that this side's interface does not declare");
+  std::exception_ptr unreadable(const OperationInfo& operation, const std::exception& malformed) {
+    note_malformed(malformed.what());
+    return std::make_exception_ptr(Internal(options.peer + " answered " + std::string(operation.name) +
+                                            " with what cannot be read: " + malformed.what()));
   }
 
-  static std::exception_ptr raised(const ExceptionInfo& exception, const void* value) {
+  // What is wrong with a stream ends it, here and at the server.
+  void on_stream_reply(std::uint64_t number, PendingStream& stream,
+                       std::span<const std::byte> message, const wire::ReplyHead& head) {
     try {
-      exception.raise(value);
-    } catch (...) {
-      return std::current_exception();
+      if (!read_part(stream, message, head)) remove(number);
+    } catch (const std::exception& malformed) {
+      if (stream.fail(unreadable(stream.operation(), malformed))) abandon(number);
     }
   }
 
-  std::exception_ptr error_in(std::span<const std::byte> message, const wire::ReplyHead& head,
-                              std::string_view operation) {
-    ErrorCode code = wire::error_code_of(head.exception);
-    std::string text = std::string(operation) + " ended with remote exception " +
-                       std::to_string(static_cast<int>(head.exception));
-    if (const auto trailer = wire::read_reply_trailer(message, head.result + 1)) {
-      code = trailer->code;
-      text = trailer->text;
+  // True where more replies follow.
+  bool read_part(PendingStream& stream, std::span<const std::byte> message,
+                 const wire::ReplyHead& head) {
+    const TypeSupport& type = *stream.operation().out;
+    PendingStream::Item item(type.make(), type.destroy);
+    Reply reply = read_reply(stream.operation(), item.get(), message, head, options.peer);
+    if (!reply.error && reply.part != wire::StreamPart::None && reply.position != stream.delivered()) {
+      throw InvalidArgument("result " + std::to_string(stream.delivered()) + " of the stream is missing");
     }
-    try {
-      throw_error(code, options.peer + ": " + text);
-    } catch (...) {
-      return std::current_exception();
+    if (!reply.error && reply.part != wire::StreamPart::End && !stream.deliver(std::move(item))) {
+      throw InvalidArgument("it is a result more than was asked for");
     }
+    if (reply.part == wire::StreamPart::Item) return true;
+    if (stream.claim()) stream.finish(std::move(reply.error));
+    return false;
   }
 
   // ---- calls
@@ -291,6 +276,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
         if (const auto self = state.lock()) self->abandon(number);
       });
     }
+    if (call->operation().stream) {
+      static_cast<PendingStream&>(*call).set_granter([state = weak_from_this(), number](std::uint32_t count) {
+        if (const auto self = state.lock()) self->grant(number, count);
+      });
+    }
     return requests;
   }
 
@@ -298,18 +288,22 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     thread_local Bytes message;
     wire::begin_request(message, {client, number}, call.operation().hash);
     call.operation().in->encode(in, message);
-    wire::append_trailer(message, wire::RequestTrailer{call.deadline() - clock.now(), 0,
-                                                       inherited_chain(call), {}});
+    wire::append_trailer(message, wire::RequestTrailer{
+                                      call.deadline() - clock.now(), 0,
+                                      call.blocking() ? inherited_chain() : std::vector<Guid>(), {},
+                                      call.operation().stream ? PendingStream::kWindow : 0});
     writer.write(message);
     if (message.capacity() > kKeptCapacity) message = Bytes();
   }
 
-  std::shared_ptr<PendingCall> remove(std::uint64_t number) {
+  // The call, which is not known by its number any more; a stream stays known until its last reply.
+  std::shared_ptr<PendingCall> remove(std::uint64_t number, Keep keep = Keep::Nothing) {
     Entry entry;
     {
       std::lock_guard lock(mutex);
       const auto found = entries.find(number);
       if (found == entries.end()) return nullptr;
+      if (keep == Keep::Streams && found->second.call->operation().stream) return found->second.call;
       entry = std::move(found->second);
       entries.erase(found);
     }
@@ -334,22 +328,32 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     control.post([state = weak_from_this(), number] {
       const auto self = state.lock();
       if (!self) return;
-      std::shared_ptr<dds::Writer> writer;
-      {
-        std::lock_guard lock(self->mutex);
-        if (self->phase != Phase::Open) return;
-        writer = self->requests;
-      }
-      Bytes message;
-      wire::begin_request(message, {self->client, 0}, wire::kCancel);
-      wire::append_default_branch(message);
-      wire::append_trailer(message, wire::RequestTrailer{{}, number, {}, {}});
       try {
-        writer->write(message);
+        self->send_reserved(wire::kCancel, {{}, number, {}, {}, 0});
       } catch (const Error&) {
         // The server will find the call expired; cancelling early is a courtesy.
       }
     });
+  }
+
+  // On the thread that takes the results: one that is held up here takes none anyway.
+  void grant(std::uint64_t number, std::uint32_t count) {
+    send_reserved(wire::kCredit, {{}, number, {}, {}, count});
+  }
+
+  // About a call; nothing is to be said to a server that is gone.
+  void send_reserved(std::uint32_t operation, const wire::RequestTrailer& trailer) {
+    std::shared_ptr<dds::Writer> writer;
+    {
+      std::lock_guard lock(mutex);
+      if (phase != Phase::Open) return;
+      writer = requests;
+    }
+    Bytes message;
+    wire::begin_request(message, {client, 0}, operation);
+    wire::append_default_branch(message);
+    wire::append_trailer(message, trailer);
+    writer->write(message);
   }
 
   // ---- ending

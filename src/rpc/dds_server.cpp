@@ -11,6 +11,9 @@
 #include "skein/core/log.hpp"
 #include "skein/rpc/wire.hpp"
 
+#include "common.hpp"
+#include "reply_encoding.hpp"
+
 namespace skein::rpc {
 namespace {
 
@@ -20,57 +23,6 @@ using wire::RequestId;
 constexpr std::chrono::seconds kOpenPatience{10};
 // How many clients that have gone are remembered, in case that one of them comes back.
 constexpr std::size_t kMaxForgotten = 1024;
-
-dds::Qos call_qos(std::vector<std::string> partitions) {
-  dds::Qos qos;
-  qos.partitions = std::move(partitions);
-  return qos;
-}
-
-void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std::string& text,
-                  std::uint32_t operation = 0) {
-  wire::begin_reply(message, id, wire::remote_exception_of(code), operation);
-  wire::append_default_branch(message);
-  wire::append_trailer(message, wire::ReplyTrailer{code, text});
-}
-
-bool declares(const OperationInfo& operation, const ExceptionInfo& exception) {
-  for (const ExceptionInfo* declared : operation.raises) {
-    if (declared->hash == exception.hash) return true;
-  }
-  return false;
-}
-
-void encode_outcome(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                    const void* out, const std::exception_ptr& error) {
-  try {
-    if (error) std::rethrow_exception(error);
-    wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
-    wire::append_discriminator(message, 0);
-    operation.out->encode(out, message);
-  } catch (const UserException& exception) {
-    if (!declares(operation, exception.info())) {
-      return encode_error(message, id, ErrorCode::Internal,
-                          std::string(operation.name) + " threw " + std::string(exception.info().name) +
-                              ", which its interface does not declare");
-    }
-    wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
-    wire::append_discriminator(message, exception.info().hash);
-    exception.info().type->encode(exception.value(), message);
-  } catch (const Error& failure) {
-    encode_error(message, id, failure.code(), failure.what());
-  } catch (const std::exception& failure) {
-    encode_error(message, id, ErrorCode::Internal,
-                 std::string(operation.name) + " failed: " + failure.what());
-  } catch (...) {
-    encode_error(message, id, ErrorCode::Internal,
-                 std::string(operation.name) + " threw something that is no std::exception");
-  }
-}
-
-}  // namespace
-
-namespace {
 
 dds::Topic topic_of(const std::string& service, const char* suffix) {
   const std::string type = scoped_interface_name(service);
@@ -187,9 +139,13 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     const auto client = client_of(head.id, trailer.has_value());
     if (!client) return;
     invocation->session = client->session;
-    invocation->respond = [state = weak_from_this(), client, id = head.id, operation](
-                              const void* out, std::exception_ptr error) {
-      if (const auto self = state.lock()) self->respond(*client, id, *operation, out, error);
+    if (operation->stream) {
+      invocation->stream = make_stream(client, head.id, *invocation, trailer ? trailer->credit : 0);
+    }
+    invocation->respond = [state = weak_from_this(), client, id = head.id, operation,
+                           stream = invocation->stream](const void* out, std::exception_ptr error) {
+      const auto self = state.lock();
+      if (self) self->respond(*client, id, *operation, out, error, stream ? stream->sent() : 0);
     };
     {
       std::lock_guard lock(mutex);
@@ -203,6 +159,17 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     }
   }
 
+  std::shared_ptr<OutgoingStream> make_stream(const std::shared_ptr<Client>& client,
+                                              const RequestId& id, const Invocation& invocation,
+                                              std::uint32_t credit) {
+    const OperationInfo& operation = *invocation.operation;
+    return std::make_shared<OutgoingStream>(
+        operation, clock, invocation.deadline, credit,
+        [state = weak_from_this(), client, id, &operation](const void* out, std::uint64_t position) {
+          if (const auto self = state.lock()) self->send_item(*client, id, operation, out, position);
+        });
+  }
+
   void on_reserved(const dds::Sample& sample, const wire::RequestHead& head) {
     auto trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
     if (trailer && is_impostor(sample, head)) return;
@@ -211,16 +178,22 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
         if (const auto self = state.lock()) self->open(id, strategy);
       });
     } else if (trailer && head.operation == wire::kCancel) {
-      std::lock_guard lock(mutex);
-      const auto calls = active.find(head.id.client);
-      if (calls == active.end()) return;
-      if (const auto call = calls->second.find(trailer->target); call != calls->second.end()) {
-        call->second->cancelled = true;
-      }
+      if (const auto call = find_active({head.id.client, trailer->target})) call->cancel();
+    } else if (trailer && head.operation == wire::kCredit) {
+      const auto call = find_active({head.id.client, trailer->target});
+      if (call && call->stream) call->stream->grant(trailer->credit);
     } else {
       refuse(head.id, ErrorCode::Unimplemented,
              address.service + " has no operation with hash " + std::to_string(head.operation));
     }
+  }
+
+  std::shared_ptr<Invocation> find_active(const RequestId& id) const {
+    std::lock_guard lock(mutex);
+    const auto calls = active.find(id.client);
+    if (calls == active.end()) return nullptr;
+    const auto call = calls->second.find(id.number);
+    return call == calls->second.end() ? nullptr : call->second;
   }
 
   std::shared_ptr<Client> client_of(const RequestId& id, bool skein_client) {
@@ -426,20 +399,33 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     clients.erase(found);
     remember_forgotten(key);
     if (const auto calls = active.find(key); calls != active.end()) {
-      for (auto& [number, invocation] : calls->second) invocation->cancelled = true;
+      for (auto& [number, invocation] : calls->second) invocation->cancel();
     }
   }
 
   // ---- on the service's executor
 
   void respond(Client& client, const RequestId& id, const OperationInfo& operation, const void* out,
-               const std::exception_ptr& error) {
+               const std::exception_ptr& error, std::uint64_t sent) {
     forget(id);
     if (operation.oneway) return;
     thread_local Bytes message;
-    encode_outcome(message, id, operation, out, error);
+    if (out || error) {
+      encode_outcome(message, id, operation, out, error);
+    } else {
+      encode_end(message, id, operation, sent);
+    }
     write(client, message);
     if (message.capacity() > kKeptCapacity) message = Bytes();
+  }
+
+  void send_item(Client& client, const RequestId& id, const OperationInfo& operation,
+                 const void* out, std::uint64_t position) {
+    thread_local Bytes message;
+    encode_item(message, id, operation, out, position);
+    const bool sent = write(client, message);
+    if (message.capacity() > kKeptCapacity) message = Bytes();
+    if (!sent) throw Overloaded("the caller of " + std::string(operation.name) + " takes no replies");
   }
 
   void forget(const RequestId& id) {
@@ -455,22 +441,23 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     return client.writer;
   }
 
-  void write(Client& client, const Bytes& message) {
+  // False where the reply was lost.
+  bool write(Client& client, const Bytes& message) {
     using namespace std::chrono_literals;
     const auto writer = writer_of(client);
-    if (!writer) return;
+    if (!writer) return false;
     try {
       // A client that stopped reading may hold up this thread once, and not with each reply.
-      if (client.stalled && !writer->wait_for_acknowledgments(0ms)) return;
+      if (client.stalled && !writer->wait_for_acknowledgments(0ms)) return false;
       client.stalled = false;
       writer->write(message);
+      return true;
     } catch (const Error& error) {
       client.stalled = error.code() == ErrorCode::Overloaded;
       log(LogLevel::Warning, address.service, std::string("a reply was lost: ") + error.what());
+      return false;
     }
   }
-
-  static constexpr std::size_t kKeptCapacity = 4 << 20;
 };
 
 DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& clock,

@@ -1,14 +1,26 @@
 #include "skein/rpc/local_channel.hpp"
 
 #include "skein/core/error.hpp"
+#include "skein/core/stream.hpp"
+
+#include "common.hpp"
 
 namespace skein::rpc {
 namespace {
 
-std::vector<Guid> inherited_chain() {
-  const CallContext* context = CallContext::current();
-  if (!context) return {};
-  return {context->chain().begin(), context->chain().end()};
+void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call, Clock& clock) {
+  const auto stream = std::static_pointer_cast<PendingStream>(call);
+  const TypeSupport& type = *call->operation().out;
+  invocation.stream = std::make_shared<OutgoingStream>(
+      call->operation(), clock, call->deadline(), PendingStream::kWindow,
+      [stream, &type](const void* out, std::uint64_t) {
+        PendingStream::Item item(type.make(), type.destroy);
+        type.assign(item.get(), out);
+        stream->deliver(std::move(item));
+      });
+  stream->set_granter([outgoing = std::weak_ptr(invocation.stream)](std::uint32_t count) {
+    if (const auto alive = outgoing.lock()) alive->grant(count);
+  });
 }
 
 }  // namespace
@@ -66,12 +78,13 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   invocation->respond = [call, timer, &clock = clock_](const void* out, std::exception_ptr error) {
     clock.cancel(timer->load());
     if (!call->claim()) return;
-    if (!error) call->operation().out->assign(call->out(), out);
+    if (!error && out) call->operation().out->assign(call->out(), out);
     call->finish(std::move(error));
   };
-  call->set_canceller([invocation] { invocation->cancelled = true; });
+  if (operation.stream) connect_stream(*invocation, call, clock_);
+  call->set_canceller([invocation] { invocation->cancel(); });
   timer->store(clock_.call_at(call->deadline(), [call, invocation, peer = peer_] {
-    invocation->cancelled = true;
+    invocation->cancel();
     call->fail(std::make_exception_ptr(
         TimedOut(peer + " did not answer " + std::string(call->operation().name) + " in time")));
   }));

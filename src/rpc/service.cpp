@@ -9,11 +9,12 @@ namespace skein::rpc {
 /// Notes that an invocation is inside the implementation.
 class Service::Running {
  public:
-  Running(Service& service, Instant deadline) : service_(service), deadline_(deadline) {
+  Running(Service& service, Invocation& invocation) : service_(service), invocation_(invocation) {
     std::lock_guard lock(service_.mutex_);
     next_ = service_.running_;
     if (next_) next_->before_ = this;
     service_.running_ = this;
+    if (service_.closed_) service_.stop(invocation_);
   }
   ~Running() {
     std::lock_guard lock(service_.mutex_);
@@ -24,11 +25,11 @@ class Service::Running {
   Running& operator=(const Running&) = delete;
 
   const Running* next() const noexcept { return next_; }
-  Instant deadline() const noexcept { return deadline_; }
+  Invocation& invocation() const noexcept { return invocation_; }
 
  private:
   Service& service_;
-  const Instant deadline_;
+  Invocation& invocation_;
   Running* before_ = nullptr;
   Running* next_ = nullptr;
 };
@@ -68,7 +69,7 @@ void Service::execute_next() {
 }
 
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
-                              const Invocation& frame) {
+                              Invocation& frame) {
   if (!options_.inline_calls) return false;
   std::exception_ptr error;
   const auto task = [&] {
@@ -103,7 +104,15 @@ std::string Service::circle(const std::vector<Guid>& chain) const {
   return text + "the first again";
 }
 
-void Service::close() { closed_ = true; }
+void Service::close() {
+  std::lock_guard lock(mutex_);
+  closed_ = true;
+  for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
+}
+
+void Service::stop(Invocation& invocation) const {
+  invocation.stop(ErrorCode::Disconnected, std::string(interface_info().name) + " was withdrawn");
+}
 
 void Service::execute(Invocation& invocation) {
   if (closed_) {
@@ -118,10 +127,14 @@ void Service::execute(Invocation& invocation) {
     return;
   }
   const TypeSupport& type = *invocation.operation->out;
-  const std::unique_ptr<void, void (*)(void*)> out(type.make(), type.destroy);
+  OutgoingStream* const stream = invocation.stream.get();
+  const std::unique_ptr<void, void (*)(void*)> out(stream ? nullptr : type.make(), type.destroy);
+  const void* result = out.get();
   std::exception_ptr error;
   try {
-    dispatch(*invocation.operation, invocation.in.get(), out.get(), invocation);
+    void* const target = stream ? static_cast<StreamWriter*>(stream) : out.get();
+    dispatch(*invocation.operation, invocation.in.get(), target, invocation);
+    if (stream) result = stream->finish();
   } catch (...) {
     error = std::current_exception();
   }
@@ -130,18 +143,17 @@ void Service::execute(Invocation& invocation) {
     error = std::make_exception_ptr(TimedOut(std::string(interface_info().name) + " finished " +
                                              std::string(invocation.operation->name) + " too late"));
   }
-  const void* const result = error ? nullptr : out.get();
-  invocation.respond(result, std::move(error));
+  invocation.respond(error ? nullptr : result, std::move(error));
 }
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,
-                       const Invocation& frame) {
+                       Invocation& frame) {
   std::vector<Guid> chain = frame.chain;
   chain.push_back(options_.strand);
   const CallContext context(clock_, frame.deadline, frame.caller, std::move(chain),
                             frame.session.get(), &frame.cancelled);
   const CallContextScope scope(context);
-  const Running running(*this, frame.deadline);
+  const Running running(*this, frame);
   servant_->dispatch(operation, in, out);
 }
 
@@ -149,7 +161,7 @@ bool Service::overdue() const {
   const Instant now = clock_.now();
   std::lock_guard lock(mutex_);
   for (const Running* each = running_; each; each = each->next()) {
-    if (each->deadline() <= now) return true;
+    if (each->invocation().deadline <= now) return true;
   }
   return false;
 }

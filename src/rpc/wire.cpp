@@ -91,6 +91,7 @@ class Cursor {
 
   void align() { bytes((4 - (offset_ - kOrigin) % 4) % 4); }
   std::size_t offset() const { return offset_; }
+  bool at_end() const { return offset_ == message_.size(); }
 
  private:
   std::span<const std::byte> message_;
@@ -157,6 +158,7 @@ void append_trailer(Bytes& message, const RequestTrailer& trailer) {
     put(message, static_cast<std::uint32_t>(trailer.chain.size()));
     for (const Guid& guid : trailer.chain) message.append(std::as_bytes(std::span(guid.bytes)));
     put_text(message, trailer.strategy);
+    put(message, trailer.credit);
   });
 }
 
@@ -164,6 +166,8 @@ void append_trailer(Bytes& message, const ReplyTrailer& trailer) {
   append_trailer_with(message, [&] {
     put(message, trailer.code);
     put_text(message, std::string_view(trailer.text).substr(0, kMaxText));
+    put(message, trailer.part);
+    put(message, trailer.position);
   });
 }
 
@@ -217,6 +221,7 @@ std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> me
   }
   for (std::uint32_t i = 0; i < count; ++i) trailer.chain.push_back(cursor->guid());
   trailer.strategy = cursor->text(kMaxText);
+  if (!cursor->at_end()) trailer.credit = cursor->get<std::uint32_t>();
   return trailer;
 }
 
@@ -227,6 +232,13 @@ std::optional<ReplyTrailer> read_reply_trailer(std::span<const std::byte> messag
   ReplyTrailer trailer;
   trailer.code = cursor->get<ErrorCode>();
   trailer.text = cursor->text(kMaxText);
+  if (cursor->at_end()) return trailer;
+  trailer.part = cursor->get<StreamPart>();
+  if (trailer.part > StreamPart::End) {
+    throw InvalidArgument("no part of a stream: " +
+                          std::to_string(static_cast<std::uint32_t>(trailer.part)));
+  }
+  trailer.position = cursor->get<std::uint64_t>();
   return trailer;
 }
 

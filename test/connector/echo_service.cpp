@@ -89,6 +89,27 @@ std::string EchoService::who(std::uint32_t time_ms) {
   return name_;
 }
 
+void EchoService::count_up(std::int32_t count, std::int32_t fail_at, StreamSink<std::int32_t>& sink) {
+  const Inside inside(*this);
+  try {
+    for (std::int32_t i = 0; i < count; ++i) {
+      if (i == fail_at) throw ::test::DivisionByZero(i);
+      sink.push(i);
+      ++pushed;
+    }
+  } catch (const Error&) {
+    saw_cancellation = CallContext::current()->cancelled();
+    stream_ended = true;
+    throw;
+  }
+  stream_ended = true;
+}
+
+void EchoService::burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>>& sink) {
+  const Inside inside(*this);
+  while (sink.try_push(std::vector<std::uint8_t>(size))) ++pushed;
+}
+
 std::string EchoService::shout(const std::string& text) {
   std::string loud = text;
   std::transform(loud.begin(), loud.end(), loud.begin(), [](unsigned char c) { return std::toupper(c); });

@@ -23,12 +23,16 @@ class EchoService : public ::test::LouderEcho {
   std::string label() override;
   void label(const std::string& value) override;
   std::string who(std::uint32_t time_ms) override;
+  void count_up(std::int32_t count, std::int32_t fail_at, StreamSink<std::int32_t>& sink) override;
+  void burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>>& sink) override;
   std::string shout(const std::string& text) override;
 
   std::atomic<std::uint64_t> calls{0};
   std::atomic<int> inside{0};
   std::atomic<bool> overlapped{false};
   std::atomic<bool> saw_cancellation{false};
+  std::atomic<std::int32_t> pushed{0};
+  std::atomic<bool> stream_ended{false};
 
  private:
   const std::string name_;

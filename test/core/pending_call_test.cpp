@@ -10,7 +10,7 @@ using namespace skein;
 
 namespace {
 
-const OperationInfo kOperation{"probe", 1, 1, false, false, nullptr, nullptr, {}, ""};
+const OperationInfo kOperation{"probe", 1, 1, false, false, false, nullptr, nullptr, {}, ""};
 
 std::shared_ptr<PendingCall> a_call() {
   return std::make_shared<PendingCall>(kOperation, nullptr, Instant{}, true);

@@ -157,6 +157,25 @@ class Pragmas(CompilerTest):
                             "  #pragma idempotent plan\n};\n",
                             "x.idl:4: error: #pragma idempotent: no operation 'plam' here (did you mean 'plan'?)")  # fmt: skip
 
+    def test_a_stream_is_an_operation_with_a_result_and_nothing_else_that_comes_back(self):
+        self.assert_compiles("interface I {\n  long count(in long sink);\n  #pragma stream count\n};\n#pragma stream I::count\n")
+        header = self.output("x.idl.hpp")
+        self.assertIn("virtual void count(std::int32_t sink, ::skein::StreamSink<std::int32_t>& sink_) = 0;", header)
+        self.assertIn("::skein::Stream<std::int32_t> count(std::int32_t sink);", header)
+        self.assertIn("// count is a stream", self.output("x.dds.idl"))
+
+    def test_what_cannot_be_a_stream_is_refused(self):
+        refusal = "must have a result, which becomes the stream, and no out parameters"
+        self.assert_refused("interface I {\n  void f();\n  long g(out long x);\n  #pragma stream f\n  #pragma stream g\n};\n",
+                            f"x.idl:4: error: #pragma stream: 'f' {refusal}",
+                            f"x.idl:5: error: #pragma stream: 'g' {refusal}")  # fmt: skip
+        self.assert_refused("interface I {\n  attribute long x;\n  #pragma stream x\n};\n",
+                            "x.idl:3: error: #pragma stream: 'x' is an attribute; use an operation")  # fmt: skip
+        self.assert_refused("interface I {\n  long count();\n  #pragma stream cuont\n};\n",
+                            "x.idl:3: error: #pragma stream: no operation 'cuont' here (did you mean 'count'?)")  # fmt: skip
+        self.assert_refused("interface I {\n  long count();\n  #pragma idempotent count\n  #pragma stream count\n};\n",
+                            "x.idl:4: error: 'count' cannot be both idempotent and a stream: a stream is never repeated")  # fmt: skip
+
     def test_a_misspelt_pragma_is_refused_and_a_foreign_one_warned_about(self):
         self.assert_refused("struct S { long x; };\n#pragma keylst S x\n",
                             "x.idl:2: error: unknown pragma 'keylst' (did you mean 'keylist'?)")  # fmt: skip

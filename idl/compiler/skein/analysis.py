@@ -196,7 +196,9 @@ def apply_pragmas(pragmas, builder, report, main_file):
             _keylist(pragma, words[1:], builder, report)
         elif words[0] == "idempotent":
             _idempotent(pragma, words[1:], builder, report)
-        elif hint := suggestion(words[0], ["keylist", "idempotent"]):
+        elif words[0] == "stream":
+            _stream(pragma, words[1:], builder, report)
+        elif hint := suggestion(words[0], ["keylist", "idempotent", "stream"]):
             report.error(pragma.place, f"unknown pragma '{words[0]}'{hint}")
         elif pragma.place[0] == main_file:
             report.warning(pragma.place, f"unknown pragma '{words[0]}' is passed over")
@@ -211,22 +213,50 @@ def _lookup(pragma, name, table):
     return None
 
 
-def _idempotent(pragma, operations, builder, report):
+def _operations(pragma, kind, given, builder, report):
+    """The operations that a pragma names."""
     table = {}
     for decl in builder._built.values():
         for operation in decl.operations if isinstance(decl, model.Interface) else []:
             plain = operation.name.removeprefix("_get_").removeprefix("_set_")
             for name in {plain, operation.name}:
                 table.setdefault(decl.scope + (name,), []).append(operation)
-    if not operations:
-        report.error(pragma.place, "#pragma idempotent needs the name of an operation")
-    for name in operations:
+    if not given:
+        report.error(pragma.place, f"#pragma {kind} needs the name of an operation")
+    for name in given:
         found = _lookup(pragma, name, table)
         if found is None:
             known = [scope[-1] for scope in table]
-            report.error(pragma.place, f"#pragma idempotent: no operation '{name}' here{suggestion(name, known)}")
-        for operation in found or []:
-            operation.idempotent = True
+            report.error(pragma.place, f"#pragma {kind}: no operation '{name}' here{suggestion(name, known)}")
+        yield from found or []
+
+
+def _idempotent(pragma, given, builder, report):
+    for operation in _operations(pragma, "idempotent", given, builder, report):
+        operation.idempotent = True
+        _refuse_repeated_stream(pragma, operation, report)
+
+
+def _stream(pragma, given, builder, report):
+    for operation in _operations(pragma, "stream", given, builder, report):
+        if operation.name.startswith("_set_"):
+            continue
+        if operation.name.startswith("_get_"):
+            report.error(pragma.place, f"#pragma stream: '{operation.name[5:]}' is an attribute; use an operation")
+        elif operation.result is None or any(p.is_out for p in operation.parameters):
+            report.error(
+                pragma.place,
+                f"#pragma stream: '{operation.name}' must have a result, which becomes the stream, and no out parameters",
+            )
+        else:
+            operation.stream = True
+            _refuse_repeated_stream(pragma, operation, report)
+
+
+def _refuse_repeated_stream(pragma, operation, report):
+    """What was taken from a stream cannot be taken back."""
+    if operation.stream and operation.idempotent:
+        report.error(pragma.place, f"'{operation.name}' cannot be both idempotent and a stream: a stream is never repeated")
 
 
 def _keylist(pragma, words, builder, report):

@@ -189,6 +189,8 @@ class _Writer:
     def _operation(self, operation, interface):
         name = f"{interface}_{operation.name}"
         lines = [f"const long {name}_Hash = {hashes.signed(operation.hash)};"]
+        if operation.stream:
+            lines.insert(0, f"// {operation.name} is a stream; a peer without Skein gets its last result.")
         lines += self._struct(operation.in_struct)
         if operation.oneway:
             return lines

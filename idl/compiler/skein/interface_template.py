@@ -1,17 +1,25 @@
 """The abstract class of an interface: what providers implement and proxies are."""
 
-from . import cpp, model, types_template
+from . import cpp, names, types_template
 
 
 def parameters(operation):
-    return ", ".join(
+    found = [
         (f"{cpp.type_name(p.type)}& " if p.is_out else f"{cpp.parameter_type(p.type)} ") + p.cpp_name
         for p in operation.parameters
-    )
+    ]
+    if operation.stream:
+        found.append(f"::skein::StreamSink<{cpp.type_name(operation.result)}>& {sink(operation)}")
+    return ", ".join(found)
+
+
+def sink(operation):
+    """A name that no parameter has."""
+    return names.unique("sink", names.PARAMETER, {p.cpp_name for p in operation.parameters})
 
 
 def result(operation):
-    return cpp.type_name(operation.result) if operation.result else "void"
+    return cpp.type_name(operation.result) if operation.result and not operation.stream else "void"
 
 
 def definition(interface):

@@ -67,7 +67,7 @@ def _operation(operation, raises):
     support = "&type_support(static_cast<const {}*>(nullptr))"
     return [
         f'      {{"{operation.name}", 0x{operation.hash:08x}U, 0x{operation.signature:016x}ULL, '
-        f"{_bool(operation.oneway)}, {_bool(operation.idempotent)},",
+        f"{_bool(operation.oneway)}, {_bool(operation.idempotent)}, {_bool(operation.stream)},",
         f"       {support.format(operation.in_struct.cpp)},",
         f"       {support.format(operation.out_struct.cpp)},",
         f"       {listed}, {cpp.string_literal(operation.documentation)}}},",

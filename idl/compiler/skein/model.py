@@ -195,6 +195,7 @@ class Operation:
     raises: list
     oneway: bool
     idempotent: bool
+    stream: bool
     documentation: list
     place: tuple
     interface: object

@@ -16,7 +16,7 @@ from . import (
     types_template,
 )
 
-VERSION = 1  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 2  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 def _operation_structs(interface):
@@ -50,6 +50,7 @@ def header(file):
         "",
         '#include "skein/core/call.hpp"',
         '#include "skein/core/operation.hpp"',
+        '#include "skein/core/stream_sink.hpp"',
         '#include "skein/idl/argument.hpp"',
         '#include "skein/idl/declared_exception.hpp"',
         '#include "skein/idl/plain_layout.hpp"',

@@ -1,7 +1,7 @@
 """The proxy: the interface on this side of a channel."""
 
 from . import cpp, model
-from .interface_template import parameters, result
+from .interface_template import parameters, result, sink
 
 
 def _in_parameters(operation):
@@ -12,6 +12,10 @@ def _async_result(operation):
     if any(p.is_out for p in operation.parameters):
         return operation.out_struct.cpp
     return result(operation)
+
+
+def _stream_type(operation):
+    return f"::skein::Stream<{cpp.type_name(operation.result)}>"
 
 
 def definition(interface):
@@ -29,6 +33,9 @@ def definition(interface):
     for operation in interface.all_operations():
         lines += ["", *cpp.documentation(operation.documentation, "  ")]
         lines.append(f"  {result(operation)} {operation.cpp_name}({parameters(operation)}) override;")
+        if operation.stream:
+            lines.append(f"  {_stream_type(operation)} {operation.cpp_name}({_in_parameters(operation)});")
+            continue
         lines.append(
             f"  ::skein::Call<{_async_result(operation)}> {operation.async_name}({_in_parameters(operation)});"
         )
@@ -49,7 +56,10 @@ def source(interface):
         "",
     ]
     for index, operation in enumerate(interface.all_operations()):
-        lines += _blocking(name, interface, operation, index) + _asynchronous(name, interface, operation, index)
+        if operation.stream:
+            lines += _stream(name, interface, operation, index)
+        else:
+            lines += _blocking(name, interface, operation, index) + _asynchronous(name, interface, operation, index)
     return lines
 
 
@@ -91,6 +101,23 @@ def _asynchronous(name, interface, operation, index):
         f"  return ProxyBase::async_call<{kind}, {out}>(",
         f"      {_operation(interface, index)}, {_request(operation)},",
         f"      []({out}&{parameter}) {{ return {select}; }});",
+        "}",
+        "",
+    ]
+
+
+def _stream(name, interface, operation, index):
+    """The stream, and the implementation's form of the operation, which passes its results on."""
+    item = cpp.type_name(operation.result)
+    arguments = ", ".join(p.cpp_name for p in operation.parameters)
+    return [
+        f"::skein::Stream<{item}> {name}::{operation.cpp_name}({_in_parameters(operation)}) {{",
+        f"  return ProxyBase::stream<{item}, {operation.out_struct.cpp}>(",
+        f"      {_operation(interface, index)}, {_request(operation)});",
+        "}",
+        "",
+        f"void {name}::{operation.cpp_name}({parameters(operation)}) {{",
+        f"  for (auto&& item_ : {operation.cpp_name}({arguments})) {sink(operation)}.push(std::move(item_));",
         "}",
         "",
     ]

@@ -1,6 +1,6 @@
 """The skeleton: carries a call that has arrived to the implementation."""
 
-from . import model
+from . import cpp, model
 
 
 def definition(interface):
@@ -63,6 +63,8 @@ def _case(operation):
                 prepare.append(f"      {target} = {value};")
         else:
             arguments.append(value)
+    if operation.stream:
+        return _stream_case(operation, arguments)
     call = f"implementation_->{operation.cpp_name}({', '.join(arguments)});"
     lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
     if operation.in_struct.members:
@@ -72,3 +74,16 @@ def _case(operation):
     lines += prepare
     lines.append(f"      {'results.return_ = ' if operation.result else ''}{call}")
     return lines + ["      return;", "    }"]
+
+
+def _stream_case(operation, arguments):
+    lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
+    if operation.in_struct.members:
+        lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
+    result = cpp.type_name(operation.result)
+    return lines + [
+        f"      ::skein::WritingSink<{result}, {operation.out_struct.cpp}> results(out);",
+        f"      implementation_->{operation.cpp_name}({', '.join([*arguments, 'results'])});",
+        "      return;",
+        "    }",
+    ]

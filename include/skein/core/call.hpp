@@ -8,6 +8,7 @@
 #include "skein/core/call_context.hpp"
 #include "skein/core/channel.hpp"
 #include "skein/core/error.hpp"
+#include "skein/core/stream.hpp"
 
 namespace skein {
 
@@ -127,6 +128,16 @@ class ProxyBase {
     auto* const result = select(pending->value);
     channel_->start(pending, &in);
     return Call<Result>(std::move(pending), channel_, result);
+  }
+
+  /// The call of an operation that is a stream of results.
+  template <class Result, class Out, class In>
+  Stream<Result> stream(const OperationInfo& operation, const In& in) const {
+    auto pending = std::make_shared<PendingStream>(operation, deadline());
+    channel_->start(pending, &in);
+    return Stream<Result>(std::move(pending), channel_, [](void* out) -> Result {
+      return std::move(static_cast<Out*>(out)->return_);
+    });
   }
 
   void set_timeout(Duration timeout) { timeout_ = timeout; }

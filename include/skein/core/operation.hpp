@@ -53,6 +53,7 @@ struct OperationInfo {
   std::uint64_t signature;  ///< Changes when any parameter, result or exception type changes.
   bool oneway;              ///< No reply; a success says only that the request was handed over.
   bool idempotent;          ///< Declared by `#pragma idempotent`: may be executed twice.
+  bool stream;              ///< Declared by `#pragma stream`: brings any number of out structs.
   const TypeSupport* in;    ///< The struct of in and inout parameters (`plan_In`).
   const TypeSupport* out;   ///< The struct of result, out and inout parameters (`plan_Out`).
   std::span<const ExceptionInfo* const> raises;
@@ -80,8 +81,8 @@ class Servant {
  public:
   virtual ~Servant() = default;
   virtual const InterfaceInfo& interface_info() const noexcept = 0;
-  /// Runs `operation` on `in` (its in struct) and fills `out` (its out struct). Throws what the
-  /// implementation throws. Whether several threads may be inside at once is the executor's affair.
+  /// Runs `operation` on `in` (its in struct) and fills `out` (its out struct; for a stream, the
+  /// StreamWriter that takes its out structs). Throws what the implementation throws. Whether several threads may be inside at once is the executor's affair.
   virtual void dispatch(const OperationInfo& operation, const void* in, void* out) = 0;
 };
 

@@ -13,6 +13,7 @@
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
 #include "skein/rpc/fair_queue.hpp"
+#include "skein/rpc/outgoing_stream.hpp"
 
 namespace skein::rpc {
 
@@ -36,9 +37,19 @@ struct Invocation {
   std::vector<Guid> chain;
   std::shared_ptr<Session> session;
   std::atomic<bool> cancelled{false};
-  /// Called once, on the executor's thread: the out struct, or what was thrown.
+  /// Where the results go, where the operation is a stream.
+  std::shared_ptr<OutgoingStream> stream;
+  /// Called once, on the executor's thread: the out struct, or what was thrown; neither at the end of a
+  /// stream.
   std::function<void(const void* out, std::exception_ptr error)> respond;
   std::shared_ptr<Invocation> next;  ///< The FairQueue's.
+
+  /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink).
+  void cancel() { stop(ErrorCode::Cancelled, "its caller waits no longer"); }
+  void stop(ErrorCode code, const std::string& why) {
+    cancelled = true;
+    if (stream) stream->stop(code, why);
+  }
 };
 
 /// A provided service, whatever lane its calls come by: the implementation and the threads that run
@@ -83,7 +94,7 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Runs the operation on the calling thread where the executor is idle; false otherwise.
   /// The outcome is in `out` or thrown.
   bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
-                       const Invocation& frame);
+                       Invocation& frame);
 
   /// Throws Unavailable, which names the services of the circle, where a call with this chain would
   /// wait for itself.
@@ -92,7 +103,7 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Whether an invocation is still inside the implementation although its deadline has passed.
   bool overdue() const;
 
-  /// Invocations that have not begun are refused from now on.
+  /// Invocations that have not begun are refused from now on; those that run are told to stop.
   void close();
 
  private:
@@ -100,7 +111,8 @@ class Service : public std::enable_shared_from_this<Service> {
   void execute_next();
   void execute(Invocation& invocation);
   std::string circle(const std::vector<Guid>& chain) const;
-  void dispatch(const OperationInfo& operation, const void* in, void* out, const Invocation& frame);
+  void stop(Invocation& invocation) const;
+  void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
 
   std::shared_ptr<Servant> servant_;
   Executor& executor_;

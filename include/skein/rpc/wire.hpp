@@ -37,19 +37,32 @@ enum class RemoteException : std::int32_t {
 /// body is one octet.
 inline constexpr std::uint32_t kOpen = 0x6E65706F;    // "open"
 inline constexpr std::uint32_t kCancel = 0x636E6163;  // "canc"
+inline constexpr std::uint32_t kCredit = 0x64657263;  // "cred"
 
 /// Behind a request's body.
 struct RequestTrailer {
   Duration remaining{};     ///< Until the caller's deadline, when sent.
-  std::uint64_t target = 0; ///< With kCancel: the number of the request to cancel.
+  std::uint64_t target = 0; ///< With kCancel and kCredit: the number of the request that is meant.
   std::vector<Guid> chain;  ///< See CallContext::chain.
   std::string strategy;     ///< With kOpen.
+  /// How many results the server may send: at the start of a stream, and more with kCredit. A caller
+  /// that grants none at the start knows no streams and gets the last result as an ordinary reply.
+  std::uint32_t credit = 0;
 };
 
-/// Behind a reply's body where the call ended with an Error.
+/// What a reply is to a stream.
+enum class StreamPart : std::uint32_t {
+  None = 0,  ///< The only reply there is: its result is the whole stream.
+  Item = 1,  ///< A result; more replies follow.
+  End = 2,   ///< No result: the body means nothing.
+};
+
+/// Behind a reply's body where the call ended with an Error, and in a stream.
 struct ReplyTrailer {
   ErrorCode code = ErrorCode::Internal;
   std::string text;
+  StreamPart part = StreamPart::None;
+  std::uint64_t position = 0;  ///< How many results came before this reply.
 };
 
 struct RequestHead {
@@ -86,7 +99,8 @@ ReplyHead read_reply_head(std::span<const std::byte> message);
 std::uint32_t read_discriminator(std::span<const std::byte> message, std::size_t& offset);
 
 /// The trailer that begins at or (aligned to 4) after `end`, the end of the body; nothing where the
-/// peer is no Skein peer. Throws InvalidArgument where one begins but is broken.
+/// peer is no Skein peer. Throws InvalidArgument where one begins but is broken. What an older peer does
+/// not write at its end has its initial value.
 std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> message,
                                                    std::size_t end);
 std::optional<ReplyTrailer> read_reply_trailer(std::span<const std::byte> message, std::size_t end);

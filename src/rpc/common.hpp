@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "skein/core/call_context.hpp"
+#include "skein/dds/port.hpp"
+
+/// What both ends of a lane share.
+namespace skein::rpc {
+
+/// A message that needed more is not kept for the next one.
+inline constexpr std::size_t kKeptCapacity = 4 << 20;
+
+inline dds::Qos call_qos(std::vector<std::string> partitions) {
+  dds::Qos qos;
+  qos.partitions = std::move(partitions);
+  return qos;
+}
+
+/// The services that wait for a call which this thread is about to make, and to wait for.
+inline std::vector<Guid> inherited_chain() {
+  const CallContext* context = CallContext::current();
+  if (!context) return {};
+  return {context->chain().begin(), context->chain().end()};
+}
+
+}  // namespace skein::rpc
