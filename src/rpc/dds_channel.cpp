@@ -4,14 +4,13 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "common.hpp"
+#include "reply_reading.hpp"
 #include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
 #include "skein/core/stream.hpp"
 #include "skein/rpc/wire.hpp"
-
-#include "common.hpp"
-#include "reply_reading.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -95,12 +94,13 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     std::size_t greeted = 0;
     while (phase == Phase::Opening && !refusal) {
       if (clock.now() >= deadline) {
-        throw Unavailable(options.peer + " did not answer within " +
-                          std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(
-                                             options.timeout).count()) +
-                          " ms" +
-                          (matched_servers == 0 ? ": no provider's endpoint was found on this domain"
-                                                : ": its endpoint was found, but it does not reply"));
+        throw Unavailable(
+            options.peer + " did not answer within " +
+            std::to_string(
+                std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count()) +
+            " ms" +
+            (matched_servers == 0 ? ": no provider's endpoint was found on this domain"
+                                  : ": its endpoint was found, but it does not reply"));
       }
       greeted = matched_servers;
       lock.unlock();
@@ -114,14 +114,16 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       });
     }
     if (refusal) std::rethrow_exception(refusal);
-    if (phase != Phase::Open) throw Unavailable(options.peer + " went away while it was being connected");
+    if (phase != Phase::Open)
+      throw Unavailable(options.peer + " went away while it was being connected");
   }
 
   void send_open() {
     Bytes message;
     wire::begin_request(message, {client, 0}, wire::kOpen);
     wire::append_default_branch(message);
-    wire::append_trailer(message, wire::RequestTrailer{options.timeout, 0, {}, options.strategy, 0});
+    wire::append_trailer(message,
+                         wire::RequestTrailer{options.timeout, 0, {}, options.strategy, 0});
     requests->write(message);
   }
 
@@ -197,7 +199,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     if (!address.provider.is_nil()) lose(how);
   }
 
-  void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head) {
+  void complete(PendingCall& call, std::span<const std::byte> message,
+                const wire::ReplyHead& head) {
     if (!call.claim()) return;
     std::exception_ptr error;
     try {
@@ -210,7 +213,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   std::exception_ptr unreadable(const OperationInfo& operation, const std::exception& malformed) {
     note_malformed(malformed.what());
-    return std::make_exception_ptr(Internal(options.peer + " answered " + std::string(operation.name) +
+    return std::make_exception_ptr(Internal(options.peer + " answered " +
+                                            std::string(operation.name) +
                                             " with what cannot be read: " + malformed.what()));
   }
 
@@ -230,8 +234,10 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     const TypeSupport& type = *stream.operation().out;
     PendingStream::Item item(type.make(), type.destroy);
     Reply reply = read_reply(stream.operation(), item.get(), message, head, options.peer);
-    if (!reply.error && reply.part != wire::StreamPart::None && reply.position != stream.delivered()) {
-      throw InvalidArgument("result " + std::to_string(stream.delivered()) + " of the stream is missing");
+    if (!reply.error && reply.part != wire::StreamPart::None &&
+        reply.position != stream.delivered()) {
+      throw InvalidArgument("result " + std::to_string(stream.delivered()) +
+                            " of the stream is missing");
     }
     if (!reply.error && reply.part != wire::StreamPart::End && !stream.deliver(std::move(item))) {
       throw InvalidArgument("it is a result more than was asked for");
@@ -257,7 +263,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   }
 
   // The call is known before its request leaves: a reply may be here before write() returns.
-  std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call, std::uint64_t& number) {
+  std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call,
+                                     std::uint64_t& number) {
     std::lock_guard lock(mutex);
     if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
     if (phase != Phase::Open) throw Unavailable("no connection to " + options.peer + ": disconnected");
@@ -277,9 +284,10 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       });
     }
     if (call->operation().stream) {
-      static_cast<PendingStream&>(*call).set_granter([state = weak_from_this(), number](std::uint32_t count) {
-        if (const auto self = state.lock()) self->grant(number, count);
-      });
+      static_cast<PendingStream&>(*call).set_granter(
+          [state = weak_from_this(), number](std::uint32_t count) {
+            if (const auto self = state.lock()) self->grant(number, count);
+          });
     }
     return requests;
   }
@@ -288,9 +296,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     thread_local Bytes message;
     wire::begin_request(message, {client, number}, call.operation().hash);
     call.operation().in->encode(in, message);
-    wire::append_trailer(message, wire::RequestTrailer{
-                                      call.deadline() - clock.now(), 0,
-                                      call.blocking() ? inherited_chain() : std::vector<Guid>(), {},
+    wire::append_trailer(
+        message, wire::RequestTrailer{call.deadline() - clock.now(),
+                                      0,
+                                      call.blocking() ? inherited_chain() : std::vector<Guid>(),
+                                      {},
                                       call.operation().stream ? PendingStream::kWindow : 0});
     writer.write(message);
     if (message.capacity() > kKeptCapacity) message = Bytes();
@@ -303,7 +313,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       std::lock_guard lock(mutex);
       const auto found = entries.find(number);
       if (found == entries.end()) return nullptr;
-      if (keep == Keep::Streams && found->second.call->operation().stream) return found->second.call;
+      if (keep == Keep::Streams && found->second.call->operation().stream)
+        return found->second.call;
       entry = std::move(found->second);
       entries.erase(found);
     }
@@ -367,8 +378,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       changed.notify_all();
     }
     fail_all([&](const OperationInfo& operation) {
-      return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how + "); whether " +
-                                                  std::string(operation.name) + " ran is unknown"));
+      return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how +
+                                                  "); whether " + std::string(operation.name) +
+                                                  " ran is unknown"));
     });
   }
 
@@ -384,7 +396,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     }
     fail_all([&](const OperationInfo& operation) {
       return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
-                                               " was closed during " + std::string(operation.name)));
+                                               " was closed during " +
+                                               std::string(operation.name)));
     });
   }
 

@@ -6,13 +6,12 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common.hpp"
+#include "reply_encoding.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/rpc/wire.hpp"
-
-#include "common.hpp"
-#include "reply_encoding.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -163,11 +162,13 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
                                               const RequestId& id, const Invocation& invocation,
                                               std::uint32_t credit) {
     const OperationInfo& operation = *invocation.operation;
-    return std::make_shared<OutgoingStream>(
-        operation, clock, invocation.deadline, credit,
-        [state = weak_from_this(), client, id, &operation](const void* out, std::uint64_t position) {
-          if (const auto self = state.lock()) self->send_item(*client, id, operation, out, position);
-        });
+    return std::make_shared<OutgoingStream>(operation, clock, invocation.deadline, credit,
+                                            [state = weak_from_this(), client, id, &operation](
+                                                const void* out, std::uint64_t position) {
+                                              if (const auto self = state.lock())
+                                                self->send_item(*client, id, operation, out,
+                                                                position);
+                                            });
   }
 
   void on_reserved(const dds::Sample& sample, const wire::RequestHead& head) {
@@ -260,12 +261,14 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     admit(id, client);
   }
 
-  // This side forgot the client (it was stopped, or cut off), and the client did not notice: it hears so
-  // once its reply reader is found. What it sent may be a repetition, so it is never executed.
+  // This side forgot the client (it was stopped, or cut off), and the client did not notice: it
+  // hears so once its reply reader is found. What it sent may be a repetition, so it is never
+  // executed.
   void dismiss(const RequestId& id) {
     {
       std::lock_guard lock(mutex);
-      if (const auto found = clients.find(id.client); found != clients.end()) found->second->open = id;
+      if (const auto found = clients.find(id.client); found != clients.end())
+        found->second->open = id;
     }
     if (answer_open(id.client)) return;
     auto client = make_client();
@@ -279,7 +282,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     try {
       make_reply_writer(id, client);
     } catch (const Error& error) {
-      log(LogLevel::Error, address.service, std::string("a client cannot be answered: ") + error.what());
+      log(LogLevel::Error, address.service,
+          std::string("a client cannot be answered: ") + error.what());
       return drop(id.client);
     }
     answer_open(id.client);
@@ -294,8 +298,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       clients.emplace(id.client, client);
     }
     dds::WriterListener listener;
-    listener.on_matched = [state = weak_from_this(), key = id.client,
-                           weak = std::weak_ptr(client)](const Guid&, bool matched) {
+    listener.on_matched = [state = weak_from_this(), key = id.client, weak = std::weak_ptr(client)](
+                              const Guid&, bool matched) {
       const auto self = state.lock();
       const auto client = weak.lock();
       if (self && client) self->on_reply_reader(key, client, matched);
@@ -352,8 +356,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     return found != clients.end() && found->second == client;
   }
 
-  // A client that comes back after it was forgotten may not know that it was, and may wait for an answer
-  // to what was lost meanwhile.
+  // A client that comes back after it was forgotten may not know that it was, and may wait for an
+  // answer to what was lost meanwhile.
   void on_request_writer(const Guid& key, bool matched) {
     {
       std::lock_guard lock(mutex);
@@ -389,7 +393,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
 
   // The client has gone: its session ends, and nobody waits for its calls any more.
   void drop(const Guid& key) {
-    std::shared_ptr<dds::Writer> writer;  // goes here, where its listener can be waited for, and unlocked
+    std::shared_ptr<dds::Writer>
+        writer;  // goes here, where its listener can be waited for, and unlocked
     std::shared_ptr<Client> client;
     std::lock_guard lock(mutex);
     const auto found = clients.find(key);
@@ -425,7 +430,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     encode_item(message, id, operation, out, position);
     const bool sent = write(client, message);
     if (message.capacity() > kKeptCapacity) message = Bytes();
-    if (!sent) throw Overloaded("the caller of " + std::string(operation.name) + " takes no replies");
+    if (!sent)
+      throw Overloaded("the caller of " + std::string(operation.name) + " takes no replies");
   }
 
   void forget(const RequestId& id) {
@@ -484,8 +490,8 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 DdsServer::~DdsServer() {
   state_->requests.reset();
   state_->service->close();
-  // The writers end here, where their listeners can be waited for: a listener that still runs may be the
-  // last to let go of its client, and of the state.
+  // The writers end here, where their listeners can be waited for: a listener that still runs may
+  // be the last to let go of its client, and of the state.
   std::vector<std::shared_ptr<dds::Writer>> writers;
   std::unordered_map<Guid, std::shared_ptr<State::Client>> clients;
   std::lock_guard lock(state_->mutex);

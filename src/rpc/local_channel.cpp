@@ -1,14 +1,14 @@
 #include "skein/rpc/local_channel.hpp"
 
+#include "common.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/stream.hpp"
-
-#include "common.hpp"
 
 namespace skein::rpc {
 namespace {
 
-void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call, Clock& clock) {
+void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call,
+                    Clock& clock) {
   const auto stream = std::static_pointer_cast<PendingStream>(call);
   const TypeSupport& type = *call->operation().out;
   invocation.stream = std::make_shared<OutgoingStream>(

@@ -17,9 +17,14 @@ class Compiler:
         return ran.stderr if ran.returncode else ""
 
 
+# The header that needs more than Skein; asio_test includes it first, and is skipped where Asio is missing.
+WITH_ASIO = "skein/asio.hpp"
+
+
 def lone_headers(tree, compiler):
     """A public header that does not compile alone, or not twice."""
     headers = [path.removeprefix("include/") for path in tree.files((".hpp",), "include")]
+    headers = [header for header in headers if header != WITH_ASIO]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         refusals = pool.map(lambda header: compiler.refusal(f'#include "{header}"\n#include "{header}"\n'), headers)
         for header, refusal in zip(headers, refusals):

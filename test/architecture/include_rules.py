@@ -23,6 +23,7 @@ FLOORS = {
     "navigation": 7,
     "navigation/components": 7.5,
     "skein": 8,
+    "asio.hpp": 0.5,
 }
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("launch", "profile")}
@@ -44,6 +45,7 @@ HOMES = {
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/navigation"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "src/skein", "test", "benchmarks"]),
+    "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
     "the command line": (r"CLI/", ["src/skein", "benchmarks", "examples"]),
 }
 
@@ -82,7 +84,7 @@ def _module(path):
     parts = path.split("/")
     for length in (2, 1):
         name = "/".join(parts[:length])
-        if len(parts) > length and name in FLOORS:
+        if (len(parts) > length or name.endswith(".hpp")) and name in FLOORS:
             return name
     return None
 

@@ -63,14 +63,15 @@ class Attacked {
   std::thread caller_;
 };
 
-std::unique_ptr<dds::Writer> matched_writer(Entity& entity, const dds::Topic& topic, const dds::Qos& qos) {
+std::unique_ptr<dds::Writer> matched_writer(Entity& entity, const dds::Topic& topic,
+                                            const dds::Qos& qos) {
   auto writer = entity.participant().create_writer(topic, qos);
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   return writer;
 }
 
-/// A stranger's writer of requests that the service hears: what it writes before the other side has found
-/// it may be lost.
+/// A stranger's writer of requests that the service hears: what it writes before the other side has
+/// found it may be lost.
 std::unique_ptr<dds::Writer> writer_to(Attacked& attacked) {
   dds::Qos qos;
   qos.partitions = {attacked.service.id().hex()};
@@ -114,27 +115,28 @@ TEST_CASE("nobody speaks in another client's name") {
   Attacked attacked;
   const auto writer = writer_to(attacked);
   const auto before = attacked.service.counters();
-  for (const std::uint32_t operation : {rpc::wire::kOpen, rpc::wire::kCancel}) {
+  for (const std::uint32_t operation : {rpc::wire::kOpen, rpc::wire::kCancel, rpc::wire::kCredit}) {
     Bytes message;
     rpc::wire::begin_request(message, {Guid::random(), 0}, operation);
     rpc::wire::append_default_branch(message);
     rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1s, 1, {}, ""});
     writer->write(message);
   }
-  CHECK(eventually([&] { return attacked.service.counters().malformed == before.malformed + 2; }));
+  CHECK(eventually([&] { return attacked.service.counters().malformed == before.malformed + 3; }));
   CHECK(attacked.service.counters().clients == 1);
   CHECK(attacked.unharmed());
 }
 
-TEST_CASE("malformed service descriptions are counted and dropped, and every table stays as it is") {
+TEST_CASE(
+    "malformed service descriptions are counted and dropped, and every table stays as it is") {
   Attacked attacked;
   dds::Qos qos;
   qos.transient_local = true;
   qos.history_depth = 1;
   qos.liveliness_lease = 1000ms;
   qos.partitions = {""};
-  const auto writer =
-      matched_writer(*attacked.stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+  const auto writer = matched_writer(
+      *attacked.stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
   REQUIRE(eventually([&] { return writer->matched_readers().size() == 3; }));
   auto random = seeded_random();
 
@@ -168,7 +170,8 @@ class RogueServer {
         worker_.post([this, head] { answer(head); });
       });
     };
-    reader_ = entity.participant().create_reader(address().request_topic(), qos, std::move(listener));
+    reader_ =
+        entity.participant().create_reader(address().request_topic(), qos, std::move(listener));
     registration_ = entity.broker().add_service(describe_echo(id_, "rogue"));
   }
   ~RogueServer() {
@@ -197,7 +200,7 @@ class RogueServer {
     if (head.operation == rpc::wire::kOpen) {
       rpc::wire::begin_reply(message, head.id, rpc::wire::RemoteException::Ok, rpc::wire::kOpen);
       rpc::wire::append_default_branch(message);
-    } else if (head.operation != rpc::wire::kCancel) {
+    } else if (head.operation != rpc::wire::kCancel && head.operation != rpc::wire::kCredit) {
       std::lock_guard lock(mutex_);
       message = reply_(head);
     }
@@ -216,19 +219,30 @@ class RogueServer {
 
 }  // namespace
 
-TEST_CASE("a server that answers with nonsense: each call ends, with the reason, and none stays pending") {
-  Attacked attacked;
-  RogueServer rogue(*attacked.stranger);
-  REQUIRE(eventually([&] { return attacked.client->broker().knows(rogue.id()); }));
+namespace {
+
+std::shared_ptr<rpc::DdsChannel> channel_to(const RogueServer& rogue, Entity& client) {
+  REQUIRE(eventually([&] { return client.broker().knows(rogue.id()); }));
   const auto description = [&] {
-    for (const auto& known : attacked.client->broker().all()) {
+    for (const auto& known : client.broker().all()) {
       if (known->provider == rogue.id().bytes) return known;
     }
     throw std::runtime_error("the rogue is not known");
   }();
-  const auto channel = attacked.client->connector().open_provider(*description, "", 20s);
+  const auto channel = client.connector().open_provider(*description, "", 20s);
   const auto dds_channel = std::dynamic_pointer_cast<rpc::DdsChannel>(channel);
   REQUIRE(dds_channel);
+  return dds_channel;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a server that answers with nonsense: each call ends, with the reason, and none stays "
+    "pending") {
+  Attacked attacked;
+  RogueServer rogue(*attacked.stranger);
+  const auto channel = channel_to(rogue, *attacked.client);
   LouderEcho::Proxy proxy(channel, 20s);
   auto random = seeded_random();
 
@@ -244,12 +258,37 @@ TEST_CASE("a server that answers with nonsense: each call ends, with the reason,
       CHECK(bad.tells_the_call);
       CHECK_THAT(error.what(), Catch::Contains("rogue") && Catch::Contains("echo"));
     }
-    CHECK(dds_channel->pending() == 0);
+    CHECK(channel->pending() == 0);
   }
-  CHECK(dds_channel->malformed() > 0);
+  CHECK(channel->malformed() > 0);
   CHECK(channel->connected());
   CHECK(attacked.unharmed());
 
   rogue.answer_with([](const rpc::wire::RequestHead& head) { return good_reply(head); });
   CHECK(proxy.within(20s).echo("x") == "x");
+}
+
+TEST_CASE("a server that sends what is no part of a stream: the stream ends, with the reason") {
+  Attacked attacked;
+  RogueServer rogue(*attacked.stranger);
+  const auto channel = channel_to(rogue, *attacked.client);
+  LouderEcho::Proxy proxy(channel, 20s);
+  for (const BadReply& bad : bad_stream_replies()) {
+    INFO(bad.name);
+    rogue.answer_with(bad.make);
+    auto numbers = proxy.count_up(1, -1);
+    CHECK_THROWS_AS(numbers.next(), Internal);
+    CHECK(channel->pending() == 0);
+  }
+  CHECK(attacked.unharmed());
+}
+
+TEST_CASE("the one reply of a server that knows no streams is a stream of one result") {
+  Attacked attacked;
+  RogueServer plain(*attacked.stranger);
+  LouderEcho::Proxy proxy(channel_to(plain, *attacked.client), 20s);
+  plain.answer_with([](const rpc::wire::RequestHead& head) { return count_up_reply(head, 42); });
+  auto numbers = proxy.count_up(1, -1);
+  CHECK(numbers.next() == 42);
+  CHECK(numbers.next() == std::nullopt);
 }

@@ -41,8 +41,9 @@ struct GatedEcho : EchoService {
 
 }  // namespace
 
-TEST_CASE("a provider killed on the same host: its call ends as Disconnected and its description goes, "
-          "long before the lease") {
+TEST_CASE(
+    "a provider killed on the same host: its call ends as Disconnected and its description goes, "
+    "long before the lease") {
   auto server = start_peer("server", *Pairing::get().server, kLongLeaseArgument);
   const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
   std::atomic<int> deaths = 0;
@@ -72,6 +73,26 @@ TEST_CASE("a provider killed on the same host: its call ends as Disconnected and
               std::chrono::duration<double, std::milli>(took).count());
 }
 
+TEST_CASE(
+    "a provider killed in the middle of a stream: what came can be taken, then the stream ends") {
+  auto server = start_peer("server", *Pairing::get().server, kLongLeaseArgument);
+  const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
+  server.send("provide");
+  server.expect("provided");
+  auto echo = client->connect<LouderEcho>({.timeout = 20s});
+  auto numbers = echo.within(10min).count_up(1'000'000, -1);
+  for (std::int32_t i = 0; i < 100; ++i) REQUIRE(numbers.next() == i);
+  server.signal(SIGKILL);
+  REQUIRE(eventually([&] { return !echo.channel()->connected(); }));
+  std::uint32_t left = 0;
+  CHECK_THROWS_AS(
+      [&] {
+        while (numbers.next()) ++left;
+      }(),
+      Disconnected);
+  CHECK(left <= PendingStream::kWindow);
+}
+
 TEST_CASE("after a provider's death the next call goes to the next provider") {
   auto first = start_peer("first", *Pairing::get().server, kLongLeaseArgument);
   auto second = start_peer("second", *Pairing::get().server, kLongLeaseArgument);
@@ -90,8 +111,9 @@ TEST_CASE("after a provider's death the next call goes to the next provider") {
   CHECK(second.ask("calls") == "calls 1");
 }
 
-TEST_CASE("a provider that was stopped for longer than its lease is found again by itself, and answers",
-          "[R17]") {
+TEST_CASE(
+    "a provider that was stopped for longer than its lease is found again by itself, and answers",
+    "[R17]") {
   auto server = start_peer("server", *Pairing::get().server);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   server.send("provide");
@@ -107,7 +129,8 @@ TEST_CASE("a provider that was stopped for longer than its lease is found again 
   CHECK(echo.within(20s).echo("after") == "after");
 }
 
-TEST_CASE("a client that was stopped for longer than its lease finds its provider again, and calls it") {
+TEST_CASE(
+    "a client that was stopped for longer than its lease finds its provider again, and calls it") {
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   ExposedService service(*server, std::make_shared<EchoService>());
   auto client = start_peer("client", *Pairing::get().client);

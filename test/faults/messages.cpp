@@ -13,12 +13,14 @@ namespace wire = rpc::wire;
 constexpr std::size_t kHeader = 4;
 constexpr std::uint32_t kHuge = 0xFFFFFFF0;
 
-const OperationInfo& echo() {
+const OperationInfo& operation_named(std::string_view name) {
   for (const OperationInfo& operation : ::test::LouderEcho::interface_info().operations) {
-    if (operation.name == "echo") return operation;
+    if (operation.name == name) return operation;
   }
-  throw std::logic_error("the interface has no echo");
+  throw std::logic_error("the interface has no " + std::string(name));
 }
+
+const OperationInfo& echo() { return operation_named("echo"); }
 
 Bytes copy(const Bytes& original, std::size_t size) {
   return Bytes(std::span<const std::byte>(original).first(size));
@@ -87,7 +89,9 @@ std::vector<Message> bad_requests(const Guid& client, std::mt19937_64& random) {
   wire::append_trailer(good, wire::RequestTrailer{std::chrono::seconds(5), 0, {}, ""});
   messages.push_back({"no session", copy(good, good.size())});
 
-  const auto add = [&](const char* name, Bytes bytes) { messages.push_back({name, std::move(bytes)}); };
+  const auto add = [&](const char* name, Bytes bytes) {
+    messages.push_back({name, std::move(bytes)});
+  };
   Bytes huge_text = request(client, echo().hash);
   put_text(huge_text, kHuge, "hello");
   add("a text of 4 GB", std::move(huge_text));
@@ -107,6 +111,32 @@ Bytes good_reply(const wire::RequestHead& head) {
   wire::append_discriminator(bytes, 0);
   put_text(bytes, 2, {"x", 2});
   return bytes;
+}
+
+Bytes count_up_reply(const wire::RequestHead& head, std::uint32_t number) {
+  Bytes bytes = reply(head, operation_named("count_up").hash);
+  wire::append_discriminator(bytes, 0);
+  put(bytes, number);
+  return bytes;
+}
+
+std::vector<BadReply> bad_stream_replies() {
+  using Head = wire::RequestHead;
+  const auto part = [](const Head& head, std::uint32_t kind, std::uint64_t position) {
+    Bytes bytes = count_up_reply(head, 1);
+    wire::append_trailer(bytes,
+                         wire::ReplyTrailer{{}, {}, static_cast<wire::StreamPart>(kind), position});
+    return bytes;
+  };
+  return {
+      {"a result that is not the next", true, [=](const Head& head) { return part(head, 1, 1); }},
+      {"an end after results that never came", true,
+       [=](const Head& head) { return part(head, 2, 7); }},
+      {"a part of an unknown kind", true, [=](const Head& head) { return part(head, 77, 0); }},
+      {"half a result", true, [](const Head& head) {
+         const Bytes whole = count_up_reply(head, 1);
+         return copy(whole, whole.size() - 2);
+       }}};
 }
 
 std::vector<BadReply> bad_replies(std::mt19937_64& random) {
@@ -136,7 +166,8 @@ std::vector<BadReply> bad_replies(std::mt19937_64& random) {
                      }});
   replies.push_back({"an unknown kind of failure", true, [](const Head& head) {
                        Bytes bytes;
-                       wire::begin_reply(bytes, head.id, static_cast<wire::RemoteException>(77), echo().hash);
+                       wire::begin_reply(bytes, head.id, static_cast<wire::RemoteException>(77),
+                                         echo().hash);
                        wire::append_default_branch(bytes);
                        return bytes;
                      }});
@@ -145,11 +176,11 @@ std::vector<BadReply> bad_replies(std::mt19937_64& random) {
                        return good_reply(head);
                      }});
   for (std::size_t size = 1; size <= 64 * 1024; size *= 4) {
-    replies.push_back({"noise of " + std::to_string(size), false,
-                       [size, seed = random()](const Head&) {
-                         std::mt19937_64 again(seed);
-                         return noise(size, again);
-                       }});
+    replies.push_back(
+        {"noise of " + std::to_string(size), false, [size, seed = random()](const Head&) {
+           std::mt19937_64 again(seed);
+           return noise(size, again);
+         }});
   }
   return replies;
 }

@@ -15,7 +15,8 @@ Bytes a_request() {
   Bytes message;
   wire::begin_request(message, kId, wire::kOpen);
   wire::append_default_branch(message);
-  wire::append_trailer(message, wire::RequestTrailer{1500ms, 42, {Guid::random(), Guid::random()}, "declared"});
+  wire::append_trailer(
+      message, wire::RequestTrailer{1500ms, 42, {Guid::random(), Guid::random()}, "declared"});
   return message;
 }
 
@@ -33,11 +34,11 @@ std::string hex(const Bytes& message, std::size_t first, std::size_t count) {
 
 TEST_CASE("a request begins as DDS-RPC's basic mapping says") {
   const Bytes message = a_request();
-  CHECK(hex(message, 0, 4) == "00010000");                              // PLAIN_CDR, little-endian
-  CHECK(hex(message, 4, 16) == "000102030405060708090a0b0c0d0e0f");     // writer GUID
-  CHECK(hex(message, 20, 8) == "0100000007000000");                     // sequence number: high, low
-  CHECK(hex(message, 28, 8) == "0100000000000000");                     // instance name "", padding
-  CHECK(hex(message, 36, 4) == "6f70656e");                             // discriminator
+  CHECK(hex(message, 0, 4) == "00010000");                           // PLAIN_CDR, little-endian
+  CHECK(hex(message, 4, 16) == "000102030405060708090a0b0c0d0e0f");  // writer GUID
+  CHECK(hex(message, 20, 8) == "0100000007000000");                  // sequence number: high, low
+  CHECK(hex(message, 28, 8) == "0100000000000000");                  // instance name "", padding
+  CHECK(hex(message, 36, 4) == "6f70656e");                          // discriminator
 }
 
 TEST_CASE("a request's head and trailer are read as they were written") {
@@ -68,6 +69,34 @@ TEST_CASE("a reply's head and trailer are read as they were written") {
   CHECK(trailer->text == "full");
 }
 
+TEST_CASE("what a stream needs stands at a trailer's end, and older peers do not write it") {
+  Bytes message;
+  wire::begin_request(message, kId, wire::kCredit);
+  wire::append_default_branch(message);
+  const std::size_t end = message.size();
+  wire::append_trailer(message, wire::RequestTrailer{1s, 42, {}, "", 8});
+  CHECK(wire::read_request_trailer(message, end)->credit == 8);
+  message.resize(message.size() - 4);
+  const auto shorten = [&](std::size_t at, std::uint32_t by) {
+    std::uint32_t length;
+    std::memcpy(&length, message.data() + at, 4);
+    length -= by;
+    std::memcpy(message.data() + at, &length, 4);
+  };
+  shorten(48, 4);
+  CHECK(wire::read_request_trailer(message, end)->credit == 0);
+
+  wire::begin_reply(message, kId, wire::RemoteException::Ok, 7);
+  wire::append_discriminator(message, 0);
+  const std::size_t result = message.size();
+  wire::append_trailer(message, wire::ReplyTrailer{{}, {}, wire::StreamPart::Item, 5});
+  CHECK(wire::read_reply_trailer(message, result)->part == wire::StreamPart::Item);
+  CHECK(wire::read_reply_trailer(message, result)->position == 5);
+  message.resize(message.size() - 12);
+  shorten(result + 4, 12);
+  CHECK(wire::read_reply_trailer(message, result)->part == wire::StreamPart::None);
+}
+
 TEST_CASE("a message without a trailer comes from a peer that is not built with Skein") {
   Bytes message;
   wire::begin_request(message, kId, 7);
@@ -78,7 +107,8 @@ TEST_CASE("a message without a trailer comes from a peer that is not built with 
 TEST_CASE("a big-endian request is understood") {
   std::vector<std::uint8_t> bytes{0, 0, 0, 0};
   for (std::uint8_t i = 0; i < 16; ++i) bytes.push_back(i);
-  for (const std::uint8_t byte : {0, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0, 1, 0, 0, 0, 0, 0x12, 0x34, 0x56, 0x78}) {
+  for (const std::uint8_t byte :
+       {0, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0, 1, 0, 0, 0, 0, 0x12, 0x34, 0x56, 0x78}) {
     bytes.push_back(byte);
   }
   const auto head = wire::read_request_head(std::as_bytes(std::span(bytes)));

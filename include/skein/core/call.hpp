@@ -1,6 +1,7 @@
 #pragma once
 
 #include <coroutine>
+#include <functional>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -51,6 +52,14 @@ class Call {
   /// Runs `action` once the call is finished, on the thread that finishes it, which may be a vendor's: it
   /// must neither block nor run user code. One action at most, and no then() or co_await beside it.
   void notify(std::function<void()> action) { pending_->on_finished(std::move(action)); }
+
+  /// cancel() for others, who may ask for it at any time and on any thread; without effect once the call
+  /// has ended.
+  std::function<void()> canceller() const {
+    return [weak = std::weak_ptr(pending_)] {
+      if (const auto pending = weak.lock()) pending->cancel();
+    };
+  }
 
   /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor.
   template <class Continuation>

@@ -1,0 +1,98 @@
+#include "skein/rpc/outgoing_stream.hpp"
+
+#include <catch2/catch.hpp>
+#include <thread>
+#include <vector>
+
+#include "../connector/fake_provider.hpp"
+#include "../tools/eventually.hpp"
+
+using namespace skein;
+using namespace skein::rpc;
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+// A stream of numbers whose results stay here.
+struct Numbers {
+  explicit Numbers(std::uint32_t credit)
+      : stream(std::make_shared<OutgoingStream>(operation, clock, clock.now() + 1s, credit,
+                                                [this](const void* out, std::uint64_t position) {
+                                                  REQUIRE(position == sent.size());
+                                                  sent.push_back(*static_cast<const int*>(out));
+                                                })) {}
+
+  bool put(int number, bool wait = false) { return stream->put(&number, wait); }
+
+  // Puts on a thread of its own; what it throws ends there.
+  std::thread put_waiting(int number, std::atomic<int>& ended) {
+    return std::thread([this, number, &ended] {
+      try {
+        put(number, true);
+        ended = 1;
+      } catch (const TimedOut&) {
+        ended = 2;
+      } catch (const Cancelled&) {
+        ended = 3;
+      }
+    });
+  }
+
+  const OperationInfo operation = number_operation(false);
+  ManualClock clock;
+  std::vector<int> sent;
+  std::shared_ptr<OutgoingStream> stream;
+};
+
+}  // namespace
+
+TEST_CASE("no more results are sent than were granted") {
+  Numbers numbers(2);
+  CHECK(numbers.put(1));
+  CHECK(numbers.put(2));
+  CHECK_FALSE(numbers.put(3));
+  numbers.stream->grant(1);
+  CHECK(numbers.put(4));
+  CHECK_FALSE(numbers.put(5));
+  CHECK(numbers.sent == std::vector<int>{1, 2, 4});
+  CHECK(numbers.stream->finish() == nullptr);
+}
+
+TEST_CASE("a grant beyond all bounds stays within them") {
+  Numbers numbers(0xFFFFFFFF);
+  numbers.stream->grant(0xFFFFFFFF);
+  CHECK(numbers.put(1));
+  CHECK(numbers.put(2));
+}
+
+TEST_CASE("what waits for credit goes on with it, and ends with the deadline or with the caller") {
+  Numbers numbers(1);
+  std::atomic<int> ended = 0;
+  numbers.put(1);
+  std::thread waiting = numbers.put_waiting(2, ended);
+  int expected = 0;
+  SECTION("credit") {
+    numbers.stream->grant(1);
+    expected = 1;
+  }
+  SECTION("deadline") {
+    numbers.clock.advance(1s);
+    expected = 2;
+  }
+  SECTION("caller") {
+    numbers.stream->stop(ErrorCode::Cancelled, "its caller has gone");
+    expected = 3;
+  }
+  waiting.join();
+  CHECK(ended == expected);
+}
+
+TEST_CASE("a caller that grants nothing gets the last result, and cannot get none") {
+  Numbers numbers(0);
+  CHECK_THROWS_AS(numbers.stream->finish(), Internal);
+  CHECK(numbers.put(1));
+  CHECK(numbers.put(2, true));
+  CHECK(numbers.sent.empty());
+  CHECK(*static_cast<const int*>(numbers.stream->finish()) == 2);
+}
