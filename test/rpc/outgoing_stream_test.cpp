@@ -1,29 +1,40 @@
 #include "skein/rpc/outgoing_stream.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <thread>
 #include <vector>
 
-#include "../connector/fake_provider.hpp"
-#include "../tools/eventually.hpp"
+#include "echo.idl.hpp"
 
 using namespace skein;
 using namespace skein::rpc;
-using namespace skein::test;
+using ::test::Echo_count_up_Out;
 using namespace std::chrono_literals;
 
 namespace {
 
+const OperationInfo& count_up() {
+  for (const OperationInfo& operation : ::test::Echo::interface_info().operations) {
+    if (operation.stream) return operation;
+  }
+  throw std::logic_error("the interface has no stream");
+}
+
 // A stream of numbers whose results stay here.
 struct Numbers {
   explicit Numbers(std::uint32_t credit)
-      : stream(std::make_shared<OutgoingStream>(operation, clock, clock.now() + 1s, credit,
-                                                [this](const void* out, std::uint64_t position) {
-                                                  REQUIRE(position == sent.size());
-                                                  sent.push_back(*static_cast<const int*>(out));
-                                                })) {}
+      : stream(std::make_shared<OutgoingStream>(
+            count_up(), clock, clock.now() + 1s, credit,
+            [this](const void* out, std::uint64_t position) {
+              REQUIRE(position == sent.size());
+              sent.push_back(static_cast<const Echo_count_up_Out*>(out)->return_);
+            })) {}
 
-  bool put(int number, bool wait = false) { return stream->put(&number, wait); }
+  bool put(int number, bool wait = false) {
+    const Echo_count_up_Out out{number};
+    return stream->put(&out, wait);
+  }
 
   // Puts on a thread of its own; what it throws ends there.
   std::thread put_waiting(int number, std::atomic<int>& ended) {
@@ -39,7 +50,6 @@ struct Numbers {
     });
   }
 
-  const OperationInfo operation = number_operation(false);
   ManualClock clock;
   std::vector<int> sent;
   std::shared_ptr<OutgoingStream> stream;
@@ -94,5 +104,5 @@ TEST_CASE("a caller that grants nothing gets the last result, and cannot get non
   CHECK(numbers.put(1));
   CHECK(numbers.put(2, true));
   CHECK(numbers.sent.empty());
-  CHECK(*static_cast<const int*>(numbers.stream->finish()) == 2);
+  CHECK(static_cast<const Echo_count_up_Out*>(numbers.stream->finish())->return_ == 2);
 }
