@@ -1,5 +1,7 @@
 #include "skein/rpc/local_channel.hpp"
 
+#include <algorithm>
+
 #include "common.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/stream.hpp"
@@ -58,8 +60,38 @@ bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* 
   frame.session = session_;
   service.refuse_self_wait(frame.chain);
   if (!service.try_call_inline(call.operation(), in, call.out(), frame)) return false;
+  // What an implementation returns because it saw its deadline pass is no result.
+  if (clock_.now() >= call.deadline()) {
+    throw TimedOut(peer_ + " finished " + std::string(call.operation().name) + " too late");
+  }
   if (call.claim()) call.finish();
   return true;
+}
+
+void LocalChannel::disconnect() {
+  std::vector<std::weak_ptr<PendingCall>> queued;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    queued.swap(queued_);
+  }
+  for (const auto& weak : queued) {
+    if (const auto call = weak.lock()) call->cancel();
+  }
+}
+
+// Until disconnect() may have to end it.
+void LocalChannel::remember(const std::shared_ptr<PendingCall>& call) {
+  std::lock_guard lock(mutex_);
+  if (closed_) throw Unavailable("no connection to " + peer_ + ": it was disconnected");
+  if (queued_.size() >= look_at_) {
+    std::erase_if(queued_, [](const std::weak_ptr<PendingCall>& weak) {
+      const auto queued = weak.lock();
+      return !queued || queued->finished();
+    });
+    look_at_ = std::max<std::size_t>(16, 2 * queued_.size());
+  }
+  queued_.push_back(call);
 }
 
 void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
@@ -83,6 +115,7 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   };
   if (operation.stream) connect_stream(*invocation, call, clock_);
   call->set_canceller([invocation] { invocation->cancel(); });
+  remember(call);
   timer->store(clock_.call_at(call->deadline(), [call, invocation, peer = peer_] {
     invocation->cancel();
     call->fail(std::make_exception_ptr(

@@ -145,6 +145,43 @@ TEST_CASE("dropping an asynchronous call cancels it at the server") {
   CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
 }
 
+TEST_CASE("dropping, cancelling, timing out and disconnecting each reach the running call, on every lane") {
+  const auto server = make_server();
+  const auto service = std::make_shared<EchoService>();
+  server->provide<LouderEcho>(service);
+  const bool same_process = GENERATE(false, true);
+  const auto client = same_process ? nullptr : make_client();
+  auto echo = (client ? *client : *server).connect<Echo>();
+  std::optional<Call<bool>> call(echo.within(10min).async_wait(600'000));
+  SECTION("dropping") {
+    REQUIRE(eventually([&] { return service->inside == 1; }));
+    call.reset();
+  }
+  SECTION("cancelling") {
+    REQUIRE(eventually([&] { return service->inside == 1; }));
+    call->cancel();
+    CHECK_THROWS_AS(call->get(), Cancelled);
+  }
+  SECTION("timing out") {
+    call.reset();
+    REQUIRE(eventually([&] { return service->inside == 0; }));
+    service->saw_cancellation = false;
+    const bool blocking = GENERATE(false, true);
+    auto hurried = echo.within(200ms);
+    if (blocking) {
+      CHECK_THROWS_AS(hurried.wait(600'000), TimedOut);
+    } else {
+      CHECK_THROWS_AS(hurried.async_wait(600'000).get(), TimedOut);
+    }
+  }
+  SECTION("disconnecting") {
+    REQUIRE(eventually([&] { return service->inside == 1; }));
+    echo.disconnect();
+    CHECK_THROWS_AS(call->get(), Cancelled);
+  }
+  CHECK(eventually([&] { return service->saw_cancellation && service->inside == 0; }));
+}
+
 TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
   Pair pair;
   CHECK(pair.echo->async_echo("later").get() == "later");

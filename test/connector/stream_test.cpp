@@ -19,7 +19,8 @@ constexpr std::int32_t kWindow = PendingStream::kWindow;
 
 // A service and a client of it: in another entity, or in the service's own and so in one process.
 struct Streaming {
-  explicit Streaming(bool same_process) : server(make_server()), service(std::make_shared<EchoService>()) {
+  explicit Streaming(bool same_process)
+      : server(make_server()), service(std::make_shared<EchoService>()) {
     ServiceOptions options;
     options.threads = 2;
     id = server->provide<LouderEcho>(service, options);
@@ -125,7 +126,11 @@ TEST_CASE("the deadline ends a stream at both ends") {
   auto numbers = echo.within(300ms).count_up(kEndless, kNever);
   REQUIRE(eventually([&] { return test.service->stream_ended.load(); }));
   std::int32_t taken = 0;
-  CHECK_THROWS_AS([&] { while (numbers.next()) ++taken; }(), TimedOut);
+  CHECK_THROWS_AS(
+      [&] {
+        while (numbers.next()) ++taken;
+      }(),
+      TimedOut);
   CHECK(taken <= kWindow);
 }
 
@@ -135,18 +140,28 @@ TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nob
   auto numbers = echo.within(10min).count_up(kEndless, kNever);
   CHECK(numbers.next() == 0);
   test.server->withdraw(test.id);
-  CHECK_THROWS_AS([&] { while (numbers.next()) {} }(), Disconnected);
+  CHECK_THROWS_AS(
+      [&] {
+        while (numbers.next()) {
+        }
+      }(),
+      Disconnected);
   CHECK(test.service->stream_ended);
 }
 
 TEST_CASE("a stream whose reader disconnects stops the server") {
-  Streaming test(false);
+  Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   auto numbers = echo.within(10min).count_up(kEndless, kNever);
   CHECK(numbers.next() == 0);
   echo.disconnect();
   CHECK(eventually([&] { return test.service->stream_ended.load(); }));
-  CHECK_THROWS_AS([&] { while (numbers.next()) {} }(), Cancelled);
+  CHECK_THROWS_AS(
+      [&] {
+        while (numbers.next()) {
+        }
+      }(),
+      Cancelled);
 }
 
 TEST_CASE("a coroutine takes a stream without a thread that waits") {

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "skein/core/channel.hpp"
 #include "skein/rpc/service.hpp"
 
 namespace skein::rpc {
 
-/// The lane within one process: typed pointers, no bytes. A blocking call runs on the caller's thread
-/// where the service's executor is idle, else it queues; an asynchronous one always queues.
+/// The lane within one process: typed pointers, no bytes. A blocking call runs on the caller's
+/// thread where the service's executor is idle, else it queues; an asynchronous one always queues.
 class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
  public:
   /// Opens a session at the service; throws what the Head throws to refuse it.
@@ -20,12 +23,13 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   Executor& continuations() const noexcept override { return continuations_; }
   std::string peer() const override { return peer_; }
   bool connected() const override { return !closed_ && !service_.expired(); }
-  void disconnect() override { closed_ = true; }
+  void disconnect() override;
 
  private:
   LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executor& continuations);
 
   bool call_inline(Service& service, PendingCall& call, const void* in);
+  void remember(const std::shared_ptr<PendingCall>& call);
   void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
 
   const Guid id_ = Guid::random();
@@ -35,6 +39,9 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   std::string peer_;
   std::shared_ptr<Session> session_;
   std::atomic<bool> closed_{false};
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<PendingCall>> queued_;  // and what has ended since the last look
+  std::size_t look_at_ = 16;
 };
 
 }  // namespace skein::rpc
