@@ -222,14 +222,14 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void on_stream_reply(std::uint64_t number, PendingStream& stream,
                        std::span<const std::byte> message, const wire::ReplyHead& head) {
     try {
-      if (!read_part(stream, message, head)) remove(number);
+      read_part(number, stream, message, head);
     } catch (const std::exception& malformed) {
-      if (stream.fail(unreadable(stream.operation(), malformed))) abandon(number);
+      abandon(number);
+      stream.fail(unreadable(stream.operation(), malformed));
     }
   }
 
-  // True where more replies follow.
-  bool read_part(PendingStream& stream, std::span<const std::byte> message,
+  void read_part(std::uint64_t number, PendingStream& stream, std::span<const std::byte> message,
                  const wire::ReplyHead& head) {
     const TypeSupport& type = *stream.operation().out;
     PendingStream::Item item(type.make(), type.destroy);
@@ -242,9 +242,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     if (!reply.error && reply.part != wire::StreamPart::End && !stream.deliver(std::move(item))) {
       throw InvalidArgument("it is a result more than was asked for");
     }
-    if (reply.part == wire::StreamPart::Item) return true;
+    if (reply.part == wire::StreamPart::Item) return;
+    remove(number);
     if (stream.claim()) stream.finish(std::move(reply.error));
-    return false;
   }
 
   // ---- calls

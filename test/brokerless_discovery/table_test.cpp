@@ -114,7 +114,7 @@ TEST_CASE("a stranger is told whose a managed interface is even without its desc
 }
 
 TEST_CASE("a provider that lacks one of the client's operations is not offered", "[R7]") {
-  const OperationInfo wanted[] = {{"plan", 11, 1000, false, false, nullptr, nullptr, {}, ""}};
+  const OperationInfo wanted[] = {{"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
   const InterfaceInfo client{"A/IPlanner", {}, wanted, ""};
   Query asked = query("A/IPlanner");
   asked.client = &client;

@@ -19,10 +19,9 @@ namespace {
 
 // A service in one entity, a client of it in another.
 struct Called {
-  Called() { server->provide<LouderEcho>(service); }
-
   std::unique_ptr<Entity> server = make_server();
   std::shared_ptr<EchoService> service = std::make_shared<EchoService>();
+  Guid id = server->provide<LouderEcho>(service);
   std::unique_ptr<Entity> client = make_client();
   Echo::Proxy echo = client->connect<Echo>();
 };
