@@ -143,7 +143,8 @@ void Service::execute(Invocation& invocation) {
     error = std::make_exception_ptr(TimedOut(std::string(interface_info().name) + " finished " +
                                              std::string(invocation.operation->name) + " too late"));
   }
-  invocation.respond(error ? nullptr : result, std::move(error));
+  if (error) result = nullptr;
+  invocation.respond(result, std::move(error));
 }
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,
