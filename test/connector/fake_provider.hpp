@@ -26,9 +26,12 @@ inline OperationInfo number_operation(bool idempotent) {
   return operation;
 }
 
-/// A connection whose calls wait until the test ends them.
+/// A connection whose calls wait until the test, or the connection's own end, ends them.
 struct FakeChannel final : Channel {
   FakeChannel(Clock& own_clock, Executor& executor) : clock_(own_clock), continuations_(executor) {}
+  ~FakeChannel() override {
+    for (const auto& call : calls) call->fail(std::make_exception_ptr(Cancelled("the connection was closed")));
+  }
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override {
     calls.push_back(call);
