@@ -17,13 +17,17 @@ struct Idle {
   std::set<std::uint16_t> ports;
 };
 
-/// DATA and DATA_FRAG submessages to these ports, descriptions of services apart: those go to everybody.
+// RTPS 9.3.1.2: the kind of an application's writer without a key, in the last octet of its GUID.
+constexpr std::uint8_t kKeylessWriter = 0x03;
+
+/// DATA and DATA_FRAG submessages of calls to these ports. Calls travel on topics without a key; services'
+/// descriptions and loads, which go to everybody, on topics with one.
 std::size_t data_to(const Idle& idle, const std::vector<Packet>& packets) {
   std::size_t count = 0;
   for (const Packet& packet : packets) {
     if (!idle.ports.contains(packet.destination_port)) continue;
     for (const DataSubmessage& data : user_data(packet)) {
-      count += data.payload.find("test/LouderEcho") == std::string_view::npos ? 1 : 0;
+      count += data.writer.bytes.back() == kKeylessWriter ? 1 : 0;
     }
   }
   return count;
