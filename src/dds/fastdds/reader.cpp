@@ -58,8 +58,13 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
 }
 
 FastReader::~FastReader() {
-  deadline_.reset();
   reader_->setListener(nullptr);  // waits for on_data
+  std::unique_ptr<DeadlineTimer> deadline;  // ended outside the lock: it waits for its listener
+  {
+    std::lock_guard lock(mutex_);
+    deadline = std::move(deadline_);
+  }
+  deadline.reset();
   {
     std::lock_guard lock(participant_.readers());
     rtps::RTPSDomain::removeRTPSReader(reader_);
@@ -147,8 +152,8 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
     std::lock_guard lock(mutex_);
     if (!admit(item, SourceTime(change.sourceTimestamp.to_ns()))) return false;
     if (queue_.push(key, std::move(item))) ++replaced_;
+    if (deadline_) alive ? deadline_->heard(key) : deadline_->ended(key);
   }
-  if (deadline_) alive ? deadline_->heard(key) : deadline_->ended(key);
   return true;
 }
 
