@@ -74,8 +74,7 @@ struct Wait {
 }  // namespace asio_detail
 
 /// Waits for a call as the completion token says: `asio::use_future`, `asio::use_awaitable`, a
-/// callback with
-/// `(std::exception_ptr)` and, unless the call's result is void, `(std::exception_ptr, Result)`,
+/// callback with `(std::exception_ptr, Result)`, or `(std::exception_ptr)` where the result is void,
 /// and any of them bound to an executor or a cancellation slot. What ended the call arrives as the
 /// exception.
 ///

@@ -24,8 +24,9 @@ class Attempt final : public PendingCall {
 };
 
 /// A call to an idempotent operation that keeps a copy of its in struct: where a provider fails it moves
-/// to the next one, and where one is slow it is made at a second one, too, if the connection wants that. A failure arrives on whichever thread tells of it
-/// (a vendor's, the timer's); what connects and sends again is a task of the connection's continuations.
+/// to the next one, and where one is slow it is made at a second one, too, if the connection wants that.
+/// A failure arrives on whichever thread tells of it (a vendor's, the timer's); what connects and sends
+/// again is a task of the connection's continuations.
 class MovingCall final : public std::enable_shared_from_this<MovingCall> {
  public:
   static void start(const std::shared_ptr<FailoverChannel>& channel,
