@@ -12,7 +12,7 @@ namespace skein::dds::fastdds {
 
 /// When participants were last heard of: the base of automatic liveliness. Fast DDS has a liveliness of
 /// its own for readers, whose timer walks the list of local readers without a lock: a participant that
-/// wakes after its leases ran out, and closes its sessions, crashed about one time in forty. So no reader
+/// wakes after its leases ran out, and closes its sessions, crashed about one time in eighty. So no reader
 /// tells Fast DDS of a lease, and what the transport receives is watched instead.
 class SignsOfLife {
  public:
