@@ -5,6 +5,7 @@
 
 #include "../connector/pairing.hpp"
 #include "../tools/child_process.hpp"
+#include "../tools/eventually.hpp"
 
 namespace skein::test {
 
@@ -23,13 +24,15 @@ inline int services_of(ChildProcess& peer) {
   return std::stoi(peer.expect("services"));
 }
 
-/// A call of a peer program whose connection may have been lost without its knowing: then it ends as
-/// Disconnected, and not by its deadline, and the next one finds the provider again.
+/// Lets a peer program call until it is answered. A peer that was cut off does not know it at
+/// first: its first calls may end as Disconnected, and as Unavailable while it has not found the
+/// provider again; each at once, not by its deadline.
 inline void call_until_connected(ChildProcess& peer) {
-  std::string answer = peer.ask("echo 1 hello", std::chrono::seconds(30));
-  for (int i = 0; i < 2 && answer.starts_with("error Disconnected"); ++i) {
+  std::string answer;
+  eventually([&] {
     answer = peer.ask("echo 1 hello", std::chrono::seconds(30));
-  }
+    return !answer.starts_with("error Disconnected") && !answer.starts_with("error Unavailable");
+  });
   if (!answer.starts_with("echoed")) throw std::runtime_error("a call ended with '" + answer + "'");
 }
 
