@@ -19,17 +19,27 @@ void SignsOfLife::follow(const Guid& participant) {
 }
 
 void SignsOfLife::forget(const Guid& participant) {
+  constexpr std::size_t kMany = 4096;  // that went and may come back
   std::lock_guard lock(mutex_);
   last_.erase(participant);
+  if (returned_.size() >= kMany) returned_.clear();
+  returned_[participant] = 0;
 }
 
-void SignsOfLife::heard(const unsigned char* message, std::size_t size) {
-  if (size < kPrefix + kPrefixSize) return;
+bool SignsOfLife::heard(const unsigned char* message, std::size_t size) {
+  constexpr Clock::duration kJust = std::chrono::milliseconds(100);
+  if (size < kPrefix + kPrefixSize) return false;
   Guid sender;
   std::memcpy(sender.bytes.data(), message + kPrefix, kPrefixSize);
   std::shared_lock lock(mutex_);
   const auto found = last_.find(sender);
   if (found != last_.end()) found->second.store(now(), std::memory_order_relaxed);
+  const auto lost = returned_.find(sender);
+  if (lost == returned_.end()) return false;
+  const Clock::rep present = now();
+  Clock::rep returned = 0;
+  if (lost->second.compare_exchange_strong(returned, present)) returned = present;
+  return present - returned < kJust.count();
 }
 
 bool SignsOfLife::alive(const Guid& participant, std::chrono::nanoseconds lease) const {

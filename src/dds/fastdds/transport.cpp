@@ -11,6 +11,7 @@ constexpr std::size_t kPrefix = 8;  // of the sender's GUID, in the header
 constexpr std::size_t kPrefixSize = 12;
 constexpr std::size_t kSubmessageHeader = 4;
 constexpr unsigned char kAckNack = 0x06;
+constexpr unsigned char kIgnored = 0x80;  // a submessage of Cyclone's own, which others pass over
 constexpr unsigned char kLittleEndian = 0x01;
 constexpr unsigned char kFinal = 0x02;
 
@@ -50,13 +51,13 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return sender->send(message, size, first, last, limit);
   }
 
-  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next, const rtps::octet* message,
-               std::uint32_t size, const rtps::Locator_t& local,
+  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next,
+               const rtps::octet* message, std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     if (!descriptor_.state->watch.may_pass()) return;
-    descriptor_.state->signs.heard(message, size);
+    const bool just_returned = descriptor_.state->signs.heard(message, size);
     // The buffer is the receiving socket's own, which nobody reads before `next`.
-    repair_.repair(const_cast<rtps::octet*>(message), size);
+    repair_.repair(const_cast<rtps::octet*>(message), size, just_returned);
     next->OnDataReceived(message, size, local, remote);
   }
 
@@ -67,28 +68,35 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
 
 }  // namespace
 
-void AckNackRepair::repair(unsigned char* message, std::size_t size) {
+void AckNackRepair::repair(unsigned char* message, std::size_t size, bool just_returned) {
   constexpr unsigned char kCyclone[] = {0x01, 0x10};
   if (size < kMessageHeader || std::memcmp(message, "RTPS", 4) != 0) return;
   if (std::memcmp(message + 6, kCyclone, sizeof kCyclone) != 0) return;
   for (std::size_t at = kMessageHeader; at + kSubmessageHeader <= size;) {
     unsigned char* submessage = message + at;
     const bool little = (submessage[1] & kLittleEndian) != 0;
-    std::size_t body = little ? submessage[2] | submessage[3] << 8 : submessage[3] | submessage[2] << 8;
+    std::size_t body =
+        little ? submessage[2] | submessage[3] << 8 : submessage[3] | submessage[2] << 8;
     const std::size_t left = size - at - kSubmessageHeader;
     if (body == 0 || body > left) body = left;  // the last submessage may leave its length out
-    if (submessage[0] == kAckNack) repair_submessage(message + kPrefix, submessage, body);
+    if (submessage[0] == kAckNack)
+      repair_submessage(message + kPrefix, submessage, body, just_returned);
     at += kSubmessageHeader + body;
   }
 }
 
 /// Body: reader and writer id, base (high, low), number of bits, bits, count.
 void AckNackRepair::repair_submessage(const unsigned char* sender, unsigned char* submessage,
-                                      std::size_t body_size) {
+                                      std::size_t body_size, bool just_returned) {
   unsigned char& flags = submessage[1];
   const bool little = (flags & kLittleEndian) != 0;
   unsigned char* body = submessage + kSubmessageHeader;
   if (body_size < 24) return;
+  const bool acknowledges = get(body + 8, little) != 0 || get(body + 12, little) > 1;
+  if (just_returned && acknowledges) {
+    submessage[0] = kIgnored;
+    return;
+  }
   const std::uint32_t bits = get(body + 16, little);
   if (bits > 256) return;
   const std::size_t count_at = 20 + (bits + 31) / 32 * 4;
