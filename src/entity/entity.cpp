@@ -2,11 +2,14 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
+#include "skein/entity/statistics_topic.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/rpc/dds_server.hpp"
 
 namespace skein {
@@ -104,12 +107,29 @@ struct Entity::State {
   brokerless_discovery::LoadBoard loads;
   Connector connector;
   Head head;
-  std::mutex mutex;
+  mutable std::mutex mutex;
   std::unique_ptr<ThreadExecutor> topics;  // once there is a subscription
   std::map<Guid, std::unique_ptr<Provided>> provided;
+  // Goes first: it asks for the statistics of all that stands above.
+  std::optional<introspection::StatisticsTopic> statistics_topic;
+
+  std::vector<introspection::ServiceStatistics> statistics() const {
+    std::vector<introspection::ServiceStatistics> all;
+    std::lock_guard lock(mutex);
+    for (const auto& [id, service] : provided) {
+      auto& statistics = all.emplace_back(service->service->statistics());
+      statistics.entity = service->name;
+      statistics.system = options.system;
+    }
+    return all;
+  }
 };
 
-Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move(options))) {
+  State& state = *state_;
+  state.statistics_topic.emplace(*state.participant, state.process->clock(), state.control,
+                                 [&state] { return state.statistics(); });
+}
 
 Entity::~Entity() {
   std::map<Guid, std::unique_ptr<Provided>> provided;
@@ -189,6 +209,8 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   state_->provided.emplace(id, std::move(provided));
   return id;
 }
+
+std::vector<introspection::ServiceStatistics> Entity::statistics() const { return state_->statistics(); }
 
 void Entity::withdraw(const Guid& provider) {
   std::unique_ptr<Provided> provided;

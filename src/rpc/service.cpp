@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "skein/core/error.hpp"
+#include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {
 
@@ -40,6 +41,7 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clo
       executor_(executor),
       clock_(clock),
       options_(std::move(options)),
+      meter_(servant_->interface_info()),
       queue_(options_.queue) {
   if (options_.strand.is_nil()) options_.strand = options_.id;
 }
@@ -49,7 +51,19 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
 }
 
 void Service::submit(std::shared_ptr<Invocation> invocation) {
-  refuse_self_wait(invocation->chain);
+  OperationMeter& meter = meter_.of(*invocation->operation);
+  OperationMeter::count(meter.received);
+  invocation->arrived = clock_.now();
+  try {
+    refuse_self_wait(invocation->chain);
+    enqueue(std::move(invocation));
+  } catch (const Error&) {
+    OperationMeter::count(meter.refused);
+    throw;
+  }
+}
+
+void Service::enqueue(std::shared_ptr<Invocation> invocation) {
   std::lock_guard lock(queue_mutex_);  // until the invocation is there, the task finds nothing
   if (!queue_.has_room(invocation->connection) ||
       !executor_.post([self = shared_from_this()] { self->execute_next(); })) {
@@ -73,6 +87,7 @@ bool Service::try_call_inline(const OperationInfo& operation, const void* in, vo
   if (!options_.inline_calls) return false;
   std::exception_ptr error;
   const auto task = [&] {
+    OperationMeter::count(meter_.of(operation).received);
     try {
       dispatch(operation, in, out, frame);
     } catch (...) {
@@ -115,12 +130,16 @@ void Service::stop(Invocation& invocation) const {
 }
 
 void Service::execute(Invocation& invocation) {
+  OperationMeter& meter = meter_.of(*invocation.operation);
+  meter.waited.record(clock_.now() - invocation.arrived);
   if (closed_) {
+    OperationMeter::count(meter.refused);
     invocation.respond(nullptr, std::make_exception_ptr(Unavailable(
                                     std::string(interface_info().name) + " is being withdrawn")));
     return;
   }
   if (invocation.cancelled || clock_.now() >= invocation.deadline) {
+    OperationMeter::count(meter.expired);
     invocation.respond(nullptr, std::make_exception_ptr(TimedOut(
                                     "the deadline passed before " +
                                     std::string(interface_info().name) + " could begin; not executed")));
@@ -155,7 +174,39 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
                             frame.session.get(), &frame.cancelled);
   const CallContextScope scope(context);
   const Running running(*this, frame);
-  servant_->dispatch(operation, in, out);
+  OperationMeter& meter = meter_.of(operation);
+  const Instant begin = clock_.now();
+  OperationMeter::Counter* outcome = &meter.answered;
+  const auto end = [&] {
+    meter.ran.record(clock_.now() - begin);
+    OperationMeter::count(*outcome);
+  };
+  try {
+    servant_->dispatch(operation, in, out);
+  } catch (const UserException&) {
+    outcome = &meter.raised;
+    end();
+    throw;
+  } catch (...) {
+    outcome = &meter.failed;
+    end();
+    throw;
+  }
+  end();
+}
+
+introspection::ServiceStatistics Service::statistics() const {
+  introspection::ServiceStatistics statistics;
+  statistics.provider = id().bytes;
+  statistics.service = interface_info().name;
+  statistics.operations = meter_.read();
+  {
+    std::lock_guard lock(queue_mutex_);
+    statistics.waiting = static_cast<std::uint32_t>(queue_.size());
+  }
+  std::lock_guard lock(mutex_);
+  for (const Running* each = running_; each; each = each->next()) ++statistics.running;
+  return statistics;
 }
 
 bool Service::overdue() const {

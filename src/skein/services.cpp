@@ -1,11 +1,14 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "commands.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/entity/entity.hpp"
+#include "skein/entity/statistics_topic.hpp"
 
 namespace skein::command {
 namespace {
@@ -14,8 +17,34 @@ struct Arguments {
   std::string vendor = "cyclonedds";
   std::uint32_t domain = 0;
   std::string interface;
-  double seconds = 1;
+  double seconds = 1.5;
+  bool statistics = false;
 };
+
+double microseconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1000; }
+
+void print_latency(const char* what, const introspection::Latency& latency) {
+  if (latency.count == 0) return;
+  std::printf("      %-7s mean %.1f  p50 %.1f  p90 %.1f  p99 %.1f  greatest %.1f us\n", what,
+              microseconds(latency.mean), microseconds(latency.p50), microseconds(latency.p90),
+              microseconds(latency.p99), microseconds(latency.greatest));
+}
+
+void print(const introspection::ServiceStatistics& service) {
+  std::printf("%-40s %s/%s  waiting %u  running %u\n", service.service.c_str(), service.system.c_str(),
+              service.entity.c_str(), service.waiting, service.running);
+  for (const auto& operation : service.operations) {
+    std::printf("    %s: received %llu, answered %llu, raised %llu, failed %llu, refused %llu, expired %llu\n",
+                operation.name.c_str(), static_cast<unsigned long long>(operation.received),
+                static_cast<unsigned long long>(operation.answered),
+                static_cast<unsigned long long>(operation.raised),
+                static_cast<unsigned long long>(operation.failed),
+                static_cast<unsigned long long>(operation.refused),
+                static_cast<unsigned long long>(operation.expired));
+    print_latency("waited", operation.waited);
+    print_latency("ran", operation.ran);
+  }
+}
 
 void print(const Arguments& arguments) {
   EntityOptions options;
@@ -25,7 +54,13 @@ void print(const Arguments& arguments) {
   options.domain = arguments.domain;
   if (!arguments.interface.empty()) options.network.interfaces = {arguments.interface};
   Entity entity(std::move(options));
+  std::optional<introspection::StatisticsReader> statistics;
+  if (arguments.statistics) statistics.emplace(entity.participant());
   std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
+  if (statistics) {
+    for (const auto& service : statistics->latest()) print(service);
+    return;
+  }
   const auto services = entity.broker().all();
   for (const auto& service : services) {
     std::printf("%-40s %s/%s  pid %u  %s\n", service->service.c_str(), service->system.c_str(),
@@ -45,6 +80,8 @@ void add_services(CLI::App& app, int& result) {
   command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")->capture_default_str();
   command->add_option("--domain", arguments->domain, "DDS domain of the mission")->capture_default_str();
   command->add_option("--interface", arguments->interface, "Network interface; loopback by default");
+  command->add_flag("--statistics", arguments->statistics,
+                    "Show what became of the calls of each service, and how long they took");
   command->add_option("--wait", arguments->seconds, "Seconds to listen")->capture_default_str();
   command->callback([arguments, &result] {
     print(*arguments);

@@ -30,6 +30,7 @@ NEIGHBOURS = {("launch", "profile")}
 # Headers that are generated, by the floor of their IDL.
 GENERATED = {
     "skein/discovery.idl.hpp": "brokerless_discovery",
+    "skein/introspection.idl.hpp": "rpc",
     "navigator.idl.hpp": "navigation",
     "flight_controller.idl.hpp": "navigation",
 }

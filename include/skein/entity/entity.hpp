@@ -12,6 +12,10 @@
 #include "skein/topics/publisher.hpp"
 #include "skein/topics/subscription.hpp"
 
+namespace skein::introspection {
+struct ServiceStatistics;
+}
+
 namespace skein {
 
 struct EntityOptions {
@@ -88,6 +92,11 @@ class Entity {
 
   /// Withdraws one service; calls that run end first. Unknown ones are no error.
   void withdraw(const Guid& provider);
+
+  /// What the services that this entity provides have done, CSPs included: counters and latencies of
+  /// each operation. "skein/introspection.idl.hpp" holds the type; `skein services --statistics` shows
+  /// those of all entities.
+  std::vector<introspection::ServiceStatistics> statistics() const;
 
   /// See Connector::connect.
   template <class Interface>

@@ -14,6 +14,11 @@
 #include "skein/core/operation.hpp"
 #include "skein/rpc/fair_queue.hpp"
 #include "skein/rpc/outgoing_stream.hpp"
+#include "skein/rpc/service_meter.hpp"
+
+namespace skein::introspection {
+struct ServiceStatistics;
+}
 
 namespace skein::rpc {
 
@@ -33,6 +38,7 @@ struct Invocation {
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;
   Guid connection;  ///< With whose other invocations it waits in line.
+  Instant arrived;
   Instant deadline;
   std::vector<Guid> chain;
   std::shared_ptr<Session> session;
@@ -103,11 +109,15 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Whether an invocation is still inside the implementation although its deadline has passed.
   bool overdue() const;
 
+  /// What it has done and does; entity and system are left empty.
+  introspection::ServiceStatistics statistics() const;
+
   /// Invocations that have not begun are refused from now on; those that run are told to stop.
   void close();
 
  private:
   class Running;
+  void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
   void execute(Invocation& invocation);
   std::string circle(const std::vector<Guid>& chain) const;
@@ -119,7 +129,8 @@ class Service : public std::enable_shared_from_this<Service> {
   const Clock& clock_;
   Options options_;
   std::atomic<bool> closed_{false};
-  std::mutex queue_mutex_;
+  ServiceMeter meter_;
+  mutable std::mutex queue_mutex_;
   FairQueue queue_;
   mutable std::mutex mutex_;
   Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run

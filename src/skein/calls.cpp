@@ -1,0 +1,82 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include "commands.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/introspection.idl.hpp"
+#include "skein/rpc/call_journal.hpp"
+
+namespace skein::command {
+namespace {
+
+struct Arguments {
+  std::string vendor = "cyclonedds";
+  std::uint32_t domain = 0;
+  std::string interface;
+  double seconds = 0;
+};
+
+const char* word_of(introspection::CallStep step) {
+  switch (step) {
+    case introspection::CallStep::Sent: return "sent";
+    case introspection::CallStep::Received: return "received";
+    case introspection::CallStep::Replied: return "replied";
+    case introspection::CallStep::Refused: return "refused";
+    case introspection::CallStep::Answered: return "answered";
+    case introspection::CallStep::Failed: break;
+  }
+  return "failed";
+}
+
+void print(const introspection::CallEvent& event) {
+  constexpr std::uint64_t kSecond = 1'000'000'000;
+  const auto seconds = static_cast<std::time_t>(event.time / kSecond);
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  char time[16];
+  std::strftime(time, sizeof time, "%H:%M:%S", &local);
+  std::printf("%s.%06u %-8s %s %s.%s #%s:%llu%s%s\n", time,
+              static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step), event.entity.c_str(),
+              event.service.c_str(), event.operation.c_str(), Guid{event.client}.hex().c_str(),
+              static_cast<unsigned long long>(event.number), event.error.empty() ? "" : "  ",
+              event.error.c_str());
+  if (event.dropped > 0) {
+    std::printf("  (%s has dropped %llu events)\n", event.entity.c_str(),
+                static_cast<unsigned long long>(event.dropped));
+  }
+  std::fflush(stdout);
+}
+
+void watch(const Arguments& arguments) {
+  EntityOptions options;
+  options.name = "skein-calls-" + std::to_string(getpid());
+  options.system = "tools";
+  options.vendor = dds::load_vendor(arguments.vendor);
+  options.domain = arguments.domain;
+  if (!arguments.interface.empty()) options.network.interfaces = {arguments.interface};
+  Entity entity(std::move(options));
+  const rpc::CallJournalReader reader(entity.participant(), print);
+  do {
+    std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
+  } while (arguments.seconds <= 0);
+}
+
+}  // namespace
+
+void add_calls(CLI::App& app, int& result) {
+  auto* command = app.add_subcommand("calls", "Show what happens to each call on a domain, live");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")->capture_default_str();
+  command->add_option("--domain", arguments->domain, "DDS domain of the mission")->capture_default_str();
+  command->add_option("--interface", arguments->interface, "Network interface; loopback by default");
+  command->add_option("--for", arguments->seconds, "Seconds to watch; until interrupted by default");
+  command->callback([arguments, &result] {
+    watch(*arguments);
+    result = 0;
+  });
+}
+
+}  // namespace skein::command

@@ -1,0 +1,122 @@
+#include "skein/rpc/call_journal.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "../tools/eventually.hpp"
+#include "echo_service.hpp"
+#include "pairing.hpp"
+#include "skein/introspection.idl.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using introspection::CallEvent;
+using introspection::CallStep;
+using ::test::Echo;
+using ::test::LouderEcho;
+using Steps = std::vector<CallStep>;
+
+namespace {
+
+class Heard {
+ public:
+  explicit Heard(dds::Participant& participant)
+      : reader_(participant, [this](const CallEvent& event) {
+          std::lock_guard lock(mutex_);
+          events_.push_back(event);
+        }) {}
+
+  /// The steps of the last call of that operation, in the order of time.
+  Steps last(const std::string& operation) const {
+    std::vector<CallEvent> call;
+    std::lock_guard lock(mutex_);
+    std::uint64_t number = 0;
+    for (const CallEvent& event : events_) {
+      if (event.operation == operation) number = std::max(number, event.number);
+    }
+    for (const CallEvent& event : events_) {
+      if (event.operation == operation && event.number == number) call.push_back(event);
+    }
+    std::sort(call.begin(), call.end(), [](const auto& left, const auto& right) { return left.time < right.time; });
+    Steps steps;
+    for (const CallEvent& event : call) steps.push_back(event.step);
+    return steps;
+  }
+
+  std::vector<CallEvent> all() const {
+    std::lock_guard lock(mutex_);
+    return events_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<CallEvent> events_;
+  rpc::CallJournalReader reader_;  // last: goes first
+};
+
+}  // namespace
+
+TEST_CASE("while somebody reads, each step of a call is told by both sides under one number") {
+  const auto server = make_server();
+  const auto service = std::make_shared<EchoService>();
+  server->provide<LouderEcho>(service);
+  const auto client = make_client();
+  auto echo = client->connect<Echo>();
+  const Heard heard(client->participant());
+  const Steps whole{CallStep::Sent, CallStep::Received, CallStep::Replied, CallStep::Answered};
+  // Best effort: the first calls may come before the journals know of the reader.
+  REQUIRE(eventually([&] {
+    echo.echo("x");
+    return eventually([&] { return heard.last("echo") == whole; }, 100ms);
+  }));
+  std::int32_t remainder;
+  CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
+  CHECK(eventually([&] { return heard.last("divide") == whole; }));
+  CHECK_THROWS_AS(echo.fail("standard"), Internal);
+  const Steps refused{CallStep::Sent, CallStep::Received, CallStep::Refused, CallStep::Failed};
+  CHECK(eventually([&] { return heard.last("fail") == refused; }));
+
+  CHECK_THROWS_AS(echo.within(50ms).wait(20'000), TimedOut);
+  const Steps late{CallStep::Sent, CallStep::Received, CallStep::Failed, CallStep::Refused};
+  CHECK(eventually([&] {
+    auto steps = heard.last("wait");
+    std::sort(steps.begin(), steps.end());
+    auto wanted = late;
+    std::sort(wanted.begin(), wanted.end());
+    return steps == wanted;
+  }));
+  for (const CallEvent& event : heard.all()) {
+    const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered || event.step == CallStep::Failed;
+    CHECK(event.entity == (at_client ? "uav-1/client" : "uav-1/server"));
+    CHECK(event.dropped == 0);
+    CHECK(event.client == heard.all().front().client);
+  }
+}
+
+TEST_CASE("a journal is on while it is read, bounded, and counts what it drops") {
+  const auto entity = make_server();
+  const auto other = make_client();
+  ManualExecutor control;
+  const auto journal = rpc::CallJournal::open(entity->participant(), control, "uav-1/test");
+  const OperationInfo& operation = Echo::interface_info().operations[0];
+  const auto note = [&] { journal->note(CallStep::Sent, Guid{}, 1, "test/Echo", operation); };
+  CHECK_FALSE(journal->on());
+  note();
+  CHECK(control.run_all() == 0);
+  {
+    const Heard heard(other->participant());
+    REQUIRE(eventually([&] { return journal->on(); }));
+    for (std::size_t i = 0; i < rpc::CallJournal::kCapacity + 10; ++i) note();
+    CHECK(control.run_all() == 1);
+    CHECK(eventually([&] {
+      note();
+      control.run_all();
+      const auto events = heard.all();
+      return !events.empty() && events.back().dropped == 10;
+    }));
+    CHECK(heard.all().size() > 0);
+  }
+  CHECK(eventually([&] { return !journal->on(); }));
+  journal->close();
+}

@@ -1,0 +1,95 @@
+#include <catch2/catch.hpp>
+
+#include "../tools/eventually.hpp"
+#include "echo_service.hpp"
+#include "pairing.hpp"
+#include "skein/entity/statistics_topic.hpp"
+#include "skein/introspection.idl.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using introspection::OperationStatistics;
+using introspection::ServiceStatistics;
+using ::test::Echo;
+using ::test::LouderEcho;
+
+namespace {
+
+OperationStatistics of(const std::vector<ServiceStatistics>& services, const std::string& operation) {
+  for (const auto& service : services) {
+    for (const auto& statistics : service.operations) {
+      if (statistics.name == operation) return statistics;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("each call is counted by its outcome, with the time that it waited and ran") {
+  const auto server = make_server();
+  const auto service = std::make_shared<EchoService>();
+  ServiceOptions options;
+  options.queue = 4;
+  server->provide<LouderEcho>(service, options);
+  const auto client = make_client();
+  auto echo = client->connect<Echo>();
+
+  for (int i = 0; i < 5; ++i) echo.echo("x");
+  std::int32_t remainder;
+  CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
+  CHECK(echo.divide(4, 2, remainder) == 2);
+  CHECK_THROWS_AS(echo.fail("overloaded"), Overloaded);
+  auto statistics = server->statistics();
+  REQUIRE(statistics.size() == 1);
+  CHECK(statistics[0].service == "test/LouderEcho");
+  CHECK(statistics[0].entity == "server");
+  CHECK(statistics[0].system == "uav-1");
+  CHECK(of(statistics, "echo").received == 5);
+  CHECK(of(statistics, "echo").answered == 5);
+  CHECK(of(statistics, "echo").ran.count == 5);
+  CHECK(of(statistics, "echo").waited.count == 5);
+  CHECK(of(statistics, "echo").ran.p50 <= of(statistics, "echo").ran.greatest);
+  CHECK(of(statistics, "divide").raised == 1);
+  CHECK(of(statistics, "divide").answered == 1);
+  CHECK(of(statistics, "fail").failed == 1);
+
+  auto running = echo.within(60s).async_wait(60'000);
+  REQUIRE(eventually([&] { return service->inside == 1; }));
+  CHECK_THROWS_AS(echo.within(20ms).echo("too late"), TimedOut);
+  std::vector<Call<std::string>> calls;
+  for (int i = 0; i < 3; ++i) calls.push_back(echo.within(30s).async_echo("x"));
+  REQUIRE(eventually([&] { return of(server->statistics(), "echo").refused == 2; }));
+  CHECK(server->statistics()[0].running == 1);
+  CHECK(server->statistics()[0].waiting == 2);
+  running.cancel();
+  CHECK(calls[0].get() == "x");
+  CHECK(of(server->statistics(), "echo").received == 9);
+  CHECK(of(server->statistics(), "echo").expired == 1);
+  CHECK(of(server->statistics(), "wait").ran.greatest > 0);
+}
+
+TEST_CASE("a call on the caller's own thread is counted, and did not wait") {
+  const auto process = std::make_shared<Process>();
+  const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
+  const auto client = make_entity("client", Pairing::get().client, "uav-1", process);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  auto echo = client->connect<Echo>();
+  echo.echo("x");
+  CHECK(of(server->statistics(), "echo").answered == 1);
+  CHECK(of(server->statistics(), "echo").waited.count == 0);
+}
+
+TEST_CASE("statistics of all entities reach whoever reads their topic, and tell of later calls too") {
+  const auto server = make_server();
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_client();
+  auto echo = client->connect<Echo>();
+  echo.echo("x");
+  const introspection::StatisticsReader reader(client->participant());
+  CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 1; }));
+  echo.echo("x");
+  CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 2; }));
+  CHECK(reader.latest().at(0).entity == "server");
+}
