@@ -108,6 +108,7 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
   options.peer = peer_name(provider);
   options.timeout = timeout;
   options.spin = parts_.spin;
+  options.journal = parts_.journal;
   options.stands = [&broker = parts_.broker, id] { return broker.knows(id); };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
@@ -176,6 +177,7 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
   dds_options.peer = "the foreign server of " + service;
   dds_options.timeout = options.timeout;
   dds_options.spin = parts_.spin;
+  dds_options.journal = parts_.journal;
   return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations, parts_.clock,
                                {service, Guid{}}, std::move(dds_options));
 }

@@ -78,11 +78,12 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
+        journal(rpc::CallJournal::open(*participant, control, options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
                {options.system, options.name, options.vendor->name(), options.lease}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
-                   process->clock(), options.spin}),
+                   process->clock(), options.spin, journal}),
         head(connector, broker, process->directory(), process->clock()) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
@@ -103,6 +104,7 @@ struct Entity::State {
   std::unique_ptr<dds::Participant> participant;
   ThreadExecutor continuations{"skein-continue"};
   ThreadExecutor control{"skein-control"};
+  std::shared_ptr<rpc::CallJournal> journal;
   Broker broker;
   brokerless_discovery::LoadBoard loads;
   Connector connector;
@@ -139,6 +141,7 @@ Entity::~Entity() {
   }
   for (const auto& [id, service] : provided) state_->process->directory()->remove(id);
   provided.clear();
+  state_->journal->close();
 }
 
 const EntityOptions& Entity::options() const noexcept { return state_->options; }
@@ -179,6 +182,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   rpc::Service::Options service_options;
   service_options.threads = options.threads;
   service_options.queue = options.queue;
+  service_options.journal = state_->journal;
   service_options.name_of = [&broker = state_->broker](const Guid& strand) {
     return name_of(broker, strand);
   };

@@ -17,6 +17,7 @@ const dds::Topic kTopic{"skein/calls", "skein::introspection::CallEvent", false}
 dds::Qos qos() {
   dds::Qos qos;
   qos.reliable = false;
+  qos.history_depth = 256;
   return qos;
 }
 
@@ -30,6 +31,16 @@ std::string text_of(const std::exception_ptr& error) {
     return other.what();
   } catch (...) {
     return "something that is no std::exception";
+  }
+}
+
+bool declared(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const UserException&) {
+    return true;
+  } catch (...) {
+    return false;
   }
 }
 
@@ -66,6 +77,18 @@ void CallJournal::on_reader(bool matched) {
   if (!matched && readers_ == 0) return;  // closed
   readers_ += matched ? 1 : -1;
   on_ = readers_ > 0;
+}
+
+void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t number,
+                           std::string_view service, const OperationInfo& operation,
+                           const std::exception_ptr& error) {
+  using introspection::CallStep;
+  if (!on()) return;
+  if (error && !declared(error)) {
+    record(at_server ? CallStep::Refused : CallStep::Failed, client, number, service, operation, error);
+  } else {
+    record(at_server ? CallStep::Replied : CallStep::Answered, client, number, service, operation, nullptr);
+  }
 }
 
 void CallJournal::record(introspection::CallStep step, const Guid& client, std::uint64_t number,

@@ -10,6 +10,7 @@
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
 #include "skein/core/stream.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/rpc/wire.hpp"
 
 namespace skein::rpc {
@@ -208,6 +209,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     } catch (const std::exception& malformed) {
       error = unreadable(call.operation(), malformed);
     }
+    note_end(head.related.number, call.operation(), error);
     call.finish(std::move(error));
   }
 
@@ -244,7 +246,13 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     }
     if (reply.part == wire::StreamPart::Item) return;
     remove(number);
-    if (stream.claim()) stream.finish(std::move(reply.error));
+    if (!stream.claim()) return;
+    note_end(number, stream.operation(), reply.error);
+    stream.finish(std::move(reply.error));
+  }
+
+  void note_end(std::uint64_t number, const OperationInfo& operation, const std::exception_ptr& error) {
+    if (options.journal) options.journal->note_end(false, client, number, address.service, operation, error);
   }
 
   // ---- calls
@@ -302,6 +310,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
                                       call.blocking() ? inherited_chain() : std::vector<Guid>(),
                                       {},
                                       call.operation().stream ? PendingStream::kWindow : 0});
+    if (options.journal) {
+      options.journal->note(introspection::CallStep::Sent, client, number, address.service, call.operation());
+    }
     writer.write(message);
     if (message.capacity() > kKeptCapacity) message = Bytes();
   }
@@ -325,14 +336,20 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void expire(std::uint64_t number) {
     const auto call = remove(number);
     if (!call) return;
-    const bool first = call->fail(std::make_exception_ptr(
+    const auto error = std::make_exception_ptr(
         TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
-                 " before its deadline; whether it ran is unknown")));
-    if (first) tell_server(number);
+                 " before its deadline; whether it ran is unknown"));
+    if (!call->claim()) return;
+    note_end(number, call->operation(), error);
+    call->finish(error);
+    tell_server(number);
   }
 
   void abandon(std::uint64_t number) {
-    if (remove(number)) tell_server(number);
+    const auto call = remove(number);
+    if (!call) return;
+    note_end(number, call->operation(), std::make_exception_ptr(Cancelled("its caller waits no longer")));
+    tell_server(number);
   }
 
   void tell_server(std::uint64_t number) {
@@ -410,7 +427,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     }
     for (auto& [number, entry] : failed) {
       clock.cancel(entry.timer);
-      entry.call->fail(make_error(entry.call->operation()));
+      const auto error = make_error(entry.call->operation());
+      note_end(number, entry.call->operation(), error);
+      entry.call->fail(error);
     }
   }
 };

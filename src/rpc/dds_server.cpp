@@ -132,6 +132,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     if (trailer && is_impostor(sample, head)) return;
     invocation->caller = head.id.client;
     invocation->connection = head.id.client;
+    invocation->number = head.id.number;
     invocation->deadline = clock.now() + (trailer ? trailer->remaining : options.default_deadline);
     if (trailer) invocation->chain = std::move(trailer->chain);
 

@@ -55,6 +55,7 @@ void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* i
 
 bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* in) {
   Invocation frame;
+  frame.connection = id_;
   frame.deadline = call.deadline();
   frame.chain = inherited_chain();
   frame.session = session_;

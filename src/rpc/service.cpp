@@ -54,13 +54,32 @@ void Service::submit(std::shared_ptr<Invocation> invocation) {
   OperationMeter& meter = meter_.of(*invocation->operation);
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();
+  note_begin(*invocation->operation, *invocation);
   try {
     refuse_self_wait(invocation->chain);
-    enqueue(std::move(invocation));
+    enqueue(invocation);
   } catch (const Error&) {
     OperationMeter::count(meter.refused);
+    note_end(*invocation->operation, *invocation, std::current_exception());
     throw;
   }
+}
+
+void Service::note_begin(const OperationInfo& operation, const Invocation& frame) {
+  if (!options_.journal) return;
+  options_.journal->note(introspection::CallStep::Received, frame.connection, frame.number,
+                         interface_info().name, operation);
+}
+
+void Service::note_end(const OperationInfo& operation, const Invocation& frame,
+                       const std::exception_ptr& error) {
+  if (!options_.journal) return;
+  options_.journal->note_end(true, frame.connection, frame.number, interface_info().name, operation, error);
+}
+
+void Service::answer(Invocation& invocation, const void* out, std::exception_ptr error) {
+  note_end(*invocation.operation, invocation, error);
+  invocation.respond(out, std::move(error));
 }
 
 void Service::enqueue(std::shared_ptr<Invocation> invocation) {
@@ -88,11 +107,13 @@ bool Service::try_call_inline(const OperationInfo& operation, const void* in, vo
   std::exception_ptr error;
   const auto task = [&] {
     OperationMeter::count(meter_.of(operation).received);
+    note_begin(operation, frame);
     try {
       dispatch(operation, in, out, frame);
     } catch (...) {
       error = std::current_exception();
     }
+    note_end(operation, frame, error);
   };
   const bool ran = executor_.try_run_inline(std::cref(task));  // a reference fits into std::function
   if (error) std::rethrow_exception(error);
@@ -134,13 +155,13 @@ void Service::execute(Invocation& invocation) {
   meter.waited.record(clock_.now() - invocation.arrived);
   if (closed_) {
     OperationMeter::count(meter.refused);
-    invocation.respond(nullptr, std::make_exception_ptr(Unavailable(
+    answer(invocation, nullptr, std::make_exception_ptr(Unavailable(
                                     std::string(interface_info().name) + " is being withdrawn")));
     return;
   }
   if (invocation.cancelled || clock_.now() >= invocation.deadline) {
     OperationMeter::count(meter.expired);
-    invocation.respond(nullptr, std::make_exception_ptr(TimedOut(
+    answer(invocation, nullptr, std::make_exception_ptr(TimedOut(
                                     "the deadline passed before " +
                                     std::string(interface_info().name) + " could begin; not executed")));
     return;
@@ -163,7 +184,7 @@ void Service::execute(Invocation& invocation) {
                                              std::string(invocation.operation->name) + " too late"));
   }
   if (error) result = nullptr;
-  invocation.respond(result, std::move(error));
+  answer(invocation, result, std::move(error));
 }
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,

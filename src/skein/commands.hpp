@@ -8,6 +8,9 @@ namespace skein::command {
 /// `skein bench latency|throughput|discovery|compare`: what calls cost here.
 void add_bench(CLI::App& app, int& result);
 
+/// `skein calls`: what happens to each call on a domain, live.
+void add_calls(CLI::App& app, int& result);
+
 /// `skein check PROFILE`: everything that is wrong with a mission profile.
 void add_check(CLI::App& app, int& result);
 

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", SKEIN_VERSION);
   int result = 0;
   skein::command::add_bench(app, result);
+  skein::command::add_calls(app, result);
   skein::command::add_check(app, result);
   skein::command::add_launch(app, result);
   skein::command::add_peer(app, result);

@@ -10,6 +10,7 @@
 #include "skein/connector/gather.hpp"
 #include "skein/core/call.hpp"
 #include "skein/idl/service_reference.hpp"
+#include "skein/rpc/call_journal.hpp"
 #include "skein/rpc/local_directory.hpp"
 
 namespace skein {
@@ -64,6 +65,7 @@ class Connector {
     Executor& continuations;
     Clock& clock;
     std::chrono::microseconds spin{0};  ///< See EntityOptions.
+    std::shared_ptr<rpc::CallJournal> journal{};  ///< May be null.
   };
 
   /// The parts outlive the connector and every connection that it made.

@@ -38,12 +38,17 @@ class CallJournal : public std::enable_shared_from_this<CallJournal> {
 
   bool on() const noexcept { return on_.load(std::memory_order_relaxed); }
 
-  /// `client` and `number` are the request's identity, on either side; `error` is empty unless it failed.
+  /// `client` and `number` are the request's identity, on either side.
   void note(introspection::CallStep step, const Guid& client, std::uint64_t number,
             std::string_view service, const OperationInfo& operation,
             const std::exception_ptr& error = nullptr) {
     if (on()) record(step, client, number, service, operation, error);
   }
+
+  /// The last step, by what the call ended with: Replied or Refused at the server, Answered or Failed at
+  /// the client.
+  void note_end(bool at_server, const Guid& client, std::uint64_t number, std::string_view service,
+                const OperationInfo& operation, const std::exception_ptr& error);
 
  private:
   CallJournal(Executor& control, std::string entity);

@@ -6,6 +6,7 @@
 
 #include "skein/core/channel.hpp"
 #include "skein/dds/port.hpp"
+#include "skein/rpc/call_journal.hpp"
 #include "skein/rpc/dds_server.hpp"
 
 namespace skein::rpc {
@@ -22,6 +23,7 @@ class DdsChannel final : public Channel {
     std::chrono::microseconds spin{0};
     /// Calls that may wait for their answers; beyond it a call is refused as Overloaded, unsent.
     std::size_t calls_in_flight = 4096;
+    std::shared_ptr<CallJournal> journal;  ///< May be null.
     /// Asked while opening: whether the provider still stands, as far as is known. Empty: it does.
     std::function<bool()> stands;
   };

@@ -12,6 +12,7 @@
 #include "skein/core/executor.hpp"
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
+#include "skein/rpc/call_journal.hpp"
 #include "skein/rpc/fair_queue.hpp"
 #include "skein/rpc/outgoing_stream.hpp"
 #include "skein/rpc/service_meter.hpp"
@@ -37,7 +38,8 @@ struct Invocation {
   /// The in struct; freed by the operation's own TypeSupport.
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;
-  Guid connection;  ///< With whose other invocations it waits in line.
+  Guid connection;           ///< With whose other invocations it waits in line.
+  std::uint64_t number = 0;  ///< The connection's own count; 0 within the process.
   Instant arrived;
   Instant deadline;
   std::vector<Guid> chain;
@@ -78,6 +80,7 @@ class Service : public std::enable_shared_from_this<Service> {
     /// implementation that may hang: it would take its caller with it.
     bool inline_calls = true;
     SessionFactory open;
+    std::shared_ptr<CallJournal> journal;  ///< May be null.
   };
 
   /// `executor` and `clock` outlive the service.
@@ -119,6 +122,9 @@ class Service : public std::enable_shared_from_this<Service> {
   class Running;
   void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
+  void note_begin(const OperationInfo& operation, const Invocation& frame);
+  void note_end(const OperationInfo& operation, const Invocation& frame, const std::exception_ptr& error);
+  void answer(Invocation& invocation, const void* out, std::exception_ptr error);
   void execute(Invocation& invocation);
   std::string circle(const std::vector<Guid>& chain) const;
   void stop(Invocation& invocation) const;
