@@ -33,6 +33,7 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
   Clock& clock;
   Executor& control;
   const Source source;
+  std::mutex asking;  // held while `source` is asked; taken before `mutex`
   std::mutex mutex;
   std::size_t readers = 0;
   bool ticking = false;
@@ -60,6 +61,7 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
   }
 
   void tick() {
+    std::lock_guard asking_lock(asking);
     std::shared_ptr<dds::Writer> target;
     {
       std::lock_guard lock(mutex);
@@ -106,6 +108,7 @@ StatisticsTopic::~StatisticsTopic() {
     timer = state_->timer;
   }
   state_->clock.cancel(timer);
+  std::lock_guard waited(state_->asking);  // what is being asked may go when this returns
 }
 
 struct StatisticsReader::State {
