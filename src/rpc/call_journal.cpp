@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "skein/core/error.hpp"
+#include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/idl/type_support.hpp"
 #include "skein/introspection.idl.hpp"
@@ -99,7 +100,7 @@ void CallJournal::record(introspection::CallStep step, const Guid& client, std::
   event.number = number;
   event.step = step;
   event.entity = entity_;
-  event.service = service;
+  event.service = scoped_interface_name(std::string(service));
   event.operation = operation.name;
   event.error = text_of(error);
   event.time = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(

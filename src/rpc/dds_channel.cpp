@@ -8,7 +8,6 @@
 #include "reply_reading.hpp"
 #include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/core/stream.hpp"
 #include "skein/introspection.idl.hpp"
@@ -47,7 +46,6 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   Executor& continuations;
   Clock& clock;
   const DdsAddress address;
-  const std::string service = canonical_interface_name(address.service);
   const Options options;
 
   mutable std::mutex mutex;
@@ -254,7 +252,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   }
 
   void note_end(std::uint64_t number, const OperationInfo& operation, const std::exception_ptr& error) {
-    if (options.journal) options.journal->note_end(false, client, number, service, operation, error);
+    if (options.journal) options.journal->note_end(false, client, number, address.service, operation, error);
   }
 
   // ---- calls
@@ -313,7 +311,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
                                       {},
                                       call.operation().stream ? PendingStream::kWindow : 0});
     if (options.journal) {
-      options.journal->note(introspection::CallStep::Sent, client, number, service, call.operation());
+      options.journal->note(introspection::CallStep::Sent, client, number, address.service, call.operation());
     }
     writer.write(message);
     if (message.capacity() > kKeptCapacity) message = Bytes();

@@ -89,7 +89,7 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
   for (const CallEvent& event : heard.all()) {
     const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered || event.step == CallStep::Failed;
     CHECK(event.entity == (at_client ? "uav-1/client" : "uav-1/server"));
-    CHECK(event.service == "test/LouderEcho");
+    CHECK(event.service == "test::LouderEcho");
     CHECK(event.dropped == 0);
     CHECK(event.client == heard.all().front().client);
   }
