@@ -152,14 +152,15 @@ void Service::stop(Invocation& invocation) const {
 
 void Service::execute(Invocation& invocation) {
   OperationMeter& meter = meter_.of(*invocation.operation);
-  meter.waited.record(clock_.now() - invocation.arrived);
+  const Instant now = clock_.now();
+  meter.waited.record(now - invocation.arrived);
   if (closed_) {
     OperationMeter::count(meter.refused);
     answer(invocation, nullptr, std::make_exception_ptr(Unavailable(
                                     std::string(interface_info().name) + " is being withdrawn")));
     return;
   }
-  if (invocation.cancelled || clock_.now() >= invocation.deadline) {
+  if (invocation.cancelled || now >= invocation.deadline) {
     OperationMeter::count(meter.expired);
     answer(invocation, nullptr, std::make_exception_ptr(TimedOut(
                                     "the deadline passed before " +
@@ -179,7 +180,7 @@ void Service::execute(Invocation& invocation) {
     error = std::current_exception();
   }
   // What an implementation returns because it saw its deadline pass is no result.
-  if (!error && clock_.now() >= invocation.deadline) {
+  if (!error && invocation.ended >= invocation.deadline) {
     error = std::make_exception_ptr(TimedOut(std::string(interface_info().name) + " finished " +
                                              std::string(invocation.operation->name) + " too late"));
   }
@@ -199,7 +200,8 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
   const Instant begin = clock_.now();
   OperationMeter::Counter* outcome = &meter.answered;
   const auto end = [&] {
-    meter.ran.record(clock_.now() - begin);
+    frame.ended = clock_.now();
+    meter.ran.record(frame.ended - begin);
     OperationMeter::count(*outcome);
   };
   try {

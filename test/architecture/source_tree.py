@@ -20,7 +20,7 @@ class SourceTree:
     def files(self, endings=TEXTS, below=""):
         for folder, folders, names in os.walk(os.path.join(self.root, below)):
             folders[:] = sorted(f for f in folders if f not in IGNORED and not f.startswith("build-"))
-            for name in sorted(names):
+            for name in sorted(set(names) - IGNORED):  # in a further work tree, .git is a file
                 if os.path.splitext(name)[1] in endings:
                     yield os.path.relpath(os.path.join(folder, name), self.root)
 

@@ -41,6 +41,7 @@ struct Invocation {
   Guid connection;           ///< With whose other invocations it waits in line.
   std::uint64_t number = 0;  ///< The connection's own count; 0 within the process.
   Instant arrived;
+  Instant ended;  ///< When the implementation had returned or thrown.
   Instant deadline;
   std::vector<Guid> chain;
   std::shared_ptr<Session> session;
