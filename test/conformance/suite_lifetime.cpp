@@ -116,8 +116,12 @@ TEST_CASE("endpoints are made and destroyed by several threads at once") {
         Outbox outbox(*wire.writing, topic, keep_all());
         Inbox inbox(*wire.reading, topic, keep_all());
         if (!matched(outbox, inbox)) return;
-        outbox.writer().write(make_number(1));
-        if (eventually([&] { return inbox.count() == 1; })) ++delivered;
+        // Cyclone DDS reports a match a moment before it delivers: a first sample can come too early.
+        const auto write_and_look = [&] {
+          outbox.writer().write(make_number(1));
+          return inbox.count() > 0;
+        };
+        if (eventually(write_and_look)) ++delivered;
       }
     });
   }

@@ -15,6 +15,9 @@ namespace skein::dds::cyclonedds {
 
 /// Who is matched with one endpoint. Cyclone's listeners name peers by local handles, and once a peer
 /// has gone its handle tells nothing more: so each change is found by comparing whole lists.
+///
+/// Cyclone tells of a writer some 100 us before it delivers the writer's samples. What a volatile writer
+/// sends in that moment is lost: a session's opening is repeated for that reason.
 class Matches {
  public:
   using Told = std::function<void(const Guid& peer, bool)>;
