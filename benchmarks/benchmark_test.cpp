@@ -141,6 +141,8 @@ TEST_CASE("no rival and no way to call is missing") {
             "omniorb collocated"));
   for (const int count : {10, 100, 1000, 10'000}) {
     CHECK(has(results, "find_service among many descriptions", "skein", {{"descriptions", count}}));
+    CHECK(has(results, "find_service by constraints among many providers of one interface", "skein",
+              {{"descriptions", count}}));
   }
 }
 

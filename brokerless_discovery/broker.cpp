@@ -73,6 +73,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   Executor& control;
   ProcessWatch& watch;
   const Options options;
+  const std::string asker = options.system + "/" + options.entity;
   const std::string host = ProcessWatch::host();
 
   mutable std::mutex mutex;
@@ -153,7 +154,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
       apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
     };
     return participant.create_reader(
-        kTopic, description_qos({"", owner_partition(options.system + "/" + options.entity)}, options.lease),
+        kTopic, description_qos({"", owner_partition(asker)}, options.lease),
         std::move(listener));
   }
 
@@ -321,7 +322,7 @@ Query Broker::query(const std::string& name) const {
   Query query;
   query.name = name;
   query.system = state_->options.system;
-  query.asker = state_->options.system + "/" + state_->options.entity;
+  query.asker = state_->asker;
   return query;
 }
 

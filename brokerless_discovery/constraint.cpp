@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "skein/core/error.hpp"
@@ -15,26 +16,6 @@ using discovery::ServiceDescription;
 
 constexpr std::array<std::pair<std::string_view, double>, 6> kTimeUnits{
     {{"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}}};
-
-/// A number, and whether it is a length of time (then in seconds).
-struct Quantity {
-  double value = 0;
-  bool time = false;
-};
-
-std::optional<Quantity> maybe_quantity(std::string_view text) {
-  Quantity quantity;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, quantity.value);
-  if (error != std::errc()) return std::nullopt;
-  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
-  if (unit.empty()) return quantity;
-  unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
-  const auto* const known = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
-                                         [&](const auto& entry) { return entry.first == unit; });
-  if (known == kTimeUnits.end()) return std::nullopt;
-  return Quantity{quantity.value * known->second, true};
-}
 
 bool is_order(Relation relation) { return relation == Relation::AtMost || relation == Relation::AtLeast; }
 
@@ -50,8 +31,24 @@ const char* words_of(Relation relation) {
 
 }  // namespace
 
+Quantity quantity_of(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || std::isnan(value)) return {};
+  std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  if (unit.empty()) return {Quantity::Kind::Number, value};
+  unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
+  const auto* const known = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
+                                         [&](const auto& entry) { return entry.first == unit; });
+  if (known == kTimeUnits.end()) return {};
+  return {Quantity::Kind::Time, value * known->second};
+}
+
 void check(const Constraint& constraint) {
-  if (!is_order(constraint.relation) || maybe_quantity(constraint.value)) return;
+  if (!is_order(constraint.relation) || quantity_of(constraint.value).kind != Quantity::Kind::Text) {
+    return;
+  }
   throw InvalidArgument("the constraint '" + constraint.attribute + "' " + words_of(constraint.relation) +
                         "'" + constraint.value + "' asks for an order, and '" + constraint.value +
                         "' is no number; write a number, or a length of time such as '100 ms'");
@@ -60,16 +57,16 @@ void check(const Constraint& constraint) {
 bool meets(const ServiceDescription& provider, const Constraint& constraint) {
   const std::string* const declared = find_attribute(provider, constraint.attribute);
   if (!declared) return false;
-  const auto have = maybe_quantity(*declared);
-  const auto want = maybe_quantity(constraint.value);
-  const bool numbers = have && want && have->time == want->time;
+  const Quantity have = quantity_of(*declared);
+  const Quantity want = quantity_of(constraint.value);
+  const bool numbers = have.kind == want.kind && have.kind != Quantity::Kind::Text;
   switch (constraint.relation) {
-    case Relation::Equal: return numbers ? have->value == want->value : *declared == constraint.value;
-    case Relation::NotEqual: return numbers ? have->value != want->value : *declared != constraint.value;
-    case Relation::AtMost: return numbers && have->value <= want->value;
+    case Relation::Equal: return numbers ? have.value == want.value : *declared == constraint.value;
+    case Relation::NotEqual: return numbers ? have.value != want.value : *declared != constraint.value;
+    case Relation::AtMost: return numbers && have.value <= want.value;
     case Relation::AtLeast: break;
   }
-  return numbers && have->value >= want->value;
+  return numbers && have.value >= want.value;
 }
 
 std::string shortfall(const ServiceDescription& provider, const Constraint& constraint) {
@@ -89,8 +86,8 @@ const std::string* find_attribute(const ServiceDescription& provider, std::strin
 std::optional<double> number_attribute(const ServiceDescription& provider, std::string_view name) {
   const std::string* const declared = find_attribute(provider, name);
   if (!declared) return std::nullopt;
-  const auto quantity = maybe_quantity(*declared);
-  return quantity && !quantity->time ? std::optional(quantity->value) : std::nullopt;
+  const Quantity quantity = quantity_of(*declared);
+  return quantity.kind == Quantity::Kind::Number ? std::optional(quantity.value) : std::nullopt;
 }
 
 }  // namespace skein::brokerless_discovery

@@ -76,8 +76,11 @@ Table::Changes Table::on_description(ServiceDescription description, const Guid&
 }
 
 Table::Changes Table::on_withdrawn(const Guid& provider) {
-  return remove_if([&](const Entry& entry) { return provider_of(*entry.description) == provider; },
-                   Departure::Left);
+  const auto found = entries_.find(provider);
+  if (found == entries_.end()) return {};
+  unindex(found->second);
+  const auto node = entries_.extract(found);
+  return {{Change::Kind::Removed, node.mapped().description, Departure::Left}};
 }
 
 Table::Changes Table::on_writer_alive(const Guid& writer, bool alive) {
@@ -114,10 +117,11 @@ Table::Changes Table::remove_if(auto predicate, Departure departure) {
   return changes;
 }
 
+// Of an entry that has the name, in the system, that was asked for.
 bool Table::suits(const Entry& entry, const Query& query) {
   const ServiceDescription& description = *entry.description;
-  return !entry.suspect && in_system(description, query) && visible(description, query) &&
-         wanted(description, query) && !(query.client && missing_operation(*query.client, description)) &&
+  return !entry.suspect && visible(description, query) &&
+         !(query.client && missing_operation(*query.client, description)) &&
          std::all_of(query.constraints.begin(), query.constraints.end(),
                      [&](const Constraint& constraint) { return meets(description, constraint); });
 }
@@ -125,12 +129,18 @@ bool Table::suits(const Entry& entry, const Query& query) {
 Table::Found Table::find(const Query& query) const {
   for (const Constraint& constraint : query.constraints) check(constraint);
   Found found;
-  const auto* entries = named(query.name);
-  if (!entries) entries = named(resolve(query.name));
-  if (!entries) return found;
-  for (const Entry* entry : *entries) {
-    if (suits(*entry, query)) found.push_back(entry->description);
+  const Shelf* const shelf = shelf_of(query.name, query.system);
+  if (!shelf) return found;
+  const auto offer = [&](const Entry& entry) {
+    if (suits(entry, query)) found.push_back(entry.description);
+  };
+  if (!query.provider.is_nil()) {
+    const auto one = entries_.find(query.provider);
+    if (one != entries_.end() && shelf->contains(one->second)) offer(one->second);
+    return found;
   }
+  std::vector<const Entry*> room;
+  for (const Entry* entry : shelf->candidates(query.constraints, room)) offer(*entry);
   if (!query.preferred_host.empty()) {
     std::stable_partition(found.begin(), found.end(), [&](const auto& description) {
       return description->host == query.preferred_host;
@@ -161,10 +171,10 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
 
 std::string Table::explain(const Query& query) const {
   const std::string place = query.system ? " in system '" + *query.system + "'" : "";
-  const auto* entries = named(query.name);
-  if (!entries) entries = named(resolve(query.name));
+  const Shelf* const shelf = shelf_of(query.name, std::nullopt);
   std::string reasons;
-  for (const Entry* entry : entries ? *entries : std::vector<const Entry*>()) {
+  std::vector<const Entry*> room;
+  for (const Entry* entry : shelf ? shelf->candidates({}, room) : std::span<const Entry* const>()) {
     const std::string reason = obstacle(*entry, query);
     if (!reason.empty()) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
@@ -185,7 +195,9 @@ std::string Table::explain(const Query& query) const {
     }
   }
   std::vector<std::string> known;
-  for (const auto& [name, list] : by_name_) known.push_back(name);
+  for (const auto& [place, shelf] : shelves_) {
+    if (!place.system) known.push_back(place.name);
+  }
   for (const auto& [name, list] : short_names_) known.push_back(name);
   std::sort(known.begin(), known.end());
   return "no provider of '" + query.name + "'" + place + ": nothing of that name is known" +
@@ -208,9 +220,21 @@ bool Table::knows_process(const std::string& process) const {
   });
 }
 
-const std::vector<const Table::Entry*>* Table::named(const std::string& name) const {
-  const auto found = by_name_.find(name);
-  return found == by_name_.end() ? nullptr : &found->second;
+std::size_t Table::PlaceHash::operator()(const PlaceView& place) const noexcept {
+  constexpr std::hash<std::string_view> hash;
+  return hash(place.name) * 31 + (place.system ? hash(*place.system) : 0);
+}
+
+const Shelf* Table::find_shelf(const PlaceView& place) const {
+  const auto found = shelves_.find(place);
+  return found == shelves_.end() ? nullptr : &found->second;
+}
+
+// Null where nothing of that name stands in that system.
+const Shelf* Table::shelf_of(const std::string& name, const std::optional<std::string>& system) const {
+  if (const Shelf* const shelf = find_shelf({name, system})) return shelf;
+  if (system && find_shelf({name, std::nullopt})) return nullptr;
+  return find_shelf({resolve(name), system});
 }
 
 std::string Table::resolve(const std::string& name) const {
@@ -225,21 +249,22 @@ std::string Table::resolve(const std::string& name) const {
 
 void Table::index(const Entry& entry) {
   for (const std::string& name : names_of(*entry.description)) {
-    auto& list = by_name_[name];
-    const auto before = [](const Entry* a, const Entry* b) {
-      return std::pair(a->description->entity, provider_of(*a->description)) <
-             std::pair(b->description->entity, provider_of(*b->description));
-    };
-    list.insert(std::upper_bound(list.begin(), list.end(), &entry, before), &entry);
+    shelves_[{name, entry.description->system}].add(entry);
+    shelves_[{name, std::nullopt}].add(entry);
     if (name != entry.description->entity) ++short_names_[short_interface_name(name)][name];
   }
 }
 
+void Table::take_from_shelf(const Place& place, const Entry& entry) {
+  const auto shelf = shelves_.find(place);
+  shelf->second.remove(entry);
+  if (shelf->second.empty()) shelves_.erase(shelf);
+}
+
 void Table::unindex(const Entry& entry) {
   for (const std::string& name : names_of(*entry.description)) {
-    const auto list = by_name_.find(name);
-    std::erase(list->second, &entry);
-    if (list->second.empty()) by_name_.erase(list);
+    take_from_shelf({name, entry.description->system}, entry);
+    take_from_shelf({name, std::nullopt}, entry);
     if (name == entry.description->entity) continue;
     const auto shorts = short_names_.find(short_interface_name(name));
     if (--shorts->second[name] == 0) shorts->second.erase(name);

@@ -10,6 +10,8 @@ namespace skein::benchmarks {
 namespace {
 
 constexpr const char* kClaim = "find_service among many descriptions";
+constexpr const char* kChoosing = "find_service by constraints among many providers of one interface";
+constexpr const char* kLimit = "limit 1 us";
 constexpr std::uint32_t kSeed = 19;
 
 /// Where the name server keeps its log; gone with this object.
@@ -29,7 +31,8 @@ class LogFolder {
                                       ("skein-benchmark-names-" + std::to_string(getpid()));
 };
 
-/// A process that knows `bind COUNT` and `find COUNT`, and what it needs beside it.
+/// A process that knows `bind COUNT` and `find COUNT`, and what it needs beside it. Skein's knows
+/// `choose COUNT`, too.
 struct Finder {
   std::optional<Child> service{};
   std::optional<Child> client{};
@@ -45,8 +48,8 @@ struct Finder {
     }
   }
 
-  std::vector<double> find(std::size_t count) {
-    client->send("find " + std::to_string(count));
+  std::vector<double> search(const char* how, std::size_t count) {
+    client->send(std::string(how) + ' ' + std::to_string(count));
     return times_us(client->receive());
   }
 
@@ -62,14 +65,26 @@ Comparison measure(Finder& own, Finder& other, std::size_t count, const FindPlan
   comparison.goal_p50 = 1.0;
   comparison.skipped = own.skipped.empty() ? other.skipped : own.skipped;
   if (!comparison.skipped.empty()) return comparison;
-  own.bind(count);
   other.bind(count);
   const auto add = [&](std::vector<double>& samples, Finder& finder) {
-    for (const double time : finder.find(plan.searches)) samples.push_back(time);
+    for (const double time : finder.search("find", plan.searches)) samples.push_back(time);
   };
   take_turns(plan.rounds,
              {[&] { add(comparison.samples, own); }, [&] { add(comparison.rival_samples, other); }},
              kSeed);
+  return comparison;
+}
+
+/// Beside the promise alone: omniORB's name server knows no constraints.
+Comparison measure_choosing(Finder& own, std::size_t count, const FindPlan& plan) {
+  Comparison comparison{kChoosing, "skein", kLimit, {{"descriptions", count}}};
+  comparison.parameters["placement"] = "anywhere";
+  comparison.goal_p50 = 1.0;
+  comparison.rival_samples = {1.0};
+  comparison.skipped = own.skipped;
+  for (std::size_t round = 0; round < plan.rounds && own.skipped.empty(); ++round) {
+    for (const double time : own.search("choose", plan.searches)) comparison.samples.push_back(time);
+  }
   return comparison;
 }
 
@@ -81,12 +96,15 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
   Finder other(configurations.name_server(log.path()));
   std::vector<Comparison> comparisons;
   for (const std::size_t count : {10, 100, 1000, 10'000}) {
+    if (own.skipped.empty()) own.bind(count);
     comparisons.push_back(measure(own, other, count, plan));
-    if (!comparisons.back().skipped.empty()) continue;
-    Comparison limited = comparisons.back();
-    limited.rival = "limit 1 us";
-    limited.rival_samples = {1.0};
-    comparisons.push_back(std::move(limited));
+    if (comparisons.back().skipped.empty()) {
+      Comparison limited = comparisons.back();
+      limited.rival = kLimit;
+      limited.rival_samples = {1.0};
+      comparisons.push_back(std::move(limited));
+    }
+    comparisons.push_back(measure_choosing(own, count, plan));
   }
   return comparisons;
 }

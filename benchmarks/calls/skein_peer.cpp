@@ -152,7 +152,11 @@ std::string service_name(std::size_t number) {
   return "benchmark/IService" + std::to_string(number);
 }
 
-/// A Broker with many descriptions, and how long it takes to find one.
+/// Of all services that `Finder` binds.
+constexpr const char* kCommonBase = "benchmark/IService";
+
+/// A Broker with many descriptions, and how long it takes to find one: by a name that it alone has, or
+/// among all by what it alone declares.
 class Finder {
  public:
   explicit Finder(brokerless_discovery::Broker& broker) : broker_(broker) {}
@@ -163,7 +167,9 @@ class Finder {
       const Guid provider = Guid::random();
       std::copy(provider.bytes.begin(), provider.bytes.end(), description.provider.begin());
       description.service = service_name(registrations_.size());
+      description.bases = {kCommonBase};
       description.entity = "entity" + std::to_string(registrations_.size());
+      description.attributes = {{"latency", std::to_string(registrations_.size())}, {"quality", "1.0"}};
       registrations_.push_back(broker_.add_service(description));
     }
     while (broker_.all().size() < count) std::this_thread::sleep_for(1ms);
@@ -171,20 +177,40 @@ class Finder {
   }
 
   std::string find(std::size_t count) {
+    return timed(count, [&](std::size_t number) {
+      return [this, name = service_name(number)] { return broker_.find_service(broker_.query(name)); };
+    });
+  }
+
+  std::string choose(std::size_t count) {
+    return timed(count, [&](std::size_t number) {
+      using namespace brokerless_discovery;
+      const std::vector<Constraint> constraints{{"quality", Relation::AtLeast, "0.5"},
+                                                {"latency", Relation::Equal, std::to_string(number)}};
+      return [this, constraints] {
+        auto query = broker_.query(kCommonBase);
+        query.constraints = constraints;
+        return broker_.find_service(query);
+      };
+    });
+  }
+
+ private:
+  template <class MakeSearch>
+  std::string timed(std::size_t count, MakeSearch make_search) {
     std::mt19937 random(1);
     std::string times = "times";
     for (std::size_t i = 0; i < count; ++i) {
-      const std::string name = service_name(random() % registrations_.size());
+      const auto search = make_search(random() % registrations_.size());
       const auto begin = std::chrono::steady_clock::now();
-      const auto found = broker_.find_service(broker_.query(name));
+      const auto found = search();
       const auto took = std::chrono::steady_clock::now() - begin;
-      if (found.size() != 1) throw Internal(name + " was not found");
+      if (found.size() != 1) throw Internal("what was looked for was not found");
       times += ' ' + std::to_string(std::chrono::nanoseconds(took).count());
     }
     return times;
   }
 
- private:
   brokerless_discovery::Broker& broker_;
   std::vector<brokerless_discovery::Broker::Registration> registrations_;
 };
@@ -194,7 +220,8 @@ void find_services() {
   Finder finder(alone.entity->broker());
   run_commands(
       {{"bind", [&](const std::string& count) { return finder.bind(std::stoul(count)); }},
-       {"find", [&](const std::string& count) { return finder.find(std::stoul(count)); }}});
+       {"find", [&](const std::string& count) { return finder.find(std::stoul(count)); }},
+       {"choose", [&](const std::string& count) { return finder.choose(std::stoul(count)); }}});
 }
 
 }  // namespace

@@ -124,6 +124,9 @@ ComponentDescription read_component(const std::filesystem::path& file) {
 
 namespace {
 
+/// The paper writes interfaces as repository ids.
+std::string repository_id(const std::string& interface) { return "IDL:" + interface; }
+
 void add_text_child(pugi::xml_node parent, const char* name, const std::string& text) {
   parent.append_child(name).append_child(pugi::node_pcdata).set_value(text.c_str());
 }
@@ -135,16 +138,18 @@ void write_parameters(pugi::xml_node implements, const char* group_name,
   for (const auto& parameter : parameters) {
     auto node = group.append_child("parameter");
     node.append_attribute("name") = parameter.name.c_str();
-    if (!parameter.type.empty()) add_text_child(node, "type", parameter.type);
+    if (parameter.type.empty()) continue;
+    add_text_child(node, "type",
+                   maybe_value_type(parameter.type) ? parameter.type : repository_id(parameter.type));
   }
 }
 
 void write_implements(pugi::xml_node interfaces, const ImplementedInterface& implemented) {
   const bool bare = implemented.required.empty() && implemented.optional.empty() &&
                     implemented.attributes.empty();
-  if (bare) return add_text_child(interfaces, "implements", implemented.type);
+  if (bare) return add_text_child(interfaces, "implements", repository_id(implemented.type));
   auto node = interfaces.append_child("implements");
-  add_text_child(node, "type", implemented.type);
+  add_text_child(node, "type", repository_id(implemented.type));
   write_parameters(node, "required", implemented.required);
   write_parameters(node, "optional", implemented.optional);
   for (const auto& attribute : implemented.attributes) {
@@ -158,7 +163,9 @@ void write_references(pugi::xml_node component, const char* group_name, const ch
                       const std::vector<InterfaceReference>& references) {
   if (references.empty()) return;
   auto group = component.append_child(group_name);
-  for (const auto& reference : references) add_text_child(group, item_name, reference.type);
+  for (const auto& reference : references) {
+    add_text_child(group, item_name, repository_id(reference.type));
+  }
 }
 
 }  // namespace

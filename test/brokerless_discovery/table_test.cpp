@@ -1,6 +1,7 @@
 #include "skein/brokerless_discovery/table.hpp"
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "descriptions.hpp"
 #include "skein/core/error.hpp"
@@ -295,4 +296,79 @@ TEST_CASE("providers on the preferred host come first, others follow", "[R19]") 
   CHECK(entities(table, asked) == Names{"b", "d", "a", "c"});
   asked.preferred_host = "nowhere";
   CHECK(entities(table, asked) == Names{"a", "b", "c", "d"});
+}
+
+namespace {
+
+/// Descriptions and queries by chance, out of few words, so that they often have something in common.
+class Lottery {
+ public:
+  discovery::ServiceDescription draw_description(std::uint8_t number) {
+    auto drawn = description(number, "A/I", draw({"a", "b", "c"}));
+    drawn.system = draw({"uav-1", "uav-2"});
+    drawn.owner = draw({"", "", "", "uav-1/tester", "uav-1/other"});
+    for (const char* name : {"latency", "kind", "latency"}) {
+      if (chance(3) > 0) drawn.attributes.push_back({name, draw_value()});
+    }
+    return drawn;
+  }
+
+  Query draw_query() {
+    Query drawn = query("A/I");
+    if (chance(2) == 0) drawn.system = std::nullopt;
+    if (chance(8) == 0) drawn.provider = guid(static_cast<std::uint8_t>(chance(60)));
+    for (std::size_t count = chance(3); count > 0; --count) {
+      const auto relation = static_cast<Relation>(chance(4));
+      const bool order = relation == Relation::AtMost || relation == Relation::AtLeast;
+      drawn.constraints.push_back({draw({"latency", "kind", "colour"}), relation,
+                                   order ? draw({"1", "2", "2 s", "-inf"}) : draw_value()});
+    }
+    return drawn;
+  }
+
+  std::size_t chance(std::size_t count) { return random_() % count; }
+
+ private:
+  std::string draw(std::vector<std::string> from) { return from[chance(from.size())]; }
+  std::string draw_value() {
+    return draw({"1", "1.0", "2", "3", "-0", "0", "inf", "nan", "1 s", "1000 ms", "2 min", "grid", "tree", ""});
+  }
+
+  std::minstd_rand random_{7};
+};
+
+}  // namespace
+
+TEST_CASE("constraints find what a look at each description would find", "[R5][R8][R18]") {
+  Lottery lottery;
+  Table table;
+  for (int round = 0; round < 2000; ++round) {
+    const auto number = static_cast<std::uint8_t>(lottery.chance(60));
+    if (lottery.chance(4) == 0) {
+      table.on_withdrawn(guid(number));
+    } else {
+      table.on_description(lottery.draw_description(number), kWriter);
+    }
+    const Query asked = lottery.draw_query();
+    Table::Found expected = table.all();
+    std::erase_if(expected, [&](const auto& provider) {
+      return (asked.system && *asked.system != provider->system) ||
+             (!provider->owner.empty() && provider->owner != asked.asker) ||
+             (!asked.provider.is_nil() && asked.provider.bytes != provider->provider) ||
+             !std::all_of(asked.constraints.begin(), asked.constraints.end(),
+                          [&](const Constraint& constraint) { return meets(*provider, constraint); });
+    });
+    std::stable_sort(expected.begin(), expected.end(),
+                     [](const auto& a, const auto& b) { return a->entity < b->entity; });
+    REQUIRE(table.find(asked) == expected);
+  }
+}
+
+TEST_CASE("what is known in another system alone is not taken for the short name of something else", "[R3][R5]") {
+  Table table;
+  auto far = description(1, "B/IOther", "IPlanner");
+  far.system = "uav-2";
+  table.on_description(far, kWriter);
+  table.on_description(description(2, "A/IPlanner", "near"), kWriter);
+  CHECK(entities(table, query("IPlanner")).empty());
 }

@@ -32,8 +32,8 @@ TEST_CASE("A dependency that nobody provides is named where it is written") {
   ProfileFolder folder;
   CHECK(
       folder.check(kN) ==
-      "n.xml:5:17: error: \"n\" depends on IDL:M/IF, which no peer of \"m\" implements; add a peer "
-      "that does; did you mean 'IDL:M/IN'?\n");
+      "n.xml:5:17: error: \"n\" depends on M/IF, which no peer of \"m\" implements; add a peer "
+      "that does; did you mean 'M/IN'?\n");
 }
 
 TEST_CASE("A CSP's dependency is as good as its entity's") {
@@ -41,14 +41,14 @@ TEST_CASE("A CSP's dependency is as good as its entity's") {
   folder.write("q.xml", component("Q", "M/IP", {"M/IMap"}));
   CHECK_THAT(
       folder.check(kF + R"(<peer name="n" component="n.xml"><csp component="q.xml"/></peer>)"),
-      Catch::Contains("q.xml:2:1: error: \"n/Q\" depends on IDL:M/IMap"));
+      Catch::Contains("q.xml:2:1: error: \"n/Q\" depends on M/IMap"));
 }
 
 TEST_CASE("Depending on another's CSP is told apart from depending on nobody") {
   ProfileFolder folder;
   folder.write("s.xml", component("S", "M/IS", {"M/IP"}));
   CHECK_THAT(folder.check(kF + kN + R"(<peer name="s" component="s.xml"/>)"),
-             Catch::Contains("\"s\" depends on IDL:M/IP, which only the CSP \"n/P\" implements; a "
+             Catch::Contains("\"s\" depends on M/IP, which only the CSP \"n/P\" implements; a "
                              "CSP serves its own peer alone"));
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("A subcomponent without a CSP and a CSP without a subcomponent are bot
   const auto text = folder.check(
       kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="f.xml"/></peer>)");
   CHECK_THAT(text,
-             Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent IDL:M/IP "
+             Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent M/IP "
                              "(n.xml:6:18)"));
   CHECK_THAT(text, Catch::Contains("m.xml:3:34: error: the CSP \"F\" implements no subcomponent of "
                                    "\"n\"; it must implement one of them"));
@@ -87,7 +87,7 @@ TEST_CASE("Names that are given twice are named with the place of the first") {
     <implements>M::IF</implements></interfaces></component>)");
   CHECK_THAT(folder.check(R"(<peer name="d" component="d.xml"/>)"),
              Catch::Contains("the attribute \"latency\" is there twice") &&
-                 Catch::Contains("d.xml:3:5: error: the interface \"IDL:M/IF\" is there twice"));
+                 Catch::Contains("d.xml:3:5: error: the interface \"M/IF\" is there twice"));
 }
 
 TEST_CASE("Attributes and parameters are compared with the dictionary") {
@@ -104,7 +104,7 @@ TEST_CASE("Attributes and parameters are compared with the dictionary") {
       {R"(<required><parameter name="Time limit"><type>integer</type></parameter></required>)",
        "the parameter \"Time limit\" is a duration, not a integer"},
       {R"(<optional><parameter name="Planner"><type>M/IX</type></parameter></optional>)",
-       "the parameter \"Planner\" is a IDL:M/IP, not a IDL:M/IX"},
+       "the parameter \"Planner\" is a M/IP, not a M/IX"},
   }));
   folder.write("c.xml", "<component name=\"C\"><interfaces><implements><type>M/IF</type>\n" +
                             inner + "</implements></interfaces></component>");
@@ -119,7 +119,7 @@ TEST_CASE("A profile's parameters are compared with the component and the dictio
       {R"(name="Time limit" value="0")", "\"Time limit\" is 0 ms, less than 1 ms"},
       {R"(name="Planner" value="Q")",
        "\"Planner\" refers to \"Q\", which is no peer or CSP with "
-       "IDL:M/IP; did you mean 'P'?"},
+       "M/IP; did you mean 'P'?"},
       {R"(name="Planner" value="f")", "\"Planner\" refers to \"f\", which is no peer or CSP"},
       {R"(name="Planner")", "<parameter> has no value"},
   }));
@@ -215,7 +215,7 @@ TEST_CASE("All mistakes of all files are found in one go") {
 <peer name="n" component="n.xml"/>
 <peer name="x" component="none.xml"/>)");
   CHECK_THAT(text, Catch::Contains("is no DDS vendor") && Catch::Contains("\"speed\" is unknown") &&
-                       Catch::Contains("depends on IDL:M/IQ") &&
+                       Catch::Contains("depends on M/IQ") &&
                        Catch::Contains("no CSP for its subcomponent") &&
                        Catch::Contains("none.xml: error: cannot be opened"));
 }

@@ -54,17 +54,17 @@ TEST_CASE("The paper's description of the navigator is read as printed") {
   CHECK(component.name == "Navigator");
   REQUIRE(component.interfaces.size() == 1);
   const auto& implemented = component.interfaces[0];
-  CHECK(implemented.type == "IDL:AE_navigatorI/INavigator");
+  CHECK(implemented.type == "AE_navigatorI/INavigator");
   CHECK(implemented.required.empty());
   REQUIRE(implemented.optional.size() == 2);
   CHECK(implemented.optional[0].name == "Planner");
-  CHECK(implemented.optional[0].type == "IDL:AE_navigator/IPlanner");
+  CHECK(implemented.optional[0].type == "AE_navigator/IPlanner");
   CHECK(implemented.optional[1].name == "Time limit");
   CHECK(implemented.optional[1].type.empty());
   REQUIRE(implemented.find_attribute("latency") != nullptr);
   CHECK(implemented.find_attribute("latency")->value == "100");
   REQUIRE(component.dependencies.size() == 1);
-  CHECK(component.dependencies[0].type == "IDL:AE_flightControllerI/IFlightController");
+  CHECK(component.dependencies[0].type == "AE_flightControllerI/IFlightController");
   CHECK(component.has_subcomponent("AE_navigator::IPlanner"));
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("A written description reads back as the same description") {
 TEST_CASE("Names with markup survive writing and reading") {
   ComponentDescription component;
   component.name = "A<&\"'>B \xC3\xA4";
-  component.interfaces.push_back({"IDL:M/I", {{"r", "integer", {}}}, {}, {{"a&b", "<1>", {}}}, {}});
+  component.interfaces.push_back({"M/I", {{"r", "integer", {}}}, {}, {{"a&b", "<1>", {}}}, {}});
   const auto read = parse_component(write_component(component), "c.xml");
   CHECK(read.name == component.name);
   REQUIRE(read.interfaces.size() == 1);

@@ -37,7 +37,7 @@ TEST_CASE("The dictionary that is shipped can be read and knows what the paper u
   CHECK(std::get<std::chrono::nanoseconds>(parse_value(*latency, "100")) == 100ms);
   const auto* planner = dictionary.find(EntryKind::Parameter, "Planner");
   REQUIRE(planner != nullptr);
-  CHECK(planner->interface == "IDL:AE_navigator/IPlanner");
+  CHECK(planner->interface == "AE_navigator/IPlanner");
   CHECK(dictionary.find(EntryKind::Parameter, "latency") == nullptr);
 }
 

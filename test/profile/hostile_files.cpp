@@ -75,7 +75,7 @@ TEST_CASE("The largest composition that is read is checked in bounded time") {
   }
   const auto text = folder.check(peers);
   CHECK_THAT(text, Catch::Contains("a cycle of dependencies") &&
-                       Catch::Contains("depends on IDL:M/I250, which no peer"));
+                       Catch::Contains("depends on M/I250, which no peer"));
 }
 
 TEST_CASE("A component that a profile names is as mistrusted as the profile") {

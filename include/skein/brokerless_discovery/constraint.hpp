@@ -24,6 +24,14 @@ struct Constraint {
   std::string value;
 };
 
+/// What a value is when it is compared.
+struct Quantity {
+  enum class Kind { Number, Time, Text };
+  Kind kind = Kind::Text;
+  double value = 0;  ///< A length of time is in seconds.
+};
+Quantity quantity_of(std::string_view text);
+
 /// Throws InvalidArgument where an order is asked of what is no number.
 void check(const Constraint& constraint);
 

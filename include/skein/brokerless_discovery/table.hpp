@@ -5,10 +5,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "skein/brokerless_discovery/constraint.hpp"
+#include "skein/brokerless_discovery/shelf.hpp"
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
 
@@ -61,7 +63,8 @@ class Table {
   Changes on_writer_gone(const Guid& writer);
   Changes on_process_ended(const std::string& process);
 
-  /// Throws InvalidArgument for an ambiguous short name (R3) or a constraint that makes no sense (R18).
+  /// Throws InvalidArgument for an ambiguous short name (R3) or a constraint that makes no sense
+  /// (R18).
   Found find(const Query& query) const;
 
   /// Why find() gave nothing: for each provider of that name, why it was passed over (R9).
@@ -80,31 +83,53 @@ class Table {
   bool knows_process(const std::string& process) const;
 
  private:
-  struct Entry {
-    std::shared_ptr<const ServiceDescription> description;
-    Guid writer;
-    bool suspect = false;
-  };
   using Entries = std::map<Guid, Entry>;
+
+  /// A name, and the system to look in; nothing means any.
+  struct Place {
+    std::string name;
+    std::optional<std::string> system;
+  };
+  struct PlaceView {
+    std::string_view name;
+    std::optional<std::string_view> system;
+    PlaceView(std::string_view name_, const std::optional<std::string>& system_)
+        : name(name_), system(system_) {}
+    PlaceView(const Place& place) : PlaceView(place.name, place.system) {}
+    bool operator==(const PlaceView&) const = default;
+  };
+  struct PlaceHash {
+    using is_transparent = void;
+    std::size_t operator()(const PlaceView& place) const noexcept;
+  };
+  struct PlaceEqual {
+    using is_transparent = void;
+    bool operator()(const PlaceView& left, const PlaceView& right) const noexcept {
+      return left == right;
+    }
+  };
 
   static bool suits(const Entry& entry, const Query& query);
   static std::string obstacle(const Entry& entry, const Query& query);
   std::string resolve(const std::string& name) const;
-  const std::vector<const Entry*>* named(const std::string& name) const;
+  const Shelf* find_shelf(const PlaceView& place) const;
+  const Shelf* shelf_of(const std::string& name, const std::optional<std::string>& system) const;
   Changes remove_if(auto predicate, Departure departure);
   void index(const Entry& entry);
   void unindex(const Entry& entry);
+  void take_from_shelf(const Place& place, const Entry& entry);
 
   Entries entries_;
-  /// By canonical interface name, base name and entity name; each list in the order of R8.
-  std::unordered_map<std::string, std::vector<const Entry*>> by_name_;
+  /// By canonical interface name, base name and entity name, each in its system and in any.
+  std::unordered_map<Place, Shelf, PlaceHash, PlaceEqual> shelves_;
   /// Last part of an interface's name to the canonical names that end so.
-  std::map<std::string, std::map<std::string, std::size_t>> short_names_;
+  std::unordered_map<std::string, std::map<std::string, std::size_t>> short_names_;
   std::set<std::string> ended_processes_;
 };
 
 /// The client's first operation that `provider` lacks or has with another signature; null where it
 /// understands all.
-const OperationInfo* missing_operation(const InterfaceInfo& client, const ServiceDescription& provider);
+const OperationInfo* missing_operation(const InterfaceInfo& client,
+                                       const ServiceDescription& provider);
 
 }  // namespace skein::brokerless_discovery

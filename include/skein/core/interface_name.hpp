@@ -5,8 +5,8 @@
 
 namespace skein {
 
-/// The one spelling of an interface's name that Skein compares, stores and sends:
-/// `IDL:AE_navigator/IPlanner`.
+/// The one spelling of an interface's name that Skein compares, stores and sends, which is also that of
+/// InterfaceInfo::name: `AE_navigator/IPlanner`.
 ///
 /// `IDL:AE_navigator/IPlanner`, `IDL:AE_navigator/IPlanner:1.0`, `AE_navigator/IPlanner`,
 /// `AE_navigator::IPlanner` and `::AE_navigator::IPlanner` are the same interface, and so are these
@@ -24,7 +24,7 @@ bool is_interface_name(std::string_view name) noexcept;
 /// Whether two spellings name the same interface. Throws as canonical_interface_name() does.
 bool same_interface(std::string_view left, std::string_view right);
 
-/// The last part of a name: `IPlanner` for every spelling of `IDL:AE_navigator/IPlanner`. It is not
+/// The last part of a name: `IPlanner` for every spelling of `AE_navigator/IPlanner`. It is not
 /// unique: two modules may hold an interface of the same short name.
 /// Throws as canonical_interface_name() does.
 std::string short_interface_name(std::string_view name);
