@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "../tools/seed.hpp"
 #include "exposed_service.hpp"
 #include "messages.hpp"
 #include "processes.hpp"
@@ -83,12 +84,7 @@ std::unique_ptr<dds::Writer> writer_to(Attacked& attacked) {
   return writer;
 }
 
-std::mt19937_64 seeded_random() {
-  const char* given = std::getenv("SKEIN_SEED");
-  const std::uint64_t seed = given ? std::stoull(given) : std::random_device{}();
-  std::printf("SKEIN_SEED=%llu\n", static_cast<unsigned long long>(seed));
-  return std::mt19937_64(seed);
-}
+std::mt19937_64 seeded_random() { return std::mt19937_64(seed_of_this_run()); }
 
 }  // namespace
 

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../tools/network_space.hpp"
+#include "../tools/cable.hpp"
+#include "../tools/seed.hpp"
 #include "../tools/wire_tap.hpp"
 #include "processes.hpp"
 
@@ -54,12 +55,10 @@ constexpr const char* kUri =
 
 /// A host with a network beside its loopback device, over which everything would go that asks for a way.
 struct Host {
-  Host() {
-    NetworkSpace::connect(space, outside);
-    space.run("ip route add default via 10.77.0.2");
-  }
+  Host() { space.run("ip route add default via 10.77.0.2"); }
   NetworkSpace space;
   NetworkSpace outside;
+  Cable cable{space, outside, seed_of_this_run()};
 };
 
 /// How many packets a pair that calls once sends beyond loopback.

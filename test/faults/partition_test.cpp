@@ -4,7 +4,8 @@
 #include <random>
 #include <thread>
 
-#include "../tools/network_space.hpp"
+#include "../tools/cable.hpp"
+#include "../tools/seed.hpp"
 #include "processes.hpp"
 
 using namespace skein::test;
@@ -16,7 +17,6 @@ namespace {
 /// client's. Each provides the echo service.
 struct TwoHosts {
   TwoHosts() {
-    NetworkSpace::connect(here, there);
     left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2"));
     right.emplace(peer("right", *Pairing::get().client, there, "10.77.0.1"));
     for (auto* one : {&*left, &*right}) {
@@ -51,6 +51,7 @@ struct TwoHosts {
 
   NetworkSpace here;
   NetworkSpace there;
+  Cable cable{here, there, seed_of_this_run()};
   std::optional<ChildProcess> left;
   std::optional<ChildProcess> right;
 };
@@ -81,11 +82,9 @@ TEST_CASE("two hosts that were cut off from each other find each other again, an
   hosts.connect();
   hosts.call();
   SECTION("by silence on the cable") {
-    hosts.here.mute();
-    hosts.there.mute();
+    hosts.cable.disturb(Disturbance::cut());
     REQUIRE(hosts.each_knows(1));
-    hosts.here.heal();
-    hosts.there.heal();
+    hosts.cable.heal();
   }
   SECTION("by a pulled cable") {
     hosts.here.run("ip link set skein0 down");
@@ -102,11 +101,10 @@ TEST_CASE("a host that was not heard, but heard the other, is found again, and b
   hosts.connect();
   hosts.call();
   const bool left_mute = GENERATE(true, false);
-  NetworkSpace& mute = left_mute ? hosts.here : hosts.there;
   ChildProcess& hears_nothing = left_mute ? *hosts.right : *hosts.left;
-  mute.mute();
+  hosts.cable.disturb(left_mute ? Cable::End::One : Cable::End::Other, Disturbance::cut());
   REQUIRE(eventually([&] { return services_of(hears_nothing) == 1; }));
-  mute.heal();
+  hosts.cable.heal();
   REQUIRE(hosts.each_knows(2));
   hosts.call();
 }
@@ -115,17 +113,13 @@ TEST_CASE("cuts about as long as the lease leave nobody behind") {
   TwoHosts hosts;
   REQUIRE(hosts.each_knows(2));
   hosts.connect();
-  const char* given = std::getenv("SKEIN_SEED");
-  const std::uint64_t seed = given ? std::stoull(given) : std::random_device{}();
-  std::mt19937_64 random(seed);
+  std::mt19937_64 random(seed_of_this_run());
   for (int i = 0; i < 4; ++i) {
     const auto cut = 700ms + std::chrono::milliseconds(random() % 700);
-    INFO("SKEIN_SEED=" << seed << ", cut " << i << " of " << cut.count() << " ms");
-    hosts.here.mute();
-    hosts.there.mute();
+    INFO("cut " << i << " of " << cut.count() << " ms");
+    hosts.cable.disturb(Disturbance::cut());
     std::this_thread::sleep_for(cut);
-    hosts.here.heal();
-    hosts.there.heal();
+    hosts.cable.heal();
     REQUIRE(hosts.each_knows(2));
     hosts.call();
   }

@@ -46,14 +46,6 @@ void NetworkSpace::run(const std::string& command) const {
   if (status != 0) throw std::runtime_error("'" + command + "' failed in a network namespace");
 }
 
-void NetworkSpace::connect(const NetworkSpace& one, const NetworkSpace& other) {
-  const std::string there = "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(other.descriptor_);
-  one.run("ip link add name skein0 type veth peer name skein1 && ip link set skein1 netns " + there +
-          " && ip address add 10.77.0.1/24 dev skein0 && ip link set skein0 up");
-  other.run("ip link set skein1 name skein0 && ip address add 10.77.0.2/24 dev skein0 && "
-            "ip link set skein0 up");
-}
-
 Inside::Inside(const NetworkSpace& space) : before_(open_own_space()) { enter(space.descriptor()); }
 
 Inside::~Inside() {

@@ -20,13 +20,6 @@ class NetworkSpace {
   /// Runs a shell command in there; throws std::runtime_error where it fails.
   void run(const std::string& command) const;
 
-  /// Joins the two by a cable: device `skein0` in each, 10.77.0.1 in `one` and 10.77.0.2 in `other`.
-  static void connect(const NetworkSpace& one, const NetworkSpace& other);
-
-  /// Silently loses all that leaves by `skein0` from here, until heal().
-  void mute() const { run("tc qdisc replace dev skein0 root blackhole"); }
-  void heal() const { run("tc qdisc del dev skein0 root"); }
-
  private:
   int descriptor_ = -1;
 };
