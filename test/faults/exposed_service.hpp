@@ -12,10 +12,9 @@
 
 namespace skein::test {
 
-/// The description of an echo service, as an entity would register it.
-inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provider,
-                                                              const std::string& entity) {
-  const InterfaceInfo& interface = ::test::LouderEcho::interface_info();
+/// The description of a service, as an entity would register it.
+inline brokerless_discovery::ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider,
+                                                         const std::string& entity) {
   brokerless_discovery::ServiceDescription description;
   description.provider = provider.bytes;
   description.service = interface.name;
@@ -27,16 +26,23 @@ inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provid
   return description;
 }
 
-/// The echo service in an entity, with what the entity hides in sight: its server's counters and its
+inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provider, const std::string& entity) {
+  return describe(::test::LouderEcho::interface_info(), provider, entity);
+}
+
+/// A service in an entity, with what the entity hides in sight: its server's counters and its
 /// clients' sessions.
 class ExposedService {
  public:
-  ExposedService(Entity& entity, std::shared_ptr<EchoService> echo)
-      : service_(std::make_shared<rpc::Service>(
-            std::make_shared<::test::LouderEcho::Skeleton>(std::move(echo)), executor_, entity.clock(),
-            service_options())),
+  template <class Implementation>
+  ExposedService(Entity& entity, std::shared_ptr<Implementation> implementation, std::size_t queue = 4096)
+      : executor_("exposed", 1, queue),
+        service_(std::make_shared<rpc::Service>(
+            std::make_shared<typename Implementation::Skeleton>(std::move(implementation)), executor_,
+            entity.clock(), service_options())),
         server_(entity.participant(), control_, entity.clock(), service_, {}),
-        registration_(entity.broker().add_service(describe_echo(id(), entity.options().name))) {}
+        registration_(entity.broker().add_service(
+            describe(service_->interface_info(), id(), entity.options().name))) {}
 
   const Guid& id() const { return service_->id(); }
   rpc::DdsAddress address() const { return {std::string(service_->interface_info().name), id()}; }
@@ -65,7 +71,7 @@ class ExposedService {
   mutable std::mutex mutex_;
   std::vector<std::weak_ptr<Session>> sessions_;
   ThreadExecutor control_{"control"};
-  ThreadExecutor executor_{"exposed"};
+  ThreadExecutor executor_;
   std::shared_ptr<rpc::Service> service_;
   rpc::DdsServer server_;
   brokerless_discovery::Broker::Registration registration_;

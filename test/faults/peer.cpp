@@ -1,47 +1,25 @@
 // The other process of these tests: an entity that obeys the lines it reads and answers each with one
 // line. It ends with its standard input. Arguments are `name=value`; commands stand in main().
 #include <iostream>
-#include <map>
 #include <sstream>
 
 #include "../connector/echo_service.hpp"
+#include "peer_arguments.hpp"
 #include "skein/core/error.hpp"
 #include "skein/entity/entity.hpp"
 
 using namespace skein;
+using namespace skein::test;
 using namespace std::chrono_literals;
 using ::test::LouderEcho;
 
 namespace {
 
-using Arguments = std::map<std::string, std::string>;
 using SteadyClock = std::chrono::steady_clock;
-
-Arguments parse(int count, char** given) {
-  Arguments arguments{{"vendor", "loopback"}, {"name", "peer"}, {"domain", "17"}, {"lease", "1000"}};
-  for (int i = 1; i < count; ++i) {
-    const std::string text = given[i];
-    arguments[text.substr(0, text.find('='))] = text.substr(text.find('=') + 1);
-  }
-  return arguments;
-}
-
-EntityOptions entity_options(const Arguments& arguments) {
-  EntityOptions options;
-  options.name = arguments.at("name");
-  options.system = "uav-1";
-  options.vendor = dds::load_vendor(arguments.at("vendor"));
-  options.domain = static_cast<std::uint32_t>(std::stoul(arguments.at("domain")));
-  options.lease = std::chrono::milliseconds(std::stoul(arguments.at("lease")));
-  if (arguments.contains("interface")) options.network.interfaces = {arguments.at("interface")};
-  if (arguments.contains("host")) options.network.peers = {arguments.at("host")};
-  options.network.multicast_discovery = arguments.contains("multicast");
-  return options;
-}
 
 class Peer {
  public:
-  Peer(const Arguments& arguments, SteadyClock::time_point start)
+  Peer(const PeerArguments& arguments, SteadyClock::time_point start)
       : start_(start), entity_(entity_options(arguments)) {}
 
   std::string obey(const std::string& command, std::istringstream& rest) {
@@ -119,7 +97,7 @@ class Peer {
   }
 
   const SteadyClock::time_point start_;
-  const std::shared_ptr<skein::test::EchoService> service_ = std::make_shared<skein::test::EchoService>();
+  const std::shared_ptr<EchoService> service_ = std::make_shared<EchoService>();
   Entity entity_;
   std::optional<LouderEcho::Proxy> echo_;
   std::vector<Call<std::string>> poured_;
@@ -131,7 +109,7 @@ class Peer {
 int main(int count, char** given) {
   const auto start = SteadyClock::now();
   try {
-    Peer peer(parse(count, given), start);
+    Peer peer(parse_arguments(count, given), start);
     for (std::string line; std::getline(std::cin, line);) {
       std::istringstream words(line);
       std::string command;

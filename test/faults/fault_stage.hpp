@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../tools/cable.hpp"
+#include "journal.hpp"
+#include "processes.hpp"
+
+namespace skein::test {
+
+/// Where a peer lives: in the test's own network namespace, or at an end of a cable.
+struct Place {
+  const NetworkSpace* space = nullptr;
+  std::string other_host{};
+};
+
+/// The processes of one cell of the fault matrix: providers and clients of the tally service, whose calls
+/// one journal records.
+class FaultStage {
+ public:
+  /// Its service is provided when this returns; `queue` requests may wait.
+  ChildProcess& add_server(const Place& place = {}, std::size_t queue = 4096);
+  /// A process with so many clients; they are connecting when this returns.
+  ChildProcess& add_clients(int count, const Place& place = {});
+  /// Waits until all clients are connected, and each peer knows all providers.
+  void connect();
+
+  /// All clients of all processes call, each one call after the other.
+  void start(const std::string& shape);
+  /// Waits until more calls have been executed.
+  void run_for_calls(int calls);
+  void stop();
+
+  /// A provider that is dead, and not waited for.
+  void bury(ChildProcess& server);
+
+  /// What must be true again after every fault: all tables know all living providers, and each client's
+  /// calls succeed; then nothing is left behind: no pending call at a client, no active one at a provider,
+  /// a session for each client and no more, and no thread that was not there in connect(). At last the
+  /// journal is held to check_calls().
+  void check(const std::string& cell, const std::set<std::string>& outcomes);
+
+  Journal& journal() { return journal_; }
+  ChildProcess& client(std::size_t index = 0) { return *clients_[index]; }
+
+ private:
+  ChildProcess& add(std::vector<std::unique_ptr<ChildProcess>>& to, const std::string& name,
+                    const dds::Vendor& vendor, const Place& place);
+  bool everybody_knows_all();
+  std::vector<ChildProcess*> everybody();
+
+  Journal journal_;
+  int last_number_ = 0;
+  int client_count_ = 0;
+  std::vector<std::unique_ptr<ChildProcess>> servers_;
+  std::vector<std::unique_ptr<ChildProcess>> clients_;
+  std::vector<std::pair<ChildProcess*, std::size_t>> threads_;
+};
+
+/// Two hosts at the ends of a cable: a provider on `here`, clients on `there`.
+struct CableStage {
+  NetworkSpace here;
+  NetworkSpace there;
+  Cable cable;
+  FaultStage stage;
+  ChildProcess& server;
+
+  CableStage(std::uint64_t seed, int clients);
+};
+
+}  // namespace skein::test

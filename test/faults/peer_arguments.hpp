@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "skein/entity/entity.hpp"
+
+namespace skein::test {
+
+/// A peer program's arguments, `name=value`.
+using PeerArguments = std::map<std::string, std::string>;
+
+inline PeerArguments parse_arguments(int count, char** given) {
+  PeerArguments arguments{{"vendor", "loopback"}, {"name", "peer"}, {"domain", "17"}, {"lease", "1000"}};
+  for (int i = 1; i < count; ++i) {
+    const std::string text = given[i];
+    arguments[text.substr(0, text.find('='))] = text.substr(text.find('=') + 1);
+  }
+  return arguments;
+}
+
+inline EntityOptions entity_options(const PeerArguments& arguments) {
+  EntityOptions options;
+  options.name = arguments.at("name");
+  options.system = "uav-1";
+  options.vendor = dds::load_vendor(arguments.at("vendor"));
+  options.domain = static_cast<std::uint32_t>(std::stoul(arguments.at("domain")));
+  options.lease = std::chrono::milliseconds(std::stoul(arguments.at("lease")));
+  if (arguments.contains("interface")) options.network.interfaces = {arguments.at("interface")};
+  if (arguments.contains("host")) options.network.peers = {arguments.at("host")};
+  options.network.multicast_discovery = arguments.contains("multicast");
+  return options;
+}
+
+}  // namespace skein::test

@@ -1,0 +1,139 @@
+// The cells of the fault matrix that strike a process. Each ends with FaultStage::check().
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <thread>
+
+#include "fault_stage.hpp"
+
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+const std::set<std::string> kLostProvider{"Ok", "Disconnected", "TimedOut", "Unavailable"};
+
+}  // namespace
+
+TEST_CASE("matrix: a provider is killed while it executes a call, and before it executes others") {
+  FaultStage stage;
+  ChildProcess& first = stage.add_server();
+  stage.add_clients(2);
+  stage.connect();
+  stage.add_server();
+  stage.client().send("burst 3 timeout 60000 work 600000");
+  stage.client().expect("sent");
+  REQUIRE(eventually([&] { return first.ask("server").starts_with("server 6 "); }));
+  REQUIRE(eventually([&] { return stage.journal().executions() == 1; }));
+  first.signal(SIGKILL);
+  stage.bury(first);
+  stage.client().send("settle");
+  stage.client().expect("settled");
+  CHECK(stage.journal().executions() == 1);
+  stage.check("killed before and during execution", {"Ok", "Disconnected"});
+}
+
+TEST_CASE("matrix: a provider is killed when it has executed a call, before the answer leaves") {
+  FaultStage stage;
+  ChildProcess& first = stage.add_server();
+  stage.add_clients(2);
+  stage.connect();
+  stage.add_server();
+  stage.client().send("kill");
+  CHECK(stage.client().read() == "killed Disconnected");
+  stage.bury(first);
+  CHECK(stage.journal().executions() == 1);
+  stage.check("killed after execution", {"Ok", "Disconnected"});
+}
+
+TEST_CASE("matrix: a provider is killed under load") {
+  FaultStage stage;
+  ChildProcess& first = stage.add_server();
+  stage.add_clients(4);
+  stage.connect();
+  stage.add_server();
+  stage.start("timeout 3000 bytes 20000");
+  stage.run_for_calls(200);
+  first.signal(SIGKILL);
+  stage.bury(first);
+  stage.run_for_calls(200);
+  stage.stop();
+  stage.check("killed under load", kLostProvider);
+}
+
+TEST_CASE("matrix: a provider is stopped for a while under load, and goes on") {
+  const auto pause = GENERATE(1s, 10s);
+  FaultStage stage;
+  ChildProcess& server = stage.add_server();
+  stage.add_clients(8);
+  stage.connect();
+  stage.start("timeout 300 bytes 2000");
+  stage.run_for_calls(200);
+  server.signal(SIGSTOP);
+  std::this_thread::sleep_for(pause);
+  stage.journal().mark();
+  server.signal(SIGCONT);
+  stage.run_for_calls(200);
+  stage.stop();
+  stage.check("provider stopped for " + std::to_string(pause.count()) + " s", kLostProvider);
+}
+
+TEST_CASE("matrix: clients are stopped for a while under load, and go on") {
+  const auto pause = GENERATE(1s, 10s);
+  FaultStage stage;
+  stage.add_server();
+  stage.add_clients(4);
+  stage.connect();
+  stage.start("timeout 300 bytes 2000");
+  stage.run_for_calls(200);
+  stage.client().signal(SIGSTOP);
+  std::this_thread::sleep_for(pause);
+  stage.client().signal(SIGCONT);
+  stage.run_for_calls(200);
+  stage.stop();
+  stage.check("clients stopped for " + std::to_string(pause.count()) + " s", kLostProvider);
+}
+
+TEST_CASE("matrix: a hundred clients join at once") {
+  FaultStage stage;
+  stage.add_server();
+  for (int process = 0; process < 10; ++process) stage.add_clients(10);
+  stage.connect();
+  stage.start("timeout 10000 pause 100");
+  stage.run_for_calls(300);
+  stage.stop();
+  stage.check("a hundred clients join", {"Ok"});
+}
+
+TEST_CASE("matrix: a client that reads nothing for a while holds up nobody") {
+  FaultStage stage;
+  stage.add_server();
+  ChildProcess& deaf = stage.add_clients(2);
+  ChildProcess& good = stage.add_clients(2);
+  stage.connect();
+  deaf.send("burst 100 timeout 60000 work 1 bytes 100000");
+  deaf.expect("sent");
+  deaf.signal(SIGSTOP);
+  for (int i = 0; i < 20; ++i) {
+    good.send("call timeout 20000");
+    CHECK(good.read(30s) == "called Ok");
+  }
+  deaf.signal(SIGCONT);
+  deaf.send("settle");
+  deaf.expect("settled", 90s);
+  stage.check("a client that never reads", {"Ok", "Disconnected"});
+}
+
+TEST_CASE("matrix: a provider that is slower than its callers refuses what it has no room for") {
+  FaultStage stage;
+  ChildProcess& server = stage.add_server({}, 20);
+  stage.add_clients(4);
+  stage.connect();
+  stage.client().send("burst 50 timeout 1000 work 20");
+  stage.client().expect("sent");
+  REQUIRE(eventually([&] { return server.ask("server").starts_with("server 21 ") ||
+                                  stage.journal().executions() > 20; }));
+  stage.client().send("settle");
+  stage.client().expect("settled");
+  stage.check("a provider slower than its callers", {"Ok", "Overloaded", "TimedOut"});
+  CHECK(stage.journal().count("Overloaded") > 0);
+}
