@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
+
+#include "check_calls.hpp"
+#include "processes.hpp"
 
 namespace skein::test {
 namespace {

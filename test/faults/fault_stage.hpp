@@ -1,12 +1,14 @@
 #pragma once
 
-#include <optional>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "../tools/cable.hpp"
+#include "../tools/child_process.hpp"
 #include "journal.hpp"
-#include "processes.hpp"
+#include "skein/dds/port.hpp"
 
 namespace skein::test {
 

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string>
 
 namespace skein::test {
@@ -18,7 +19,8 @@ struct CallRecord {
 };
 
 /// What clients and providers in several processes do, call by call, in one file in memory. It goes with
-/// the process that made it, and outlives all others. Thread-safe.
+/// the process that made it, and outlives all others. Writing is
+/// thread-safe.
 class Journal {
  public:
   Journal();
@@ -39,6 +41,7 @@ class Journal {
   void mark() { write("mark", 0); }
 
   std::map<std::uint64_t, CallRecord> read() const;
+  /// Of all calls; reads what is new since it was last asked.
   std::size_t executions() const;
   /// Calls that ended so.
   std::size_t count(const std::string& outcome) const;
@@ -48,12 +51,8 @@ class Journal {
              std::int64_t overdue_us = 0);
 
   int descriptor_;
+  mutable off_t counted_to_ = 0;
+  mutable std::size_t executions_ = 0;
 };
-
-/// Holds the calls of a journal to what must be true of them, whatever happened to those who made and
-/// executed them: each ended, as one of `outcomes`; none was executed twice; those that succeeded were
-/// executed, those that were refused (Unavailable, Overloaded) were not, and none was executed after its
-/// caller had been told its end. Prints a line with counts under the name of the cell.
-void check_calls(const Journal& journal, const std::string& cell, const std::set<std::string>& outcomes);
 
 }  // namespace skein::test

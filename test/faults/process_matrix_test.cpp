@@ -125,15 +125,14 @@ TEST_CASE("matrix: a client that reads nothing for a while holds up nobody") {
 
 TEST_CASE("matrix: a provider that is slower than its callers refuses what it has no room for") {
   FaultStage stage;
-  ChildProcess& server = stage.add_server({}, 20);
+  stage.add_server({}, 20);
   stage.add_clients(4);
   stage.connect();
   stage.client().send("burst 50 timeout 1000 work 20");
   stage.client().expect("sent");
-  REQUIRE(eventually([&] { return server.ask("server").starts_with("server 21 ") ||
-                                  stage.journal().executions() > 20; }));
   stage.client().send("settle");
   stage.client().expect("settled");
   stage.check("a provider slower than its callers", {"Ok", "Overloaded", "TimedOut"});
   CHECK(stage.journal().count("Overloaded") > 0);
+  CHECK(stage.journal().count("Ok") > 0);
 }
