@@ -1,11 +1,12 @@
+#include "../tools/cable.hpp"
+
 #include <arpa/inet.h>
-#include <catch2/catch.hpp>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 
-#include "../tools/cable.hpp"
 #include "../tools/eventually.hpp"
 #include "../tools/seed.hpp"
 

@@ -13,7 +13,8 @@
 namespace skein::test {
 
 /// The description of a service, as an entity would register it.
-inline brokerless_discovery::ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider,
+inline brokerless_discovery::ServiceDescription describe(const InterfaceInfo& interface,
+                                                         const Guid& provider,
                                                          const std::string& entity) {
   brokerless_discovery::ServiceDescription description;
   description.provider = provider.bytes;
@@ -21,12 +22,14 @@ inline brokerless_discovery::ServiceDescription describe(const InterfaceInfo& in
   description.entity = entity;
   for (const InterfaceInfo* base : interface.bases) description.bases.emplace_back(base->name);
   for (const OperationInfo& operation : interface.operations) {
-    description.operations.push_back({std::string(operation.name), operation.hash, operation.signature});
+    description.operations.push_back(
+        {std::string(operation.name), operation.hash, operation.signature});
   }
   return description;
 }
 
-inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provider, const std::string& entity) {
+inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provider,
+                                                              const std::string& entity) {
   return describe(::test::LouderEcho::interface_info(), provider, entity);
 }
 
@@ -35,11 +38,12 @@ inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provid
 class ExposedService {
  public:
   template <class Implementation>
-  ExposedService(Entity& entity, std::shared_ptr<Implementation> implementation, std::size_t queue = 4096)
+  ExposedService(Entity& entity, std::shared_ptr<Implementation> implementation,
+                 std::size_t queue = 4096)
       : executor_("exposed", 1, queue),
         service_(std::make_shared<rpc::Service>(
-            std::make_shared<typename Implementation::Skeleton>(std::move(implementation)), executor_,
-            entity.clock(), service_options())),
+            std::make_shared<typename Implementation::Skeleton>(std::move(implementation)),
+            executor_, entity.clock(), service_options())),
         server_(entity.participant(), control_, entity.clock(), service_, {}),
         registration_(entity.broker().add_service(
             describe(service_->interface_info(), id(), entity.options().name))) {}

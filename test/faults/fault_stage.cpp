@@ -24,12 +24,13 @@ std::size_t threads_of(const ChildProcess& peer) {
 
 }  // namespace
 
-ChildProcess& FaultStage::add(std::vector<std::unique_ptr<ChildProcess>>& to, const std::string& name,
-                              const dds::Vendor& vendor, const Place& place) {
+ChildProcess& FaultStage::add(std::vector<std::unique_ptr<ChildProcess>>& to,
+                              const std::string& name, const dds::Vendor& vendor,
+                              const Place& place, std::chrono::milliseconds lease) {
   const std::string number = std::to_string(++last_number_);
   ChildProcess::Options options;
   options.arguments = {"vendor=" + vendor.name(), "name=" + name + number, "number=" + number,
-                       "journal=" + journal_.place()};
+                       "journal=" + journal_.place(), "lease=" + std::to_string(lease.count())};
   if (place.space != nullptr) {
     options.network = place.space->descriptor();
     options.arguments.push_back("interface=skein0");
@@ -46,8 +47,9 @@ ChildProcess& FaultStage::add_server(const Place& place, std::size_t queue) {
   return server;
 }
 
-ChildProcess& FaultStage::add_clients(int count, const Place& place) {
-  ChildProcess& client = add(clients_, "client", *Pairing::get().client, place);
+ChildProcess& FaultStage::add_clients(int count, const Place& place,
+                                      std::chrono::milliseconds lease) {
+  ChildProcess& client = add(clients_, "client", *Pairing::get().client, place, lease);
   client.send("connect " + std::to_string(count));
   client_count_ += count;
   return client;
@@ -63,7 +65,8 @@ std::vector<ChildProcess*> FaultStage::everybody() {
 
 bool FaultStage::everybody_knows_all() {
   const auto count = "services " + std::to_string(servers_.size());
-  return std::ranges::all_of(everybody(), [&](ChildProcess* peer) { return peer->ask("services") == count; });
+  return std::ranges::all_of(everybody(),
+                             [&](ChildProcess* peer) { return peer->ask("services") == count; });
 }
 
 void FaultStage::connect() {
@@ -80,7 +83,8 @@ void FaultStage::start(const std::string& shape) {
 void FaultStage::run_for_calls(int calls) {
   const auto executed = [&] { return journal_.executions(); };
   const auto before = executed();
-  REQUIRE(eventually([&] { return executed() >= before + static_cast<std::size_t>(calls); }, kHealing));
+  REQUIRE(
+      eventually([&] { return executed() >= before + static_cast<std::size_t>(calls); }, kHealing));
 }
 
 void FaultStage::stop() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <set>
 #include <string>
@@ -18,14 +19,16 @@ struct Place {
   std::string other_host{};
 };
 
-/// The processes of one cell of the fault matrix: providers and clients of the tally service, whose calls
-/// one journal records.
+/// The processes of one cell of the fault matrix: providers and clients of the tally service, whose
+/// calls one journal records.
 class FaultStage {
  public:
   /// Its service is provided when this returns; `queue` requests may wait.
   ChildProcess& add_server(const Place& place = {}, std::size_t queue = 4096);
-  /// A process with so many clients; they are connecting when this returns.
-  ChildProcess& add_clients(int count, const Place& place = {});
+  /// A process with so many clients; they are connecting when this returns. Others trust it for
+  /// `lease`.
+  ChildProcess& add_clients(int count, const Place& place = {},
+                            std::chrono::milliseconds lease = kLease);
   /// Waits until all clients are connected, and each peer knows all providers.
   void connect();
 
@@ -38,18 +41,20 @@ class FaultStage {
   /// A provider that is dead, and not waited for.
   void bury(ChildProcess& server);
 
-  /// What must be true again after every fault: all tables know all living providers, and each client's
-  /// calls succeed; then nothing is left behind: no pending call at a client, no active one at a provider,
-  /// a session for each client and no more, and no thread that was not there in connect(). At last the
-  /// journal is held to check_calls().
+  /// What must be true again after every fault: all tables know all living providers, and each
+  /// client's calls succeed; then nothing is left behind: no pending call at a client, no active
+  /// one at a provider, a session for each client and no more, and no thread that was not there in
+  /// connect(). At last the journal is held to check_calls().
   void check(const std::string& cell, const std::set<std::string>& outcomes);
 
   Journal& journal() { return journal_; }
   ChildProcess& client(std::size_t index = 0) { return *clients_[index]; }
 
  private:
+  static constexpr std::chrono::milliseconds kLease{1000};
   ChildProcess& add(std::vector<std::unique_ptr<ChildProcess>>& to, const std::string& name,
-                    const dds::Vendor& vendor, const Place& place);
+                    const dds::Vendor& vendor, const Place& place,
+                    std::chrono::milliseconds lease = kLease);
   bool everybody_knows_all();
   std::vector<ChildProcess*> everybody();
 

@@ -12,7 +12,8 @@
 namespace skein::test {
 
 Journal::Journal() : descriptor_(memfd_create("journal", MFD_CLOEXEC)) {
-  if (descriptor_ < 0 || fcntl(descriptor_, F_SETFL, O_APPEND) != 0) throw std::runtime_error("no journal");
+  if (descriptor_ < 0 || fcntl(descriptor_, F_SETFL, O_APPEND) != 0)
+    throw std::runtime_error("no journal");
 }
 
 Journal::Journal(const std::string& place)
@@ -26,12 +27,14 @@ std::string Journal::place() const {
   return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(descriptor_);
 }
 
-// One write() a line: lines of several processes do not mix, and what was written outlives a killed one.
+// One write() a line: lines of several processes do not mix, and what was written outlives a killed
+// one.
 void Journal::write(const char* what, std::uint64_t number, const std::string& outcome,
                     std::int64_t overdue_us) {
   const std::string line = std::string(what) + ' ' + std::to_string(number) + ' ' + outcome + ' ' +
                            std::to_string(overdue_us) + '\n';
-  if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) std::abort();
+  if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    std::abort();
 }
 
 std::map<std::uint64_t, CallRecord> Journal::read() const {
@@ -68,7 +71,8 @@ std::size_t Journal::executions() const {
     std::string_view text(buffer, static_cast<std::size_t>(size));
     text = text.substr(0, text.rfind('\n') + 1);
     counted_to_ += static_cast<off_t>(text.size());
-    for (; !text.empty(); text.remove_prefix(text.find('\n') + 1)) executions_ += text.starts_with("execute");
+    for (; !text.empty(); text.remove_prefix(text.find('\n') + 1))
+      executions_ += text.starts_with("execute");
   }
   return executions_;
 }

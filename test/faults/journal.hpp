@@ -12,15 +12,16 @@ namespace skein::test {
 struct CallRecord {
   bool begun = false;
   int executions = 0;
-  /// Its caller had been told its end, and then something stood in the way; it was executed after that.
+  /// Its caller had been told its end, and then something stood in the way; it was executed after
+  /// that.
   bool executed_after_end = false;
-  std::string outcome;  ///< "Ok", "Wrong" (another's result), or an error's code; empty until it ends.
+  std::string
+      outcome;  ///< "Ok", "Wrong" (another's result), or an error's code; empty until it ends.
   std::int64_t overdue_us = 0;  ///< From its deadline to its end; negative where it ended earlier.
 };
 
-/// What clients and providers in several processes do, call by call, in one file in memory. It goes with
-/// the process that made it, and outlives all others. Writing is
-/// thread-safe.
+/// What clients and providers in several processes do, call by call, in one file in memory. It goes
+/// with the process that made it, and outlives all others. Writing is thread-safe.
 class Journal {
  public:
   Journal();
@@ -37,7 +38,8 @@ class Journal {
   void end(std::uint64_t number, const std::string& outcome, std::int64_t overdue_us) {
     write("end", number, outcome, overdue_us);
   }
-  /// Something that stood in the way is about to go: what has ended by now must not be executed any more.
+  /// Something that stood in the way is about to go: what has ended by now must not be executed any
+  /// more.
   void mark() { write("mark", 0); }
 
   std::map<std::uint64_t, CallRecord> read() const;

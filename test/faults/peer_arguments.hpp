@@ -11,7 +11,8 @@ namespace skein::test {
 using PeerArguments = std::map<std::string, std::string>;
 
 inline PeerArguments parse_arguments(int count, char** given) {
-  PeerArguments arguments{{"vendor", "loopback"}, {"name", "peer"}, {"domain", "17"}, {"lease", "1000"}};
+  PeerArguments arguments{
+      {"vendor", "loopback"}, {"name", "peer"}, {"domain", "17"}, {"lease", "1000"}};
   for (int i = 1; i < count; ++i) {
     const std::string text = given[i];
     arguments[text.substr(0, text.find('='))] = text.substr(text.find('=') + 1);

@@ -47,18 +47,22 @@ std::string TallyClient::note(std::uint64_t number, Instant deadline, Action&& a
   } catch (const Error& error) {
     outcome = to_string(error.code());
   }
-  journal_.end(number, outcome,
-               std::chrono::duration_cast<std::chrono::microseconds>(entity_.clock().now() - deadline).count());
+  journal_.end(
+      number, outcome,
+      std::chrono::duration_cast<std::chrono::microseconds>(entity_.clock().now() - deadline)
+          .count());
   return outcome;
 }
 
 std::string TallyClient::call(const CallShape& shape) {
   const std::uint64_t number = next_++;
-  std::vector<std::uint8_t> content(shape.max_bytes == 0 ? 0 : number * 7919 % (shape.max_bytes + 1),
-                                    static_cast<std::uint8_t>(number));
+  std::vector<std::uint8_t> content(
+      shape.max_bytes == 0 ? 0 : number * 7919 % (shape.max_bytes + 1),
+      static_cast<std::uint8_t>(number));
   journal_.begin(number);
-  return note(number, entity_.clock().now() + shape.timeout,
-              [&] { return proxy(shape.timeout).count(number, shape.work_ms, content) == content; });
+  return note(number, entity_.clock().now() + shape.timeout, [&] {
+    return proxy(shape.timeout).count(number, shape.work_ms, content) == content;
+  });
 }
 
 std::string TallyClient::call_and_kill(std::chrono::milliseconds timeout) {

@@ -26,8 +26,8 @@ struct CallShape {
 /// A client of the tally service whose calls are written down.
 class TallyClient {
  public:
-  /// Connects as users do, or, `exposed`, by a lane of its own so that its pending calls can be counted.
-  /// Throws what connecting throws. Its calls' numbers begin at `first`.
+  /// Connects as users do, or, `exposed`, by a lane of its own so that its pending calls can be
+  /// counted. Throws what connecting throws. Its calls' numbers begin at `first`.
   TallyClient(Entity& entity, Journal& journal, std::uint64_t first, bool exposed);
   ~TallyClient();
   TallyClient(const TallyClient&) = delete;

@@ -1,6 +1,6 @@
-// A process of the fault matrix: an entity with the tally service, with clients of it, or with both, that
-// writes what they do into a journal. It obeys the lines it reads, answers each with one line, and ends
-// with its standard input. Arguments are `name=value`; commands stand in obey().
+// A process of the fault matrix: an entity with the tally service, with clients of it, or with
+// both, that writes what they do into a journal. It obeys the lines it reads, answers each with one
+// line, and ends with its standard input. Arguments are `name=value`; commands stand in obey().
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -90,8 +90,8 @@ class Peer {
 
   std::string server() {
     const auto counters = service_->counters();
-    return "server " + std::to_string(counters.active) + " " + std::to_string(counters.clients) + " " +
-           std::to_string(service_->sessions());
+    return "server " + std::to_string(counters.active) + " " + std::to_string(counters.clients) +
+           " " + std::to_string(service_->sessions());
   }
 
   std::string services() {
@@ -102,7 +102,8 @@ class Peer {
   // Every other one is exposed.
   std::string connect(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      clients_.push_back(std::make_unique<TallyClient>(entity_, journal_, first_, clients_.size() % 2 != 0));
+      clients_.push_back(
+          std::make_unique<TallyClient>(entity_, journal_, first_, clients_.size() % 2 != 0));
       first_ += 1ull << 32;
     }
     return "connected";
@@ -119,12 +120,14 @@ class Peer {
     return "stopped " + std::to_string(succeeded);
   }
 
-  // One call of each client; one whose connection was lost without its knowing learns of it so, and tries again.
+  // One call of each client; one whose connection was lost without its knowing learns of it so, and
+  // tries again.
   std::string call(const CallShape& shape) {
     std::string outcome = "Ok";
     for (auto& client : clients_) {
       std::string one = client->call(shape);
-      for (int i = 0; i < 2 && (one == "Disconnected" || one == "Unavailable"); ++i) one = client->call(shape);
+      for (int i = 0; i < 2 && (one == "Disconnected" || one == "Unavailable"); ++i)
+        one = client->call(shape);
       if (one != "Ok") outcome = one;
     }
     return "called " + outcome;
@@ -152,7 +155,8 @@ class Peer {
   static std::string memory() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
-      if (line.starts_with("VmRSS:")) return "memory " + std::to_string(std::stoull(line.substr(6)));
+      if (line.starts_with("VmRSS:"))
+        return "memory " + std::to_string(std::stoull(line.substr(6)));
     }
     return "error no VmRSS";
   }

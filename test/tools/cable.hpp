@@ -26,9 +26,9 @@ struct Disturbance {
   static Disturbance cut() { return {.loss = 1}; }
 };
 
-/// A cable between two network namespaces that the test disturbs as it likes, without a kernel that can:
-/// device `skein0` in each, 10.77.0.1 in `one` and 10.77.0.2 in `other`, and a thread that carries
-/// IPv4 packets of 1500 bytes at most between the two. Members are thread-safe.
+/// A cable between two network namespaces that the test disturbs as it likes, without a kernel that
+/// can: device `skein0` in each, 10.77.0.1 in `one` and 10.77.0.2 in `other`, and a thread that
+/// carries IPv4 packets of 1500 bytes at most between the two. Members are thread-safe.
 class Cable {
  public:
   enum class End { One, Other };
@@ -39,8 +39,8 @@ class Cable {
     std::uint64_t overtaken = 0;  ///< Arrived after one that was sent later from the same end.
   };
 
-  /// Ends the program as skipped where the test may not make such devices. The chances are drawn from
-  /// `seed`.
+  /// Ends the program as skipped where the test may not make such devices. The chances are drawn
+  /// from `seed`.
   Cable(const NetworkSpace& one, const NetworkSpace& other, std::uint64_t seed);
   ~Cable();
   Cable(const Cable&) = delete;
