@@ -124,7 +124,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     wire::begin_request(message, {client, 0}, wire::kOpen);
     wire::append_default_branch(message);
     wire::append_trailer(message,
-                         wire::RequestTrailer{options.timeout, 0, {}, options.strategy, 0});
+                         wire::RequestTrailer{options.timeout, 0, {}, options.strategy, 0,
+                                              clock.now().time_since_epoch()});
     requests->write(message);
   }
 
@@ -304,12 +305,14 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     thread_local Bytes message;
     wire::begin_request(message, {client, number}, call.operation().hash);
     call.operation().in->encode(in, message);
+    const Instant now = clock.now();
     wire::append_trailer(
-        message, wire::RequestTrailer{call.deadline() - clock.now(),
+        message, wire::RequestTrailer{call.deadline() - now,
                                       0,
                                       call.blocking() ? inherited_chain() : std::vector<Guid>(),
                                       {},
-                                      call.operation().stream ? PendingStream::kWindow : 0});
+                                      call.operation().stream ? PendingStream::kWindow : 0,
+                                      now.time_since_epoch()});
     if (options.journal) {
       options.journal->note(introspection::CallStep::Sent, client, number, address.service, call.operation());
     }
@@ -357,7 +360,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
       const auto self = state.lock();
       if (!self) return;
       try {
-        self->send_reserved(wire::kCancel, {{}, number, {}, {}, 0});
+        self->send_reserved(wire::kCancel, {.target = number});
       } catch (const Error&) {
         // The server will find the call expired; cancelling early is a courtesy.
       }
@@ -366,7 +369,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   // On the thread that takes the results: one that is held up here takes none anyway.
   void grant(std::uint64_t number, std::uint32_t count) {
-    send_reserved(wire::kCredit, {{}, number, {}, {}, count});
+    send_reserved(wire::kCredit, {.target = number, .credit = count});
   }
 
   // About a call; nothing is to be said to a server that is gone.

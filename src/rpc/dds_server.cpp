@@ -12,6 +12,7 @@
 #include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
 #include "skein/rpc/wire.hpp"
+#include "transit_delay.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -46,6 +47,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
     bool matched = false;
+    TransitDelay transit;  // under the server's mutex
     std::atomic<bool> stalled{false};  // did not take a reply in time
   };
 
@@ -116,6 +118,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   }
 
   void on_request(const dds::Sample& sample, const wire::RequestHead& head) {
+    const Instant arrived = clock.now();
     {
       std::lock_guard lock(mutex);
       ++counters.received;
@@ -133,11 +136,12 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     invocation->caller = head.id.client;
     invocation->connection = head.id.client;
     invocation->number = head.id.number;
-    invocation->deadline = clock.now() + (trailer ? trailer->remaining : options.default_deadline);
-    if (trailer) invocation->chain = std::move(trailer->chain);
 
     const auto client = client_of(head.id, trailer.has_value());
     if (!client) return;
+    invocation->deadline =
+        arrived + (trailer ? remaining(*client, *trailer, arrived) : options.default_deadline);
+    if (trailer) invocation->chain = std::move(trailer->chain);
     invocation->session = client->session;
     if (operation->stream) {
       invocation->stream = make_stream(client, head.id, *invocation, trailer ? trailer->credit : 0);
@@ -176,8 +180,10 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     auto trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
     if (trailer && is_impostor(sample, head)) return;
     if (trailer && head.operation == wire::kOpen) {
-      control.post([state = weak_from_this(), id = head.id, strategy = trailer->strategy] {
-        if (const auto self = state.lock()) self->open(id, strategy);
+      TransitDelay transit;
+      if (trailer->sent != Duration::zero()) transit.excess(trailer->sent, clock.now());
+      control.post([state = weak_from_this(), id = head.id, strategy = trailer->strategy, transit] {
+        if (const auto self = state.lock()) self->open(id, strategy, transit);
       });
     } else if (trailer && head.operation == wire::kCancel) {
       if (const auto call = find_active({head.id.client, trailer->target})) call->cancel();
@@ -213,6 +219,14 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     return nullptr;
   }
 
+  // Of the time that the caller gave, what is left after the way here. Where that is none, the service
+  // drops the request as expired.
+  Duration remaining(Client& client, const wire::RequestTrailer& trailer, Instant arrived) {
+    if (trailer.sent == Duration::zero()) return trailer.remaining;
+    std::lock_guard lock(mutex);
+    return trailer.remaining - client.transit.excess(trailer.sent, arrived);
+  }
+
   // Vendor threads never write: the refusal leaves from `control`.
   void refuse(const RequestId& id, ErrorCode code, std::string text) {
     {
@@ -242,7 +256,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
 
   // ---- on the control executor
 
-  void open(const RequestId& id, const std::string& strategy) {
+  void open(const RequestId& id, const std::string& strategy, const TransitDelay& transit) {
     {
       std::lock_guard lock(mutex);
       if (const auto found = clients.find(id.client); found != clients.end()) {
@@ -254,6 +268,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
 
     auto client = make_client();
     client->open = id;
+    client->transit = transit;
     try {
       client->session = service->open({id.client, strategy});
     } catch (...) {

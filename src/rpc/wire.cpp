@@ -13,6 +13,7 @@ constexpr std::uint32_t kTrailerMagic = 0x314E4B53;  // "SKN1"
 constexpr std::size_t kOrigin = 4;                   // alignment counts from behind the encapsulation
 constexpr std::size_t kMaxChain = 64;
 constexpr std::chrono::hours kMaxRemaining{24 * 365};
+constexpr std::chrono::hours kMaxSent{24 * 365 * 100};  // so that differences can be computed
 constexpr std::size_t kMaxText = 64 * 1024;
 
 template <class T>
@@ -159,6 +160,7 @@ void append_trailer(Bytes& message, const RequestTrailer& trailer) {
     for (const Guid& guid : trailer.chain) message.append(std::as_bytes(std::span(guid.bytes)));
     put_text(message, trailer.strategy);
     put(message, trailer.credit);
+    put(message, std::int64_t{std::chrono::nanoseconds(trailer.sent).count()});
   });
 }
 
@@ -222,6 +224,10 @@ std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> me
   for (std::uint32_t i = 0; i < count; ++i) trailer.chain.push_back(cursor->guid());
   trailer.strategy = cursor->text(kMaxText);
   if (!cursor->at_end()) trailer.credit = cursor->get<std::uint32_t>();
+  if (!cursor->at_end()) {
+    trailer.sent = std::clamp<Duration>(std::chrono::nanoseconds(cursor->get<std::int64_t>()),
+                                        Duration::zero(), kMaxSent);
+  }
   return trailer;
 }
 

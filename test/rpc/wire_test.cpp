@@ -69,20 +69,25 @@ TEST_CASE("a reply's head and trailer are read as they were written") {
   CHECK(trailer->text == "full");
 }
 
-TEST_CASE("what a stream needs stands at a trailer's end, and older peers do not write it") {
+TEST_CASE("what came later stands at a trailer's end, and older peers do not write it") {
   Bytes message;
   wire::begin_request(message, kId, wire::kCredit);
   wire::append_default_branch(message);
   const std::size_t end = message.size();
-  wire::append_trailer(message, wire::RequestTrailer{1s, 42, {}, "", 8});
+  wire::append_trailer(message, wire::RequestTrailer{1s, 42, {}, "", 8, 90h});
   CHECK(wire::read_request_trailer(message, end)->credit == 8);
-  message.resize(message.size() - 4);
+  CHECK(wire::read_request_trailer(message, end)->sent == 90h);
   const auto shorten = [&](std::size_t at, std::uint32_t by) {
     std::uint32_t length;
     std::memcpy(&length, message.data() + at, 4);
     length -= by;
     std::memcpy(message.data() + at, &length, 4);
   };
+  message.resize(message.size() - 8);
+  shorten(48, 8);
+  CHECK(wire::read_request_trailer(message, end)->credit == 8);
+  CHECK(wire::read_request_trailer(message, end)->sent == 0h);
+  message.resize(message.size() - 4);
   shorten(48, 4);
   CHECK(wire::read_request_trailer(message, end)->credit == 0);
 

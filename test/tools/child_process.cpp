@@ -117,7 +117,9 @@ std::string ChildProcess::expect(const std::string& first, Clock::duration patie
 }
 
 void ChildProcess::signal(int number) {
-  if (pid_ > 0) kill(pid_, number);
+  if (pid_ <= 0) return;
+  kill(pid_, number);
+  if (number == SIGSTOP) waitid(P_PID, static_cast<id_t>(pid_), nullptr, WSTOPPED | WNOWAIT);
 }
 
 int ChildProcess::finish() {

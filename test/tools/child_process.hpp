@@ -49,6 +49,7 @@ class ChildProcess {
   /// for any other line.
   std::string expect(const std::string& first, std::chrono::steady_clock::duration patience = kPatience);
 
+  /// After SIGSTOP it has stopped when this returns.
   void signal(int number);
 
   /// Closes its input and waits: the exit code, or 128 and the signal that ended it.

@@ -48,6 +48,9 @@ struct RequestTrailer {
   /// How many results the server may send: at the start of a stream, and more with kCredit. A caller
   /// that grants none at the start knows no streams and gets the last result as an ordinary reply.
   std::uint32_t credit = 0;
+  /// When it was sent, by the sender's own clock, which has nothing to do with the receiver's: what
+  /// differs between two requests tells which one waited on its way. Zero: not stated.
+  Duration sent{};
 };
 
 /// What a reply is to a stream.
