@@ -22,6 +22,11 @@ class AStarPlanner final : public AE_navigator::IPlanner {
     }
   }
 
+  void improve(const AE_navigator::Problem& problem,
+               skein::StreamSink<AE_navigator::Route>& sink) override {
+    sink.push(plan(problem));
+  }
+
  private:
   AE_navigator::Route plan_on(const PlanningScene& scene, Berth berth) const {
     const SurfaceGraph graph(scene, berth);

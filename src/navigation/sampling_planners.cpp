@@ -9,6 +9,7 @@
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
 
+#include <limits>
 #include <mutex>
 
 #include "route_making.hpp"
@@ -120,6 +121,24 @@ class Sampling {
     return path;
   }
 
+  /// Has `action` told of each path that is better than those before, with its cost, during
+  /// solve(). What it throws is no answer and changes nothing: the search must come to its own end.
+  void on_better_path(std::function<void(const GroundPath&, double)> action) const {
+    problem_->setIntermediateSolutionCallback(
+        [this, action = std::move(action)](
+            const ob::Planner*, const std::vector<const ob::State*>& states, ob::Cost cost) {
+          // From behind, and without both ends.
+          GroundPath path{on_map(scene_.problem().start)};
+          for (auto state = states.rbegin(); state != states.rend(); ++state)
+            path.push_back(point_of(*state));
+          path.push_back(on_map(scene_.problem().goal));
+          try {
+            action(path, cost.value());
+          } catch (const std::exception&) {
+          }
+        });
+  }
+
   double range_m() const {
     return 0.12 * std::max(scene_.terrain().north_extent_m(), scene_.terrain().east_extent_m());
   }
@@ -184,6 +203,11 @@ class RrtConnectPlanner final : public SamplingPlanner {
     if (unflyable.empty()) throw scene.budget().nothing_found();
     throw AE_navigator::NoRoute("no path that was found can be flown: " + unflyable, false);
   }
+
+  void improve(const AE_navigator::Problem& problem,
+               StreamSink<AE_navigator::Route>& sink) override {
+    sink.push(plan(problem));
+  }
 };
 
 class RrtStarPlanner final : public SamplingPlanner {
@@ -191,7 +215,32 @@ class RrtStarPlanner final : public SamplingPlanner {
   using SamplingPlanner::SamplingPlanner;
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    constexpr int kMostPoints = 100;
+    return search(problem, nullptr);
+  }
+
+  void improve(const AE_navigator::Problem& problem,
+               StreamSink<AE_navigator::Route>& sink) override {
+    bool any = false;
+    std::optional<AE_navigator::Route> best;
+    try {
+      best = search(problem, [&](const AE_navigator::Route& route) {
+        // A route that the caller has no room for is overtaken by the next.
+        if (sink.try_push(route)) any = true;
+      });
+    } catch (const AE_navigator::NoRoute&) {
+      if (!any) throw;
+    }
+    if (best) sink.push(std::move(*best));
+  }
+
+ private:
+  static constexpr int kMostPoints = 100;
+  // What a path must save to be worth a route of its own.
+  static constexpr double kWorthwhile = 0.98;
+
+  using Report = std::function<void(const AE_navigator::Route&)>;
+
+  AE_navigator::Route search(const AE_navigator::Problem& problem, const Report& report) {
     const PlanningScene scene(*terrains_, problem, options_);
     const Sampling sampling(scene, options_.seed, Berth::ForTurns);
     sampling.problem()->setOptimizationObjective(
@@ -200,20 +249,30 @@ class RrtStarPlanner final : public SamplingPlanner {
     planner.setRange(sampling.range_m());
     planner.setProblemDefinition(sampling.problem());
     scene.cost(on_map(problem.start), on_map(problem.goal));
+    double reported = std::numeric_limits<double>::infinity();
+    if (report) {
+      sampling.on_better_path([&](const GroundPath& path, double cost) {
+        if (cost > kWorthwhile * reported) return;
+        reported = cost;
+        report(route_of(scene, path));
+      });
+    }
     const Instant end = scene.budget().search_end(10);
     const auto path = sampling.solve(
         planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
     scene.budget().require_time();
     if (!path) throw scene.budget().nothing_found();
     try {
-      const auto cost = [&](const GroundPoint& a, const GroundPoint& b) {
-        return scene.cost(a, b);
-      };
-      return make_route(scene, *path, cost, kMostPoints, "RRTstar");
+      return route_of(scene, *path);
     } catch (const Unflyable& reason) {
       throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
                                   false);
     }
+  }
+
+  static AE_navigator::Route route_of(const PlanningScene& scene, const GroundPath& path) {
+    const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
+    return make_route(scene, path, cost, kMostPoints, "RRTstar");
   }
 };
 

@@ -25,6 +25,9 @@ AE_navigator::Route straight_line(const AE_navigator::Problem& problem) {
 class ShortCut final : public AE_navigator::IPlanner {
  public:
   AE_navigator::Route plan(const AE_navigator::Problem& task) override { return straight_line(task); }
+  void improve(const AE_navigator::Problem& task, skein::StreamSink<AE_navigator::Route>& sink) override {
+    sink.push(plan(task));
+  }
 };
 
 class CarelessNavigator final : public AE_navigatorI::INavigator {

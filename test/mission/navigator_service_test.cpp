@@ -25,6 +25,7 @@ struct OneRoute : IPlanner {
     asked.push_back(task);
     return route;
   }
+  void improve(const Problem& task, StreamSink<Route>& sink) override { sink.push(plan(task)); }
   Route route;
   std::vector<Problem> asked;
 };
@@ -106,4 +107,21 @@ TEST_CASE("the flight limits come from the next flight controller when the first
   flight.ask();
   REQUIRE(flight.planner->asked.size() == 2);
   CHECK(flight.planner->asked[1].limits.speed_m_s == 55);
+}
+
+TEST_CASE("the best route so far is taken when a planner's time is up") {
+  /// Has its route at once, and looks for a better one until nobody waits.
+  struct NeverContent : OneRoute {
+    void improve(const Problem& task, StreamSink<Route>& sink) override {
+      for (Route better = plan(task);;) sink.push(better);
+    }
+  };
+  Flight flight;
+  const auto controller = make_entity("controller", Pairing::get().client);
+  controller->provide<IFlightController>(flying_at("60"));
+  const auto planner = std::make_shared<NeverContent>();
+  planner->route = flight.planner->route;
+  flight.navigator->provide_csp<IPlanner>("NeverContent", flight.navigator->id(), planner, {});
+  flight.request.problem.time_limit_ms = 500;
+  CHECK(flight.ask() == planner->route);
 }

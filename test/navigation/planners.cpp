@@ -68,6 +68,32 @@ TEST_CASE("RRTstar makes good use of more steps") {
   CHECK(later < 1.05 * cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem)));
 }
 
+TEST_CASE("Each planner brings its routes as it finds them, the last being the best") {
+  struct Routes final : skein::StreamSink<Route> {
+    bool put(Route route, bool) override {
+      found.push_back(std::move(route));
+      return true;
+    }
+    std::vector<Route> found;
+  };
+  Demo demo;
+  demo.problem.time_limit_ms = 20000;
+  for (const std::string name : {"AStar", "RRTConnect"}) {
+    Routes routes;
+    make_planner(name, demo.terrains)->improve(demo.problem, routes);
+    CHECK(routes.found.size() == 1);
+  }
+  demo.problem.time_limit_ms = 0;
+  PlannerOptions options;
+  int left = 3000;
+  options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
+  Routes routes;
+  make_rrt_star(demo.terrains, options)->improve(demo.problem, routes);
+  REQUIRE(routes.found.size() > 1);
+  for (const Route& route : routes.found) CHECK(violations(demo.problem, route, demo.ground) == "");
+  CHECK(cost_m(demo.problem, routes.found.back()) < cost_m(demo.problem, routes.found.front()));
+}
+
 TEST_CASE(
     "Routes end where they should and fly no lower than allowed, also just above the minimum") {
   Demo demo;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "route_judge.hpp"
 #include "skein/core/error.hpp"
@@ -50,6 +51,19 @@ bool settles(const UserException& exception, const Candidate& planner, Refusals&
   return no_route->proven;
 }
 
+/// The last of a planner's routes, which is its best: also where its time is up or it fails before
+/// its end.
+Route best_of(Stream<Route> routes) {
+  std::optional<Route> best;
+  try {
+    while (auto route = routes.next()) best = std::move(route);
+  } catch (const Error&) {
+    if (!best) throw;
+  }
+  if (!best) throw NoRoute("the planner ended without a route", false);
+  return std::move(*best);
+}
+
 void use_own_words(DecisionRecord& record, const Refusals& refusals) {
   for (Attempt& attempt : record.attempts) {
     const auto refusal = refusals.find(attempt.csp);
@@ -78,8 +92,8 @@ Navigator::Navigator(Entity& entity, ParameterValues profile,
 
 Route Navigator::request_route(const AE_navigatorI::RouteRequest& request) {
   if (journal_.at_work() >= kMostRequests) {
-    throw Overloaded(fmt::format("the navigator plans {} routes already; ask again when one is done",
-                                 kMostRequests));
+    throw Overloaded(fmt::format(
+        "the navigator plans {} routes already; ask again when one is done", kMostRequests));
   }
   journal_.begin(request.request_id);
   DecisionRecord record;
@@ -110,15 +124,16 @@ Route Navigator::decide(const AE_navigatorI::RouteRequest& request, DecisionReco
   }
 }
 
-Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
-                      Duration limit, DecisionRecord& record) {
+Route Navigator::plan(const Problem& problem, const ParameterValues& parameters, Duration limit,
+                      DecisionRecord& record) {
   const auto terrain = terrains_->load(problem.terrain);
   Task<IPlanner, Route> task;
-  // Asynchronous, so that a planner in this process that hangs holds up its own thread and not this.
+  // A stream, so that the best route so far is there when the time is up, and that a planner in
+  // this process that hangs holds up its own thread and not this.
   task.run = [&](IPlanner::Proxy& csp, Duration budget) {
     Problem timed = problem;
     timed.time_limit_ms = planning_time_ms(budget);
-    return csp.async_plan(timed).get();
+    return best_of(csp.improve(timed));
   };
   task.evaluate = [&](const Route& route) { return judge_route(*terrain, problem, route); };
   Refusals refusals;
@@ -168,9 +183,8 @@ Route Navigator::ask(const Reference<IPlanner>& planner, const Problem& problem,
 FlightLimits Navigator::flight_limits() {
   const std::lock_guard lock(mutex_);
   if (!flight_controller_) {
-    flight_controller_ =
-        entity_.connect<IFlightController>({.timeout = kFlightControllerPatience})
-            .within(kFlightControllerPatience);
+    flight_controller_ = entity_.connect<IFlightController>({.timeout = kFlightControllerPatience})
+                             .within(kFlightControllerPatience);
   }
   try {
     return flight_controller_->flight_limits();

@@ -18,13 +18,19 @@ class LimitedPlanner final : public AE_navigator::IPlanner {
       : planner_(std::move(planner)), limit_ms_(static_cast<std::uint32_t>(limit.count())) {}
 
   AE_navigator::Route plan(const AE_navigator::Problem& task) override {
-    if (task.time_limit_ms != 0 && task.time_limit_ms <= limit_ms_) return planner_->plan(task);
-    AE_navigator::Problem limited = task;
-    limited.time_limit_ms = limit_ms_;
-    return planner_->plan(limited);
+    return planner_->plan(limited(task));
+  }
+
+  void improve(const AE_navigator::Problem& task, StreamSink<AE_navigator::Route>& sink) override {
+    planner_->improve(limited(task), sink);
   }
 
  private:
+  AE_navigator::Problem limited(AE_navigator::Problem task) const {
+    if (task.time_limit_ms == 0 || task.time_limit_ms > limit_ms_) task.time_limit_ms = limit_ms_;
+    return task;
+  }
+
   std::unique_ptr<AE_navigator::IPlanner> planner_;
   std::uint32_t limit_ms_;
 };
@@ -38,7 +44,8 @@ std::shared_ptr<Servant> make_planner_csp(const std::string& name,
   options.seed = static_cast<std::uint32_t>(number_of(values, "Seed", options.seed));
   auto planner = make_planner(name, std::move(terrains), std::move(options));
   if (const auto limit = duration_of(values, "Time limit")) {
-    const auto limit_ms = std::max(milliseconds(1), std::chrono::duration_cast<milliseconds>(*limit));
+    const auto limit_ms =
+        std::max(milliseconds(1), std::chrono::duration_cast<milliseconds>(*limit));
     planner = std::make_unique<LimitedPlanner>(std::move(planner), limit_ms);
   }
   return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::move(planner));
