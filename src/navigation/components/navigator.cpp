@@ -51,13 +51,12 @@ bool settles(const UserException& exception, const Candidate& planner, Refusals&
   return no_route->proven;
 }
 
-/// The last of a planner's routes, which is its best: also where its time is up or it fails before
-/// its end.
+/// The last of a planner's routes, which is its best: also where its time is up before its end.
 Route best_of(Stream<Route> routes) {
   std::optional<Route> best;
   try {
     while (auto route = routes.next()) best = std::move(route);
-  } catch (const Error&) {
+  } catch (const TimedOut&) {
     if (!best) throw;
   }
   if (!best) throw NoRoute("the planner ended without a route", false);
