@@ -78,6 +78,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
 
   mutable std::mutex mutex;
   mutable std::condition_variable changed;
+  bool leaving = false;  // nobody waits for services any more
   Table table;
   std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
   std::uint64_t last_observer = 0;
@@ -344,9 +345,11 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
   try {
     state_->changed.wait(lock, [&] {
       found = state_->table.find(query);
-      return late || !found.empty() || state_->clock.now() >= deadline;
+      return late || state_->leaving || !found.empty() || state_->clock.now() >= deadline;
     });
-    if (found.empty()) reason = state_->table.explain(query);
+    if (found.empty()) {
+      reason = state_->leaving ? "the entity that looked for it has ended" : state_->table.explain(query);
+    }
   } catch (...) {
     lock.unlock();
     state_->clock.cancel(timer);
@@ -356,6 +359,12 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
   state_->clock.cancel(timer);
   if (found.empty()) throw Unavailable(reason);
   return found;
+}
+
+void Broker::end_waits() {
+  std::lock_guard lock(state_->mutex);
+  state_->leaving = true;
+  state_->changed.notify_all();
 }
 
 std::string Broker::explain(const Query& query) const {

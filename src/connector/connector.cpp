@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "connections.hpp"
 #include "failover_channel.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/discovery.idl.hpp"
@@ -47,12 +48,12 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
         if (change.kind != Change::Kind::Removed) {
           *suspect = change.kind == Change::Kind::Suspect;
         } else if (const auto gone = weak.lock()) {
-          gone->provider_gone(ending_of(change.departure));
+          gone->lose(ending_of(change.departure));
         }
       }));
   channel->attach(registration);
   // It may have gone between the answer to `open` and the first look.
-  if (!broker.knows(link.provider)) channel->provider_gone("it ended while it was being connected");
+  if (!broker.knows(link.provider)) channel->lose("it ended while it was being connected");
 }
 
 bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {
@@ -91,6 +92,15 @@ void arrange(Table::Found& providers, const Wanted& wanted, const std::string& p
 
 }  // namespace
 
+Connector::Connector(const Parts& parts)
+    : parts_(parts), connections_(std::make_shared<Connections>()) {}
+
+void Connector::close() {
+  connections_->close();
+  parts_.broker.end_waits();
+  connections_->await_openings();
+}
+
 std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
                                                   const std::string& strategy,
                                                   Duration timeout) const {
@@ -99,9 +109,12 @@ std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& prov
 
 Link Connector::open_link(const ServiceDescription& provider, const std::string& strategy,
                           Duration timeout) const {
+  const Connections::Opening opening(*connections_);
   const Guid id{provider.provider};
   if (const auto service = parts_.directory->find(id)) {
-    return {id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
+    Link link{id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
+    connections_->add(link.channel);
+    return link;
   }
   rpc::DdsChannel::Options options;
   options.strategy = strategy;
@@ -109,11 +122,14 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
   options.timeout = timeout;
   options.spin = parts_.spin;
   options.journal = parts_.journal;
-  options.stands = [&broker = parts_.broker, id] { return broker.knows(id); };
+  options.stands = [&broker = parts_.broker, connections = connections_, id] {
+    return !connections->closed() && broker.knows(id);
+  };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
   Link link{id, channel};
   follow(parts_.broker, channel, link);
+  connections_->add(channel);
   return link;
 }
 
@@ -138,17 +154,21 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                         strategy = options.strategy](const Wanted& wanted) {
     return connector.open_next(query, strategy, wanted);
   };
-  const Instant deadline = parts_.clock.now() + options.timeout;
-  return std::make_shared<FailoverChannel>(connect({deadline}), connect, options.hedge_after);
+  const Instant deadline = parts_.clock->now() + options.timeout;
+  const auto channel =
+      std::make_shared<FailoverChannel>(connect({deadline}), connect, options.hedge_after);
+  connections_->add(channel);
+  return channel;
 }
 
 std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interface,
                                                    const ConnectOptions& options) const {
-  const Instant deadline = parts_.clock.now() + options.timeout;
+  const Connections::Opening opening(*connections_);
+  const Instant deadline = parts_.clock->now() + options.timeout;
   std::vector<Opened> all;
   std::exception_ptr failure;
   for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
-    const Duration left = std::max(Duration::zero(), deadline - parts_.clock.now());
+    const Duration left = std::max(Duration::zero(), deadline - parts_.clock->now());
     try {
       all.push_back({Guid{provider->provider}, provider->entity,
                      open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
@@ -172,19 +192,24 @@ ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions o
 
 std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
                                                  const ConnectOptions& options) const {
+  const Connections::Opening opening(*connections_);
   rpc::DdsChannel::Options dds_options;
   const std::string service = options.name.empty() ? std::string(interface.name) : options.name;
   dds_options.peer = "the foreign server of " + service;
   dds_options.timeout = options.timeout;
   dds_options.spin = parts_.spin;
   dds_options.journal = parts_.journal;
-  return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations, parts_.clock,
-                               {service, Guid{}}, std::move(dds_options));
+  dds_options.stands = [connections = connections_] { return !connections->closed(); };
+  auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
+                                       parts_.clock, {service, Guid{}}, std::move(dds_options));
+  connections_->add(channel);
+  return channel;
 }
 
 // The first provider that answers: in the Broker's order, those to be asked last at the end.
 Link Connector::open_next(const Query& query, const std::string& strategy, const Wanted& wanted) const {
-  const auto left = [&] { return std::max(Duration::zero(), wanted.deadline - parts_.clock.now()); };
+  const Connections::Opening opening(*connections_);
+  const auto left = [&] { return std::max(Duration::zero(), wanted.deadline - parts_.clock->now()); };
   std::exception_ptr failure;
   do {
     if (failure) std::this_thread::sleep_for(kRetryPause);
@@ -199,7 +224,7 @@ Link Connector::open_next(const Query& query, const std::string& strategy, const
         failure = std::current_exception();
       }
     }
-  } while (wanted.wait && left() > Duration::zero());
+  } while (wanted.wait && left() > Duration::zero() && !connections_->closed());
   if (failure) std::rethrow_exception(failure);
   throw Unavailable("no other provider of " + query.name + " stands by");
 }

@@ -89,14 +89,19 @@ bool FailoverChannel::connected() const {
 }
 
 void FailoverChannel::disconnect() {
-  std::vector<Link> links;
-  {
-    std::lock_guard lock(mutex_);
-    closed_ = true;
-    links = others_;
-    links.push_back(main_);
-  }
-  for (const Link& link : links) link.channel->disconnect();
+  for (const Link& link : close()) link.channel->disconnect();
+}
+
+void FailoverChannel::lose(const std::string& how) {
+  for (const Link& link : close()) link.channel->lose(how);
+}
+
+std::vector<Link> FailoverChannel::close() {
+  std::lock_guard lock(mutex_);
+  closed_ = true;
+  std::vector<Link> links = others_;
+  links.push_back(main_);
+  return links;
 }
 
 std::optional<Link> FailoverChannel::ready(const Wanted& wanted) {

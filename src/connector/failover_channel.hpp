@@ -34,6 +34,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   std::string peer() const override;
   bool connected() const override;
   void disconnect() override;
+  void lose(const std::string& how) override;
 
   /// See ConnectOptions.
   const std::optional<Duration>& hedge_after() const noexcept { return hedge_after_; }
@@ -48,6 +49,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
  private:
   void call_here(const std::shared_ptr<PendingCall>& call, const void* in);
   void keep(const Link& link);
+  std::vector<Link> close();
 
   Connect connect_;
   const std::optional<Duration> hedge_after_;

@@ -66,14 +66,17 @@ void PendingCall::set_canceller(std::function<void()> canceller) {
 }
 
 void PendingCall::cancel() {
+  abandon(std::make_exception_ptr(
+      Cancelled("the call of " + std::string(operation_.name) + " was cancelled by its caller")));
+}
+
+void PendingCall::abandon(std::exception_ptr error) {
   std::function<void()> canceller;
   {
     std::lock_guard lock(mutex_);
     canceller.swap(canceller_);
   }
-  const bool first = fail(std::make_exception_ptr(
-      Cancelled("the call of " + std::string(operation_.name) + " was cancelled by its caller")));
-  if (first && canceller) canceller();
+  if (fail(std::move(error)) && canceller) canceller();
 }
 
 }  // namespace skein

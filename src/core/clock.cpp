@@ -46,8 +46,8 @@ struct SystemClock::State {
   }
 };
 
-SystemClock::SystemClock() : state_(std::make_unique<State>()) {
-  state_->thread = std::thread([state = state_.get()] { state->run(); });
+SystemClock::SystemClock() : state_(std::make_shared<State>()) {
+  state_->thread = std::thread([state = state_] { state->run(); });
 }
 
 SystemClock::~SystemClock() {
@@ -56,7 +56,11 @@ SystemClock::~SystemClock() {
     state_->stopping = true;
   }
   state_->changed.notify_all();
-  state_->thread.join();
+  if (state_->thread.get_id() == std::this_thread::get_id()) {
+    state_->thread.detach();  // a timer's action was the last to let go of the clock
+  } else {
+    state_->thread.join();
+  }
 }
 
 TimerId SystemClock::call_at(Instant when, std::function<void()> action) {

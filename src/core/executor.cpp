@@ -39,6 +39,7 @@ struct ThreadExecutor::State {
   std::size_t running = 0;
   std::size_t threads = 0;
   bool stopping = false;
+  bool finishing = false;  // finish() waits until nothing is left to do
   std::atomic<bool> called{false};  // a task waits, or the end is near: what a spinning thread looks at
 
   // Under the lock, after each change of `tasks` or `stopping`.
@@ -75,6 +76,7 @@ struct ThreadExecutor::State {
       task = nullptr;
       lock.lock();
       --running;
+      if (finishing) changed.notify_all();
     }
     --threads;
     changed.notify_all();
@@ -129,10 +131,29 @@ bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
   return ended;
 }
 
-bool ThreadExecutor::post(std::function<void()> task) {
+void ThreadExecutor::finish() {
+  {
+    std::unique_lock lock(state_->mutex);
+    state_->finishing = true;
+    state_->changed.wait(lock, [&] { return state_->tasks.empty() && state_->running == 0; });
+    state_->stopping = true;
+    state_->note_change();
+    state_->changed.notify_all();
+  }
+  stop();
+}
+
+bool ThreadExecutor::post(std::function<void()> task) { return enqueue(task, state_->capacity); }
+
+void ThreadExecutor::post_or_run(std::function<void()> task) {
+  if (!enqueue(task, SIZE_MAX)) task();
+}
+
+// Leaves the task alone where it is not taken.
+bool ThreadExecutor::enqueue(std::function<void()>& task, std::size_t capacity) {
   {
     std::lock_guard lock(state_->mutex);
-    if (state_->stopping || state_->tasks.size() >= state_->capacity) return false;
+    if (state_->stopping || state_->tasks.size() >= capacity) return false;
     state_->tasks.push_back(std::move(task));
     state_->note_change();
     if (state_->running == state_->concurrency) return true;  // whoever ends next looks at the queue
@@ -155,7 +176,7 @@ bool ThreadExecutor::try_run_inline(const std::function<void()>& task) {
       {
         std::lock_guard lock(state.mutex);
         --state.running;
-        wake = state.stopping || !state.tasks.empty();
+        wake = state.stopping || state.finishing || !state.tasks.empty();
       }
       if (wake) state.changed.notify_all();
     }
@@ -174,6 +195,8 @@ bool ManualExecutor::post(std::function<void()> task) {
   tasks_.push_back(std::move(task));
   return true;
 }
+
+void ManualExecutor::post_or_run(std::function<void()> task) { post(std::move(task)); }
 
 std::size_t ManualExecutor::run_all() {
   std::size_t count = 0;

@@ -83,7 +83,7 @@ struct Entity::State {
                {options.system, options.name, options.vendor->name(), options.lease}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
-                   process->clock(), options.spin, journal}),
+                   process->shared_clock(), options.spin, journal}),
         head(connector, broker, process->directory(), process->clock()) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
@@ -102,7 +102,9 @@ struct Entity::State {
   const EntityOptions options;
   const std::shared_ptr<Process> process;
   std::unique_ptr<dds::Participant> participant;
-  ThreadExecutor continuations{"skein-continue"};
+  // Shared with connections, which may outlive the entity.
+  const std::shared_ptr<ThreadExecutor> continuations =
+      std::make_shared<ThreadExecutor>("skein-continue");
   ThreadExecutor control{"skein-control"};
   std::shared_ptr<rpc::CallJournal> journal;
   Broker broker;
@@ -134,6 +136,7 @@ Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move
 }
 
 Entity::~Entity() {
+  state_->connector.close();
   std::map<Guid, std::unique_ptr<Provided>> provided;
   {
     std::lock_guard lock(state_->mutex);
@@ -141,6 +144,7 @@ Entity::~Entity() {
   }
   for (const auto& [id, service] : provided) state_->process->directory()->remove(id);
   provided.clear();
+  state_->continuations->finish();
   state_->journal->close();
 }
 

@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <thread>
 #include <unordered_map>
 
 #include "common.hpp"
@@ -32,18 +33,20 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     TimerId timer = 0;
   };
 
-  State(dds::Participant& participant_, Executor& control_, Executor& continuations_, Clock& clock_,
-        DdsAddress address_, Options options_)
+  State(dds::Participant& participant_, Executor& control_, std::shared_ptr<Executor> continuations_,
+        std::shared_ptr<Clock> clock_, DdsAddress address_, Options options_)
       : participant(participant_),
         control(control_),
-        continuations(continuations_),
-        clock(clock_),
+        continuations(std::move(continuations_)),
+        owned_clock(std::move(clock_)),
+        clock(*owned_clock),
         address(std::move(address_)),
         options(std::move(options_)) {}
 
   dds::Participant& participant;
   Executor& control;
-  Executor& continuations;
+  const std::shared_ptr<Executor> continuations;
+  const std::shared_ptr<Clock> owned_clock;
   Clock& clock;
   const DdsAddress address;
   const Options options;
@@ -356,6 +359,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   }
 
   void tell_server(std::uint64_t number) {
+    std::lock_guard lock(mutex);  // once closed, `control` may be gone
+    if (phase != Phase::Open) return;
     control.post([state = weak_from_this(), number] {
       const auto self = state.lock();
       if (!self) return;
@@ -404,21 +409,31 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
     });
   }
 
+  // Nothing of the participant is in use any more when this returns.
   void close() {
     std::shared_ptr<dds::Writer> writer;
     std::shared_ptr<dds::Reader> reader;
+    std::shared_ptr<void> follower;
     {
       std::lock_guard lock(mutex);
       if (phase == Phase::Closed) return;
       phase = Phase::Closed;
       writer.swap(requests);
       reader.swap(replies);
+      follower.swap(companion);
+      changed.notify_all();
     }
     fail_all([&](const OperationInfo& operation) {
       return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
                                                " was closed during " +
                                                std::string(operation.name)));
     });
+    await_senders(writer);
+  }
+
+  // A thread that is inside write() lets go of the writer soon, and none can take hold of it any more.
+  static void await_senders(const std::shared_ptr<dds::Writer>& writer) {
+    while (writer.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   template <class MakeError>
@@ -438,10 +453,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 };
 
 std::shared_ptr<DdsChannel> DdsChannel::open(dds::Participant& participant, Executor& control,
-                                             Executor& continuations, Clock& clock,
+                                             std::shared_ptr<Executor> continuations,
+                                             std::shared_ptr<Clock> clock,
                                              const DdsAddress& address, Options options) {
-  auto state = std::make_shared<State>(participant, control, continuations, clock, address,
-                                       std::move(options));
+  auto state = std::make_shared<State>(participant, control, std::move(continuations),
+                                       std::move(clock), address, std::move(options));
   std::shared_ptr<DdsChannel> channel(new DdsChannel(state));
   state->create_endpoints();
   state->await_open();
@@ -455,10 +471,10 @@ void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in)
 }
 
 Clock& DdsChannel::clock() const noexcept { return state_->clock; }
-Executor& DdsChannel::continuations() const noexcept { return state_->continuations; }
+Executor& DdsChannel::continuations() const noexcept { return *state_->continuations; }
 std::string DdsChannel::peer() const { return state_->options.peer; }
 void DdsChannel::disconnect() { state_->close(); }
-void DdsChannel::provider_gone(const std::string& how) { state_->lose(how); }
+void DdsChannel::lose(const std::string& how) { state_->lose(how); }
 
 bool DdsChannel::connected() const {
   std::lock_guard lock(state_->mutex);

@@ -1,6 +1,7 @@
 #include "skein/rpc/dds_server.hpp"
 
 #include <atomic>
+#include <deque>
 #include <mutex>
 #include <set>
 #include <unordered_map>
@@ -21,6 +22,9 @@ using wire::RequestId;
 
 // How long an opened client may take to match its reply reader before it is forgotten.
 constexpr std::chrono::seconds kOpenPatience{10};
+// How many refusals may wait to be written to a client: no client that waits for them has more calls on
+// its way (DdsChannel::Options::calls_in_flight).
+constexpr std::size_t kMaxRefusals = 4096;
 // How many clients that have gone are remembered, in case that one of them comes back.
 constexpr std::size_t kMaxForgotten = 1024;
 
@@ -41,13 +45,21 @@ std::vector<std::string> DdsAddress::partitions() const {
 }
 
 struct DdsServer::State : std::enable_shared_from_this<State> {
+  struct Refusal {
+    RequestId id;
+    ErrorCode code;
+    std::string text;
+  };
+
   struct Client {
     std::shared_ptr<dds::Writer> writer;  // under the server's mutex; nothing once the server ends
     std::shared_ptr<Session> session;
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
     bool matched = false;
-    TransitDelay transit;  // under the server's mutex
+    TransitDelay transit;  // under the server's mutex, as are:
+    std::deque<Refusal> refusals;
+    bool refusing = false;  // a task of `control` is about to write them
     std::atomic<bool> stalled{false};  // did not take a reply in time
   };
 
@@ -80,7 +92,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   std::shared_ptr<Client> make_client() {
     return {new Client, [&control = control](Client* client) {
               const std::shared_ptr<Client> owned(client);
-              control.post([owned] {});
+              control.post_or_run([owned] {});
             }};
   }
 
@@ -227,21 +239,35 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     return trailer.remaining - client.transit.excess(trailer.sent, arrived);
   }
 
-  // Vendor threads never write: the refusal leaves from `control`.
+  // Vendor threads never write: the refusal leaves from `control`, by one task for all that wait, which
+  // finds room there whatever else does.
   void refuse(const RequestId& id, ErrorCode code, std::string text) {
+    std::shared_ptr<Client> client;
     {
       std::lock_guard lock(mutex);
       ++counters.refused;
-    }
-    control.post([state = weak_from_this(), id, code, text = std::move(text)] {
-      const auto self = state.lock();
-      if (!self) return;
-      const auto client = [&] {
-        std::lock_guard lock(self->mutex);
-        const auto found = self->clients.find(id.client);
-        return found != self->clients.end() ? found->second : self->foreign;
-      }();
+      const auto found = clients.find(id.client);
+      client = found != clients.end() ? found->second : foreign;
       if (!client) return;
+      if (client->refusals.size() >= kMaxRefusals) client->refusals.pop_front();
+      client->refusals.push_back({id, code, std::move(text)});
+      if (std::exchange(client->refusing, true)) return;
+    }
+    control.post_or_run([state = weak_from_this(), client] {
+      if (const auto self = state.lock()) self->write_refusals(*client);
+    });
+  }
+
+  // ---- on the control executor
+
+  void write_refusals(Client& client) {
+    std::deque<Refusal> refusals;
+    {
+      std::lock_guard lock(mutex);
+      refusals.swap(client.refusals);
+      client.refusing = false;
+    }
+    for (const auto& [id, code, text] : refusals) {
       Bytes message;
       if (code == ErrorCode::Unimplemented) {
         wire::begin_reply(message, id, wire::RemoteException::UnknownOperation, 0);
@@ -250,11 +276,9 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       } else {
         encode_error(message, id, code, text);
       }
-      self->write(*client, message);
-    });
+      write(client, message);
+    }
   }
-
-  // ---- on the control executor
 
   void open(const RequestId& id, const std::string& strategy, const TransitDelay& transit) {
     {
@@ -355,7 +379,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       std::lock_guard lock(mutex);
       client->matched = matched;
     }
-    control.post([state = weak_from_this(), key, client, matched] {
+    control.post_or_run([state = weak_from_this(), key, client, matched] {
       const auto self = state.lock();
       if (!self) return;
       if (matched) {
@@ -383,7 +407,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       }
       if (forgotten.erase(key) == 0) return;
     }
-    control.post([state = weak_from_this(), key] {
+    control.post_or_run([state = weak_from_this(), key] {
       const auto self = state.lock();
       if (!self) return;
       self->drop(key);
@@ -402,7 +426,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
       const auto found = clients.find(key);
       if (found == clients.end() || found->second->matched) return;
     }
-    control.post([state = weak_from_this(), key] {
+    control.post_or_run([state = weak_from_this(), key] {
       if (const auto self = state.lock()) self->drop(key);
     });
   }

@@ -27,10 +27,12 @@ void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& 
 
 }  // namespace
 
-std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service, Clock& clock,
-                                                 Executor& continuations,
+std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service,
+                                                 std::shared_ptr<Clock> clock,
+                                                 std::shared_ptr<Executor> continuations,
                                                  const std::string& strategy) {
-  std::shared_ptr<LocalChannel> channel(new LocalChannel(service, clock, continuations));
+  std::shared_ptr<LocalChannel> channel(
+      new LocalChannel(service, std::move(clock), std::move(continuations)));
   const auto target = service.lock();
   if (!target) throw Unavailable("the service has been withdrawn");
   channel->peer_ = std::string(target->interface_info().name) + " in this process";
@@ -38,8 +40,11 @@ std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service,
   return channel;
 }
 
-LocalChannel::LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executor& continuations)
-    : service_(std::move(service)), clock_(clock), continuations_(continuations) {}
+LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+                           std::shared_ptr<Executor> continuations)
+    : service_(std::move(service)),
+      clock_(std::move(clock)),
+      continuations_(std::move(continuations)) {}
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   call->attempt([&] {
@@ -70,15 +75,30 @@ bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* 
 }
 
 void LocalChannel::disconnect() {
+  for (const auto& call : close()) call->cancel();
+}
+
+void LocalChannel::lose(const std::string& how) {
+  for (const auto& call : close()) {
+    call->abandon(std::make_exception_ptr(Disconnected(
+        "the connection to " + peer_ + " is gone (" + how + "); whether " +
+        std::string(call->operation().name) + " ran is unknown")));
+  }
+}
+
+// The calls that have not ended.
+std::vector<std::shared_ptr<PendingCall>> LocalChannel::close() {
   std::vector<std::weak_ptr<PendingCall>> queued;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
     queued.swap(queued_);
   }
+  std::vector<std::shared_ptr<PendingCall>> calls;
   for (const auto& weak : queued) {
-    if (const auto call = weak.lock()) call->cancel();
+    if (auto call = weak.lock()) calls.push_back(std::move(call));
   }
+  return calls;
 }
 
 // Until disconnect() may have to end it.
@@ -108,16 +128,16 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   if (call->blocking()) invocation->chain = inherited_chain();
 
   const auto timer = std::make_shared<std::atomic<TimerId>>(0);
-  invocation->respond = [call, timer, &clock = clock_](const void* out, std::exception_ptr error) {
-    clock.cancel(timer->load());
+  invocation->respond = [call, timer, clock = clock_](const void* out, std::exception_ptr error) {
+    clock->cancel(timer->load());
     if (!call->claim()) return;
     if (!error && out) call->operation().out->assign(call->out(), out);
     call->finish(std::move(error));
   };
-  if (operation.stream) connect_stream(*invocation, call, clock_);
+  if (operation.stream) connect_stream(*invocation, call, *clock_);
   call->set_canceller([invocation] { invocation->cancel(); });
   remember(call);
-  timer->store(clock_.call_at(call->deadline(), [call, invocation, peer = peer_] {
+  timer->store(clock_->call_at(call->deadline(), [call, invocation, peer = peer_] {
     invocation->cancel();
     call->fail(std::make_exception_ptr(
         TimedOut(peer + " did not answer " + std::string(call->operation().name) + " in time")));
@@ -125,7 +145,7 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   try {
     service.submit(invocation);
   } catch (...) {
-    clock_.cancel(timer->load());
+    clock_->cancel(timer->load());
     throw;
   }
   if (operation.oneway && call->claim()) call->finish();

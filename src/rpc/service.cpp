@@ -84,6 +84,7 @@ void Service::answer(Invocation& invocation, const void* out, std::exception_ptr
 
 void Service::enqueue(std::shared_ptr<Invocation> invocation) {
   std::lock_guard lock(queue_mutex_);  // until the invocation is there, the task finds nothing
+  if (closed_) throw Unavailable(std::string(interface_info().name) + " is being withdrawn");
   if (!queue_.has_room(invocation->connection) ||
       !executor_.post([self = shared_from_this()] { self->execute_next(); })) {
     throw Overloaded("the queue of " + std::string(interface_info().name) +
@@ -93,12 +94,7 @@ void Service::enqueue(std::shared_ptr<Invocation> invocation) {
 }
 
 void Service::execute_next() {
-  std::shared_ptr<Invocation> next;
-  {
-    std::lock_guard lock(queue_mutex_);
-    next = queue_.pop();
-  }
-  if (next) execute(*next);
+  if (const auto next = take_next()) execute(*next);
 }
 
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
@@ -141,9 +137,24 @@ std::string Service::circle(const std::vector<Guid>& chain) const {
 }
 
 void Service::close() {
-  std::lock_guard lock(mutex_);
-  closed_ = true;
-  for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
+  }
+  while (const auto waiting = take_next()) withdraw(*waiting);
+}
+
+// Under the queue's lock an invocation is queued or refused: none comes after those that close() took.
+std::shared_ptr<Invocation> Service::take_next() {
+  std::lock_guard lock(queue_mutex_);
+  return queue_.pop();
+}
+
+void Service::withdraw(Invocation& invocation) {
+  OperationMeter::count(meter_.of(*invocation.operation).refused);
+  answer(invocation, nullptr, std::make_exception_ptr(Unavailable(
+                                  std::string(interface_info().name) + " is being withdrawn")));
 }
 
 void Service::stop(Invocation& invocation) const {
@@ -154,12 +165,7 @@ void Service::execute(Invocation& invocation) {
   OperationMeter& meter = meter_.of(*invocation.operation);
   const Instant now = clock_.now();
   meter.waited.record(now - invocation.arrived);
-  if (closed_) {
-    OperationMeter::count(meter.refused);
-    answer(invocation, nullptr, std::make_exception_ptr(Unavailable(
-                                    std::string(interface_info().name) + " is being withdrawn")));
-    return;
-  }
+  if (closed_) return withdraw(invocation);
   if (invocation.cancelled || now >= invocation.deadline) {
     OperationMeter::count(meter.expired);
     answer(invocation, nullptr, std::make_exception_ptr(TimedOut(

@@ -278,12 +278,12 @@ TEST_CASE("a client with one call does not wait behind another's thousands, and 
 TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not sent") {
   Pair pair;
   ThreadExecutor control("control");
-  ThreadExecutor continuations("continue");
   rpc::DdsChannel::Options options;
   options.peer = "server";
   options.calls_in_flight = 2;
-  Echo::Proxy echo(rpc::DdsChannel::open(pair.client->participant(), control, continuations,
-                                         pair.client->clock(),
+  Echo::Proxy echo(rpc::DdsChannel::open(pair.client->participant(), control,
+                                         std::make_shared<ThreadExecutor>("continue"),
+                                         std::make_shared<SystemClock>(),
                                          {std::string(LouderEcho::interface_info().name), pair.id}, options));
   auto first = echo.within(60s).async_wait(60'000);
   auto second = echo.within(60s).async_wait(60'000);

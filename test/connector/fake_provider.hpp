@@ -50,7 +50,7 @@ struct FakeChannel final : Channel {
     *static_cast<int*>(calls[index]->out()) = result;
     calls[index]->finish();
   }
-  void lose() {
+  void lose(const std::string& = "gone") override {
     stands = false;
     for (const auto& call : calls) call->fail(std::make_exception_ptr(Disconnected("gone")));
   }

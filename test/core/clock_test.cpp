@@ -81,3 +81,15 @@ TEST_CASE("a timer may cancel itself") {
   });
   CHECK(eventually([&] { return done.load(); }));
 }
+
+TEST_CASE("a timer may be the last to let go of its clock") {
+  auto clock = std::make_shared<SystemClock>();
+  const std::weak_ptr<SystemClock> watched = clock;
+  std::atomic<bool> alone = false;
+  clock->call_after(0ms, [&alone, owned = clock] {
+    while (!alone) std::this_thread::yield();
+  });
+  clock.reset();
+  alone = true;
+  CHECK(eventually([&] { return watched.expired(); }));
+}

@@ -62,6 +62,33 @@ TEST_CASE("a full queue refuses tasks and keeps what it has") {
   CHECK(eventually([&] { return ran == 2; }));
 }
 
+TEST_CASE("what must not be lost is queued beyond the limit, and runs here once the executor has stopped") {
+  ThreadExecutor executor("test", 1, 1);
+  std::atomic<int> ran = 0;
+  Gate gate(executor);
+  CHECK(executor.post([&] { ++ran; }));
+  for (int i = 0; i < 100; ++i) executor.post_or_run([&] { ++ran; });
+  CHECK(ran == 0);
+  gate.open();
+  CHECK(eventually([&] { return ran == 101; }));
+  executor.stop();
+  std::thread::id ran_on;
+  executor.post_or_run([&] { ran_on = std::this_thread::get_id(); });
+  CHECK(ran_on == std::this_thread::get_id());
+}
+
+TEST_CASE("an executor that finishes runs what was posted, and what that posts, before it stops") {
+  ThreadExecutor executor("test");
+  int ran = 0;
+  std::function<void()> next = [&] {
+    if (++ran < 100) executor.post(next);
+  };
+  executor.post(next);
+  executor.finish();
+  CHECK(ran == 100);
+  CHECK_FALSE(executor.post([] {}));
+}
+
 TEST_CASE("an idle executor runs a task on the calling thread, a busy one does not") {
   ThreadExecutor executor("test");
   std::thread::id ran_on;

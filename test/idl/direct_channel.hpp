@@ -25,6 +25,7 @@ class DirectChannel final : public skein::Channel {
   std::string peer() const override { return "the same test"; }
   bool connected() const override { return connected_; }
   void disconnect() override { connected_ = false; }
+  void lose(const std::string&) override { connected_ = false; }
 
   int calls = 0;
 

@@ -67,8 +67,11 @@ class Broker {
   Table::Found find_service(const Query& query) const;
 
   /// As find_service, but waits until there is one. Throws Unavailable with the reason when `deadline`
-  /// passes. Not from a listener.
+  /// passes, and after end_waits(). Not from a listener.
   Table::Found await_service(const Query& query, Instant deadline) const;
+
+  /// Ends what waits in await_service(), now and from now on: the entity is about to end.
+  void end_waits();
 
   /// Why find_service gives nothing.
   std::string explain(const Query& query) const;

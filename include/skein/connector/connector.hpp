@@ -15,6 +15,7 @@
 
 namespace skein {
 
+class Connections;
 struct Link;
 struct Wanted;
 using brokerless_discovery::Constraint;
@@ -62,14 +63,18 @@ class Connector {
     const brokerless_discovery::LoadBoard& loads;
     std::shared_ptr<rpc::LocalDirectory> directory;
     Executor& control;
-    Executor& continuations;
-    Clock& clock;
+    std::shared_ptr<Executor> continuations;
+    std::shared_ptr<Clock> clock;
     std::chrono::microseconds spin{0};  ///< See EntityOptions.
     std::shared_ptr<rpc::CallJournal> journal{};  ///< May be null.
   };
 
-  /// The parts outlive the connector and every connection that it made.
-  explicit Connector(const Parts& parts) : parts_(parts) {}
+  /// The parts stand until close() has returned.
+  explicit Connector(const Parts& parts);
+
+  /// Ends every connection that was made, by whichever copy of the connector, though others still hold
+  /// proxies, calls and streams: what is pending ends as Disconnected, what comes later as Unavailable.
+  void close();
 
   /// A proxy of the wanted interface, ready for calls. Throws Unavailable with the reason where there is
   /// no provider in time, InvalidArgument for an ambiguous name, what the Head throws to refuse.
@@ -125,6 +130,7 @@ class Connector {
                  const Wanted& wanted) const;
 
   Parts parts_;
+  std::shared_ptr<Connections> connections_;
 };
 
 }  // namespace skein

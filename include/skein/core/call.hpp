@@ -61,7 +61,8 @@ class Call {
     };
   }
 
-  /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor.
+  /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor; once
+  /// the entity has ended, on the thread that notices. It runs in any case, and so does what co_awaits.
   template <class Continuation>
   void then(Continuation continuation) && {
     auto pending = pending_;
@@ -70,7 +71,7 @@ class Call {
       continuation(std::move(*shared));
     };
     Executor& executor = shared->channel_->continuations();
-    pending->on_finished([&executor, run = std::move(run)]() mutable { executor.post(std::move(run)); });
+    pending->on_finished([&executor, run = std::move(run)]() mutable { executor.post_or_run(std::move(run)); });
   }
 
   auto operator co_await() && {
@@ -79,7 +80,7 @@ class Call {
       bool await_ready() const { return call.ready(); }
       void await_suspend(std::coroutine_handle<> waiting) {
         Executor& executor = call.channel_->continuations();
-        call.pending_->on_finished([&executor, waiting] { executor.post([waiting] { waiting.resume(); }); });
+        call.pending_->on_finished([&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
       }
       Result await_resume() { return call.get(); }
     };

@@ -72,6 +72,9 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   /// Ends the call as Cancelled, unless it has ended, and tells the server.
   void cancel();
 
+  /// The same with another error.
+  void abandon(std::exception_ptr error);
+
  private:
   const OperationInfo& operation_;
   void* const out_;
@@ -110,6 +113,10 @@ class Channel {
 
   /// Ends the connection: pending calls end as Cancelled, later ones as Unavailable. Twice is no error.
   virtual void disconnect() = 0;
+
+  /// Notes that one of the connection's ends is gone: pending calls end as Disconnected, later ones as
+  /// Unavailable.
+  virtual void lose(const std::string& how) = 0;
 };
 
 }  // namespace skein

@@ -45,7 +45,7 @@ class SystemClock final : public Clock {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;  // also the thread's
 };
 
 /// A clock that stands still until it is told: `advance` runs what falls due, in order, on the

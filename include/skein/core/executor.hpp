@@ -22,6 +22,11 @@ class Executor {
   /// stopped. Callable from any thread; never blocks.
   virtual bool post(std::function<void()> task) = 0;
 
+  /// Takes the task over even where the queue is full; where the executor has stopped, runs it at once on
+  /// the calling thread. For what must not be lost and is bounded elsewhere: the continuation of a call,
+  /// which was admitted when it began.
+  virtual void post_or_run(std::function<void()> task) = 0;
+
   /// Runs the task on the calling thread where that keeps the executor's promise about concurrency
   /// and no task is waiting; false, and nothing happens, otherwise.
   virtual bool try_run_inline(const std::function<void()>& task) = 0;
@@ -42,12 +47,16 @@ class ThreadExecutor final : public Executor {
   ~ThreadExecutor() override;
 
   bool post(std::function<void()> task) override;
+  void post_or_run(std::function<void()> task) override;
   bool try_run_inline(const std::function<void()>& task) override;
   bool runs_here() const noexcept override;
 
   /// Lets tasks that have begun end, drops the others, ends the threads. Twice is no error. Not to
   /// be called, nor the executor destroyed, from one of its own tasks.
   void stop();
+
+  /// As stop(), but first runs what has been posted, and what that posts.
+  void finish();
 
   /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left to
   /// itself for the rest of the process's life. False where that was so.
@@ -56,6 +65,7 @@ class ThreadExecutor final : public Executor {
  private:
   struct State;
   void request_stop();
+  bool enqueue(std::function<void()>& task, std::size_t capacity);
 
   std::shared_ptr<State> state_;
   std::vector<std::thread> threads_;
@@ -65,6 +75,7 @@ class ThreadExecutor final : public Executor {
 class ManualExecutor final : public Executor {
  public:
   bool post(std::function<void()> task) override;
+  void post_or_run(std::function<void()> task) override;
   bool try_run_inline(const std::function<void()>&) override { return false; }
   bool runs_here() const noexcept override { return running_; }
 

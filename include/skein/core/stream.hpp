@@ -103,7 +103,7 @@ class Stream {
       bool await_ready() const { return stream.pending_->ready(); }
       void await_suspend(std::coroutine_handle<> waiting) {
         Executor& executor = stream.channel_->continuations();
-        stream.pending_->on_ready([&executor, waiting] { executor.post([waiting] { waiting.resume(); }); });
+        stream.pending_->on_ready([&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
       }
       std::optional<T> await_resume() { return stream.next(); }
     };

@@ -18,6 +18,8 @@ class Process {
   explicit Process(std::shared_ptr<Clock> clock);
 
   Clock& clock() const noexcept { return *clock_; }
+  /// For what may outlive the process's entities.
+  const std::shared_ptr<Clock>& shared_clock() const noexcept { return clock_; }
   brokerless_discovery::ProcessWatch& watch() noexcept { return watch_; }
   const std::shared_ptr<rpc::LocalDirectory>& directory() const noexcept { return directory_; }
 

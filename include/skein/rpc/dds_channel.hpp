@@ -30,11 +30,12 @@ class DdsChannel final : public Channel {
 
   /// Connects: repeats `open` until the provider answers, which proves that both directions work.
   /// Blocks for `options.timeout` at most. Throws Unavailable where no answer came, and what the
-  /// provider's Head threw where it refused. `participant`, `control`, `continuations` and `clock`
-  /// outlive the channel. Not from a vendor's thread.
+  /// provider's Head threw where it refused. `participant` and `control` stand until the channel is
+  /// disconnected or destroyed. Not from a vendor's thread.
   static std::shared_ptr<DdsChannel> open(dds::Participant& participant, Executor& control,
-                                          Executor& continuations, Clock& clock,
-                                          const DdsAddress& address, Options options);
+                                          std::shared_ptr<Executor> continuations,
+                                          std::shared_ptr<Clock> clock, const DdsAddress& address,
+                                          Options options);
   ~DdsChannel() override;
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
@@ -43,11 +44,9 @@ class DdsChannel final : public Channel {
   std::string peer() const override;
   bool connected() const override;
   void disconnect() override;
+  void lose(const std::string& how) override;
 
-  /// Ends pending calls as Disconnected and refuses later ones: the provider is known to be gone.
-  void provider_gone(const std::string& how);
-
-  /// Keeps something alive for as long as the connection (what calls provider_gone(), say).
+  /// Keeps something alive for as long as the connection (what calls lose(), say).
   void attach(std::shared_ptr<void> companion);
 
   /// Calls without an answer yet.

@@ -15,27 +15,31 @@ namespace skein::rpc {
 class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
  public:
   /// Opens a session at the service; throws what the Head throws to refuse it.
-  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service, Clock& clock,
-                                            Executor& continuations, const std::string& strategy);
+  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+                                            std::shared_ptr<Executor> continuations,
+                                            const std::string& strategy);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
-  Clock& clock() const noexcept override { return clock_; }
-  Executor& continuations() const noexcept override { return continuations_; }
+  Clock& clock() const noexcept override { return *clock_; }
+  Executor& continuations() const noexcept override { return *continuations_; }
   std::string peer() const override { return peer_; }
   bool connected() const override { return !closed_ && !service_.expired(); }
   void disconnect() override;
+  void lose(const std::string& how) override;
 
  private:
-  LocalChannel(std::weak_ptr<Service> service, Clock& clock, Executor& continuations);
+  LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+               std::shared_ptr<Executor> continuations);
 
+  std::vector<std::shared_ptr<PendingCall>> close();
   bool call_inline(Service& service, PendingCall& call, const void* in);
   void remember(const std::shared_ptr<PendingCall>& call);
   void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
 
   const Guid id_ = Guid::random();
   std::weak_ptr<Service> service_;
-  Clock& clock_;
-  Executor& continuations_;
+  const std::shared_ptr<Clock> clock_;
+  const std::shared_ptr<Executor> continuations_;
   std::string peer_;
   std::shared_ptr<Session> session_;
   std::atomic<bool> closed_{false};

@@ -116,13 +116,15 @@ class Service : public std::enable_shared_from_this<Service> {
   /// What it has done and does; entity and system are left empty.
   introspection::ServiceStatistics statistics() const;
 
-  /// Invocations that have not begun are refused from now on; those that run are told to stop.
+  /// Invocations that have not begun are refused, now and from now on; those that run are told to stop.
   void close();
 
  private:
   class Running;
   void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
+  std::shared_ptr<Invocation> take_next();
+  void withdraw(Invocation& invocation);
   void note_begin(const OperationInfo& operation, const Invocation& frame);
   void note_end(const OperationInfo& operation, const Invocation& frame, const std::exception_ptr& error);
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);

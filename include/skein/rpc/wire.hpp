@@ -43,8 +43,8 @@ inline constexpr std::uint32_t kCredit = 0x64657263;  // "cred"
 struct RequestTrailer {
   Duration remaining{};     ///< Until the caller's deadline, when sent.
   std::uint64_t target = 0; ///< With kCancel and kCredit: the number of the request that is meant.
-  std::vector<Guid> chain;  ///< See CallContext::chain.
-  std::string strategy;     ///< With kOpen.
+  std::vector<Guid> chain{};  ///< See CallContext::chain.
+  std::string strategy{};     ///< With kOpen.
   /// How many results the server may send: at the start of a stream, and more with kCredit. A caller
   /// that grants none at the start knows no streams and gets the last result as an ordinary reply.
   std::uint32_t credit = 0;

@@ -1,0 +1,56 @@
+#include "connections.hpp"
+
+#include <algorithm>
+
+#include "skein/core/error.hpp"
+
+namespace skein {
+
+Connections::Opening::Opening(Connections& connections) : connections_(connections) {
+  std::lock_guard lock(connections_.mutex_);
+  if (connections_.closed_) throw Unavailable("no new connection: the entity has ended");
+  ++connections_.openings_;
+}
+
+Connections::Opening::~Opening() {
+  std::lock_guard lock(connections_.mutex_);
+  --connections_.openings_;
+  connections_.changed_.notify_all();
+}
+
+void Connections::add(const std::shared_ptr<Channel>& channel) {
+  {
+    std::lock_guard lock(mutex_);
+    if (channels_.size() >= look_at_) {
+      std::erase_if(channels_, [](const std::weak_ptr<Channel>& weak) { return weak.expired(); });
+      look_at_ = std::max<std::size_t>(16, 2 * channels_.size());
+    }
+    channels_.push_back(channel);
+    if (!closed_) return;
+  }
+  end(*channel);
+}
+
+void Connections::close() {
+  std::vector<std::weak_ptr<Channel>> channels;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    channels.swap(channels_);
+  }
+  for (const auto& weak : channels) {
+    if (const auto channel = weak.lock()) end(*channel);
+  }
+}
+
+void Connections::await_openings() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return openings_ == 0; });
+}
+
+void Connections::end(Channel& channel) {
+  channel.lose("this side's entity has ended");
+  channel.disconnect();
+}
+
+}  // namespace skein
