@@ -1,0 +1,149 @@
+#include "common.hpp"
+#include "dds_channel_state.hpp"
+#include "skein/core/error.hpp"
+#include "skein/introspection.idl.hpp"
+
+namespace skein::rpc {
+
+void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  if (options.spin.count() > 0) call->set_spin(options.spin);
+  std::uint64_t number = 0;
+  bool sent = false;
+  call->attempt([&] {
+    const auto writer = enter(call, number);
+    send(*writer, *call, number, in);
+    sent = true;
+  });
+  if (!sent || call->operation().oneway) remove(number);
+  if (sent && call->operation().oneway && call->claim()) call->finish();
+}
+
+// The call is known before its request leaves: a reply may be here before write() returns.
+std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
+                                                      std::uint64_t& number) {
+  std::lock_guard lock(mutex);
+  if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
+  if (phase != Phase::Open)
+    throw Unavailable("no connection to " + options.peer + ": disconnected");
+  if (entries.size() >= options.calls_in_flight) {
+    throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
+                     " already wait for their answers; the call was not sent");
+  }
+  number = ++last_number;
+  Entry& entry = entries[number];
+  entry.call = call;
+  entry.timer = clock.call_at(call->deadline(), [state = weak_from_this(), number] {
+    if (const auto self = state.lock()) self->expire(number);
+  });
+  if (!call->blocking()) {
+    call->set_canceller([state = weak_from_this(), number] {
+      if (const auto self = state.lock()) self->abandon(number);
+    });
+  }
+  if (call->operation().stream) {
+    static_cast<PendingStream&>(*call).set_granter(
+        [state = weak_from_this(), number](std::uint32_t count) {
+          if (const auto self = state.lock()) self->grant(number, count);
+        });
+  }
+  return requests;
+}
+
+void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
+                             const void* in) {
+  thread_local Bytes message;
+  wire::begin_request(message, {client, number}, call.operation().hash);
+  call.operation().in->encode(in, message);
+  const Instant now = clock.now();
+  wire::append_trailer(
+      message, wire::RequestTrailer{call.deadline() - now,
+                                    0,
+                                    call.blocking() ? inherited_chain() : std::vector<Guid>(),
+                                    {},
+                                    call.operation().stream ? PendingStream::kWindow : 0,
+                                    now.time_since_epoch()});
+  if (options.journal) {
+    options.journal->note(introspection::CallStep::Sent, client, number, address.service,
+                          call.operation());
+  }
+  writer.write(message);
+  if (message.capacity() > kKeptCapacity) message = Bytes();
+}
+
+// The call, which is not known by its number any more; a stream stays known until its last reply.
+std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Keep keep) {
+  Entry entry;
+  {
+    std::lock_guard lock(mutex);
+    const auto found = entries.find(number);
+    if (found == entries.end()) return nullptr;
+    if (keep == Keep::Streams && found->second.call->operation().stream) return found->second.call;
+    entry = std::move(found->second);
+    entries.erase(found);
+  }
+  clock.cancel(entry.timer);
+  return entry.call;
+}
+
+void DdsChannel::State::expire(std::uint64_t number) {
+  const auto call = remove(number);
+  if (!call) return;
+  const auto error = std::make_exception_ptr(
+      TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
+               " before its deadline; whether it ran is unknown"));
+  if (!call->claim()) return;
+  note_end(number, call->operation(), error);
+  call->finish(error);
+  tell_server(number);
+}
+
+void DdsChannel::State::abandon(std::uint64_t number) {
+  const auto call = remove(number);
+  if (!call) return;
+  note_end(number, call->operation(),
+           std::make_exception_ptr(Cancelled("its caller waits no longer")));
+  tell_server(number);
+}
+
+void DdsChannel::State::tell_server(std::uint64_t number) {
+  std::lock_guard lock(mutex);  // once closed, `control` may be gone
+  if (phase != Phase::Open) return;
+  control.post([state = weak_from_this(), number] {
+    const auto self = state.lock();
+    if (!self) return;
+    try {
+      self->send_reserved(wire::kCancel, {.target = number});
+    } catch (const Error&) {
+      // The server will find the call expired; cancelling early is a courtesy.
+    }
+  });
+}
+
+// On the thread that takes the results: one that is held up here takes none anyway.
+void DdsChannel::State::grant(std::uint64_t number, std::uint32_t count) {
+  send_reserved(wire::kCredit, {.target = number, .credit = count});
+}
+
+// About a call; nothing is to be said to a server that is gone.
+void DdsChannel::State::send_reserved(std::uint32_t operation,
+                                      const wire::RequestTrailer& trailer) {
+  std::shared_ptr<dds::Writer> writer;
+  {
+    std::lock_guard lock(mutex);
+    if (phase != Phase::Open) return;
+    writer = requests;
+  }
+  Bytes message;
+  wire::begin_request(message, {client, 0}, operation);
+  wire::append_default_branch(message);
+  wire::append_trailer(message, trailer);
+  writer->write(message);
+}
+
+void DdsChannel::State::note_end(std::uint64_t number, const OperationInfo& operation,
+                                 const std::exception_ptr& error) {
+  if (options.journal)
+    options.journal->note_end(false, client, number, address.service, operation, error);
+}
+
+}  // namespace skein::rpc

@@ -1,0 +1,122 @@
+#include "dds_channel_state.hpp"
+#include "reply_reading.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+
+namespace skein::rpc {
+
+void DdsChannel::State::on_sample(const dds::Sample& sample) {
+  if (sample.state != dds::InstanceState::Alive) return;
+  try {
+    const wire::ReplyHead head = wire::read_reply_head(sample.cdr);
+    if (head.related.client != client) return;
+    if (head.related.number == 0) {
+      on_opened(sample.cdr, head);
+    } else if (head.operation == wire::kOpen) {
+      dismissed("it had ended the session before the call arrived");
+    } else {
+      on_reply(sample.cdr, head);
+    }
+  } catch (const std::exception& error) {
+    note_malformed(error.what());
+  }
+}
+
+void DdsChannel::State::on_reply(std::span<const std::byte> message, const wire::ReplyHead& head) {
+  const std::uint64_t number = head.related.number;
+  const auto call = remove(number, Keep::Streams);
+  if (!call) return;
+  if (call->operation().stream) {
+    on_stream_reply(number, static_cast<PendingStream&>(*call), message, head);
+  } else {
+    complete(*call, message, head);
+  }
+}
+
+void DdsChannel::State::note_malformed(const std::string& why) {
+  std::lock_guard lock(mutex);
+  if (++malformed == 1) {
+    log(LogLevel::Warning, address.service, "malformed reply from " + options.peer + ": " + why);
+  }
+}
+
+void DdsChannel::State::on_opened(std::span<const std::byte> message, const wire::ReplyHead& head) {
+  std::exception_ptr refused;
+  // A server that is not built with Skein does not know `open`; that it says so proves it ready.
+  const bool known = head.exception != wire::RemoteException::Ok &&
+                     head.exception != wire::RemoteException::UnknownOperation;
+  if (known) refused = error_in(message, head, "open", options.peer);
+  {
+    std::lock_guard lock(mutex);
+    if (phase == Phase::Opening) {
+      if (refused) {
+        refusal = refused;
+      } else {
+        phase = Phase::Open;
+      }
+      changed.notify_all();
+      return;
+    }
+  }
+  if (refused) dismissed("it has ended the session, as this side was not heard of for its lease");
+}
+
+// In the default partition one of several servers may not know this client, and others do.
+void DdsChannel::State::dismissed(const std::string& how) {
+  if (!address.provider.is_nil()) lose(how);
+}
+
+void DdsChannel::State::complete(PendingCall& call, std::span<const std::byte> message,
+                                 const wire::ReplyHead& head) {
+  if (!call.claim()) return;
+  std::exception_ptr error;
+  try {
+    error = read_reply(call.operation(), call.out(), message, head, options.peer).error;
+  } catch (const std::exception& malformed) {
+    error = unreadable(call.operation(), malformed);
+  }
+  note_end(head.related.number, call.operation(), error);
+  call.finish(std::move(error));
+}
+
+std::exception_ptr DdsChannel::State::unreadable(const OperationInfo& operation,
+                                                 const std::exception& malformed) {
+  note_malformed(malformed.what());
+  return std::make_exception_ptr(Internal(options.peer + " answered " +
+                                          std::string(operation.name) +
+                                          " with what cannot be read: " + malformed.what()));
+}
+
+// What is wrong with a stream ends it, here and at the server.
+void DdsChannel::State::on_stream_reply(std::uint64_t number, PendingStream& stream,
+                                        std::span<const std::byte> message,
+                                        const wire::ReplyHead& head) {
+  try {
+    read_part(number, stream, message, head);
+  } catch (const std::exception& malformed) {
+    abandon(number);
+    stream.fail(unreadable(stream.operation(), malformed));
+  }
+}
+
+void DdsChannel::State::read_part(std::uint64_t number, PendingStream& stream,
+                                  std::span<const std::byte> message, const wire::ReplyHead& head) {
+  const TypeSupport& type = *stream.operation().out;
+  PendingStream::Item item(type.make(), type.destroy);
+  Reply reply = read_reply(stream.operation(), item.get(), message, head, options.peer);
+  if (!reply.error && reply.part != wire::StreamPart::None &&
+      reply.position != stream.delivered()) {
+    throw InvalidArgument("result " + std::to_string(stream.delivered()) +
+                          " of the stream is missing");
+  }
+  if (!reply.error && reply.part != wire::StreamPart::End && !stream.deliver(std::move(item))) {
+    throw InvalidArgument("it is a result more than was asked for");
+  }
+  if (reply.part == wire::StreamPart::Item) return;
+  remove(number);
+  if (!stream.claim()) return;
+  note_end(number, stream.operation(), reply.error);
+  stream.finish(std::move(reply.error));
+}
+
+}  // namespace skein::rpc

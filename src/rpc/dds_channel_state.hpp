@@ -1,0 +1,101 @@
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "skein/core/stream.hpp"
+#include "skein/rpc/dds_channel.hpp"
+#include "skein/rpc/wire.hpp"
+
+namespace skein::rpc {
+
+/// Opening and ending stand in dds_channel.cpp, calls in dds_channel_calls.cpp, what comes back in
+/// dds_channel_replies.cpp.
+struct DdsChannel::State : std::enable_shared_from_this<State> {
+  enum class Keep { Nothing, Streams };
+  enum class Phase { Opening, Open, Lost, Closed };
+
+  struct Entry {
+    std::shared_ptr<PendingCall> call;
+    TimerId timer = 0;
+  };
+
+  State(dds::Participant& participant_, Executor& control_,
+        std::shared_ptr<Executor> continuations_, std::shared_ptr<Clock> clock_,
+        DdsAddress address_, Options options_)
+      : participant(participant_),
+        control(control_),
+        continuations(std::move(continuations_)),
+        owned_clock(std::move(clock_)),
+        clock(*owned_clock),
+        address(std::move(address_)),
+        options(std::move(options_)) {}
+
+  dds::Participant& participant;
+  Executor& control;
+  const std::shared_ptr<Executor> continuations;
+  const std::shared_ptr<Clock> owned_clock;
+  Clock& clock;
+  const DdsAddress address;
+  const Options options;
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  Phase phase = Phase::Opening;
+  std::string lost_how;
+  std::exception_ptr refusal;
+  std::size_t matched_servers = 0;
+  std::uint64_t last_number = 0;
+  std::uint64_t malformed = 0;
+  std::unordered_map<std::uint64_t, Entry> entries;
+  Guid client;
+  std::shared_ptr<dds::Writer> requests;
+  std::shared_ptr<dds::Reader> replies;
+  std::shared_ptr<void> companion;
+
+  // ---- opening
+  void create_endpoints();
+  void await_open();
+  void send_open();
+
+  // ---- on the vendor's threads
+  void on_server(bool matched);
+  void on_sample(const dds::Sample& sample);
+  void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head);
+  void note_malformed(const std::string& why);
+  void on_opened(std::span<const std::byte> message, const wire::ReplyHead& head);
+  void dismissed(const std::string& how);
+  void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head);
+  std::exception_ptr unreadable(const OperationInfo& operation, const std::exception& malformed);
+  void on_stream_reply(std::uint64_t number, PendingStream& stream,
+                       std::span<const std::byte> message, const wire::ReplyHead& head);
+  void read_part(std::uint64_t number, PendingStream& stream, std::span<const std::byte> message,
+                 const wire::ReplyHead& head);
+  void note_end(std::uint64_t number, const OperationInfo& operation,
+                const std::exception_ptr& error);
+
+  // ---- calls
+  void start(const std::shared_ptr<PendingCall>& call, const void* in);
+  std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call,
+                                     std::uint64_t& number);
+  void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
+  std::shared_ptr<PendingCall> remove(std::uint64_t number, Keep keep = Keep::Nothing);
+  void expire(std::uint64_t number);
+  void abandon(std::uint64_t number);
+  void tell_server(std::uint64_t number);
+  void grant(std::uint64_t number, std::uint32_t count);
+  void send_reserved(std::uint32_t operation, const wire::RequestTrailer& trailer);
+
+  // ---- ending
+  void lose(const std::string& how);
+  void close();
+  static void await_senders(const std::shared_ptr<dds::Writer>& writer);
+  template <class MakeError>
+  void fail_all(MakeError make_error);
+};
+
+}  // namespace skein::rpc
