@@ -8,7 +8,7 @@ namespace skein {
 
 Connections::Opening::Opening(Connections& connections) : connections_(connections) {
   std::lock_guard lock(connections_.mutex_);
-  if (connections_.closed_) throw Unavailable("no new connection: the entity has ended");
+  connections_.refuse_if_closed();
   ++connections_.openings_;
 }
 
@@ -16,6 +16,10 @@ Connections::Opening::~Opening() {
   std::lock_guard lock(connections_.mutex_);
   --connections_.openings_;
   connections_.changed_.notify_all();
+}
+
+void Connections::refuse_if_closed() const {
+  if (closed_) throw Unavailable("no new connection: this side's entity has ended");
 }
 
 void Connections::add(const std::shared_ptr<Channel>& channel) {

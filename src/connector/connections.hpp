@@ -32,6 +32,8 @@ class Connections {
   void add(const std::shared_ptr<Channel>& channel);
 
   bool closed() const noexcept { return closed_; }
+  /// Throws Unavailable once the entity has ended.
+  void refuse_if_closed() const;
 
   /// Ends all connections, now and from now on. Pending calls end as Disconnected.
   void close();

@@ -123,7 +123,8 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
   options.spin = parts_.spin;
   options.journal = parts_.journal;
   options.stands = [&broker = parts_.broker, connections = connections_, id] {
-    return !connections->closed() && broker.knows(id);
+    connections->refuse_if_closed();
+    return broker.knows(id);
   };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
@@ -199,7 +200,10 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
   dds_options.timeout = options.timeout;
   dds_options.spin = parts_.spin;
   dds_options.journal = parts_.journal;
-  dds_options.stands = [connections = connections_] { return !connections->closed(); };
+  dds_options.stands = [connections = connections_] {
+    connections->refuse_if_closed();
+    return true;
+  };
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {service, Guid{}}, std::move(dds_options));
   connections_->add(channel);

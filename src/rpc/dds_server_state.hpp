@@ -32,10 +32,11 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
     bool matched = false;
-    TransitDelay transit;  // under the server's mutex, as are:
-    std::deque<Refusal> refusals;
-    bool refusing = false;             // a task of `control` is about to write them
     std::atomic<bool> stalled{false};  // did not take a reply in time
+    // Under the server's mutex:
+    TransitDelay transit;
+    std::deque<Refusal> refusals;
+    bool refusing = false;  // a task of `control` is about to write them
   };
 
   State(dds::Participant& participant_, Executor& control_, Clock& clock_,

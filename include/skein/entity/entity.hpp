@@ -60,13 +60,15 @@ struct ServiceOptions {
 
 /// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that implement its
 /// public services, and CSPs that implement its managed ones; it also publishes and subscribes. Members are
-/// thread-safe. Proxies, implementations, continuations, publishers and subscriptions must be done with
-/// before the entity is destroyed; what it was given to provide it releases itself.
+/// thread-safe. Publishers and subscriptions must be done with before the entity is destroyed. Proxies, calls
+/// and streams may outlive it: they end with it (see ~Entity). What it was given to provide it releases.
 class Entity {
  public:
   /// Joins the mission. Throws what the port throws, InvalidArgument for a name that is none.
   explicit Entity(EntityOptions options);
-  /// Withdraws everything, ends what runs, leaves.
+  /// Ends its connections: calls and streams through them end as Disconnected, later calls as Unavailable.
+  /// Withdraws everything, ends what runs, runs the continuations that are due, leaves. Not from one of them,
+  /// nor from a call that it serves.
   ~Entity();
 
   const EntityOptions& options() const noexcept;

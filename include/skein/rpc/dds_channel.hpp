@@ -24,7 +24,8 @@ class DdsChannel final : public Channel {
     /// Calls that may wait for their answers; beyond it a call is refused as Overloaded, unsent.
     std::size_t calls_in_flight = 4096;
     std::shared_ptr<CallJournal> journal;  ///< May be null.
-    /// Asked while opening: whether the provider still stands, as far as is known. Empty: it does.
+    /// Asked while opening: whether the provider still stands, as far as is known; what it throws ends
+    /// the attempt. Empty: it does.
     std::function<bool()> stands;
   };
 
