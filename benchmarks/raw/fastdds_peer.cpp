@@ -82,7 +82,8 @@ class Participant {
   explicit Participant(std::uint32_t domain) {
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList = {"127.0.0.1"};
-    udp->sendBufferSize = udp->receiveBufferSize = 4 << 20;
+    udp->sendBufferSize = 64 << 20;
+    udp->receiveBufferSize = 4 << 20;
     udp->maxInitialPeersRange = 4;
     dds::DomainParticipantQos qos;
     qos.transport().use_builtin_transports = false;
@@ -106,6 +107,7 @@ class Participant {
     qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
     qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
     qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
+    qos.reliable_writer_qos().times.nackSupressionDuration = Duration_t(0, 10'000'000);
     return publisher_->create_datawriter(participant_->create_topic(topic, kType, dds::TopicQos()),
                                          qos);
   }

@@ -42,6 +42,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   rtps::CacheChange_t* make_change(std::size_t size, rtps::ChangeKind_t kind, const KeyHash& key);
   void wait_for_room(Lock& lock);
   void announce_position();
+  void ask_for_acknowledgment();
   void remember(rtps::CacheChange_t* change, const KeyHash& key);
   void send(rtps::CacheChange_t* change);
   void drop(rtps::CacheChange_t* change);
@@ -59,6 +60,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   std::atomic<std::int64_t> last_sent_{0};
   /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged by all.
   std::atomic<std::int64_t> new_reader_at_{-1};
+  std::size_t unasked_bytes_ = 0;  // sent since readers were last asked for an acknowledgment
   rtps::RTPSWriter* writer_ = nullptr;
   Guid guid_;
   std::unique_ptr<DeadlineTimer> deadline_;
