@@ -117,6 +117,16 @@ TEST_CASE("no pair of vendors, size or way to die is missing") {
   }
 }
 
+TEST_CASE("no other way of the vendors is missing") {
+  const json& results = QuickRun::get().results;
+  for (const char* way : {"shared memory", "data sharing", "listener", "polling"}) {
+    CHECK(has(results, "other ways of the vendors", "skein fastdds", json::object(),
+              std::string("fastdds by ") + way));
+  }
+  CHECK(has(results, "other ways of the vendors", "skein cyclonedds", json::object(),
+            "cyclonedds by polling"));
+}
+
 TEST_CASE("no rival and no way to call is missing") {
   const json& results = QuickRun::get().results;
   for (const char* vendor : {"skein fastdds", "skein cyclonedds"}) {

@@ -17,6 +17,7 @@ namespace {
 
 struct Plan {
   CallPlan calls;
+  CallPlan ways;
   RivalPlan rivals;
   FindPlan find;
   std::size_t cold_starts;
@@ -27,13 +28,14 @@ struct Plan {
 Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
-  return {{sizes, 25}, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, 15, 5};
+  const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
+  return {{sizes, 25}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, 15, 5};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, 1, 1};
+  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, 1, 1};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -54,8 +56,8 @@ void print_summary(const std::vector<Comparison>& comparisons) {
   }
 }
 
-const std::vector<std::string> kParts{"calls",        "rivals",      "in_process", "idle_clients",
-                                      "find_service", "cold_starts", "deaths"};
+const std::vector<std::string> kParts{"calls",        "ways",         "rivals",      "in_process",
+                                      "idle_clients", "find_service", "cold_starts", "deaths"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -68,6 +70,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
     return std::ranges::find(parts, part) != parts.end();
   };
   if (wanted("calls")) append(comparisons, compare_calls(configurations, plan.calls));
+  if (wanted("ways")) append(comparisons, compare_ways(configurations, plan.ways));
   if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
   if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
   if (wanted("idle_clients"))

@@ -33,6 +33,10 @@ struct RivalPlan {
 /// One comparison for each pair of vendors, size and rival.
 std::vector<Comparison> compare_calls(Configurations& configurations, const CallPlan& plan);
 
+/// Skein beside what the vendors can do by shared memory, data sharing, replies from a listener,
+/// and polling: what Skein's transport and threads cost.
+std::vector<Comparison> compare_ways(Configurations& configurations, const CallPlan& plan);
+
 /// Skein beside omniORB, gRPC and ZeroMQ: one after the other, at a fixed rate, with several
 /// clients, with many calls in flight, and the processor time of both sides.
 std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan);

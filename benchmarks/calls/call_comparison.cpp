@@ -46,4 +46,29 @@ std::vector<Comparison> compare_calls(Configurations& configurations, const Call
   return comparisons;
 }
 
+std::vector<Comparison> compare_ways(Configurations& configurations, const CallPlan& plan) {
+  std::vector<Trial> trials;
+  for (const auto& size : plan.sizes) {
+    trials.push_back(
+        closed_loop("other ways of the vendors", size.size_bytes, size.calls_per_turn));
+  }
+  Contest contest("ways", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
+  std::vector<std::pair<std::string, std::string>> pairs;
+  const auto enter = [&](const std::string& vendor, std::initializer_list<const char*> ways) {
+    const Configuration skein = configurations.skein(vendor, vendor);
+    contest.enter(skein);
+    for (const char* way : ways) {
+      const Configuration other = configurations.raw_by(vendor, way);
+      contest.enter(other);
+      pairs.emplace_back(skein.name, other.name);
+    }
+  };
+  enter("fastdds", {"shared_memory", "data_sharing", "listener", "polling"});
+  enter("cyclonedds", {"polling"});
+  contest.run(plan.rounds);
+  std::vector<Comparison> comparisons;
+  for (const auto& [skein, other] : pairs) append(comparisons, contest.compare(skein, other));
+  return comparisons;
+}
+
 }  // namespace skein::benchmarks

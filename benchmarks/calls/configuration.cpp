@@ -1,5 +1,6 @@
 #include "calls/configuration.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "harness/placement.hpp"
@@ -59,6 +60,16 @@ Configuration Configurations::raw(const std::string& server, const std::string& 
   return {"raw " + pair_name(server, client),
           {folder_ + "/skein_bench_raw_" + server, "server", domain},
           {folder_ + "/skein_bench_raw_" + client, "client", domain}};
+}
+
+Configuration Configurations::raw_by(const std::string& vendor, const std::string& way) {
+  const std::string domain = next_domain(), program = folder_ + "/skein_bench_raw_" + vendor;
+  std::string words = way;
+  std::ranges::replace(words, '_', ' ');
+  return {vendor + " by " + words,
+          {program, "server", domain, way},
+          {program, "client", domain, way},
+          way == "polling"};
 }
 
 Configuration Configurations::floor(const std::string& name, const std::string& program) {

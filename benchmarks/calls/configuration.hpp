@@ -39,6 +39,9 @@ class Configurations {
                       const std::optional<Place>& server_place = {},
                       const std::optional<Place>& client_place = {});
   Configuration raw(const std::string& server, const std::string& client);
+  /// The vendor's own API in a way that differs from Skein's: `shared_memory`, `data_sharing`,
+  /// `listener` or `polling`, as far as the vendor has it (raw/main.hpp).
+  Configuration raw_by(const std::string& vendor, const std::string& way);
   Configuration unix_socket();
   Configuration shared_memory();
   /// `rival` is `omniorb`, `grpc` or `zeromq`; transports are those of its peer's command line.

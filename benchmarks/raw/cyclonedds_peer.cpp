@@ -88,7 +88,7 @@ bool take(dds_entity_t reader, Message& message) {
   return true;
 }
 
-void serve(Participant& participant, const std::atomic<bool>& ending) {
+void serve(Participant& participant, Way way, const std::atomic<bool>& ending) {
   const auto request_topic = participant.topic(kRequestTopic);
   const auto reply_topic = participant.topic(kReplyTopic);
   const dds_entity_t requests = participant.reader(request_topic);
@@ -96,21 +96,32 @@ void serve(Participant& participant, const std::atomic<bool>& ending) {
   const dds_entity_t waiting = participant.waitset();
   const dds_entity_t condition = check(dds_create_readcondition(requests, DDS_ANY_STATE));
   check(dds_waitset_attach(waiting, condition, 0));
+  SpinningPause pause;
   while (!ending) {
     dds_attach_t active;
-    dds_waitset_wait(waiting, &active, 1, DDS_MSECS(100));
+    bool answered = false;
+    if (way != Way::Polling) dds_waitset_wait(waiting, &active, 1, DDS_MSECS(100));
     Message request;
     while (take(requests, request)) {
       const Content result = echo(request.content);
       write(replies, reply_topic.type, {request.head, &result});
+      answered = true;
     }
+    if (way == Way::Polling) pause.after(answered);
   }
 }
 
-void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
-  Participant participant(domain);
+/// (To write from a listener stalls: the thread that runs it would have to hear of
+/// acknowledgments.)
+Way way_of(const RawOptions& options) {
+  return parse_way(options.way, {{"polling", Way::Polling}});
+}
+
+void server(const RawOptions& options, const std::function<void()>& meanwhile) {
+  const Way way = way_of(options);
+  Participant participant(options.domain);
   std::atomic<bool> ending{false};
-  std::thread thread([&] { serve(participant, ending); });
+  std::thread thread([&] { serve(participant, way, ending); });
   meanwhile();
   ending = true;
   thread.join();
@@ -118,14 +129,16 @@ void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
 
 class Client {
  public:
-  explicit Client(std::uint32_t domain)
-      : participant_(domain),
+  explicit Client(const RawOptions& options)
+      : way_(way_of(options)),
+        participant_(options.domain),
         request_topic_(participant_.topic(kRequestTopic)),
         requests_(participant_.writer(request_topic_)) {
     dds_listener_t* listener = dds_create_listener(this);
     dds_lset_data_available(
         listener, [](dds_entity_t, void* self) { static_cast<Client*>(self)->data_available(); });
-    replies_ = participant_.reader(participant_.topic(kReplyTopic), listener);
+    replies_ = participant_.reader(participant_.topic(kReplyTopic),
+                                   way_ == Way::Polling ? nullptr : listener);
     dds_delete_listener(listener);
     dds_guid_t guid;
     check(dds_get_guid(requests_, &guid));
@@ -135,27 +148,32 @@ class Client {
   std::optional<Content> call(const Content& content, std::chrono::milliseconds patience) {
     const auto end = std::chrono::steady_clock::now() + patience;
     write(requests_, request_topic_.type, {{id_, ++number_}, &content});
-    std::unique_lock lock(mutex_);
-    while (changed_.wait_until(lock, end, [&] { return arrived_; })) {
-      arrived_ = false;
-      lock.unlock();
+    do {
       Message reply;
       while (take(replies_, reply)) {
         if (reply.head.client == id_ && reply.head.number == number_)
           return std::move(reply.content);
       }
-      lock.lock();
-    }
+    } while (await_data(end));
     return std::nullopt;
   }
 
  private:
+  bool await_data(std::chrono::steady_clock::time_point end) {
+    if (way_ == Way::Polling) return std::chrono::steady_clock::now() < end;
+    std::unique_lock lock(mutex_);
+    const bool arrived = changed_.wait_until(lock, end, [&] { return arrived_; });
+    arrived_ = false;
+    return arrived;
+  }
+
   void data_available() {
     std::lock_guard lock(mutex_);
     arrived_ = true;
     changed_.notify_one();
   }
 
+  const Way way_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool arrived_ = false;
@@ -167,8 +185,8 @@ class Client {
   dds_entity_t replies_ = 0;
 };
 
-void client(std::uint32_t domain) {
-  Client client(domain);
+void client(const RawOptions& options) {
+  Client client(options);
   run_raw_client([&](const Content& content, std::chrono::milliseconds patience) {
     return client.call(content, patience);
   });

@@ -4,13 +4,17 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 
 #include "harness/peer.hpp"
+#include "harness/skipped.hpp"
 #include "skein/core/error.hpp"
 
-/// The command line of a raw peer: `server DOMAIN` or `client DOMAIN`.
+/// The command line of a raw peer: `server DOMAIN [WAY]` or `client DOMAIN [WAY]`.
 namespace skein::benchmarks::raw {
 
 /// One call; nothing where no reply came within `patience`.
@@ -33,18 +37,65 @@ inline void run_raw_client(const TryCall& call) {
   }});
 }
 
+/// How a peer calls and serves: by the threading contract and the transport of Skein's back end, or
+/// in one way that differs from them.
+enum class Way {
+  Plain,
+  SharedMemory,  ///< `shared_memory`: the vendor's transport of that name beside UDP.
+  DataSharing,   ///< `data_sharing`: readers read where writers write.
+  Listener,      ///< `listener`: the vendor's thread runs the service and writes the reply.
+  Polling,       ///< `polling`: both sides ask for data without a pause.
+};
+
+/// The pause of a server that spins: none, but where no request came for a while it leaves the core
+/// to the other contenders.
+class SpinningPause {
+ public:
+  void after(bool answered) {
+    constexpr std::chrono::milliseconds kSpinning{5};
+    const auto now = std::chrono::steady_clock::now();
+    if (answered) {
+      last_ = now;
+    } else if (now - last_ > kSpinning) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_{};
+};
+
+/// Throws Skipped for a way that this vendor does not have.
+inline Way parse_way(const std::string& text,
+                     std::initializer_list<std::pair<const char*, Way>> ways) {
+  if (text.empty()) return Way::Plain;
+  for (const auto& [name, way] : ways) {
+    if (text == name) return way;
+  }
+  throw Skipped("this vendor has no '" + text + "'");
+}
+
+/// What follows the role on the command line.
+struct RawOptions {
+  std::uint32_t domain = 0;
+  std::string way{};
+};
+
 /// `server` serves while the function that it is given runs.
 inline int raw_main(
     int argc, char** argv,
-    const std::function<void(std::uint32_t domain, const std::function<void()>&)>& server,
-    const std::function<void(std::uint32_t domain)>& client) {
+    const std::function<void(const RawOptions&, const std::function<void()>&)>& server,
+    const std::function<void(const RawOptions&)>& client) {
   return run_peer([&] {
-    if (argc != 3) throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN");
-    const auto domain = static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10));
+    if (argc != 3 && argc != 4) {
+      throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN [WAY]");
+    }
+    const RawOptions options{static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10)),
+                             argc == 4 ? argv[3] : ""};
     if (argv[1] == std::string("server")) {
-      server(domain, run_server);
+      server(options, run_server);
     } else {
-      client(domain);
+      client(options);
     }
   });
 }

@@ -52,32 +52,29 @@ void put(Slot& slot, std::uint32_t number, const Content& content) {
 Content get(const Slot& slot) { return {slot.octets, slot.octets + slot.size}; }
 
 void serve(Shared& shared, const std::atomic<bool>& ending) {
-  auto last = Clock::now();
+  SpinningPause pause;
   std::uint32_t answered = 0;
   while (!ending) {
     const std::uint32_t number = shared.request.number.load(std::memory_order_acquire);
-    if (number != answered) {
-      put(shared.reply, number, echo(get(shared.request)));
-      answered = number;
-      last = Clock::now();
-    } else if (Clock::now() - last > kSpinning) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    pause.after(number != answered);
+    if (number == answered) continue;
+    put(shared.reply, number, echo(get(shared.request)));
+    answered = number;
   }
 }
 
-void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
-  Shared* const shared = new (map(domain, O_CREAT | O_TRUNC)) Shared;
+void server(const RawOptions& options, const std::function<void()>& meanwhile) {
+  Shared* const shared = new (map(options.domain, O_CREAT | O_TRUNC)) Shared;
   std::atomic<bool> ending{false};
   std::thread thread([&] { serve(*shared, ending); });
   meanwhile();
   ending = true;
   thread.join();
-  shm_unlink(name_of(domain).c_str());
+  shm_unlink(name_of(options.domain).c_str());
 }
 
-void client(std::uint32_t domain) {
-  Shared& shared = *map(domain, 0);
+void client(const RawOptions& options) {
+  Shared& shared = *map(options.domain, 0);
   std::uint32_t number = 0;
   run_raw_client(
       [&](const Content& content, std::chrono::milliseconds patience) -> std::optional<Content> {

@@ -62,9 +62,9 @@ void serve(int listening) {
   close(client);
 }
 
-void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
+void server(const RawOptions& options, const std::function<void()>& meanwhile) {
   socklen_t size = 0;
-  const sockaddr_un address = address_of(domain, size);
+  const sockaddr_un address = address_of(options.domain, size);
   const int listening = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (bind(listening, reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
       listen(listening, 1) != 0) {
@@ -74,9 +74,9 @@ void server(std::uint32_t domain, const std::function<void()>& meanwhile) {
   meanwhile();
 }
 
-void client(std::uint32_t domain) {
+void client(const RawOptions& options) {
   socklen_t size = 0;
-  const sockaddr_un address = address_of(domain, size);
+  const sockaddr_un address = address_of(options.domain, size);
   const int server = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (connect(server, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
     throw Internal("the Unix socket's server is not there");
