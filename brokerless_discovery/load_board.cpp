@@ -1,5 +1,6 @@
 #include "skein/brokerless_discovery/load_board.hpp"
 
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <unordered_map>
@@ -49,8 +50,10 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
   std::map<Guid, Own> own;
   std::unique_ptr<dds::Writer> writer;  // made when there is something to tell
   std::unique_ptr<dds::Reader> reader;
-  TimerId timer = 0;
   bool closed = false;
+
+  std::atomic<bool> awake{false};  // a timer will have the loads measured
+  std::atomic<TimerId> timer{0};
 
   // ---- what others tell
 
@@ -84,27 +87,28 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
 
   // ---- what this peer tells
 
-  void arm() {
+  void wake() {
+    if (awake.load(std::memory_order_relaxed) || awake.exchange(true)) return;
     timer = clock.call_after(kInterval, [state = weak_from_this()] {
       const auto self = state.lock();
       if (!self) return;
-      self->control.post([state] {
+      const bool posted = self->control.post([state] {
         if (const auto self = state.lock()) self->tick();
       });
+      if (!posted) self->awake = false;  // the next change tries again
     });
   }
 
   void tick() {
+    awake = false;  // what changes from now on is measured anew
     std::lock_guard lock(telling);
     if (closed) return;
-    timer = 0;
     for (auto& [provider, mine] : own) {
       const std::size_t load = mine.measure();
       if (load == mine.told) continue;
       mine.told = load;
       write(provider, load);
     }
-    if (!own.empty()) arm();
   }
 
   void write(const Guid& provider, std::size_t load) {
@@ -136,28 +140,32 @@ LoadBoard::LoadBoard(dds::Participant& participant, Clock& clock, Executor& cont
 }
 
 LoadBoard::~LoadBoard() {
-  TimerId timer;
   std::unique_ptr<dds::Reader> reader;
   std::unique_ptr<dds::Writer> writer;
   {
     std::lock_guard lock(state_->telling);
     state_->closed = true;
-    timer = state_->timer;
     reader.swap(state_->reader);
     writer.swap(state_->writer);
   }
-  state_->clock.cancel(timer);
+  state_->clock.cancel(state_->timer);
 }
 
 Broker::Registration LoadBoard::tell(const Guid& provider, std::function<std::size_t()> measure) {
   {
     std::lock_guard lock(state_->telling);
     state_->own[provider].measure = std::move(measure);
-    if (state_->timer == 0) state_->arm();
   }
+  state_->wake();
   return Broker::Registration([state = std::weak_ptr(state_), provider] {
     if (const auto self = state.lock()) self->withdraw(provider);
   });
+}
+
+std::function<void()> LoadBoard::notifier() const {
+  return [state = std::weak_ptr(state_)] {
+    if (const auto self = state.lock()) self->wake();
+  };
 }
 
 std::size_t LoadBoard::load_of(const Guid& provider) const {

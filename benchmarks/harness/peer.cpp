@@ -9,6 +9,9 @@
 #include "harness/skipped.hpp"
 #include "skein/core/error.hpp"
 
+// There where harness/allocation_counter.cpp is preloaded.
+extern "C" [[gnu::weak]] std::uint64_t skein_benchmark_allocations();
+
 namespace skein::benchmarks {
 namespace {
 
@@ -34,7 +37,11 @@ Commands known_to_all() {
              place_all_threads(std::stoi(core));
              return "placed";
            }},
-          {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }}};
+          {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }},
+          {"allocations", [](const std::string&) {
+             if (!skein_benchmark_allocations) throw Skipped("allocations are not counted here");
+             return std::to_string(skein_benchmark_allocations());
+           }}};
 }
 
 const Command& find(const Commands& commands, const std::string& name) {

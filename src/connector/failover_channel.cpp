@@ -35,14 +35,10 @@ FailoverChannel::FailoverChannel(Link first, Connect connect, std::optional<Dura
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   const OperationInfo& operation = call->operation();
   if (operation.idempotent && !operation.oneway) {
-    if (call->blocking() && !hedge_after_) return call_here(call, in);
     return call->attempt([&] { MovingCall::start(shared_from_this(), call, in); });
   }
   const Wanted wanted{call->deadline()};
   if (const auto link = ready(wanted)) return link->channel->start(call, in);
-  if (call->blocking()) {
-    return call->attempt([&] { acquire(wanted).channel->start(call, in); });
-  }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
   const auto copy = copy_of(*operation.in, in);
   const bool posted = continuations_.post([self = shared_from_this(), call, copy, wanted] {
@@ -53,29 +49,41 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
   }
 }
 
+void FailoverChannel::call(const OperationInfo& operation, const void* in, void* out,
+                           const CallTime& time) {
+  if (operation.idempotent && !operation.oneway) {
+    if (hedge_after_) return Channel::call(operation, in, out, time);
+    return call_idempotent(operation, in, out, time);
+  }
+  const auto main = main_if_trusted();
+  (main ? main : acquire({time.deadline}).channel)->call(operation, in, out, time);
+}
+
+std::shared_ptr<Channel> FailoverChannel::main_if_trusted() const {
+  std::lock_guard lock(mutex_);
+  return closed_ || main_.trusted() ? main_.channel : nullptr;
+}
+
 // The caller waits anyway, so its own thread tries one provider after the other, without a copy.
-void FailoverChannel::call_here(const std::shared_ptr<PendingCall>& call, const void* in) {
-  Retries retries(call->deadline());
+void FailoverChannel::call_idempotent(const OperationInfo& operation, const void* in, void* out,
+                                      const CallTime& time) {
+  Retries retries(time.deadline);
   std::exception_ptr error;
+  std::optional<Link> link;
   do {
-    Link link;
     try {
       link = acquire(retries.wanted());
     } catch (...) {
       if (!error) error = std::current_exception();
       break;
     }
-    const auto attempt = std::make_shared<Attempt>(call, call->out(), true);
-    link.channel->start(attempt, in);
-    attempt->wait();
-    error = attempt->take_error();
-    if (!error) {
-      if (call->claim()) call->finish();
-      return;
+    try {
+      return link->channel->call(operation, in, out, time);
+    } catch (...) {
+      error = std::current_exception();
     }
-    if (!retries.admit(error, link.provider, clock_.now())) break;
-  } while (true);
-  call->fail(std::move(error));
+  } while (retries.admit(error, link->provider, clock_.now()));
+  std::rethrow_exception(std::move(error));
 }
 
 std::string FailoverChannel::peer() const {

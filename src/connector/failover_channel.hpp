@@ -19,8 +19,8 @@ namespace skein {
 /// the next one, within its deadline. Any other that was on its way when its provider died ends as
 /// Disconnected; it is not repeated, since whether it ran is unknown.
 ///
-/// What that costs an idempotent call: one more object, and, where its caller does not wait, a copy of
-/// its in struct.
+/// What that costs an idempotent call whose caller does not wait: one more object, and a copy of its in
+/// struct.
 class FailoverChannel final : public Channel, public std::enable_shared_from_this<FailoverChannel> {
  public:
   /// Blocks until the deadline at most; throws Unavailable.
@@ -29,6 +29,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after = std::nullopt);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) override;
   Clock& clock() const noexcept override { return clock_; }
   Executor& continuations() const noexcept override { return continuations_; }
   std::string peer() const override;
@@ -47,7 +48,8 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   Link acquire(const Wanted& wanted);
 
  private:
-  void call_here(const std::shared_ptr<PendingCall>& call, const void* in);
+  std::shared_ptr<Channel> main_if_trusted() const;
+  void call_idempotent(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
   void keep(const Link& link);
   std::vector<Link> close();
 

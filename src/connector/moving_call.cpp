@@ -39,7 +39,7 @@ void MovingCall::try_at(const Link& link) {
   const TypeSupport& type = *call_->operation().out;
   std::shared_ptr<void> own;
   if (hedged_) own = {type.make(), type.destroy};
-  const auto attempt = std::make_shared<Attempt>(call_, own ? own.get() : call_->out(), false);
+  const auto attempt = std::make_shared<Attempt>(call_, own ? own.get() : call_->out());
   attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider, own] {
     self->ended(*attempt, provider, own.get());
   });

@@ -16,8 +16,8 @@ class FailoverChannel;
 /// at once.
 class Attempt final : public PendingCall {
  public:
-  Attempt(std::shared_ptr<PendingCall> call, void* out, bool blocking)
-      : PendingCall(call->operation(), out, call->deadline(), blocking), call_(std::move(call)) {}
+  Attempt(std::shared_ptr<PendingCall> call, void* out)
+      : PendingCall(call->operation(), out, call->deadline(), false), call_(std::move(call)) {}
 
  private:
   std::shared_ptr<PendingCall> call_;  // may own the out struct

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein {
@@ -77,6 +78,13 @@ void PendingCall::abandon(std::exception_ptr error) {
     canceller.swap(canceller_);
   }
   if (fail(std::move(error)) && canceller) canceller();
+}
+
+void Channel::call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) {
+  const auto pending = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
+  start(pending, in);
+  pending->wait();
+  if (auto error = pending->take_error()) std::rethrow_exception(std::move(error));
 }
 
 }  // namespace skein

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory_resource>
 #include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "skein/core/call_memory.hpp"
 #include "skein/core/guid.hpp"
 
 namespace skein::dds {
@@ -93,7 +95,7 @@ class KeyedQueue {
 
   /// Removes the holes that replaced items left behind.
   void compact() {
-    std::deque<Entry> kept;
+    std::pmr::deque<Entry> kept{&call_memory()};
     first_ = 0;
     places_.clear();
     for (Entry& entry : entries_) {
@@ -106,7 +108,7 @@ class KeyedQueue {
 
   std::optional<std::uint32_t> depth_;
   std::size_t capacity_;
-  std::deque<Entry> entries_;
+  std::pmr::deque<Entry> entries_{&call_memory()};
   std::uint64_t first_ = 0;  // the number of entries_.front()
   std::size_t size_ = 0;
   std::unordered_map<Guid, std::vector<std::uint64_t>> places_;

@@ -203,7 +203,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   if (owner != this->id()) {
     provided->server = std::make_unique<rpc::DdsServer>(
         *state_->participant, state_->control, state_->process->clock(), provided->service,
-        rpc::DdsServer::Options{owner.empty()});
+        rpc::DdsServer::Options{.foreign_clients = owner.empty(), .on_load = state_->loads.notifier()});
   }
   if (owner.empty()) {
     provided->load = state_->loads.tell(id, [&server = *provided->server] { return server.counters().active; });

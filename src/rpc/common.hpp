@@ -22,8 +22,7 @@ inline dds::Qos call_qos(std::vector<std::string> partitions) {
 /// The services that wait for a call which this thread is about to make, and to wait for.
 inline std::vector<Guid> inherited_chain() {
   const CallContext* context = CallContext::current();
-  if (!context) return {};
-  return {context->chain().begin(), context->chain().end()};
+  return context ? context->chain() : std::vector<Guid>();
 }
 
 }  // namespace skein::rpc

@@ -1,6 +1,7 @@
 #include "skein/rpc/dds_channel.hpp"
 
 #include <thread>
+#include <utility>
 
 #include "common.hpp"
 #include "dds_channel_state.hpp"
@@ -16,16 +17,15 @@ constexpr std::chrono::milliseconds kOpenInterval{20};
 
 template <class MakeError>
 void DdsChannel::State::fail_all(MakeError make_error) {
-  std::unordered_map<std::uint64_t, Entry> failed;
+  Entries failed{&call_memory()};
   {
     std::lock_guard lock(mutex);
     failed.swap(entries);
   }
-  for (auto& [number, entry] : failed) {
-    clock.cancel(entry.timer);
-    const auto error = make_error(entry.call->operation());
-    note_end(number, entry.call->operation(), error);
-    entry.call->fail(error);
+  for (auto& [number, call] : failed) {
+    const auto error = make_error(call->operation());
+    note_end(number, call->operation(), error);
+    call->fail(error);
   }
 }
 
@@ -122,6 +122,7 @@ void DdsChannel::State::close() {
   std::shared_ptr<dds::Writer> writer;
   std::shared_ptr<dds::Reader> reader;
   std::shared_ptr<void> follower;
+  TimerId outdated;
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Closed) return;
@@ -129,8 +130,10 @@ void DdsChannel::State::close() {
     writer.swap(requests);
     reader.swap(replies);
     follower.swap(companion);
+    outdated = std::exchange(timer, 0);
     changed.notify_all();
   }
+  clock.cancel(outdated);
   fail_all([&](const OperationInfo& operation) {
     return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
                                              " was closed during " + std::string(operation.name)));

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <utility>
+
 #include "common.hpp"
 #include "dds_channel_state.hpp"
 #include "skein/core/error.hpp"
@@ -21,7 +24,7 @@ void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const vo
 // The call is known before its request leaves: a reply may be here before write() returns.
 std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
                                                       std::uint64_t& number) {
-  std::lock_guard lock(mutex);
+  std::unique_lock lock(mutex);
   if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
     throw Unavailable("no connection to " + options.peer + ": disconnected");
@@ -30,11 +33,8 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
                      " already wait for their answers; the call was not sent");
   }
   number = ++last_number;
-  Entry& entry = entries[number];
-  entry.call = call;
-  entry.timer = clock.call_at(call->deadline(), [state = weak_from_this(), number] {
-    if (const auto self = state.lock()) self->expire(number);
-  });
+  entries.emplace(number, call);
+  const TimerId outdated = look_at(call->deadline());
   if (!call->blocking()) {
     call->set_canceller([state = weak_from_this(), number] {
       if (const auto self = state.lock()) self->abandon(number);
@@ -46,7 +46,39 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
           if (const auto self = state.lock()) self->grant(number, count);
         });
   }
-  return requests;
+  auto writer = requests;
+  lock.unlock();
+  if (outdated != 0) clock.cancel(outdated);  // unlocked: it may be running
+  return writer;
+}
+
+// Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any more.
+TimerId DdsChannel::State::look_at(Instant deadline) {
+  if (deadline >= timer_due) return 0;
+  timer_due = deadline;
+  return std::exchange(timer, clock.call_at(deadline, [state = weak_from_this()] {
+    if (const auto self = state.lock()) self->expire_due();
+  }));
+}
+
+void DdsChannel::State::expire_due() {
+  std::vector<std::uint64_t> due;
+  {
+    std::lock_guard lock(mutex);
+    const Instant now = clock.now();
+    timer = 0;
+    timer_due = Instant::max();
+    Instant next = Instant::max();
+    for (const auto& [number, call] : entries) {
+      if (call->deadline() <= now) {
+        due.push_back(number);
+      } else {
+        next = std::min(next, call->deadline());
+      }
+    }
+    look_at(next);
+  }
+  for (const std::uint64_t number : due) expire(number);
 }
 
 void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
@@ -72,17 +104,13 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
 
 // The call, which is not known by its number any more; a stream stays known until its last reply.
 std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Keep keep) {
-  Entry entry;
-  {
-    std::lock_guard lock(mutex);
-    const auto found = entries.find(number);
-    if (found == entries.end()) return nullptr;
-    if (keep == Keep::Streams && found->second.call->operation().stream) return found->second.call;
-    entry = std::move(found->second);
-    entries.erase(found);
-  }
-  clock.cancel(entry.timer);
-  return entry.call;
+  std::lock_guard lock(mutex);
+  const auto found = entries.find(number);
+  if (found == entries.end()) return nullptr;
+  if (keep == Keep::Streams && found->second->operation().stream) return found->second;
+  auto call = std::move(found->second);
+  entries.erase(found);
+  return call;
 }
 
 void DdsChannel::State::expire(std::uint64_t number) {

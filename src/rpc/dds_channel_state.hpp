@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "skein/core/call_memory.hpp"
 #include "skein/core/stream.hpp"
 #include "skein/rpc/dds_channel.hpp"
 #include "skein/rpc/wire.hpp"
@@ -19,10 +20,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   enum class Keep { Nothing, Streams };
   enum class Phase { Opening, Open, Lost, Closed };
 
-  struct Entry {
-    std::shared_ptr<PendingCall> call;
-    TimerId timer = 0;
-  };
+  using Entries = std::pmr::unordered_map<std::uint64_t, std::shared_ptr<PendingCall>>;
 
   State(dds::Participant& participant_, Executor& control_,
         std::shared_ptr<Executor> continuations_, std::shared_ptr<Clock> clock_,
@@ -51,7 +49,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   std::size_t matched_servers = 0;
   std::uint64_t last_number = 0;
   std::uint64_t malformed = 0;
-  std::unordered_map<std::uint64_t, Entry> entries;
+  Entries entries{&call_memory()};
+  TimerId timer = 0;  // one for all calls: steady calls come and go without it
+  Instant timer_due = Instant::max();
   Guid client;
   std::shared_ptr<dds::Writer> requests;
   std::shared_ptr<dds::Reader> replies;
@@ -82,6 +82,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void start(const std::shared_ptr<PendingCall>& call, const void* in);
   std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call,
                                      std::uint64_t& number);
+  TimerId look_at(Instant deadline);
+  void expire_due();
   void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
   std::shared_ptr<PendingCall> remove(std::uint64_t number, Keep keep = Keep::Nothing);
   void expire(std::uint64_t number);

@@ -69,7 +69,7 @@ void DdsServer::State::on_request(const dds::Sample& sample, const wire::Request
   const OperationInfo* operation = service->interface_info().find_operation(head.operation);
   if (!operation) return on_reserved(sample, head);
 
-  auto invocation = std::make_shared<Invocation>();
+  auto invocation = make_shared_in_call_memory<Request>();
   invocation->operation = operation;
   invocation->in = {operation->in->make(), operation->in->destroy};
   const std::size_t end = operation->in->decode(invocation->in.get(), message, head.body);
@@ -88,15 +88,17 @@ void DdsServer::State::on_request(const dds::Sample& sample, const wire::Request
   if (operation->stream) {
     invocation->stream = make_stream(client, head.id, *invocation, trailer ? trailer->credit : 0);
   }
-  invocation->respond = [state = weak_from_this(), client, id = head.id, operation,
-                         stream = invocation->stream](const void* out, std::exception_ptr error) {
-    const auto self = state.lock();
-    if (self) self->respond(*client, id, *operation, out, error, stream ? stream->sent() : 0);
+  invocation->server = weak_from_this();
+  invocation->client = client;
+  invocation->id = head.id;
+  invocation->respond = [request = invocation.get()](const void* out, std::exception_ptr error) {
+    if (const auto self = request->server.lock()) self->respond(*request, out, error);
   };
   {
     std::lock_guard lock(mutex);
-    active[head.id.client].emplace(head.id.number, invocation);
+    active.emplace(head.id, invocation);
   }
+  if (options.on_load) options.on_load();
   try {
     service->submit(invocation);
   } catch (...) {
@@ -139,10 +141,8 @@ void DdsServer::State::on_reserved(const dds::Sample& sample, const wire::Reques
 
 std::shared_ptr<Invocation> DdsServer::State::find_active(const RequestId& id) const {
   std::lock_guard lock(mutex);
-  const auto calls = active.find(id.client);
-  if (calls == active.end()) return nullptr;
-  const auto call = calls->second.find(id.number);
-  return call == calls->second.end() ? nullptr : call->second;
+  const auto call = active.find(id);
+  return call == active.end() ? nullptr : call->second;
 }
 
 std::shared_ptr<DdsServer::State::Client> DdsServer::State::client_of(const RequestId& id,
@@ -209,7 +209,7 @@ DdsServer::Counters DdsServer::counters() const {
   std::lock_guard lock(state_->mutex);
   Counters counters = state_->counters;
   for (const auto& [key, client] : state_->clients) counters.clients += client->refusal ? 0 : 1;
-  for (const auto& [key, calls] : state_->active) counters.active += calls.size();
+  counters.active = state_->active.size();
   return counters;
 }
 

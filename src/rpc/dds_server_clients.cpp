@@ -188,8 +188,8 @@ void DdsServer::State::drop(const Guid& key) {
   writer = std::move(client->writer);
   clients.erase(found);
   remember_forgotten(key);
-  if (const auto calls = active.find(key); calls != active.end()) {
-    for (auto& [number, invocation] : calls->second) invocation->cancel();
+  for (const auto& [id, invocation] : active) {
+    if (id.client == key) invocation->cancel();
   }
 }
 

@@ -54,18 +54,17 @@ void DdsServer::State::write_refusals(Client& client) {
   }
 }
 
-void DdsServer::State::respond(Client& client, const RequestId& id, const OperationInfo& operation,
-                               const void* out, const std::exception_ptr& error,
-                               std::uint64_t sent) {
-  forget(id);
+void DdsServer::State::respond(Request& request, const void* out, const std::exception_ptr& error) {
+  const OperationInfo& operation = *request.operation;
+  forget(request.id);
   if (operation.oneway) return;
   thread_local Bytes message;
   if (out || error) {
-    encode_outcome(message, id, operation, out, error);
+    encode_outcome(message, request.id, operation, out, error);
   } else {
-    encode_end(message, id, operation, sent);
+    encode_end(message, request.id, operation, request.stream->sent());
   }
-  write(client, message);
+  write(*request.client, message);
   if (message.capacity() > kKeptCapacity) message = Bytes();
 }
 
@@ -80,11 +79,11 @@ void DdsServer::State::send_item(Client& client, const RequestId& id,
 }
 
 void DdsServer::State::forget(const RequestId& id) {
-  std::lock_guard lock(mutex);
-  const auto calls = active.find(id.client);
-  if (calls == active.end()) return;
-  calls->second.erase(id.number);
-  if (calls->second.empty()) active.erase(calls);
+  {
+    std::lock_guard lock(mutex);
+    active.erase(id);
+  }
+  if (options.on_load) options.on_load();
 }
 
 std::shared_ptr<dds::Writer> DdsServer::State::writer_of(const Client& client) const {

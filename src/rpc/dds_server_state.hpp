@@ -8,6 +8,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "skein/core/call_memory.hpp"
 #include "skein/rpc/dds_server.hpp"
 #include "skein/rpc/wire.hpp"
 #include "transit_delay.hpp"
@@ -19,6 +20,13 @@ namespace skein::rpc {
 /// (dds_server_replies.cpp).
 struct DdsServer::State : std::enable_shared_from_this<State> {
   using RequestId = wire::RequestId;
+
+  struct RequestHash {
+    std::size_t operator()(const RequestId& id) const noexcept {
+      return std::hash<Guid>()(id.client) + static_cast<std::size_t>(id.number);
+    }
+  };
+  using Active = std::pmr::unordered_map<RequestId, std::shared_ptr<Invocation>, RequestHash>;
 
   struct Refusal {
     RequestId id;
@@ -39,6 +47,12 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     bool refusing = false;  // a task of `control` is about to write them
   };
 
+  struct Request : Invocation {
+    std::weak_ptr<State> server;
+    std::shared_ptr<Client> client;
+    RequestId id;
+  };
+
   State(dds::Participant& participant_, Executor& control_, Clock& clock_,
         std::shared_ptr<Service> service_, Options options_)
       : participant(participant_),
@@ -57,7 +71,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
 
   mutable std::mutex mutex;
   std::unordered_map<Guid, std::shared_ptr<Client>> clients;
-  std::unordered_map<Guid, std::unordered_map<std::uint64_t, std::shared_ptr<Invocation>>> active;
+  Active active{&call_memory()};
   std::set<Guid> forgotten;  // clients whose sessions have ended
   std::shared_ptr<Client> foreign;
   Counters counters;
@@ -95,8 +109,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   void drop(const Guid& key);
 
   // ---- on the service's executor
-  void respond(Client& client, const RequestId& id, const OperationInfo& operation, const void* out,
-               const std::exception_ptr& error, std::uint64_t sent);
+  void respond(Request& request, const void* out, const std::exception_ptr& error);
   void send_item(Client& client, const RequestId& id, const OperationInfo& operation,
                  const void* out, std::uint64_t position);
   void forget(const RequestId& id);

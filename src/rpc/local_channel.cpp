@@ -46,32 +46,25 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock
       clock_(std::move(clock)),
       continuations_(std::move(continuations)) {}
 
-void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
-  call->attempt([&] {
-    const auto service = service_.lock();
-    if (closed_ || !service) {
-      throw Unavailable("no connection to " + peer_ + ": it was " +
-                        (service ? "disconnected" : "withdrawn"));
-    }
-    if (call->blocking() && call_inline(*service, *call, in)) return;
-    enqueue(*service, call, in);
-  });
+std::shared_ptr<Service> LocalChannel::service() const {
+  auto service = service_.lock();
+  if (service && !closed_) return service;
+  throw Unavailable("no connection to " + peer_ + ": it was " + (service ? "disconnected" : "withdrawn"));
 }
 
-bool LocalChannel::call_inline(Service& service, PendingCall& call, const void* in) {
+void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  call->attempt([&] { enqueue(*service(), call, in); });
+}
+
+void LocalChannel::call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) {
+  const auto target = service();
   Invocation frame;
   frame.connection = id_;
-  frame.deadline = call.deadline();
-  frame.chain = inherited_chain();
-  frame.session = session_;
-  service.refuse_self_wait(frame.chain);
-  if (!service.try_call_inline(call.operation(), in, call.out(), frame)) return false;
-  // What an implementation returns because it saw its deadline pass is no result.
-  if (frame.ended >= call.deadline()) {
-    throw TimedOut(peer_ + " finished " + std::string(call.operation().name) + " too late");
-  }
-  if (call.claim()) call.finish();
-  return true;
+  frame.begun = time.begin;
+  frame.deadline = time.deadline;
+  frame.outer = CallContext::current();
+  frame.session = std::shared_ptr<Session>(std::shared_ptr<void>(), session_.get());  // owned by this
+  if (!target->try_call_inline(operation, in, out, frame)) Channel::call(operation, in, out, time);
 }
 
 void LocalChannel::disconnect() {

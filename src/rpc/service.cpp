@@ -56,7 +56,7 @@ void Service::submit(std::shared_ptr<Invocation> invocation) {
   invocation->arrived = clock_.now();
   note_begin(*invocation->operation, *invocation);
   try {
-    refuse_self_wait(invocation->chain);
+    refuse_self_wait(*invocation);
     enqueue(invocation);
   } catch (const Error&) {
     OperationMeter::count(meter.refused);
@@ -100,29 +100,38 @@ void Service::execute_next() {
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
                               Invocation& frame) {
   if (!options_.inline_calls) return false;
-  std::exception_ptr error;
+  refuse_self_wait(frame);
   const auto task = [&] {
     OperationMeter::count(meter_.of(operation).received);
     note_begin(operation, frame);
     try {
       dispatch(operation, in, out, frame);
+      refuse_too_late(operation, frame);
     } catch (...) {
-      error = std::current_exception();
+      note_end(operation, frame, std::current_exception());
+      throw;
     }
-    note_end(operation, frame, error);
+    note_end(operation, frame, nullptr);
   };
-  const bool ran = executor_.try_run_inline(std::cref(task));  // a reference fits into std::function
-  if (error) std::rethrow_exception(error);
-  return ran;
+  return executor_.try_run_inline(std::cref(task));  // a reference fits into std::function
 }
 
-void Service::refuse_self_wait(const std::vector<Guid>& chain) const {
-  const auto blocked = std::count(chain.begin(), chain.end(), options_.strand);
-  if (blocked < static_cast<std::ptrdiff_t>(std::max<std::size_t>(options_.threads, 1))) return;
+void Service::refuse_self_wait(const Invocation& invocation) const {
+  const auto& named = invocation.chain;
+  const auto blocked =
+      static_cast<std::size_t>(std::count(named.begin(), named.end(), options_.strand)) +
+      (invocation.outer ? invocation.outer->waits(options_.strand) : 0);
+  if (blocked < std::max<std::size_t>(options_.threads, 1)) return;
   throw Unavailable("the call to " + std::string(interface_info().name) + " would wait for itself (" +
-                    circle(chain) +
+                    circle(invocation.outer ? invocation.outer->chain() : named) +
                     "): every thread that could answer it is blocked in a call that led to this one; "
                     "make the inner call asynchronous or give the service more threads");
+}
+
+// What an implementation returns because it saw its deadline pass is no result.
+void Service::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
+  if (frame.ended < frame.deadline) return;
+  throw TimedOut(std::string(interface_info().name) + " finished " + std::string(operation.name) + " too late");
 }
 
 // From where the chain first enters this service, back to it.
@@ -163,7 +172,7 @@ void Service::stop(Invocation& invocation) const {
 
 void Service::execute(Invocation& invocation) {
   OperationMeter& meter = meter_.of(*invocation.operation);
-  const Instant now = clock_.now();
+  const Instant now = invocation.begun = clock_.now();
   meter.waited.record(now - invocation.arrived);
   if (closed_) return withdraw(invocation);
   if (invocation.cancelled || now >= invocation.deadline) {
@@ -182,32 +191,26 @@ void Service::execute(Invocation& invocation) {
     void* const target = stream ? static_cast<StreamWriter*>(stream) : out.get();
     dispatch(*invocation.operation, invocation.in.get(), target, invocation);
     if (stream) result = stream->finish();
+    refuse_too_late(*invocation.operation, invocation);
   } catch (...) {
     error = std::current_exception();
+    result = nullptr;
   }
-  // What an implementation returns because it saw its deadline pass is no result.
-  if (!error && invocation.ended >= invocation.deadline) {
-    error = std::make_exception_ptr(TimedOut(std::string(interface_info().name) + " finished " +
-                                             std::string(invocation.operation->name) + " too late"));
-  }
-  if (error) result = nullptr;
   answer(invocation, result, std::move(error));
 }
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,
                        Invocation& frame) {
-  std::vector<Guid> chain = frame.chain;
-  chain.push_back(options_.strand);
-  const CallContext context(clock_, frame.deadline, frame.caller, std::move(chain),
-                            frame.session.get(), &frame.cancelled);
+  const CallContext context(clock_, frame.deadline, frame.caller,
+                            {frame.outer, frame.chain, options_.strand}, frame.session.get(),
+                            &frame.cancelled);
   const CallContextScope scope(context);
   const Running running(*this, frame);
   OperationMeter& meter = meter_.of(operation);
-  const Instant begin = clock_.now();
   OperationMeter::Counter* outcome = &meter.answered;
   const auto end = [&] {
     frame.ended = clock_.now();
-    meter.ran.record(frame.ended - begin);
+    meter.ran.record(frame.ended - frame.begun);
     OperationMeter::count(*outcome);
   };
   try {

@@ -56,6 +56,7 @@ TEST_CASE("everybody hears of a provider's load, its own peer too, and a late jo
   const LoadBoard late(*participant, world.clock, world.control);
   CHECK(late.load_of(guid(1)) == 3);
   load = 0;
+  world.provider.notifier()();
   world.pass(LoadBoard::kInterval);
   CHECK(world.client.load_of(guid(1)) == 0);
 }
@@ -64,16 +65,22 @@ TEST_CASE("a load is told when it has changed, and at most once in an interval",
   World world;
   std::size_t load = 0;
   const auto told = world.provider.tell(guid(1), [&] { return load; });
+  const auto change = world.provider.notifier();
   world.pass(10 * LoadBoard::kInterval);
   CHECK(world.transfers() == 0);
   load = 7;
+  change();
   world.pass(LoadBoard::kInterval);
   const std::size_t once = world.transfers();
   CHECK(once == 2);  // to the two readers
-  for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
+  for (int i = 0; i < 20; ++i) {
+    change();
+    world.pass(LoadBoard::kInterval);
+  }
   CHECK(world.transfers() == once);
   for (int i = 0; i < 10; ++i) {
     ++load;
+    change();
     world.pass(LoadBoard::kInterval / 10);
   }
   CHECK(world.transfers() == 2 * once);
@@ -90,4 +97,24 @@ TEST_CASE("of a provider that has withdrawn, or whose peer is gone, no load is k
     world.pass(10s);
   }
   CHECK(world.client.load_of(guid(1)) == 0);
+}
+
+TEST_CASE("a load that nobody says has changed is not even measured", "[R21]") {
+  World world;
+  std::size_t measured = 0;
+  const auto told = world.provider.tell(guid(1), [&] { return ++measured; });
+  for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
+  CHECK(measured == 1);
+  world.provider.notifier()();
+  for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
+  CHECK(measured == 2);
+}
+
+TEST_CASE("a load may change after its board has gone", "[R21]") {
+  std::function<void()> change;
+  {
+    World world;
+    change = world.provider.notifier();
+  }
+  CHECK_NOTHROW(change());
 }

@@ -147,9 +147,14 @@ TEST_CASE("a call that all threads of a service wait for is refused with the cir
   const Guid s = client('s');
   const Guid m = client('m');
   const Guid stranger = client('x');
-  CHECK_NOTHROW(service->refuse_self_wait({s}));
-  CHECK_NOTHROW(service->refuse_self_wait({m, s, m}));
-  CHECK_THROWS_WITH(service->refuse_self_wait({m, s, m, stranger, s}),
+  const auto refuse = [&](std::vector<Guid> chain) {
+    Invocation invocation;
+    invocation.chain = std::move(chain);
+    service->refuse_self_wait(invocation);
+  };
+  CHECK_NOTHROW(refuse({s}));
+  CHECK_NOTHROW(refuse({m, s, m}));
+  CHECK_THROWS_WITH(refuse({m, s, m, stranger, s}),
                     Catch::Contains("(Echo of server -> Relay of middle -> service " + stranger.hex() +
                                     " -> Echo of server -> the first again)"));
 }

@@ -18,7 +18,7 @@ UNION_MEMBER = MEMBER | {"discriminator", "select", "tag_", "held_", "index_of"}
 PARAMETER = KEYWORDS | MACROS | {"in", "out"}
 OPERATION = MEMBER | {
     "Proxy", "Skeleton", "interface_info", "channel", "disconnect", "within", "dispatch", "call", "async_call",
-    "set_timeout", "deadline", "ProxyBase", "kDefaultTimeout", "implementation", "TypedCall",
+    "set_timeout", "call_time", "ProxyBase", "kDefaultTimeout", "implementation", "TypedCall",
 }  # fmt: skip
 
 

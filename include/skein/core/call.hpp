@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "skein/core/call_context.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/channel.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/stream.hpp"
@@ -116,25 +117,23 @@ class ProxyBase {
 
   template <class Out>
   struct TypedCall final : PendingCall {
-    TypedCall(const OperationInfo& operation, Instant deadline, bool blocking)
-        : PendingCall(operation, &value, deadline, blocking) {}
+    TypedCall(const OperationInfo& operation, Instant deadline)
+        : PendingCall(operation, &value, deadline, false) {}
     Out value{};
   };
 
   /// The blocking call; returns the out struct or throws.
   template <class Out, class In>
   Out call(const OperationInfo& operation, const In& in) const {
-    auto pending = std::make_shared<TypedCall<Out>>(operation, deadline(), true);
-    channel_->start(pending, &in);
-    pending->wait();
-    if (auto error = pending->take_error()) std::rethrow_exception(std::move(error));
-    return std::move(pending->value);
+    Out out{};
+    channel_->call(operation, &in, &out, call_time());
+    return out;
   }
 
   /// The asynchronous call; `select(out)` names the part of the out struct that is the result.
   template <class Result, class Out, class In, class Select>
   Call<Result> async_call(const OperationInfo& operation, const In& in, Select select) const {
-    auto pending = std::make_shared<TypedCall<Out>>(operation, deadline(), false);
+    auto pending = make_shared_in_call_memory<TypedCall<Out>>(operation, call_time().deadline);
     auto* const result = select(pending->value);
     channel_->start(pending, &in);
     return Call<Result>(std::move(pending), channel_, result);
@@ -143,7 +142,7 @@ class ProxyBase {
   /// The call of an operation that is a stream of results.
   template <class Result, class Out, class In>
   Stream<Result> stream(const OperationInfo& operation, const In& in) const {
-    auto pending = std::make_shared<PendingStream>(operation, deadline());
+    auto pending = std::make_shared<PendingStream>(operation, call_time().deadline);
     channel_->start(pending, &in);
     return Stream<Result>(std::move(pending), channel_, [](void* out) -> Result {
       return std::move(static_cast<Out*>(out)->return_);
@@ -154,10 +153,10 @@ class ProxyBase {
 
  private:
   /// A call made while executing another never outlives the outer one's deadline.
-  Instant deadline() const {
-    const Instant own = channel_->clock().now() + timeout_;
+  CallTime call_time() const {
+    const Instant begin = channel_->clock().now();
     const CallContext* outer = CallContext::current();
-    return outer ? std::min(own, outer->deadline()) : own;
+    return {begin, outer ? std::min(begin + timeout_, outer->deadline()) : begin + timeout_};
   }
 
   std::shared_ptr<Channel> channel_;

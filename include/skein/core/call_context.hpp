@@ -23,12 +23,21 @@ class Session {
 /// makes in turn inherit the deadline and the chain by themselves.
 class CallContext {
  public:
-  CallContext(const Clock& clock, Instant deadline, Guid caller, std::vector<Guid> chain,
-              Session* session, const std::atomic<bool>* cancelled)
+  /// Who waits for the call's answer: `outer`, the call on whose thread it runs, and who waits for that, or
+  /// else those whom the request named; and the service itself, by its `strand`.
+  struct Waiting {
+    const CallContext* outer = nullptr;
+    std::span<const Guid> named{};
+    Guid strand{};
+  };
+
+  /// What the arguments point to outlives the context.
+  CallContext(const Clock& clock, Instant deadline, Guid caller, const Waiting& waiting, Session* session,
+              const std::atomic<bool>* cancelled)
       : clock_(clock),
         deadline_(deadline),
         caller_(caller),
-        chain_(std::move(chain)),
+        waiting_(waiting),
         session_(session),
         cancelled_(cancelled) {}
 
@@ -49,7 +58,10 @@ class CallContext {
   const Guid& caller() const noexcept { return caller_; }
 
   /// The services that wait for this call's answer, outermost first.
-  std::span<const Guid> chain() const noexcept { return chain_; }
+  std::vector<Guid> chain() const;
+
+  /// How often `strand` is in the chain.
+  std::size_t waits(const Guid& strand) const noexcept;
 
   /// What the Head made at `open`; nullptr for a service without a Head.
   Session* session() const noexcept { return session_; }
@@ -58,7 +70,7 @@ class CallContext {
   const Clock& clock_;
   Instant deadline_;
   Guid caller_;
-  std::vector<Guid> chain_;
+  Waiting waiting_;
   Session* session_;
   const std::atomic<bool>* cancelled_;
 };

@@ -18,7 +18,7 @@ namespace skein {
 /// Shared by the caller and the lane that carries it.
 class PendingCall : public std::enable_shared_from_this<PendingCall> {
  public:
-  /// `out` is the operation's out struct; it lives as long as this object.
+  /// `out` is the operation's out struct; it lives until this is finished.
   PendingCall(const OperationInfo& operation, void* out, Instant deadline, bool blocking)
       : operation_(operation), out_(out), deadline_(deadline), blocking_(blocking) {}
   virtual ~PendingCall() = default;
@@ -26,7 +26,7 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   const OperationInfo& operation() const noexcept { return operation_; }
   void* out() const noexcept { return out_; }
   Instant deadline() const noexcept { return deadline_; }
-  /// Whether the calling thread waits for the answer, so that it may as well produce it.
+  /// Whether the calling thread waits for the answer.
   bool blocking() const noexcept { return blocking_; }
 
   /// True for exactly one caller, who may then fill out() and must finish().
@@ -90,6 +90,12 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   std::function<void()> canceller_;
 };
 
+/// When a call began, and until when its answer is of use.
+struct CallTime {
+  Instant begin;
+  Instant deadline;
+};
+
 /// How a proxy hands over a request and gets its reply: within the process as typed pointers, or over
 /// a network as bytes. Thread-safe.
 class Channel {
@@ -99,6 +105,10 @@ class Channel {
   /// Sends the request whose in struct is `in`, which need live only until this returns. Never throws:
   /// whatever fails finishes `call`. A oneway call is finished when the request is handed over.
   virtual void start(const std::shared_ptr<PendingCall>& call, const void* in) = 0;
+
+  /// The blocking call: fills `out`, the operation's out struct, or throws what ended the call. What a lane
+  /// does not do on the calling thread it does by start(). Not for streams.
+  virtual void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
 
   virtual Clock& clock() const noexcept = 0;
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "skein/core/action.hpp"
 #include "skein/core/thread_settings.hpp"
 
 namespace skein {
@@ -20,15 +21,15 @@ class Executor {
 
   /// Takes the task over; false, and nothing happens, where the queue is full or the executor has
   /// stopped. Callable from any thread; never blocks.
-  virtual bool post(std::function<void()> task) = 0;
+  virtual bool post(Action task) = 0;
 
   /// Takes the task over even where the queue is full; where the executor has stopped, runs it at once on
   /// the calling thread. For what must not be lost and is bounded elsewhere: the continuation of a call,
   /// which was admitted when it began.
-  virtual void post_or_run(std::function<void()> task) = 0;
+  virtual void post_or_run(Action task) = 0;
 
   /// Runs the task on the calling thread where that keeps the executor's promise about concurrency
-  /// and no task is waiting; false, and nothing happens, otherwise.
+  /// and no task is waiting; false, and nothing happens, otherwise. What the task throws it throws.
   virtual bool try_run_inline(const std::function<void()>& task) = 0;
 
   /// Whether the calling thread is running one of this executor's tasks.
@@ -46,8 +47,8 @@ class ThreadExecutor final : public Executor {
   /// Runs no task that has not begun; waits for those that have.
   ~ThreadExecutor() override;
 
-  bool post(std::function<void()> task) override;
-  void post_or_run(std::function<void()> task) override;
+  bool post(Action task) override;
+  void post_or_run(Action task) override;
   bool try_run_inline(const std::function<void()>& task) override;
   bool runs_here() const noexcept override;
 
@@ -65,7 +66,7 @@ class ThreadExecutor final : public Executor {
  private:
   struct State;
   void request_stop();
-  bool enqueue(std::function<void()>& task, std::size_t capacity);
+  bool enqueue(Action& task, std::size_t capacity);
 
   std::shared_ptr<State> state_;
   std::vector<std::thread> threads_;
@@ -74,8 +75,8 @@ class ThreadExecutor final : public Executor {
 /// An executor without a thread, for tests: tasks run when the owner says so.
 class ManualExecutor final : public Executor {
  public:
-  bool post(std::function<void()> task) override;
-  void post_or_run(std::function<void()> task) override;
+  bool post(Action task) override;
+  void post_or_run(Action task) override;
   bool try_run_inline(const std::function<void()>&) override { return false; }
   bool runs_here() const noexcept override { return running_; }
 
@@ -84,7 +85,7 @@ class ManualExecutor final : public Executor {
 
  private:
   std::mutex mutex_;
-  std::deque<std::function<void()>> tasks_;
+  std::deque<Action> tasks_;
   bool running_ = false;
 };
 

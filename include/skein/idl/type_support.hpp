@@ -1,5 +1,6 @@
 #pragma once
 
+#include "skein/core/call_memory.hpp"
 #include "skein/core/operation.hpp"
 #include "skein/idl/codec.hpp"
 #include "skein/idl/json_codec.hpp"
@@ -18,8 +19,14 @@ template <class T>
 constexpr TypeSupport make_type_support(std::string_view name) {
   return {
       .name = name,
-      .make = []() -> void* { return new T(); },
-      .destroy = [](void* value) noexcept { delete static_cast<T*>(value); },
+      .make = []() -> void* {
+        return std::pmr::polymorphic_allocator<>(&call_memory()).new_object<T>();
+      },
+      .destroy =
+          [](void* value) noexcept {
+            if (!value) return;
+            std::pmr::polymorphic_allocator<>(&call_memory()).delete_object(static_cast<T*>(value));
+          },
       .assign = [](void* to,
                    const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
       .encode =

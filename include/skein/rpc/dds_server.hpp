@@ -33,6 +33,9 @@ class DdsServer {
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
+    /// Called when a request has come, or has been answered, on the thread that sees it: Counters::active has
+    /// changed. May be empty; must return soon.
+    std::function<void()> on_load{};
   };
 
   /// What has happened since the start.

@@ -11,7 +11,8 @@
 namespace skein::rpc {
 
 /// The lane within one process: typed pointers, no bytes. A blocking call runs on the caller's
-/// thread where the service's executor is idle, else it queues; an asynchronous one always queues.
+/// thread where the service's executor is idle, and then allocates nothing; else it queues, as an
+/// asynchronous one always does.
 class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
  public:
   /// Opens a session at the service; throws what the Head throws to refuse it.
@@ -20,6 +21,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
                                             const std::string& strategy);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) override;
   Clock& clock() const noexcept override { return *clock_; }
   Executor& continuations() const noexcept override { return *continuations_; }
   std::string peer() const override { return peer_; }
@@ -31,8 +33,8 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
                std::shared_ptr<Executor> continuations);
 
+  std::shared_ptr<Service> service() const;
   std::vector<std::shared_ptr<PendingCall>> close();
-  bool call_inline(Service& service, PendingCall& call, const void* in);
   void remember(const std::shared_ptr<PendingCall>& call);
   void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
 

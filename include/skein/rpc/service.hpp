@@ -41,9 +41,12 @@ struct Invocation {
   Guid connection;           ///< With whose other invocations it waits in line.
   std::uint64_t number = 0;  ///< The connection's own count; 0 within the process.
   Instant arrived;
+  Instant begun;  ///< When the implementation was called.
   Instant ended;  ///< When the implementation had returned or thrown.
   Instant deadline;
-  std::vector<Guid> chain;
+  std::vector<Guid> chain;  ///< Who waits for the answer, as the request says.
+  /// The call on whose thread, and for which, this one runs; null where it has a thread of its own.
+  const CallContext* outer = nullptr;
   std::shared_ptr<Session> session;
   std::atomic<bool> cancelled{false};
   /// Where the results go, where the operation is a stream.
@@ -102,13 +105,13 @@ class Service : public std::enable_shared_from_this<Service> {
   void submit(std::shared_ptr<Invocation> invocation);
 
   /// Runs the operation on the calling thread where the executor is idle; false otherwise.
-  /// The outcome is in `out` or thrown.
+  /// The outcome is in `out` or thrown: TimedOut, too, where it came too late, and Unavailable as by
+  /// submit().
   bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
                        Invocation& frame);
 
-  /// Throws Unavailable, which names the services of the circle, where a call with this chain would
-  /// wait for itself.
-  void refuse_self_wait(const std::vector<Guid>& chain) const;
+  /// Throws Unavailable, which names the services of the circle, where the invocation would wait for itself.
+  void refuse_self_wait(const Invocation& invocation) const;
 
   /// Whether an invocation is still inside the implementation although its deadline has passed.
   bool overdue() const;
@@ -130,6 +133,7 @@ class Service : public std::enable_shared_from_this<Service> {
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);
   void execute(Invocation& invocation);
   std::string circle(const std::vector<Guid>& chain) const;
+  void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
   void stop(Invocation& invocation) const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
 
