@@ -90,10 +90,10 @@ TEST_CASE("a quick run writes every row of results.json in the common shape") {
     CHECK(row.at("parameters").is_object());
     const bool skipped = row.contains("skipped");
     CHECK((row.at("samples") > 0) != skipped);
-    for (const char* name : {"p50_us", "p90_us", "p99_us", "p999_us", "rival_p50_us",
-                             "rival_p99_us", "ratio_p50", "ratio_p99"}) {
-      CHECK(row.at(name).is_number() != skipped);
+    for (const char* name : {"p50", "p90", "p99", "p999", "rival_p50", "rival_p99"}) {
+      CHECK(row.at(name + ("_" + row.at("unit").get<std::string>())).is_number() != skipped);
     }
+    for (const char* name : {"ratio_p50", "ratio_p99"}) CHECK(row.at(name).is_number() != skipped);
     if (skipped)
       WARN(row.at("claim") << ", " << row.at("subject") << " skipped: " << row.at("skipped"));
   }
@@ -125,6 +125,18 @@ TEST_CASE("no other way of the vendors is missing") {
   }
   CHECK(has(results, "other ways of the vendors", "skein cyclonedds", json::object(),
             "cyclonedds by polling"));
+}
+
+TEST_CASE("no vendor is missing where peers start at once and where they are idle") {
+  const json& results = QuickRun::get().results;
+  for (const std::string vendor : {"fastdds", "cyclonedds"}) {
+    CAPTURE(vendor);
+    for (const char* claim :
+         {"peers that start at once until all see all", "octets that an idle peer sends, per second",
+          "packets that an idle peer sends, per second", "processor time of an idle peer, per second"}) {
+      CHECK(has(results, claim, "skein " + vendor, {{"peers", 4}}, "raw " + vendor));
+    }
+  }
 }
 
 TEST_CASE("no rival and no way to call is missing") {

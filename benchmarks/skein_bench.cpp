@@ -21,6 +21,8 @@ struct Plan {
   RivalPlan rivals;
   FindPlan find;
   std::size_t cold_starts;
+  JoinPlan joins;
+  IdlePlan idle_peers;
   std::size_t kills_on_one_host;
   std::size_t kills_across_hosts;
 };
@@ -29,13 +31,13 @@ Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 60}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 25}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, 15, 5};
+  return {{sizes, 25}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, {50, 5}, {{10, 50, 100}, 3, std::chrono::milliseconds(1500)}, 15, 5};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, 1, 1};
+  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(200)}, 1, 1};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -57,7 +59,8 @@ void print_summary(const std::vector<Comparison>& comparisons) {
 }
 
 const std::vector<std::string> kParts{"calls",        "ways",         "rivals",      "in_process",
-                                      "idle_clients", "find_service", "cold_starts", "deaths"};
+                                      "idle_clients", "find_service", "cold_starts", "joins",        "idle_peers",
+                                      "deaths"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -79,6 +82,8 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   if (wanted("cold_starts")) {
     append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
   }
+  if (wanted("joins")) append(comparisons, compare_joins(configurations, plan.joins));
+  if (wanted("idle_peers")) append(comparisons, compare_idle_peers(configurations, plan.idle_peers));
   if (wanted("deaths")) {
     append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
     append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
@@ -110,6 +115,7 @@ int main(int argc, char** argv) {
   as_peer->add_option("--threads", peer.threads);
   as_peer->add_option("--interface", peer.interface);
   as_peer->add_option("--peer", peer.peer);
+  as_peer->add_option("--peers", peer.peers);
   CLI11_PARSE(app, argc, argv);
   try {
     if (*as_peer) return run_skein_peer(peer);

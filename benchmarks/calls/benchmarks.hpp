@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <vector>
 
 #include "calls/configuration.hpp"
@@ -57,6 +58,22 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
 
 /// Fresh pairs of processes; the provider is up, the client's process begins.
 std::vector<Comparison> compare_cold_starts(Configurations& configurations, std::size_t starts);
+
+/// Peers that start at once, a process each, until all see all, beside raw peers with the same endpoints.
+struct JoinPlan {
+  std::size_t peers;
+  std::size_t rounds;
+};
+std::vector<Comparison> compare_joins(Configurations& configurations, const JoinPlan& plan);
+
+/// What peers that see all others and do nothing cost, each: octets and packets on the wire, processor
+/// time; beside raw peers with the same endpoints. So many windows of time for each count.
+struct IdlePlan {
+  std::vector<std::size_t> peers;
+  std::size_t windows;
+  std::chrono::milliseconds window;
+};
+std::vector<Comparison> compare_idle_peers(Configurations& configurations, const IdlePlan& plan);
 
 /// SIGKILL to a provider with a call pending: until the caller has Disconnected, and until the
 /// description has gone.

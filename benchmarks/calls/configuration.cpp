@@ -19,11 +19,6 @@ std::optional<Child> ready_server(const Words& command, int network) {
   return child;
 }
 
-double cpu_us_of(Child& child) {
-  child.send("cpu");
-  return std::stod(child.receive().substr(4)) / 1000;
-}
-
 void add_place(Words& command, const std::optional<Place>& place) {
   if (!place) return;
   for (const std::string& word :
@@ -32,12 +27,17 @@ void add_place(Words& command, const std::optional<Place>& place) {
   }
 }
 
+}  // namespace
+
+double cpu_us_of(Child& child) {
+  child.send("cpu");
+  return std::stod(child.receive().substr(4)) / 1000;
+}
+
 double between_us(Instant begin, const std::string& end_ns) {
   const auto begin_ns = std::chrono::nanoseconds(begin.time_since_epoch()).count();
   return static_cast<double>(std::stoll(end_ns) - begin_ns) / 1000;
 }
-
-}  // namespace
 
 Configuration Configurations::skein(const std::string& server, const std::string& client,
                                     std::size_t threads, const std::optional<Place>& server_place,
@@ -70,6 +70,19 @@ Configuration Configurations::raw_by(const std::string& vendor, const std::strin
           {program, "server", domain, way},
           {program, "client", domain, way},
           way == "polling"};
+}
+
+Configuration Configurations::skein_neighbour(const std::string& vendor, std::size_t count) {
+  return {"skein " + vendor,
+          {},
+          {folder_ + "/skein_bench", "peer", "--role", "neighbour", "--vendor", vendor, "--domain",
+           next_domain(), "--peers", std::to_string(count)}};
+}
+
+Configuration Configurations::raw_neighbour(const std::string& vendor, std::size_t count) {
+  return {"raw " + vendor,
+          {},
+          {folder_ + "/skein_bench_raw_" + vendor, "neighbour", next_domain(), std::to_string(count)}};
 }
 
 Configuration Configurations::floor(const std::string& name, const std::string& program) {

@@ -42,6 +42,10 @@ class Configurations {
   /// The vendor's own API in a way that differs from Skein's: `shared_memory`, `data_sharing`,
   /// `listener` or `polling`, as far as the vendor has it (raw/main.hpp).
   Configuration raw_by(const std::string& vendor, const std::string& way);
+  /// One of `count` peers that find each other, each a process: a Skein entity with one service, and a
+  /// raw peer with the same endpoints. Only `client` is set.
+  Configuration skein_neighbour(const std::string& vendor, std::size_t count);
+  Configuration raw_neighbour(const std::string& vendor, std::size_t count);
   Configuration unix_socket();
   Configuration shared_memory();
   /// `rival` is `omniorb`, `grpc` or `zeromq`; transports are those of its peer's command line.
@@ -86,6 +90,12 @@ struct Running {
   /// From just before the client's process was made until its first reply.
   double first_reply_us = 0;
 };
+
+/// Processor time of one peer so far, microseconds.
+double cpu_us_of(Child& child);
+
+/// From `begin` to a time that a peer told (now_text()), microseconds.
+double between_us(Instant begin, const std::string& end_ns);
 
 /// The times that a peer answered with; microseconds.
 std::vector<double> times_us(const std::string& answer);

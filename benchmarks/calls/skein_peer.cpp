@@ -5,6 +5,7 @@
 #include <random>
 #include <thread>
 
+#include "calls/skein_neighbour.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
@@ -35,18 +36,10 @@ class EchoBody final : public Echo {
   std::atomic<bool> holding_{false};
 };
 
-std::shared_ptr<dds::Vendor> load(const std::string& vendor) {
-  try {
-    return dds::load_vendor(vendor);
-  } catch (const Unavailable& error) {
-    throw Skipped(error.what());
-  }
-}
-
 EntityOptions entity_options(const SkeinPeer& peer) {
   EntityOptions options;
   options.name = peer.role;
-  options.vendor = load(peer.vendor);
+  options.vendor = load_or_skip(peer.vendor);
   options.domain = peer.domain;
   options.network.max_participants = kMaxParticipants;
   if (!peer.interface.empty()) {
@@ -230,6 +223,7 @@ int run_skein_peer(const SkeinPeer& peer) {
   return run_peer([&] {
     if (peer.role == "server") return serve(peer);
     if (peer.role == "finder") return find_services();
+    if (peer.role == "neighbour") return be_neighbour(peer);
     peer.role == "local" ? call_in_process() : call(peer);
   });
 }

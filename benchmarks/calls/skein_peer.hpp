@@ -8,12 +8,13 @@ namespace skein::benchmarks {
 
 /// One process of a Skein configuration.
 struct SkeinPeer {
-  std::string role;  ///< `server`, `client`, or `local`: both in one process; or `finder`.
+  std::string role;  ///< `server`, `client`, or `local`: both in one process; `finder`; or `neighbour`.
   std::string vendor;
   std::uint32_t domain = 0;
   std::size_t threads = 1;
   std::string interface;  ///< Empty: loopback.
   std::string peer;       ///< Address of the other host, with `interface`.
+  std::size_t peers = 0;  ///< Of a `neighbour`: how many there are, itself among them.
 };
 
 /// Serves, or calls and obeys. Besides `call` a client knows `hold` (starts a call that does not

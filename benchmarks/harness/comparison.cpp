@@ -9,15 +9,16 @@ namespace {
 
 using nlohmann::json;
 
-void put_times(json& object, const std::string& prefix, const Summary& summary) {
-  const auto put = [&](const char* name, double time_us) {
-    object[prefix + name] = summary.samples == 0 ? json(nullptr) : json(time_us);
+void put_figures(json& object, const std::string& prefix, const Summary& summary,
+                 const std::string& unit) {
+  const auto put = [&](const char* name, double figure) {
+    object[prefix + name + '_' + unit] = summary.samples == 0 ? json(nullptr) : json(figure);
   };
-  put("p50_us", summary.p50);
-  put("p90_us", summary.p90);
-  put("p95_us", summary.p95);
-  put("p99_us", summary.p99);
-  put("p999_us", summary.p999);
+  put("p50", summary.p50);
+  put("p90", summary.p90);
+  put("p95", summary.p95);
+  put("p99", summary.p99);
+  put("p999", summary.p999);
 }
 
 json ratio(double subject, double rival) {
@@ -31,9 +32,10 @@ json to_json(const Comparison& comparison) {
   const Summary rival = comparison.rival_summary();
   json object{{"claim", comparison.claim}, {"subject", comparison.subject},
               {"rival", comparison.rival}, {"parameters", comparison.parameters},
+              {"unit", comparison.unit},
               {"samples", own.samples},    {"rival_samples", rival.samples}};
-  put_times(object, "", own);
-  put_times(object, "rival_", rival);
+  put_figures(object, "", own, comparison.unit);
+  put_figures(object, "rival_", rival, comparison.unit);
   object["ratio_p50"] = ratio(own.p50, rival.p50);
   object["ratio_p99"] = ratio(own.p99, rival.p99);
   if (comparison.goal_p50) object["goal_p50"] = *comparison.goal_p50;

@@ -16,13 +16,14 @@ struct Comparison {
   std::string subject;  ///< `skein fastdds-cyclonedds` (provider first).
   std::string rival;    ///< `raw fastdds`; `limit 20 ms` where the rival is a promise.
   nlohmann::json parameters = nlohmann::json::object();
-  std::vector<double> samples{};        ///< Microseconds, as measured.
+  std::vector<double> samples{};        ///< In `unit`, as measured.
   std::vector<double> rival_samples{};  ///< A promise is one sample.
   /// The greatest ratios that the project is content with, where it has said so.
   std::optional<double> goal_p50{};
   std::optional<double> goal_p99{};
   /// Not empty: why there are no samples.
   std::string skipped{};
+  std::string unit = "us";  ///< `us`, `octets` or `packets`.
 
   Summary summary() const { return summarize(samples); }
   Summary rival_summary() const { return summarize(rival_samples); }
@@ -30,9 +31,9 @@ struct Comparison {
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 
-/// Times in microseconds: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us`, the same with `rival_`
-/// before it, and the quotients `ratio_p50` and `ratio_p99`, below 1 where the subject is faster.
-/// All of them null in a skipped comparison, which says why in `skipped`.
+/// Figures with their unit: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us` (or `p50_octets`, ...), the same
+/// with `rival_` before it, and the quotients `ratio_p50` and `ratio_p99`, below 1 where the subject is faster or thriftier.
+/// `unit` says which. All of them null in a skipped comparison, which says why in `skipped`.
 nlohmann::json to_json(const Comparison& comparison);
 
 /// Writes results.json: an array of all comparisons. Throws Error where the file cannot be written.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -25,6 +26,9 @@ using EchoCall = std::function<void(const Content&, const Seen&)>;
 /// Sends a call without waiting; what it returns waits for the reply, and throws where there is
 /// none. Replies are waited for in the order of the calls.
 using StartEcho = std::function<std::function<void()>(const Content&)>;
+
+/// How long a peer that starts with many others waits until it knows all of them.
+inline constexpr std::chrono::seconds kJoinPatience{60};
 
 /// What else a peer obeys, by its first word; gets the rest of the line, returns the answer.
 using Command = std::function<std::string(const std::string& rest)>;

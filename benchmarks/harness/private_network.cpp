@@ -4,6 +4,7 @@
 #include <net/if.h>
 #include <sched.h>
 #include <sys/ioctl.h>
+#include <sys/mount.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +27,11 @@ bool raise_loopback() {
   const bool up = socket_ >= 0 && ioctl(socket_, SIOCSIFFLAGS, &request) == 0;
   close(socket_);
   return up;
+}
+
+bool hide_shared_memory() {
+  return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+         mount("tmpfs", "/dev/shm", "tmpfs", MS_NOSUID | MS_NODEV, nullptr) == 0;
 }
 
 void map_to_root(uid_t user, gid_t group) {
@@ -101,13 +107,14 @@ std::string path_of(int network) {
 std::string enter_private_network() {
   const uid_t user = geteuid();
   const gid_t group = getegid();
-  if (unshare(CLONE_NEWNET) != 0) {
-    if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) {
+  if (unshare(CLONE_NEWNET | CLONE_NEWNS) != 0) {
+    if (unshare(CLONE_NEWUSER | CLONE_NEWNET | CLONE_NEWNS) != 0) {
       return "network namespaces are not allowed here; other traffic on loopback may disturb";
     }
     map_to_root(user, group);
   }
-  return raise_loopback() ? "" : "loopback cannot be switched on";
+  if (!raise_loopback()) return "loopback cannot be switched on";
+  return hide_shared_memory() ? "" : "the run shares /dev/shm with the machine, and may leave files there";
 }
 
 TwoHosts::TwoHosts() {

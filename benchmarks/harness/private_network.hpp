@@ -5,7 +5,8 @@
 namespace skein::benchmarks {
 
 /// Moves this process into a network of its own that has nothing but loopback, so that a run
-/// neither disturbs others nor is disturbed. Before any thread exists. Returns what stood in the
+/// neither disturbs others nor is disturbed; with a /dev/shm that vanishes with it, and with it whatever a killed
+/// peer leaves there. Before any thread exists. Returns what stood in the
 /// way, or "".
 std::string enter_private_network();
 

@@ -7,88 +7,13 @@
 #include <mutex>
 #include <thread>
 
-#include "raw/cyclonedds_sample.hpp"
-#include "raw/main.hpp"
-#include "raw/message.hpp"
+#include "raw/cyclonedds_neighbour.hpp"
+#include "raw/cyclonedds_participant.hpp"
 
 namespace skein::benchmarks::raw {
 namespace {
 
-constexpr const char* kConfiguration =
-    "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
-    "<NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
-    "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65000 B</MaxMessageSize>"
-    "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 "
-    "B</MaxRexmitMessageSize></General>"
-    "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-    "<MaxAutoParticipantIndex>3</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
-    "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
-    "<Internal><SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>"
-    "<Watermarks><WhcHigh>4 MiB</WhcHigh><WhcHighInit>1 MiB</WhcHighInit></Watermarks>"
-    "<HeartbeatInterval>25 ms</HeartbeatInterval></Internal></Domain></CycloneDDS>";
-
-dds_entity_t check(dds_return_t code) {
-  if (code < 0) throw Internal(std::string("Cyclone DDS says '") + dds_strretcode(-code) + "'");
-  return code;
-}
-
-class Participant {
- public:
-  explicit Participant(std::uint32_t domain) : qos_(dds_create_qos()) {
-    check(dds_create_domain(domain, kConfiguration));
-    participant_ = check(dds_create_participant(domain, nullptr, nullptr));
-    dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
-    dds_qset_data_representation(qos_, 1, &representation);
-    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-    dds_qset_history(qos_, DDS_HISTORY_KEEP_ALL, 0);
-  }
-  ~Participant() {
-    dds_delete(participant_);
-    dds_delete_qos(qos_);
-  }
-
-  struct Topic {
-    dds_entity_t entity;
-    const ddsi_sertype* type;
-  };
-  Topic topic(const char* name) {
-    ddsi_sertype* type = make_type(kType);
-    const dds_entity_t entity =
-        check(dds_create_topic_sertype(participant_, name, &type, qos_, nullptr, nullptr));
-    return {entity, type};
-  }
-  dds_entity_t writer(const Topic& topic) {
-    return check(dds_create_writer(participant_, topic.entity, qos_, nullptr));
-  }
-  dds_entity_t reader(const Topic& topic, const dds_listener_t* listener = nullptr) {
-    return check(dds_create_reader(participant_, topic.entity, qos_, listener));
-  }
-  dds_entity_t waitset() { return check(dds_create_waitset(participant_)); }
-
- private:
-  dds_entity_t participant_ = 0;
-  dds_qos_t* qos_;
-};
-
-void write(dds_entity_t writer, const ddsi_sertype* type, const Outgoing& message) {
-  Sample* sample = Sample::make(type, SDK_DATA, encoded_size(message));
-  encode(message, sample->bytes());
-  const dds_return_t code = dds_writecdr(writer, sample);
-  if (code != DDS_RETCODE_TIMEOUT) check(code);  // a client that has gone: the reply is lost
-}
-
-/// False where nothing waits.
-bool take(dds_entity_t reader, Message& message) {
-  ddsi_serdata* data = nullptr;
-  dds_sample_info_t info;
-  if (dds_takecdr(reader, &data, 1, &info, DDS_ANY_STATE) <= 0) return false;
-  auto* sample = static_cast<Sample*>(data);
-  if (info.valid_data) decode(message, sample->bytes(), sample->size);
-  ddsi_serdata_unref(data);
-  return true;
-}
-
-void serve(Participant& participant, Way way, const std::atomic<bool>& ending) {
+void serve(CycloneddsParticipant& participant, Way way, const std::atomic<bool>& ending) {
   const auto request_topic = participant.topic(kRequestTopic);
   const auto reply_topic = participant.topic(kReplyTopic);
   const dds_entity_t requests = participant.reader(request_topic);
@@ -119,7 +44,7 @@ Way way_of(const RawOptions& options) {
 
 void server(const RawOptions& options, const std::function<void()>& meanwhile) {
   const Way way = way_of(options);
-  Participant participant(options.domain);
+  CycloneddsParticipant participant(options.domain);
   std::atomic<bool> ending{false};
   std::thread thread([&] { serve(participant, way, ending); });
   meanwhile();
@@ -179,8 +104,8 @@ class Client {
   bool arrived_ = false;
   ClientId id_{};
   std::uint32_t number_ = 0;
-  Participant participant_;
-  Participant::Topic request_topic_;
+  CycloneddsParticipant participant_;
+  CycloneddsParticipant::Topic request_topic_;
   dds_entity_t requests_ = 0;
   dds_entity_t replies_ = 0;
 };
@@ -197,5 +122,5 @@ void client(const RawOptions& options) {
 
 int main(int argc, char** argv) {
   using namespace skein::benchmarks::raw;
-  return raw_main(argc, argv, server, client);
+  return raw_main(argc, argv, server, client, cyclonedds_neighbour);
 }

@@ -1,158 +1,22 @@
 // A call written with Fast DDS's own API, in the way that a careful user writes one, with the
 // transport of Skein's back end: no code of the user's on Fast DDS's threads but a notification.
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <atomic>
 #include <condition_variable>
 #include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <mutex>
 #include <thread>
 
+#include "raw/fastdds_neighbour.hpp"
+#include "raw/fastdds_participant.hpp"
 #include "raw/main.hpp"
 #include "raw/message.hpp"
 
 namespace skein::benchmarks::raw {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::Duration_t;
-
-/// What data sharing reserves for each sample, and how many samples it reserves.
-constexpr std::uint32_t kGreatestMessage = (1 << 20) + 64;
-constexpr std::int32_t kSharedSamples = 8;
-
-class MessageType final : public dds::TopicDataType {
- public:
-  explicit MessageType(Way way) : bounded_(way == Way::DataSharing) {
-    setName(kType);
-    m_typeSize = bounded_ ? kGreatestMessage : 512;
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const auto& message = *static_cast<const Outgoing*>(data);
-    encode(message, reinterpret_cast<char*>(payload->data));
-    payload->length = static_cast<std::uint32_t>(encoded_size(message));
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    decode(*static_cast<Message*>(data), reinterpret_cast<char*>(payload->data), payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return
-        [data] { return static_cast<std::uint32_t>(encoded_size(*static_cast<Outgoing*>(data))); };
-  }
-  void* createData() override { return new Message; }
-  void deleteData(void* data) override { delete static_cast<Message*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-  bool is_bounded() const override { return bounded_; }
-
- private:
-  const bool bounded_;
-};
-
-rtps::Locator_t loopback() {
-  rtps::Locator_t locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(locator, "127.0.0.1");
-  locator.port = 0;
-  return locator;
-}
-
-template <class Endpoint>
-void fill(Endpoint& qos, Way way) {
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
-  qos.durability().kind = dds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-  qos.resource_limits().max_samples = 0;
-  qos.resource_limits().max_instances = 0;
-  qos.resource_limits().max_samples_per_instance = 0;
-  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  qos.data_sharing().off();
-  if (way != Way::DataSharing) return;
-  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = kSharedSamples;
-  qos.resource_limits().max_samples = kSharedSamples;
-  qos.resource_limits().max_instances = 1;
-  qos.resource_limits().max_samples_per_instance = kSharedSamples;
-  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
-  qos.data_sharing().automatic();
-}
-
-/// Segments that hold the fragments of some mebibytes; the default's half a mebibyte loses them.
-std::shared_ptr<eprosima::fastdds::rtps::SharedMemTransportDescriptor> shared_memory() {
-  auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
-  memory->segment_size(16 << 20);
-  return memory;
-}
-
-class Participant {
- public:
-  explicit Participant(std::uint32_t domain, Way way) : way_(way) {
-    auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    udp->interfaceWhiteList = {"127.0.0.1"};
-    udp->sendBufferSize = 64 << 20;
-    udp->receiveBufferSize = 4 << 20;
-    udp->maxInitialPeersRange = 4;
-    dds::DomainParticipantQos qos;
-    qos.transport().use_builtin_transports = false;
-    qos.transport().user_transports.push_back(udp);
-    if (way == Way::SharedMemory) qos.transport().user_transports.push_back(shared_memory());
-    auto& builtin = qos.wire_protocol().builtin;
-    builtin.avoid_builtin_multicast = true;
-    builtin.initialPeersList.push_back(loopback());
-    builtin.discovery_config.leaseDuration = Duration_t(1, 0);
-    builtin.discovery_config.leaseDuration_announcementperiod = Duration_t(0, 250'000'000);
-    builtin.discovery_config.initial_announcements = {5, Duration_t(0, 10'000'000)};
-    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
-    if (participant_ == nullptr) throw Internal("no Fast DDS participant");
-    dds::TypeSupport(new MessageType(way)).register_type(participant_);
-    publisher_ = participant_->create_publisher(dds::PublisherQos());
-    subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
-  }
-
-  dds::DataWriter* writer(const char* topic) {
-    dds::DataWriterQos qos;
-    fill(qos, way_);
-    qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-    qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
-    qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
-    qos.reliable_writer_qos().times.nackSupressionDuration = Duration_t(0, 10'000'000);
-    return publisher_->create_datawriter(participant_->create_topic(topic, kType, dds::TopicQos()),
-                                         qos);
-  }
-
-  dds::DataReader* reader(const char* topic, dds::DataReaderListener* listener = nullptr) {
-    dds::DataReaderQos qos;
-    fill(qos, way_);
-    qos.reliable_reader_qos().times.initialAcknackDelay = Duration_t(0, 10'000'000);
-    qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
-    return subscriber_->create_datareader(
-        participant_->create_topic(topic, kType, dds::TopicQos()), qos, listener,
-        listener ? dds::StatusMask::data_available() : dds::StatusMask::none());
-  }
-
- private:
-  const Way way_;
-  dds::DomainParticipant* participant_;
-  dds::Publisher* publisher_;
-  dds::Subscriber* subscriber_;
-};
 
 /// Answers all requests that wait; whether there were any.
 bool answer(dds::DataReader& requests, dds::DataWriter& replies) {
@@ -203,7 +67,7 @@ Way way_of(const RawOptions& options) {
 
 void server(const RawOptions& options, const std::function<void()>& meanwhile) {
   const Way way = way_of(options);
-  Participant participant(options.domain, way);
+  FastddsParticipant participant(options.domain, way);
   dds::DataWriter* replies = participant.writer(kReplyTopic);
   if (way == Way::Listener) {
     static AnsweringListener listener(*replies);
@@ -267,7 +131,7 @@ class Client final : private dds::DataReaderListener {
   }
 
   const Way way_;
-  Participant participant_;
+  FastddsParticipant participant_;
   dds::DataWriter* requests_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -289,7 +153,7 @@ void client(const RawOptions& options) {
 
 int main(int argc, char** argv) {
   using namespace skein::benchmarks::raw;
-  const int result = raw_main(argc, argv, server, client);
+  const int result = raw_main(argc, argv, server, client, fastdds_neighbour);
   std::fflush(stdout);
   std::_Exit(result);  // Fast DDS's entities end with the process
 }

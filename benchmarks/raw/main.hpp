@@ -14,7 +14,8 @@
 #include "harness/skipped.hpp"
 #include "skein/core/error.hpp"
 
-/// The command line of a raw peer: `server DOMAIN [WAY]` or `client DOMAIN [WAY]`.
+/// The command line of a raw peer: `server DOMAIN [WAY]`, `client DOMAIN [WAY]`, or
+/// `neighbour DOMAIN PEERS`.
 namespace skein::benchmarks::raw {
 
 /// One call; nothing where no reply came within `patience`.
@@ -75,23 +76,36 @@ inline Way parse_way(const std::string& text,
   throw Skipped("this vendor has no '" + text + "'");
 }
 
+/// What samples of a topic that is no call's are promised.
+enum class Delivery {
+  BestEffort,
+  Latest,             ///< Reliable; late joiners get the latest.
+  LatestOfTheLiving,  ///< And its writer's liveliness is watched, with a lease of 1 s.
+};
+
 /// What follows the role on the command line.
 struct RawOptions {
   std::uint32_t domain = 0;
   std::string way{};
+  std::uint32_t peers = 0;
 };
 
-/// `server` serves while the function that it is given runs.
+/// `server` serves while the function that it is given runs; `neighbour` is raw/neighbour.hpp's.
 inline int raw_main(
     int argc, char** argv,
     const std::function<void(const RawOptions&, const std::function<void()>&)>& server,
-    const std::function<void(const RawOptions&)>& client) {
+    const std::function<void(const RawOptions&)>& client,
+    const std::function<void(const RawOptions&)>& neighbour = {}) {
   return run_peer([&] {
-    if (argc != 3 && argc != 4) {
-      throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN [WAY]");
+    const bool alone = neighbour && argc > 1 && argv[1] == std::string("neighbour");
+    if (alone ? argc != 4 : argc != 3 && argc != 4) {
+      throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN [WAY], neighbour DOMAIN PEERS");
     }
-    const RawOptions options{static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10)),
-                             argc == 4 ? argv[3] : ""};
+    const auto number = [](const char* text) {
+      return static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
+    };
+    if (alone) return neighbour({number(argv[2]), "", number(argv[3])});
+    const RawOptions options{number(argv[2]), argc == 4 ? argv[3] : ""};
     if (argv[1] == std::string("server")) {
       server(options, run_server);
     } else {

@@ -192,6 +192,10 @@ std::string time_text(double time_us) {
   return fmt::format("{:.3g} µs", time_us);
 }
 
+std::string figure_text(double figure, const std::string& unit) {
+  return unit == "us" ? time_text(figure) : fmt::format("{:.0f} {}", figure, unit);
+}
+
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char letter : text) {

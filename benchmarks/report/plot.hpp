@@ -61,6 +61,9 @@ std::string strip_plot(const std::string& title, const Axis& x, const std::vecto
 /// `12.3 µs`, `4.56 ms`, `1.02 s`.
 std::string time_text(double time_us);
 
+/// A figure of a Comparison, with its unit: a time, or `1234 octets`.
+std::string figure_text(double figure, const std::string& unit);
+
 /// For text inside HTML and SVG.
 std::string escaped(const std::string& text);
 

@@ -62,6 +62,7 @@ std::vector<std::pair<std::string, Comparisons>> by_claim(
 
 std::string section_of(const std::string& claim, const Comparisons& members) {
   if (is_of_matrix(*members.front())) return section_of_rivals(claim, members);
+  if (members.front()->unit != "us") return section_of_figures(claim, members);
   const bool by_size = members.front()->parameters.contains("size_bytes");
   return by_size ? section_by_size(claim, members) : section_of_times(claim, members);
 }

@@ -174,10 +174,10 @@ std::string row_of(const Comparison& comparison) {
   const Summary own = comparison.summary(), rival = comparison.rival_summary();
   row += fmt::format("<td>{}</td>", own.samples);
   for (const double time : {own.p50, own.p90, own.p95, own.p99, own.p999}) {
-    row += "<td>" + time_text(time) + "</td>";
+    row += "<td>" + figure_text(time, comparison.unit) + "</td>";
   }
   for (const double time : {rival.p50, rival.p95, rival.p99})
-    row += "<td class='rival'>" + time_text(time) + "</td>";
+    row += "<td class='rival'>" + figure_text(time, comparison.unit) + "</td>";
   row += fmt::format("<td><b>{:.2f}</b></td><td>{:.2f}</td>", ratio_p50(comparison),
                      ratio_p99(comparison));
   return row + (has_goal(comparison) ? goal_text(comparison) : "<td></td>") + "</tr>";
@@ -187,7 +187,8 @@ std::string sentence_of(const Comparison& comparison) {
   return fmt::format("<li>{}{}{}, {}: p50 {} against {} of {}: <b>{:.2f}×</b>; p99 {:.2f}×</li>",
                      escaped(comparison.claim), place_of(comparison).empty() ? "" : ", ",
                      place_of(comparison), escaped(comparison.subject),
-                     time_text(comparison.summary().p50), time_text(comparison.rival_summary().p50),
+                     figure_text(comparison.summary().p50, comparison.unit),
+                     figure_text(comparison.rival_summary().p50, comparison.unit),
                      escaped(comparison.rival), ratio_p50(comparison), ratio_p99(comparison));
 }
 
@@ -210,6 +211,8 @@ std::string place_of(const Comparison& comparison) {
     return variant_of(comparison) + ", " + parameters.at("placement").get<std::string>();
   }
   if (parameters.contains("size_bytes")) return size_text(size_of(comparison));
+  if (parameters.contains("peers"))
+    return fmt::format("{} peers, a process each", parameters.at("peers").get<std::size_t>());
   return parameters.contains("where") ? parameters.at("where").get<std::string>() : "";
 }
 
@@ -241,6 +244,10 @@ std::string section_by_size(const std::string& claim, const Comparisons& compari
   return fmt::format("<section><h2>{}</h2>{}{}{}{}</section>", escaped(claim),
                      ratio_bars(comparisons), latency_panels(comparisons), tail_panels(comparisons),
                      table_of(comparisons));
+}
+
+std::string section_of_figures(const std::string& claim, const Comparisons& comparisons) {
+  return fmt::format("<section><h2>{}</h2>{}</section>", escaped(claim), table_of(comparisons));
 }
 
 std::string section_of_times(const std::string& claim, const Comparisons& comparisons) {

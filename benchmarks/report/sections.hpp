@@ -22,6 +22,9 @@ std::string verdict_section(const std::vector<Comparison>& comparisons);
 /// Latency by size, ratios and tails of one claim.
 std::string section_by_size(const std::string& claim, const Comparisons& comparisons);
 
+/// A claim whose figures are no times.
+std::string section_of_figures(const std::string& claim, const Comparisons& comparisons);
+
 /// Every measured time of one claim as a dot.
 std::string section_of_times(const std::string& claim, const Comparisons& comparisons);
 

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <thread>
+
+#include "calls/benchmarks.hpp"
+#include "calls/flock.hpp"
+#include "harness/loopback_traffic.hpp"
+#include "harness/turns.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr std::uint32_t kSeed = 29;
+/// For what discovery still repeats when all have found all.
+constexpr std::chrono::milliseconds kSettling{2000};
+
+/// Of one peer in a second, by window.
+struct Cost {
+  std::vector<double> octets{};
+  std::vector<double> packets{};
+  std::vector<double> cpu_us{};
+};
+
+struct Figure {
+  const char* claim;
+  const char* unit;
+  std::vector<double> Cost::*samples;
+};
+constexpr std::array<Figure, 3> kFigures{{
+    {"octets that an idle peer sends, per second", "octets", &Cost::octets},
+    {"packets that an idle peer sends, per second", "packets", &Cost::packets},
+    {"processor time of an idle peer, per second", "us", &Cost::cpu_us},
+}};
+
+struct Idler {
+  Configuration configuration;
+  Cost cost{};
+  std::string skipped{};
+
+  void rest(std::size_t peers, const IdlePlan& plan) {
+    try {
+      Flock flock(configuration, peers);
+      std::this_thread::sleep_for(std::min(kSettling, plan.window * 2));
+      for (std::size_t i = 0; i < plan.windows; ++i) watch(flock, static_cast<double>(peers), plan.window);
+    } catch (const Skipped& reason) {
+      skipped = reason.what();
+    }
+  }
+
+ private:
+  void watch(Flock& flock, double peers, std::chrono::milliseconds window) {
+    const double cpu_us = flock.cpu_us();
+    const LoopbackTraffic before = loopback_traffic();
+    const auto begin = std::chrono::steady_clock::now();
+    std::this_thread::sleep_for(window);
+    const LoopbackTraffic after = loopback_traffic();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const double peer_seconds = peers * took.count();
+    cost.octets.push_back(static_cast<double>(after.octets - before.octets) / peer_seconds);
+    cost.packets.push_back(static_cast<double>(after.packets - before.packets) / peer_seconds);
+    cost.cpu_us.push_back((flock.cpu_us() - cpu_us) / peer_seconds);
+  }
+};
+
+void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& raw,
+             std::size_t peers) {
+  for (const Figure& figure : kFigures) {
+    Comparison comparison{figure.claim, own.configuration.name, raw.configuration.name,
+                          {{"peers", peers}}};
+    comparison.parameters["processes"] = peers;
+    comparison.unit = figure.unit;
+    comparison.skipped = own.skipped.empty() ? raw.skipped : own.skipped;
+    if (comparison.skipped.empty()) {
+      comparison.samples = own.cost.*figure.samples;
+      comparison.rival_samples = raw.cost.*figure.samples;
+    }
+    comparisons.push_back(std::move(comparison));
+  }
+}
+
+}  // namespace
+
+std::vector<Comparison> compare_idle_peers(Configurations& configurations, const IdlePlan& plan) {
+  std::vector<Comparison> comparisons;
+  for (const std::size_t peers : plan.peers) {
+    for (const char* vendor : kVendors) {
+      std::fprintf(stderr, "idle: %zu peers on %s\n", peers, vendor);
+      Idler own{configurations.skein_neighbour(vendor, peers)};
+      Idler raw{configurations.raw_neighbour(vendor, peers)};
+      take_turns(1, {[&] { own.rest(peers, plan); }, [&] { raw.rest(peers, plan); }}, kSeed);
+      compare(comparisons, own, raw, peers);
+    }
+  }
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,62 @@
+#include <cstdio>
+
+#include "calls/benchmarks.hpp"
+#include "calls/flock.hpp"
+#include "harness/turns.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+constexpr const char* kClaim = "peers that start at once until all see all";
+constexpr std::uint32_t kSeed = 23;
+
+struct Joiner {
+  Configuration configuration;
+  std::vector<double> samples{};
+  std::string skipped{};
+
+  void join_once(std::size_t peers) {
+    if (!skipped.empty()) return;
+    try {
+      samples.push_back(Flock(configuration, peers).joined_us());
+    } catch (const Skipped& reason) {
+      skipped = reason.what();
+    }
+  }
+};
+
+Comparison comparison_of(const Joiner& own, const Joiner& raw, std::size_t peers) {
+  Comparison comparison{kClaim, own.configuration.name, raw.configuration.name, {{"peers", peers}}};
+  comparison.parameters["processes"] = peers;
+  comparison.goal_p50 = 1.2;
+  comparison.skipped = !own.skipped.empty() ? own.skipped : raw.skipped;
+  if (comparison.skipped.empty()) {
+    comparison.samples = own.samples;
+    comparison.rival_samples = raw.samples;
+  }
+  return comparison;
+}
+
+}  // namespace
+
+std::vector<Comparison> compare_joins(Configurations& configurations, const JoinPlan& plan) {
+  std::vector<std::pair<Joiner, Joiner>> pairs;
+  for (const char* vendor : kVendors) {
+    pairs.push_back({{configurations.skein_neighbour(vendor, plan.peers)},
+                     {configurations.raw_neighbour(vendor, plan.peers)}});
+  }
+  std::vector<std::function<void()>> turns;
+  for (auto& [own, raw] : pairs) {
+    turns.push_back([&joiner = own, &plan] { joiner.join_once(plan.peers); });
+    turns.push_back([&joiner = raw, &plan] { joiner.join_once(plan.peers); });
+  }
+  take_turns(plan.rounds, std::move(turns), kSeed, [&](std::size_t round) {
+    std::fprintf(stderr, "\rpeers join: round %zu of %zu ", round + 1, plan.rounds);
+  });
+  std::fputc('\n', stderr);
+  std::vector<Comparison> comparisons;
+  for (const auto& [own, raw] : pairs) comparisons.push_back(comparison_of(own, raw, plan.peers));
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,64 @@
+#include "calls/skein_neighbour.hpp"
+
+#include <unistd.h>
+
+#include <future>
+#include <mutex>
+
+#include "echo.idl.hpp"
+#include "harness/peer.hpp"
+#include "harness/skipped.hpp"
+#include "skein/brokerless_discovery/broker.hpp"
+#include "skein/entity/entity.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+/// Nobody calls it.
+class IdleBody final : public benchmark::Echo {
+ public:
+  Content echo(const Content& content) override { return benchmarks::echo(content); }
+  void hold() override {}
+  bool holding() override { return false; }
+};
+
+EntityOptions options_of(const SkeinPeer& peer) {
+  EntityOptions options;
+  options.name = "neighbour" + std::to_string(getpid());
+  options.vendor = load_or_skip(peer.vendor);
+  options.domain = peer.domain;
+  options.network.max_participants = static_cast<std::uint32_t>(peer.peers);
+  return options;
+}
+
+void await_services(brokerless_discovery::Broker& broker, std::size_t count) {
+  std::promise<void> complete;
+  std::once_flag told;
+  const auto check = [&](const brokerless_discovery::Change&) {
+    if (broker.all().size() >= count) std::call_once(told, [&] { complete.set_value(); });
+  };
+  const auto observation = broker.observe(check);
+  check({});
+  if (complete.get_future().wait_for(kJoinPatience) == std::future_status::ready) return;
+  throw Internal("found " + std::to_string(broker.all().size()) + " of " + std::to_string(count) +
+                 " services");
+}
+
+}  // namespace
+
+std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
+  try {
+    return dds::load_vendor(vendor);
+  } catch (const Unavailable& error) {
+    throw Skipped(error.what());
+  }
+}
+
+void be_neighbour(const SkeinPeer& peer) {
+  Entity entity(options_of(peer));
+  entity.provide<benchmark::Echo>(std::make_shared<IdleBody>());
+  await_services(entity.broker(), peer.peers);
+  run_server();
+}
+
+}  // namespace skein::benchmarks

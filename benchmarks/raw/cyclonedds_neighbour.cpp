@@ -1,0 +1,41 @@
+#include "raw/cyclonedds_neighbour.hpp"
+
+#include <cstring>
+
+#include "raw/cyclonedds_participant.hpp"
+#include "raw/neighbour.hpp"
+
+namespace skein::benchmarks::raw {
+namespace {
+
+void read_announcements(dds_entity_t reader, void* census) {
+  for (Message message; take(reader, message);) static_cast<Census*>(census)->add(message.head.client);
+}
+
+}  // namespace
+
+void cyclonedds_neighbour(const RawOptions& options) {
+  Census census;
+  // One more: Cyclone 0.10 reports the last index as taken after taking it.
+  CycloneddsParticipant participant(options.domain, options.peers);
+  dds_listener_t* listener = dds_create_listener(&census);
+  dds_lset_data_available(listener, read_announcements);
+  const auto topic = participant.topic(kAnnouncementTopic);
+  participant.writer(participant.topic(kCallsTopic), Delivery::BestEffort);
+  participant.reader(topic, Delivery::LatestOfTheLiving, listener);
+  participant.reader(participant.topic(kLoadTopic), Delivery::Latest);
+  participant.writer(participant.topic(kStatisticsTopic), Delivery::BestEffort);
+  participant.reader(participant.topic(kRequestTopic));
+  dds_delete_listener(listener);
+  const dds_entity_t own = participant.writer(topic, Delivery::LatestOfTheLiving);
+  dds_guid_t guid;
+  check(dds_get_guid(own, &guid));
+  const Content content(kAnnouncementBytes);
+  Outgoing announcement{{}, &content};
+  std::memcpy(announcement.head.client.data(), guid.v, announcement.head.client.size());
+  write(own, topic.type, announcement);
+  census.await(options.peers, kJoinPatience);
+  run_server();
+}
+
+}  // namespace skein::benchmarks::raw

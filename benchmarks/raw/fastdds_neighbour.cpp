@@ -1,0 +1,44 @@
+#include "raw/fastdds_neighbour.hpp"
+
+#include <cstring>
+
+#include "raw/fastdds_participant.hpp"
+#include "raw/neighbour.hpp"
+
+namespace skein::benchmarks::raw {
+namespace {
+
+class AnnouncementListener final : public dds::DataReaderListener {
+ public:
+  void on_data_available(dds::DataReader* reader) override {
+    Message message;
+    dds::SampleInfo info;
+    while (reader->take_next_sample(&message, &info) ==
+           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      if (info.valid_data) census.add(message.head.client);
+    }
+  }
+
+  Census census{};
+};
+
+}  // namespace
+
+void fastdds_neighbour(const RawOptions& options) {
+  static AnnouncementListener listener;  // Fast DDS's threads end with the process
+  FastddsParticipant participant(options.domain, Way::Plain, options.peers);
+  participant.writer(kCallsTopic, Delivery::BestEffort);
+  participant.reader(kAnnouncementTopic, Delivery::LatestOfTheLiving, &listener);
+  participant.reader(kLoadTopic, Delivery::Latest);
+  participant.writer(kStatisticsTopic, Delivery::BestEffort);
+  participant.reader(kRequestTopic);
+  dds::DataWriter* own = participant.writer(kAnnouncementTopic, Delivery::LatestOfTheLiving);
+  const Content content(kAnnouncementBytes);
+  Outgoing announcement{{}, &content};
+  std::memcpy(announcement.head.client.data(), &own->guid(), announcement.head.client.size());
+  own->write(&announcement);
+  listener.census.await(options.peers, kJoinPatience);
+  run_server();
+}
+
+}  // namespace skein::benchmarks::raw
