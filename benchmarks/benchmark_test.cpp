@@ -6,6 +6,7 @@
 #include <set>
 
 #include "harness/comparison.hpp"
+#include "harness/goals.hpp"
 
 using nlohmann::json;
 using skein::benchmarks::Comparison;
@@ -77,6 +78,42 @@ TEST_CASE("a ratio is the subject's time by the rival's") {
   comparison.samples = {30, 10, 20};
   comparison.rival_samples = {10};
   CHECK(skein::benchmarks::to_json(comparison).at("ratio_p50") == 2.0);
+}
+
+TEST_CASE("a goal is missed where one comparison misses it, and unknown where none was measured") {
+  using namespace skein::benchmarks;
+  const auto start = [](double took, const char* skipped) {
+    Comparison comparison{"process start to first reply", "skein fastdds", "raw fastdds"};
+    comparison.samples = {took};
+    comparison.rival_samples = {100};
+    comparison.skipped = skipped;
+    return comparison;
+  };
+  const auto verdict_of = [](const std::vector<Comparison>& comparisons) {
+    for (const Verdict& verdict : judge(comparisons)) {
+      if (verdict.goal->covers(comparisons.front())) return verdict;
+    }
+    throw std::logic_error("no goal covers it");
+  };
+  std::vector<Comparison> measured{start(119, ""), start(121, ""), start(500, "not here")};
+  set_goals(measured);
+  const Verdict verdict = verdict_of(measured);
+  CHECK(verdict.measured == 2);
+  CHECK(verdict.met == 1);
+  CHECK(verdict.worst == &measured[1]);
+  std::vector<Comparison> skipped{start(1, "not here")};
+  set_goals(skipped);
+  CHECK(verdict_of(skipped).worst == nullptr);
+}
+
+TEST_CASE("a raw mixed pair has no goal: it is there for information") {
+  using namespace skein::benchmarks;
+  std::vector<Comparison> comparisons{
+      {"a call over DDS", "skein fastdds-cyclonedds", "raw fastdds"},
+      {"a call over DDS", "skein fastdds-cyclonedds", "raw fastdds-cyclonedds"}};
+  set_goals(comparisons);
+  CHECK(comparisons[0].goal_p99 == 1.15);
+  CHECK_FALSE(comparisons[1].goal_p50);
 }
 
 TEST_CASE("a quick run writes every row of results.json in the common shape") {
@@ -197,6 +234,7 @@ TEST_CASE("the report is one page that refers to nothing outside") {
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   CHECK(page.find("<svg") != std::string::npos);
   CHECK(page.find("Where Skein loses") != std::string::npos);
+  for (const auto& goal : skein::benchmarks::goals()) CHECK(page.find(goal.text.substr(0, 20)) != std::string::npos);
   for (const char* reference : {"http://", "https://", "src=", "<link", "@import", "url("}) {
     CHECK(page.find(reference) == std::string::npos);
   }

@@ -7,6 +7,7 @@
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
+#include "harness/goals.hpp"
 #include "harness/private_network.hpp"
 #include "report/report.hpp"
 #include "report/sections.hpp"
@@ -88,6 +89,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
     append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
     append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
   }
+  set_goals(comparisons);
   write_results(comparisons, output + "/results.json");
   write_report(comparisons, facts, output + "/report.html");
   print_summary(comparisons);

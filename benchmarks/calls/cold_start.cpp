@@ -48,7 +48,6 @@ std::vector<Comparison> compare_cold_starts(Configurations& configurations, std:
     const Starter& raw = starters.at("raw " + pair);
     Comparison comparison{kClaim, own.configuration.name, raw.configuration.name};
     comparison.parameters["provider"] = "already up";
-    comparison.goal_p50 = 1.2;
     comparison.skipped = !own.skipped.empty() ? own.skipped : raw.skipped;
     if (comparison.skipped.empty()) {
       comparison.samples = own.samples;

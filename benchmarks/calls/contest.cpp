@@ -125,13 +125,4 @@ Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count)
           }};
 }
 
-std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50,
-                                  std::optional<double> p99) {
-  for (Comparison& comparison : comparisons) {
-    comparison.goal_p50 = p50;
-    comparison.goal_p99 = p99;
-  }
-  return comparisons;
-}
-
 }  // namespace skein::benchmarks

@@ -63,8 +63,4 @@ class Contest {
   std::map<std::string, Contender> contenders_;
 };
 
-/// The same comparisons with the greatest ratios that the project is content with.
-std::vector<Comparison> with_goal(std::vector<Comparison> comparisons, double p50,
-                                  std::optional<double> p99 = {});
-
 }  // namespace skein::benchmarks

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "calls/benchmarks.hpp"
+#include "harness/goals.hpp"
 #include "harness/private_network.hpp"
 #include "harness/turns.hpp"
 
@@ -61,7 +62,6 @@ Comparison comparison_of(const char* claim, const Victim& victim,
                          const std::vector<double>& samples, const Limit& limit,
                          const std::string& where) {
   Comparison comparison{claim, victim.configuration.name, limit.name, {{"where", where}}};
-  comparison.goal_p50 = comparison.goal_p99 = 1.0;
   comparison.skipped = victim.skipped;
   if (victim.skipped.empty()) {
     comparison.samples = samples;
@@ -99,7 +99,7 @@ std::vector<Comparison> compare_deaths_on_one_host(Configurations& configuration
   for (const auto& [server, client] : vendor_pairs()) {
     victims.push_back({configurations.skein(server, client, 2)});
   }
-  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", 20'000}, "one host");
+  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", kToldOnOneHostUs}, "one host");
 }
 
 std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
@@ -119,7 +119,7 @@ std::vector<Comparison> compare_deaths_across_hosts(Configurations& configuratio
     victims.back().skipped = skipped;
   }
   return compare_deaths(std::move(victims), kills, hosts ? &*hosts : nullptr,
-                        {"limit lease + 50 ms", kLeaseUs + 50'000}, "across two hosts");
+                        {"limit lease + 50 ms", kLeaseUs + kToldBeyondLeaseUs}, "across two hosts");
 }
 
 }  // namespace skein::benchmarks

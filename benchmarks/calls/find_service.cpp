@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "calls/benchmarks.hpp"
+#include "harness/goals.hpp"
 #include "harness/skipped.hpp"
 #include "harness/turns.hpp"
 
@@ -62,7 +63,6 @@ struct Finder {
 Comparison measure(Finder& own, Finder& other, std::size_t count, const FindPlan& plan) {
   Comparison comparison{kClaim, "skein", "omniORB's name server", {{"descriptions", count}}};
   comparison.parameters["placement"] = "anywhere";
-  comparison.goal_p50 = 1.0;
   comparison.skipped = own.skipped.empty() ? other.skipped : own.skipped;
   if (!comparison.skipped.empty()) return comparison;
   other.bind(count);
@@ -79,8 +79,7 @@ Comparison measure(Finder& own, Finder& other, std::size_t count, const FindPlan
 Comparison measure_choosing(Finder& own, std::size_t count, const FindPlan& plan) {
   Comparison comparison{kChoosing, "skein", kLimit, {{"descriptions", count}}};
   comparison.parameters["placement"] = "anywhere";
-  comparison.goal_p50 = 1.0;
-  comparison.rival_samples = {1.0};
+  comparison.rival_samples = {kLookUpUs};
   comparison.skipped = own.skipped;
   for (std::size_t round = 0; round < plan.rounds && own.skipped.empty(); ++round) {
     for (const double time : own.search("choose", plan.searches)) comparison.samples.push_back(time);
@@ -101,7 +100,7 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
     if (comparisons.back().skipped.empty()) {
       Comparison limited = comparisons.back();
       limited.rival = kLimit;
-      limited.rival_samples = {1.0};
+      limited.rival_samples = {kLookUpUs};
       comparisons.push_back(std::move(limited));
     }
     comparisons.push_back(measure_choosing(own, count, plan));

@@ -2,6 +2,7 @@
 
 #include "calls/benchmarks.hpp"
 #include "calls/contest.hpp"
+#include "harness/goals.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -82,7 +83,7 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
   std::vector<Comparison> comparisons;
   for (const char* skein : kSkeins) {
     for (const std::string& rival : rivals)
-      append(comparisons, with_goal(contest.compare(skein, rival), 1.0));
+      append(comparisons, contest.compare(skein, rival));
     for (const char* floor : {"unix socket", "spinning shared memory"}) {
       append(comparisons, contest.compare(skein, std::string(floor)));
     }
@@ -106,8 +107,8 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
   for (const Configuration& each : {skein, collocated, shortcut}) contest.enter(each);
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
-  append(comparisons, with_goal(contest.compare(skein.name, Limit{"limit 1 us", 1.0}), 1.0));
-  append(comparisons, with_goal(contest.compare(skein.name, collocated.name), 1.0));
+  append(comparisons, contest.compare(skein.name, Limit{"limit 1 us", kCallInProcessUs}));
+  append(comparisons, contest.compare(skein.name, collocated.name));
   append(comparisons, contest.compare(skein.name, shortcut.name));
   return comparisons;
 }
@@ -135,7 +136,7 @@ std::vector<Comparison> compare_idle_clients(Configurations& configurations,
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
   for (const auto& [crowded, alone] : pairs) {
-    append(comparisons, with_goal(contest.compare(crowded, alone), 1.05));
+    append(comparisons, contest.compare(crowded, alone));
   }
   return comparisons;
 }

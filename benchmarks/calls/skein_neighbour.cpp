@@ -31,15 +31,21 @@ EntityOptions options_of(const SkeinPeer& peer) {
   return options;
 }
 
-void await_services(brokerless_discovery::Broker& broker, std::size_t count) {
-  std::promise<void> complete;
+/// Outlives the wait: an observer may still be running when it is taken away.
+struct Completion {
+  std::promise<void> promise;
   std::once_flag told;
-  const auto check = [&](const brokerless_discovery::Change&) {
-    if (broker.all().size() >= count) std::call_once(told, [&] { complete.set_value(); });
+};
+
+void await_services(brokerless_discovery::Broker& broker, std::size_t count) {
+  const auto completion = std::make_shared<Completion>();
+  const auto check = [&broker, completion, count](const brokerless_discovery::Change&) {
+    if (broker.all().size() < count) return;
+    std::call_once(completion->told, [&] { completion->promise.set_value(); });
   };
   const auto observation = broker.observe(check);
   check({});
-  if (complete.get_future().wait_for(kJoinPatience) == std::future_status::ready) return;
+  if (completion->promise.get_future().wait_for(kJoinPatience) == std::future_status::ready) return;
   throw Internal("found " + std::to_string(broker.all().size()) + " of " + std::to_string(count) +
                  " services");
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <utility>
 
+#include "report/goals.hpp"
 #include "report/plot.hpp"
 #include "report/rivals.hpp"
 #include "report/sections.hpp"
@@ -86,6 +87,7 @@ void write_report(const std::vector<Comparison>& comparisons, const RunFacts& ru
   for (const std::string& remark : run.remarks) {
     if (!remark.empty()) page += "<p class='bad'>" + escaped(remark) + "</p>";
   }
+  page += goals_section(comparisons);
   page += verdict_section(comparisons);
   for (const auto& [claim, members] : by_claim(comparisons)) {
     page += section_of(claim, members);

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "harness/goals.hpp"
 #include "report/plot.hpp"
 #include "report/rivals.hpp"
 
@@ -158,9 +159,7 @@ std::string tail_panels(const Comparisons& comparisons) {
 }
 
 std::string goal_text(const Comparison& comparison) {
-  const bool met = ratio_p50(comparison) <= *comparison.goal_p50 &&
-                   (!comparison.goal_p99 || ratio_p99(comparison) <= *comparison.goal_p99);
-  return met ? "<td class='good'>met</td>" : "<td class='bad'>missed</td>";
+  return meets_goal(comparison) ? "<td class='good'>met</td>" : "<td class='bad'>missed</td>";
 }
 
 std::string row_of(const Comparison& comparison) {
@@ -225,9 +224,7 @@ std::string verdict_section(const std::vector<Comparison>& comparisons) {
                                  escaped(comparison.subject), escaped(comparison.rival),
                                  escaped(comparison.skipped)));
     } else if (has_goal(comparison) && !is_of_matrix(comparison)) {
-      const bool within = ratio_p50(comparison) <= *comparison.goal_p50 &&
-                          (!comparison.goal_p99 || ratio_p99(comparison) <= *comparison.goal_p99);
-      (!within ? beyond : ratio_p50(comparison) > 1 ? slower : faster) += sentence_of(comparison);
+      (!meets_goal(comparison) ? beyond : ratio_p50(comparison) > 1 ? slower : faster) += sentence_of(comparison);
     }
   }
   std::string html = list_of("Skein misses its goal", beyond, "Nowhere.") +

@@ -1,0 +1,99 @@
+#include "harness/goals.hpp"
+
+#include <algorithm>
+
+namespace skein::benchmarks {
+namespace {
+
+bool is_vendor_alone(const std::string& rival) {
+  return rival == "raw fastdds" || rival == "raw cyclonedds";
+}
+
+/// A call to another process; the others have claims of their own.
+bool is_call_beside(const Comparison& comparison, const char* rival) {
+  return comparison.claim != "a call in the same process" && comparison.rival.starts_with(rival);
+}
+
+bool is_look_up(const Comparison& comparison) { return comparison.claim.starts_with("find_service"); }
+
+bool is_death(const Comparison& comparison, const char* where) {
+  return comparison.claim.starts_with("provider killed") &&
+         comparison.parameters.at("where") == where;
+}
+
+/// How far beyond its limits a measured comparison is: over 1 it misses them.
+double strain(const Comparison& comparison) {
+  const Summary own = comparison.summary(), rival = comparison.rival_summary();
+  const double p50 = own.p50 / rival.p50 / *comparison.goal_p50;
+  return comparison.goal_p99 ? std::max(p50, own.p99 / rival.p99 / *comparison.goal_p99) : p50;
+}
+
+const Goal* goal_of(const Comparison& comparison) {
+  const auto found = std::ranges::find_if(
+      goals(), [&](const Goal& goal) { return goal.covers(comparison); });
+  return found == goals().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const std::vector<Goal>& goals() {
+  static const std::vector<Goal> kGoals{
+      {"A call over DDS costs what a raw call does (mixed pairs: the slower vendor's)", 1.05, 1.15,
+       [](const Comparison& c) { return c.claim == "a call over DDS" && is_vendor_alone(c.rival); }},
+      {"A call in the same process takes at most 1 µs", 1.0, {},
+       [](const Comparison& c) {
+         return c.claim == "a call in the same process" && c.rival.starts_with("limit");
+       }},
+      {"A call in the same process is ahead of omniORB's collocated call", 1.0, {},
+       [](const Comparison& c) { return c.rival == "omniorb collocated"; }},
+      {"Calls to another process are ahead of omniORB", 1.0, {},
+       [](const Comparison& c) { return is_call_beside(c, "omniorb "); }},
+      {"Calls to another process are ahead of gRPC", 1.0, {},
+       [](const Comparison& c) { return is_call_beside(c, "grpc "); }},
+      {"Calls to another process are ahead of ZeroMQ", 1.0, {},
+       [](const Comparison& c) { return is_call_beside(c, "zeromq "); }},
+      {"32 idle clients of the same service cost a call nothing", 1.05, {},
+       [](const Comparison& c) { return c.claim == "a call beside idle clients"; }},
+      {"The first reply comes as soon as a raw one after the process's start", 1.2, {},
+       [](const Comparison& c) { return c.claim == "process start to first reply"; }},
+      {"50 peers that start at once see each other as soon as raw ones", 1.2, {},
+       [](const Comparison& c) { return c.claim == "peers that start at once until all see all"; }},
+      {"find_service among 10 to 10,000 descriptions takes at most 1 µs, with constraints too", 1.0, {},
+       [](const Comparison& c) { return is_look_up(c) && c.rival.starts_with("limit"); }},
+      {"find_service is ahead of omniORB's name server", 1.0, {},
+       [](const Comparison& c) { return is_look_up(c) && c.rival.starts_with("omniORB"); }},
+      {"The death of a provider on the same host is known within 20 ms", 1.0, 1.0,
+       [](const Comparison& c) { return is_death(c, "one host"); }},
+      {"The death of a provider on another host is known within the lease and 50 ms", 1.0, 1.0,
+       [](const Comparison& c) { return is_death(c, "across two hosts"); }},
+  };
+  return kGoals;
+}
+
+void set_goals(std::vector<Comparison>& comparisons) {
+  for (Comparison& comparison : comparisons) {
+    const Goal* goal = goal_of(comparison);
+    if (goal == nullptr) continue;
+    comparison.goal_p50 = goal->p50;
+    comparison.goal_p99 = goal->p99;
+  }
+}
+
+bool meets_goal(const Comparison& comparison) { return strain(comparison) <= 1; }
+
+std::vector<Verdict> judge(const std::vector<Comparison>& comparisons) {
+  std::vector<Verdict> verdicts;
+  for (const Goal& goal : goals()) {
+    Verdict& verdict = verdicts.emplace_back(Verdict{&goal});
+    for (const Comparison& comparison : comparisons) {
+      if (!comparison.skipped.empty() || goal_of(comparison) != &goal) continue;
+      ++verdict.measured;
+      verdict.met += meets_goal(comparison) ? 1 : 0;
+      if (verdict.worst == nullptr || strain(comparison) > strain(*verdict.worst))
+        verdict.worst = &comparison;
+    }
+  }
+  return verdicts;
+}
+
+}  // namespace skein::benchmarks

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/comparison.hpp"
+
+/// What the project wants to reach: all limits stand in goals.cpp and here.
+namespace skein::benchmarks {
+
+/// Promises that are times, in microseconds: rivals with one sample.
+inline constexpr double kCallInProcessUs = 1;
+inline constexpr double kLookUpUs = 1;
+inline constexpr double kToldOnOneHostUs = 20'000;
+inline constexpr double kToldBeyondLeaseUs = 50'000;
+
+/// One goal, and the comparisons that it speaks of.
+struct Goal {
+  std::string text;
+  double p50 = 0;  ///< The greatest ratio.
+  std::optional<double> p99{};
+  bool (*covers)(const Comparison&) = nullptr;
+};
+
+const std::vector<Goal>& goals();
+
+/// Writes each comparison's limits into it, where a goal covers it.
+void set_goals(std::vector<Comparison>& comparisons);
+
+/// Of a measured comparison with a goal.
+bool meets_goal(const Comparison& comparison);
+
+struct Verdict {
+  const Goal* goal = nullptr;
+  std::size_t measured = 0;
+  std::size_t met = 0;
+  const Comparison* worst = nullptr;  ///< The furthest beyond, or the nearest to its limits; none measured: null.
+};
+
+/// One for each goal, in their order. The comparisons must stay.
+std::vector<Verdict> judge(const std::vector<Comparison>& comparisons);
+
+}  // namespace skein::benchmarks

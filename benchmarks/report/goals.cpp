@@ -1,0 +1,47 @@
+#include "report/goals.hpp"
+
+#include <fmt/format.h>
+
+#include "harness/goals.hpp"
+#include "report/plot.hpp"
+#include "report/sections.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+std::string limit_text(const Goal& goal) {
+  const std::string p99 = goal.p99 ? fmt::format(", p99 ≤ {:.2f}×", *goal.p99) : "";
+  return fmt::format("p50 ≤ {:.2f}×{}", goal.p50, p99);
+}
+
+std::string worst_text(const Goal& goal, const Comparison& worst) {
+  const Summary own = worst.summary(), rival = worst.rival_summary();
+  const std::string place = place_of(worst);
+  const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", own.p99 / rival.p99) : "";
+  return fmt::format(
+      "<td>p50 {:.2f}×{}</td><td>{} against {}</td><td>{} beside {}{}{}</td>", own.p50 / rival.p50,
+      p99, figure_text(own.p50, worst.unit), figure_text(rival.p50, worst.unit),
+      escaped(worst.subject), escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
+}
+
+std::string row_of(const Verdict& verdict) {
+  const std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", escaped(verdict.goal->text),
+                                      limit_text(*verdict.goal));
+  if (verdict.worst == nullptr) return row + "<td colspan='4' class='skipped'>not measured</td></tr>";
+  const bool met = verdict.met == verdict.measured;
+  return row + worst_text(*verdict.goal, *verdict.worst) +
+         fmt::format("<td class='{}'>{} ({} of {})</td></tr>", met ? "good" : "bad",
+                     met ? "met" : "missed", verdict.met, verdict.measured);
+}
+
+}  // namespace
+
+std::string goals_section(const std::vector<Comparison>& comparisons) {
+  std::string rows;
+  for (const Verdict& verdict : judge(comparisons)) rows += row_of(verdict);
+  return "<section><h2>Goals</h2><table><thead><tr><th>goal</th><th>limit</th><th>worst in this "
+         "run</th><th>medians</th><th>where</th><th>comparisons that meet it</th></tr></thead><tbody>" +
+         rows + "</tbody></table></section>";
+}
+
+}  // namespace skein::benchmarks
