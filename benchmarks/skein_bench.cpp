@@ -52,10 +52,10 @@ void print_summary(const std::vector<Comparison>& comparisons) {
                   comparison.skipped.c_str());
       continue;
     }
-    const Summary own = comparison.summary(), rival = comparison.rival_summary();
+    const Summary own = comparison.summary();
     std::printf("%-72.72s %-30s %-24s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(),
                 comparison.subject.c_str(), comparison.rival.c_str(), own.p50, own.p99,
-                own.p50 / rival.p50, own.p99 / rival.p99);
+                comparison.ratio_p50(), comparison.ratio_p99());
   }
 }
 

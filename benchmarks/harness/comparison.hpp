@@ -27,6 +27,9 @@ struct Comparison {
 
   Summary summary() const { return summarize(samples); }
   Summary rival_summary() const { return summarize(rival_samples); }
+  /// Of a measured one: the subject's figure by the rival's.
+  double ratio_p50() const { return summary().p50 / rival_summary().p50; }
+  double ratio_p99() const { return summary().p99 / rival_summary().p99; }
 };
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);

@@ -23,9 +23,8 @@ bool is_death(const Comparison& comparison, const char* where) {
 
 /// How far beyond its limits a measured comparison is: over 1 it misses them.
 double strain(const Comparison& comparison) {
-  const Summary own = comparison.summary(), rival = comparison.rival_summary();
-  const double p50 = own.p50 / rival.p50 / *comparison.goal_p50;
-  return comparison.goal_p99 ? std::max(p50, own.p99 / rival.p99 / *comparison.goal_p99) : p50;
+  const double p50 = comparison.ratio_p50() / *comparison.goal_p50;
+  return comparison.goal_p99 ? std::max(p50, comparison.ratio_p99() / *comparison.goal_p99) : p50;
 }
 
 const Goal* goal_of(const Comparison& comparison) {

@@ -15,12 +15,12 @@ std::string limit_text(const Goal& goal) {
 }
 
 std::string worst_text(const Goal& goal, const Comparison& worst) {
-  const Summary own = worst.summary(), rival = worst.rival_summary();
   const std::string place = place_of(worst);
-  const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", own.p99 / rival.p99) : "";
+  const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", worst.ratio_p99()) : "";
   return fmt::format(
-      "<td>p50 {:.2f}×{}</td><td>{} against {}</td><td>{} beside {}{}{}</td>", own.p50 / rival.p50,
-      p99, figure_text(own.p50, worst.unit), figure_text(rival.p50, worst.unit),
+      "<td>p50 {:.2f}×{}</td><td>{} against {}</td><td>{} beside {}{}{}</td>", worst.ratio_p50(),
+      p99, figure_text(worst.summary().p50, worst.unit),
+      figure_text(worst.rival_summary().p50, worst.unit),
       escaped(worst.subject), escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
 }
 

@@ -133,7 +133,7 @@ std::string rivals_verdict(const std::vector<Comparison>& comparisons) {
   Ordered<Verdict> verdicts;
   for (const Comparison& comparison : comparisons) {
     if (!is_of_matrix(comparison) || !comparison.goal_p50 || !comparison.skipped.empty()) continue;
-    const double ratio = comparison.summary().p50 / comparison.rival_summary().p50;
+    const double ratio = comparison.ratio_p50();
     Verdict& verdict =
         verdicts[fmt::format("{}, {}, {}: {}", comparison.claim, variant_of(comparison),
                              placement_of(comparison), comparison.subject)];

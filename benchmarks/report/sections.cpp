@@ -20,15 +20,12 @@ constexpr std::array<double, 7> kTail{0.5, 0.75, 0.9, 0.95, 0.99, 0.995, 0.999};
 bool measured(const Comparison& comparison) { return comparison.skipped.empty(); }
 bool has_goal(const Comparison& comparison) { return comparison.goal_p50.has_value(); }
 
-std::size_t size_of(const Comparison& comparison) {
-  return comparison.parameters.at("size_bytes").get<std::size_t>();
+bool is_beside_raw(const Comparison& comparison) {
+  return comparison.subject.starts_with("skein") && comparison.rival.starts_with("raw");
 }
 
-double ratio_p50(const Comparison& comparison) {
-  return comparison.summary().p50 / comparison.rival_summary().p50;
-}
-double ratio_p99(const Comparison& comparison) {
-  return comparison.summary().p99 / comparison.rival_summary().p99;
+std::size_t size_of(const Comparison& comparison) {
+  return comparison.parameters.at("size_bytes").get<std::size_t>();
 }
 
 const char* colour_of(const std::string& name) {
@@ -107,7 +104,7 @@ std::string ratio_bars(const Comparisons& comparisons) {
     BarGroup& group = groups[size_of(*comparison)];
     group.label = size_text(size_of(*comparison));
     group.bars.push_back(
-        {colour_of(comparison->subject), ratio_p50(*comparison), ratio_p99(*comparison)});
+        {colour_of(comparison->subject), comparison->ratio_p50(), comparison->ratio_p99()});
   }
   for (const std::string& subject : subjects_with_goal(comparisons)) {
     key += fmt::format("<b style='color:{}'>■ {}</b> ", colour_of(subject), escaped(subject));
@@ -158,37 +155,13 @@ std::string tail_panels(const Comparisons& comparisons) {
   return html + "</div><p class='key'>Colours as above; dashed: the same vendor raw.</p>";
 }
 
-std::string goal_text(const Comparison& comparison) {
-  return meets_goal(comparison) ? "<td class='good'>met</td>" : "<td class='bad'>missed</td>";
-}
-
-std::string row_of(const Comparison& comparison) {
-  std::string row =
-      fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>", escaped(comparison.subject),
-                  escaped(comparison.rival), place_of(comparison));
-  if (!measured(comparison)) {
-    return row + fmt::format("<td colspan='12' class='skipped'>skipped: {}</td></tr>",
-                             escaped(comparison.skipped));
-  }
-  const Summary own = comparison.summary(), rival = comparison.rival_summary();
-  row += fmt::format("<td>{}</td>", own.samples);
-  for (const double time : {own.p50, own.p90, own.p95, own.p99, own.p999}) {
-    row += "<td>" + figure_text(time, comparison.unit) + "</td>";
-  }
-  for (const double time : {rival.p50, rival.p95, rival.p99})
-    row += "<td class='rival'>" + figure_text(time, comparison.unit) + "</td>";
-  row += fmt::format("<td><b>{:.2f}</b></td><td>{:.2f}</td>", ratio_p50(comparison),
-                     ratio_p99(comparison));
-  return row + (has_goal(comparison) ? goal_text(comparison) : "<td></td>") + "</tr>";
-}
-
 std::string sentence_of(const Comparison& comparison) {
   return fmt::format("<li>{}{}{}, {}: p50 {} against {} of {}: <b>{:.2f}×</b>; p99 {:.2f}×</li>",
                      escaped(comparison.claim), place_of(comparison).empty() ? "" : ", ",
                      place_of(comparison), escaped(comparison.subject),
                      figure_text(comparison.summary().p50, comparison.unit),
                      figure_text(comparison.rival_summary().p50, comparison.unit),
-                     escaped(comparison.rival), ratio_p50(comparison), ratio_p99(comparison));
+                     escaped(comparison.rival), comparison.ratio_p50(), comparison.ratio_p99());
 }
 
 std::string list_of(const char* title, const std::string& items, const char* nothing) {
@@ -216,19 +189,22 @@ std::string place_of(const Comparison& comparison) {
 }
 
 std::string verdict_section(const std::vector<Comparison>& comparisons) {
-  std::string beyond, slower, faster;
+  std::string beyond, slower, without_goal, faster;
   std::set<std::string> skipped;
   for (const Comparison& comparison : comparisons) {
     if (!measured(comparison)) {
       skipped.insert(fmt::format("<li>{}, {} beside {}: {}</li>", escaped(comparison.claim),
                                  escaped(comparison.subject), escaped(comparison.rival),
                                  escaped(comparison.skipped)));
+    } else if (is_beside_raw(comparison) && !has_goal(comparison)) {
+      if (comparison.ratio_p50() > 1) without_goal += sentence_of(comparison);
     } else if (has_goal(comparison) && !is_of_matrix(comparison)) {
-      (!meets_goal(comparison) ? beyond : ratio_p50(comparison) > 1 ? slower : faster) += sentence_of(comparison);
+      (!meets_goal(comparison) ? beyond : comparison.ratio_p50() > 1 ? slower : faster) += sentence_of(comparison);
     }
   }
   std::string html = list_of("Skein misses its goal", beyond, "Nowhere.") +
                      list_of("Skein loses, within its goal", slower, "Nowhere.") +
+                     list_of("Skein loses, where there is no goal", without_goal, "Nowhere.") +
                      list_of("Skein is level or ahead", faster, "Nowhere.");
   html += rivals_verdict(comparisons);
   std::string missing;
@@ -275,19 +251,6 @@ std::string section_of_times(const std::string& claim, const Comparisons& compar
   }
   return fmt::format("<section><h2>{}</h2>{}{}</section>", escaped(claim), html,
                      table_of(comparisons));
-}
-
-std::string table_of(const Comparisons& comparisons) {
-  std::string rows;
-  for (const Comparison* comparison : comparisons) rows += row_of(*comparison);
-  return "<details open><summary>All "
-         "figures</summary><table><thead><tr><th>subject</th><th>rival</th><th></th>"
-         "<th>samples</th><th>p50</th><th>p90</th><th>p95</th><th>p99</th><th>p99.9</th><th>rival "
-         "p50</th>"
-         "<th>rival p95</th><th>rival p99</th><th>ratio p50</th><th>ratio "
-         "p99</th><th>goal</th></tr></thead>"
-         "<tbody>" +
-         rows + "</tbody></table></details>";
 }
 
 }  // namespace skein::benchmarks

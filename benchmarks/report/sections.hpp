@@ -28,6 +28,7 @@ std::string section_of_figures(const std::string& claim, const Comparisons& comp
 /// Every measured time of one claim as a dot.
 std::string section_of_times(const std::string& claim, const Comparisons& comparisons);
 
+/// All figures of these comparisons, in columns.
 std::string table_of(const Comparisons& comparisons);
 
 }  // namespace skein::benchmarks
