@@ -124,12 +124,19 @@ FastddsParticipant::FastddsParticipant(std::uint32_t domain, Way way, std::uint3
   subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
 }
 
+dds::Topic* FastddsParticipant::topic_of(const char* name) {
+  if (dds::TopicDescription* known = participant_->lookup_topicdescription(name)) {
+    return static_cast<dds::Topic*>(known);
+  }
+  return participant_->create_topic(name, kType, dds::TopicQos());
+}
+
 dds::DataWriter* FastddsParticipant::make(const char* topic, dds::DataWriterQos qos) {
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
   qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
   qos.reliable_writer_qos().times.nackSupressionDuration = Duration_t(0, 10'000'000);
-  return publisher_->create_datawriter(participant_->create_topic(topic, kType, dds::TopicQos()),
+  return publisher_->create_datawriter(topic_of(topic),
                                        qos);
 }
 
@@ -139,7 +146,7 @@ dds::DataReader* FastddsParticipant::make(const char* topic, const dds::DataRead
   qos.reliable_reader_qos().times.initialAcknackDelay = Duration_t(0, 10'000'000);
   qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
   return subscriber_->create_datareader(
-      participant_->create_topic(topic, kType, dds::TopicQos()), qos, listener,
+      topic_of(topic), qos, listener,
       listener ? dds::StatusMask::data_available() : dds::StatusMask::none());
 }
 

@@ -32,6 +32,7 @@ class FastddsParticipant {
                           dds::DataReaderListener* listener = nullptr);
 
  private:
+  dds::Topic* topic_of(const char* name);
   dds::DataWriter* make(const char* topic, dds::DataWriterQos qos);
   dds::DataReader* make(const char* topic, const dds::DataReaderQos& qos,
                         dds::DataReaderListener* listener);
