@@ -16,7 +16,9 @@ SLEEPERS = {
     "test/faults/death_test.cpp": "an operation that takes its time until it is let go",
     "test/entity/worker_process.cpp": "a CSP that never returns",
     "test/faults/first_call_test.cpp": "the offset between two starts, which is what the test varies",
-    "test/faults/partition_test.cpp": "how long the network is cut, which is what the test varies",
+    "test/faults/processes.hpp": "how long a fault lasts, which is what the tests vary",
+    "test/faults/tally_client.cpp": "the pace of a client that never rests",
+    "test/faults/tally_peer.cpp": "an operation that takes its time",
 }
 
 

@@ -27,8 +27,8 @@ bool knows(Entity& entity, std::size_t count) {
   return known;
 }
 
-/// Keeps a process stopped for another lease after the others forgot it.
-void stay_stopped() { std::this_thread::sleep_for(1000ms); }
+/// For another lease a process stays stopped after the others forgot it.
+constexpr auto kStopped = 1000ms;
 
 /// Answers `shout` with much, once it may.
 struct GatedEcho : EchoService {
@@ -123,7 +123,7 @@ TEST_CASE(
   server.signal(SIGSTOP);
   REQUIRE(knows(*client, 0));
   CHECK_THROWS_AS(echo.within(50ms).echo("meanwhile"), Error);
-  stay_stopped();
+  let_last(kStopped);
   server.signal(SIGCONT);
   REQUIRE(knows(*client, 1));
   CHECK(echo.within(20s).echo("after") == "after");
@@ -140,7 +140,7 @@ TEST_CASE(
   REQUIRE(service.counters().clients == 1);
   client.signal(SIGSTOP);
   REQUIRE(eventually([&] { return service.counters().clients == 0; }));
-  stay_stopped();
+  let_last(kStopped);
   client.signal(SIGCONT);
   call_until_connected(client);
   CHECK(service.counters().clients == 1);

@@ -1,9 +1,9 @@
 // The cells of the fault matrix that strike the network. Each ends with FaultStage::check().
 #include <catch2/catch.hpp>
-#include <thread>
 
 #include "../tools/seed.hpp"
 #include "fault_stage.hpp"
+#include "processes.hpp"
 
 using namespace skein::test;
 using namespace std::chrono_literals;
@@ -55,7 +55,7 @@ TEST_CASE("matrix: a partition of 30 s", "[long]") {
   hosts.stage.start("timeout 1000 bytes 4000 pause 50");
   hosts.stage.run_for_calls(50);
   hosts.cable.disturb(Disturbance::cut());
-  std::this_thread::sleep_for(30s);
+  let_last(30s);
   hosts.stage.journal().mark();
   hosts.cable.heal();
   hosts.stage.run_for_calls(50);

@@ -2,7 +2,6 @@
 #include <csignal>
 #include <cstdio>
 #include <random>
-#include <thread>
 
 #include "../tools/cable.hpp"
 #include "../tools/seed.hpp"
@@ -118,7 +117,7 @@ TEST_CASE("cuts about as long as the lease leave nobody behind") {
     const auto cut = 700ms + std::chrono::milliseconds(random() % 700);
     INFO("cut " << i << " of " << cut.count() << " ms");
     hosts.cable.disturb(Disturbance::cut());
-    std::this_thread::sleep_for(cut);
+    let_last(cut);
     hosts.cable.heal();
     REQUIRE(hosts.each_knows(2));
     hosts.call();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "../connector/pairing.hpp"
@@ -8,6 +9,9 @@
 #include "../tools/eventually.hpp"
 
 namespace skein::test {
+
+/// Lets a fault last: its length is a test's input, not a wait for what comes of it.
+inline void let_last(std::chrono::milliseconds length) { std::this_thread::sleep_for(length); }
 
 /// The peer program (peer.cpp) as `name` on that vendor. `more` are further arguments of it.
 inline ChildProcess start_peer(const std::string& name, const dds::Vendor& vendor,
