@@ -11,9 +11,6 @@
 namespace skein::dds::fastdds {
 namespace {
 
-/// Buffers kept for the next samples, so that a steady flow allocates nothing.
-constexpr std::size_t kMaxSpares = 4;
-
 /// Lends out a queued item's buffer.
 class Owner final : public SampleOwner {
  public:
@@ -43,8 +40,8 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());
-  reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes, &history_,
-                                               this);
+  reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes, payloads_,
+                                               &history_, this);
   if (reader_ == nullptr) {
     participant_.release_topic(topic_.name);
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
@@ -144,13 +141,15 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
     malformed_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  Item item{spare_buffer(), alive ? InstanceState::Alive : InstanceState::Disposed,
+  Item item{alive ? payloads_->take(change) : Bytes{}, alive ? InstanceState::Alive : InstanceState::Disposed,
             *found, to_guid(change.writerGUID)};
-  if (alive) item.cdr.append(received);
   const KeyHash key = item.key;
   {
     std::lock_guard lock(mutex_);
-    if (!admit(item, SourceTime(change.sourceTimestamp.to_ns()))) return false;
+    if (!admit(item, SourceTime(change.sourceTimestamp.to_ns()))) {
+      payloads_->give_back(std::move(item.cdr));
+      return false;
+    }
     if (queue_.push(key, std::move(item))) ++replaced_;
     if (deadline_) alive ? deadline_->heard(key) : deadline_->ended(key);
   }
@@ -186,21 +185,6 @@ std::optional<FastReader::Item> FastReader::pop() {
   return item;
 }
 
-Bytes FastReader::spare_buffer() {
-  std::lock_guard lock(mutex_);
-  if (spares_.empty()) return {};
-  Bytes buffer = std::move(spares_.back());
-  spares_.pop_back();
-  return buffer;
-}
-
-void FastReader::give_back(Bytes buffer) {
-  if (buffer.capacity() == 0) return;  // disposed, or kept by the consumer
-  buffer.clear();
-  std::lock_guard lock(mutex_);
-  if (spares_.size() < kMaxSpares) spares_.push_back(std::move(buffer));
-}
-
 std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer, std::size_t limit) {
   std::size_t taken = 0;
   for (; taken < limit; ++taken) {
@@ -210,7 +194,7 @@ std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer,
     if (item->state == InstanceState::Alive) cdr = without_padding(item->cdr.data(), item->cdr.size());
     Owner owner(item->cdr);
     consumer({cdr, item->state, item->key, item->writer, &owner});
-    give_back(std::move(item->cdr));
+    payloads_->give_back(std::move(item->cdr));
   }
   return taken;
 }

@@ -10,6 +10,7 @@
 #include "../keyed_queue.hpp"
 #include "../sample_gate.hpp"
 #include "participant.hpp"
+#include "received_payloads.hpp"
 #include "skein/core/bytes.hpp"
 
 namespace skein::dds::fastdds {
@@ -54,8 +55,6 @@ class FastReader final : public Reader, private rtps::ReaderListener {
                                 std::span<const std::byte> received) const;
   bool store(const rtps::CacheChange_t& change);
   std::optional<Item> pop();
-  Bytes spare_buffer();
-  void give_back(Bytes buffer);
 
   FastParticipant& participant_;
   const Topic topic_;
@@ -64,6 +63,7 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   const bool tells_incompatible_;
   const std::shared_ptr<EndpointEvents> events_;
   const bool watches_liveliness_;
+  const std::shared_ptr<ReceivedPayloads> payloads_ = std::make_shared<ReceivedPayloads>();
   rtps::ReaderHistory history_;
   std::mutex mutex_;
   KeyedQueue<Item> queue_;
@@ -71,7 +71,6 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   const bool exclusive_;
   /// Of the matched writers whose samples expire or contend.
   std::unordered_map<Guid, SampleGate::Writer> writers_;
-  std::vector<Bytes> spares_;
   std::atomic<std::uint64_t> malformed_{0};
   std::atomic<std::uint64_t> replaced_{0};
   rtps::RTPSReader* reader_ = nullptr;

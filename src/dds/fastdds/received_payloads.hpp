@@ -1,0 +1,39 @@
+#pragma once
+
+#include <fastdds/rtps/common/CacheChange.h>
+#include <fastdds/rtps/history/IPayloadPool.h>
+
+#include <mutex>
+#include <vector>
+
+#include "skein/core/bytes.hpp"
+
+namespace skein::dds::fastdds {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+/// The memory into which a reader's samples are received. What has arrived is taken over as it lies
+/// there, without a copy, and the memory is kept for samples to come: Fast DDS's own pools give
+/// back large ones, and to receive into fresh pages takes longer than to receive. Thread-safe.
+class ReceivedPayloads final : public rtps::IPayloadPool {
+ public:
+  bool get_payload(std::uint32_t size, rtps::CacheChange_t& change) override;
+  bool get_payload(rtps::SerializedPayload_t& data, rtps::IPayloadPool*& owner,
+                   rtps::CacheChange_t& change) override;
+  bool release_payload(rtps::CacheChange_t& change) override;
+
+  /// Takes a change's payload over; the change may then only be removed.
+  Bytes take(const rtps::CacheChange_t& change);
+
+  /// Keeps the memory for other samples.
+  void give_back(Bytes memory);
+
+ private:
+  Bytes withdraw(const rtps::octet* data);
+
+  std::mutex mutex_;
+  std::vector<Bytes> lent_;  // to changes
+  std::vector<Bytes> spare_;
+};
+
+}  // namespace skein::dds::fastdds
