@@ -137,7 +137,10 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
   const auto& payload = change.serializedPayload;
   const std::span received(reinterpret_cast<const std::byte*>(payload.data), payload.length);
   const auto found = alive && !is_plain_cdr(received) ? std::nullopt : key_of(change, received);
-  if (!found) {
+  // Where packets overtake each other Fast DDS hands on some of Cyclone's samples when only their
+  // first fragment has come; the rest would be an earlier sample's.
+  const bool whole = const_cast<rtps::CacheChange_t&>(change).is_fully_assembled();
+  if (!found || !whole) {
     malformed_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
