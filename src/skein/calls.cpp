@@ -1,21 +1,16 @@
-#include <unistd.h>
-
 #include <cstdio>
 #include <ctime>
 #include <thread>
 
 #include "commands.hpp"
-#include "skein/entity/entity.hpp"
+#include "onlooker.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/rpc/call_journal.hpp"
 
 namespace skein::command {
 namespace {
 
-struct Arguments {
-  std::string vendor = "cyclonedds";
-  std::uint32_t domain = 0;
-  std::string interface;
+struct Arguments : Onlooker {
   double seconds = 0;
 };
 
@@ -51,13 +46,7 @@ void print(const introspection::CallEvent& event) {
 }
 
 void watch(const Arguments& arguments) {
-  EntityOptions options;
-  options.name = "skein-calls-" + std::to_string(getpid());
-  options.system = "tools";
-  options.vendor = dds::load_vendor(arguments.vendor);
-  options.domain = arguments.domain;
-  if (!arguments.interface.empty()) options.network.interfaces = {arguments.interface};
-  Entity entity(std::move(options));
+  Entity entity(arguments.entity_options("calls"));
   const rpc::CallJournalReader reader(entity.participant(), print);
   do {
     std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
@@ -69,9 +58,7 @@ void watch(const Arguments& arguments) {
 void add_calls(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("calls", "Show what happens to each call on a domain, live");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")->capture_default_str();
-  command->add_option("--domain", arguments->domain, "DDS domain of the mission")->capture_default_str();
-  command->add_option("--interface", arguments->interface, "Network interface; loopback by default");
+  arguments->add_options(*command);
   command->add_option("--for", arguments->seconds, "Seconds to watch; until interrupted by default");
   command->callback([arguments, &result] {
     watch(*arguments);

@@ -1,22 +1,17 @@
-#include <unistd.h>
-
 #include <cstdio>
 #include <optional>
 #include <thread>
 
 #include "commands.hpp"
+#include "onlooker.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/introspection.idl.hpp"
-#include "skein/entity/entity.hpp"
 #include "skein/entity/statistics_topic.hpp"
 
 namespace skein::command {
 namespace {
 
-struct Arguments {
-  std::string vendor = "cyclonedds";
-  std::uint32_t domain = 0;
-  std::string interface;
+struct Arguments : Onlooker {
   double seconds = 1.5;
   bool statistics = false;
 };
@@ -47,13 +42,7 @@ void print(const introspection::ServiceStatistics& service) {
 }
 
 void print(const Arguments& arguments) {
-  EntityOptions options;
-  options.name = "skein-services-" + std::to_string(getpid());
-  options.system = "tools";
-  options.vendor = dds::load_vendor(arguments.vendor);
-  options.domain = arguments.domain;
-  if (!arguments.interface.empty()) options.network.interfaces = {arguments.interface};
-  Entity entity(std::move(options));
+  Entity entity(arguments.entity_options("services"));
   std::optional<introspection::StatisticsReader> statistics;
   if (arguments.statistics) statistics.emplace(entity.participant());
   std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
@@ -77,9 +66,7 @@ void print(const Arguments& arguments) {
 void add_services(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("services", "List what is provided on a domain now");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")->capture_default_str();
-  command->add_option("--domain", arguments->domain, "DDS domain of the mission")->capture_default_str();
-  command->add_option("--interface", arguments->interface, "Network interface; loopback by default");
+  arguments->add_options(*command);
   command->add_flag("--statistics", arguments->statistics,
                     "Show what became of the calls of each service, and how long they took");
   command->add_option("--wait", arguments->seconds, "Seconds to listen")->capture_default_str();

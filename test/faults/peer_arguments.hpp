@@ -1,6 +1,8 @@
 #pragma once
 
+#include <iostream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "skein/entity/entity.hpp"
@@ -31,6 +33,32 @@ inline EntityOptions entity_options(const PeerArguments& arguments) {
   if (arguments.contains("host")) options.network.peers = {arguments.at("host")};
   options.network.multicast_discovery = arguments.contains("multicast");
   return options;
+}
+
+/// A peer program: makes the peer, and has it obey the commands of its standard input, a line each. Returns
+/// the exit code; 3 where no peer could be made.
+template <class Make>
+int run_peer(Make&& make) {
+  const auto tell = [](const Error& error) {
+    std::cout << "error " << to_string(error.code()) << ": " << error.what() << std::endl;
+  };
+  try {
+    auto peer = make();
+    for (std::string line; std::getline(std::cin, line);) {
+      std::istringstream words(line);
+      std::string command;
+      words >> command;
+      try {
+        std::cout << peer->obey(command, words) << std::endl;
+      } catch (const Error& error) {
+        tell(error);
+      }
+    }
+  } catch (const Error& error) {
+    tell(error);
+    return 3;
+  }
+  return 0;
 }
 
 }  // namespace skein::test

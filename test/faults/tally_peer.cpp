@@ -171,21 +171,5 @@ class Peer {
 }  // namespace
 
 int main(int count, char** given) {
-  try {
-    Peer peer(parse_arguments(count, given));
-    for (std::string line; std::getline(std::cin, line);) {
-      std::istringstream words(line);
-      std::string command;
-      words >> command;
-      try {
-        std::cout << peer.obey(command, words) << std::endl;
-      } catch (const Error& error) {
-        std::cout << "error " << to_string(error.code()) << ": " << error.what() << std::endl;
-      }
-    }
-  } catch (const Error& error) {
-    std::cout << "error " << to_string(error.code()) << ": " << error.what() << std::endl;
-    return 3;
-  }
-  return 0;
+  return run_peer([&] { return std::make_unique<Peer>(parse_arguments(count, given)); });
 }
