@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <optional>
 
 #include "../connector/echo_service.hpp"
 #include "processes.hpp"
@@ -14,41 +15,45 @@ namespace {
 /// So long that the server's silence is nobody's end.
 constexpr std::chrono::milliseconds kLongLease{60'000};
 
+/// A provider that has answered one call.
+struct OneProvider {
+  OneProvider() {
+    server.send("provide");
+    server.expect("provided");
+    echo.emplace(client->connect<LouderEcho>({.timeout = 20s}));
+    CHECK(echo->within(20s).wait(0));
+  }
+  ChildProcess server = start_peer("server", *Pairing::get().server, {"lease=60000"});
+  const std::unique_ptr<Entity> client =
+      entity_with_lease("client", Pairing::get().client, kLongLease);
+  std::optional<LouderEcho::Proxy> echo;
+};
+
 }  // namespace
 
-TEST_CASE("what waited in a stopped server's socket until its time was over is not executed") {
-  auto server = start_peer("server", *Pairing::get().server, {"lease=60000"});
-  const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
-  server.send("provide");
-  server.expect("provided");
-  auto echo = client->connect<LouderEcho>({.timeout = 20s});
-  CHECK(echo.within(20s).wait(0));
+TEST_CASE_METHOD(
+    OneProvider,
+    "what waited in a stopped server's socket until its time was over is not executed") {
   CHECK(server.ask("calls") == "calls 1");
 
   server.signal(SIGSTOP);
   for (int round = 0; round < 5; ++round) {
     std::vector<Call<bool>> calls;
-    for (int i = 0; i < 10; ++i) calls.push_back(echo.within(200ms).async_wait(0));
+    for (int i = 0; i < 10; ++i) calls.push_back(echo->within(200ms).async_wait(0));
     for (auto& call : calls) CHECK_THROWS_AS(call.get(), TimedOut);
   }
   // The server estimates how long a request was under way; a loaded machine blurs that.
   let_last(200ms);
   server.signal(SIGCONT);
-  CHECK(echo.within(20s).wait(0));
+  CHECK(echo->within(20s).wait(0));
   CHECK(server.ask("calls") == "calls 2");
 }
 
-TEST_CASE("a call with time left is executed by a server that was stopped meanwhile") {
-  auto server = start_peer("server", *Pairing::get().server, {"lease=60000"});
-  const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
-  server.send("provide");
-  server.expect("provided");
-  auto echo = client->connect<LouderEcho>({.timeout = 20s});
-  CHECK(echo.within(20s).wait(0));
-
+TEST_CASE_METHOD(OneProvider,
+                 "a call with time left is executed by a server that was stopped meanwhile") {
   server.signal(SIGSTOP);
-  auto patient = echo.within(20s).async_wait(0);
-  CHECK_THROWS_AS(echo.within(200ms).wait(0), TimedOut);
+  auto patient = echo->within(20s).async_wait(0);
+  CHECK_THROWS_AS(echo->within(200ms).wait(0), TimedOut);
   server.signal(SIGCONT);
   CHECK(patient.get());
 }

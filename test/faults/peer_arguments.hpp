@@ -35,8 +35,8 @@ inline EntityOptions entity_options(const PeerArguments& arguments) {
   return options;
 }
 
-/// A peer program: makes the peer, and has it obey the commands of its standard input, a line each. Returns
-/// the exit code; 3 where no peer could be made.
+/// A peer program: makes the peer, and has it obey the commands of its standard input, a line each.
+/// Returns the exit code; 3 where no peer could be made.
 template <class Make>
 int run_peer(Make&& make) {
   const auto tell = [](const Error& error) {
