@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "bucket_queue.hpp"
+#include "planners.hpp"
+#include "pruning.hpp"
+#include "regions.hpp"
+#include "zeroed_array.hpp"
+
+namespace skein::navigation::grid {
+namespace {
+
+/// Numbers of cells with a margin of one cell around the map, so that a move is an offset.
+class Numbering {
+ public:
+  explicit Numbering(const GridMap& map)
+      : width_(static_cast<std::uint32_t>(map.width()) + 2),
+        height_(static_cast<std::uint32_t>(map.height()) + 2),
+        count_(std::size_t{width_} * height_ * (static_cast<std::size_t>(map.depth()) + 2)) {
+    for (std::size_t i = 0; i < kMoveCount; ++i) {
+      const Move& move = kMoves[i];
+      offsets_[i] = static_cast<std::uint32_t>(
+          move.dx + static_cast<int>(width_) * (move.dy + static_cast<int>(height_) * move.dz));
+    }
+  }
+
+  std::size_t count() const { return count_; }
+  std::uint32_t offset(int move) const { return offsets_[static_cast<std::size_t>(move)]; }
+  std::uint32_t number(const Cell& cell) const {
+    const auto at = [](int side) { return static_cast<std::uint32_t>(side + 1); };
+    return at(cell.x) + width_ * (at(cell.y) + height_ * at(cell.z));
+  }
+  Cell cell(std::uint32_t number) const {
+    const std::uint32_t row = number / width_;
+    return {static_cast<int>(number % width_) - 1, static_cast<int>(row % height_) - 1,
+            static_cast<int>(row / height_) - 1};
+  }
+
+ private:
+  std::uint32_t width_;
+  std::uint32_t height_;
+  std::size_t count_;
+  std::array<std::uint32_t, kMoveCount> offsets_{};
+};
+
+/// A* on a map of any dimension that makes no move that Pruning leaves out, and runs on without a word to the
+/// queue where only one move is left and the estimate does not grow.
+class CanonicalAStar : public GridPlanner {
+ public:
+  explicit CanonicalAStar(SharedMap shared)
+      : GridPlanner(std::move(shared)),
+        costs_(map().is_plane() ? kPlaneCosts : kSpaceCosts),
+        regions_(map()),
+        numbering_(map()),
+        classes_(numbering_.count()),
+        nodes_(numbering_.count()),
+        open_(map().is_plane() ? 11 : 13) {
+    classify_cells();
+  }
+
+ private:
+  struct Node {
+    std::uint32_t task;
+    std::uint32_t cost;
+    std::uint32_t parent;
+    MoveSet moves;  ///< To go on by.
+    MoveSet done;   ///< Those of them that it has gone on by.
+  };
+  struct Place {
+    std::uint32_t number;
+    Cell cell;
+  };
+
+  /// Cells with all neighbours free keep class 0, and no memory is touched for them.
+  void classify_cells() {
+    for (int z = 0; z < map().depth(); ++z) {
+      for (int y = 0; y < map().height(); ++y) {
+        for (int x = 0; x < map().width(); ++x) {
+          if (!map().is_free({x, y, z})) continue;
+          const Neighbourhood free = neighbourhood(map(), {x, y, z});
+          if (free != kAllFree) classes_[numbering_.number({x, y, z})] = pruning_.class_of(free);
+        }
+      }
+    }
+  }
+
+  std::optional<GridPath> find_path(const Cell& start, const Cell& goal) override {
+    if (!regions_.connected(start, goal)) return std::nullopt;
+    ++task_;
+    goal_ = {numbering_.number(goal), goal};
+    best_ = UINT32_MAX;
+    const std::uint32_t least = costs_.between(start, goal);
+    const std::uint32_t first = numbering_.number(start);
+    open_.reset(least);
+    nodes_[first] = {task_, 0, first, pruning_.moves_after(classes_[first], Pruning::kNoMove), 0};
+    open_.push({least, 0, first});
+    BucketQueue::Entry entry;
+    while (open_.pop(entry)) {
+      if (entry.estimate >= best_) {
+        if (open_.least_left() >= best_) break;
+        continue;
+      }
+      Node& node = nodes_[entry.node];
+      if (node.cost != entry.cost) continue;
+      MoveSet moves = node.moves & ~node.done;
+      node.done = node.moves;
+      const Place place{entry.node, numbering_.cell(entry.node)};
+      for (; moves != 0; moves &= moves - 1) run(entry, place, std::countr_zero(moves));
+    }
+    return path();
+  }
+
+  /// By `move` from `place` on, until there is a choice.
+  void run(const BucketQueue::Entry& from, Place place, int move) {
+    const Move& step = kMoves[static_cast<std::size_t>(move)];
+    const std::uint32_t step_cost = costs_.along(step.axes);
+    std::uint32_t cost = from.cost;
+    while (true) {
+      place.number += numbering_.offset(move);
+      place.cell = {place.cell.x + step.dx, place.cell.y + step.dy, place.cell.z + step.dz};
+      cost += step_cost;
+      if (place.number == goal_.number) return reach_goal(cost, from.node);
+      const MoveSet moves = pruning_.moves_after(classes_[place.number], move);
+      if (moves == 0) return;
+      const std::uint32_t estimate = cost + costs_.between(place.cell, goal_.cell);
+      if (estimate >= best_) return;
+      if (moves != MoveSet{1} << move || estimate > from.estimate) {
+        return reach({estimate, cost, place.number}, from.node, moves);
+      }
+    }
+  }
+
+  void reach(const BucketQueue::Entry& entry, std::uint32_t parent, MoveSet moves) {
+    Node& node = nodes_[entry.node];
+    if (node.task != task_ || entry.cost < node.cost) {
+      node = {task_, entry.cost, parent, moves, 0};
+    } else {
+      if (entry.cost > node.cost || (moves & ~node.moves) == 0) return;
+      node.moves |= moves;
+    }
+    open_.push(entry);
+  }
+
+  void reach_goal(std::uint32_t cost, std::uint32_t parent) {
+    if (cost >= best_) return;
+    best_ = cost;
+    nodes_[goal_.number].parent = parent;
+  }
+
+  GridPath path() const {
+    GridPath path{0, {goal_.cell}};
+    for (std::uint32_t node = goal_.number; nodes_[node].parent != node;) {
+      node = nodes_[node].parent;
+      path.corners.push_back(numbering_.cell(node));
+    }
+    std::reverse(path.corners.begin(), path.corners.end());
+    path.length = length_of(path.corners);
+    return path;
+  }
+
+  MoveCosts costs_;
+  Regions regions_;
+  Numbering numbering_;
+  Pruning pruning_;
+  ZeroedArray<std::uint32_t> classes_;
+  ZeroedArray<Node> nodes_;
+  BucketQueue open_;
+  std::uint32_t task_ = 0;
+  Place goal_{};
+  std::uint32_t best_ = 0;  ///< Cost of the best path so far.
+};
+
+}  // namespace
+
+std::unique_ptr<GridPlanner> make_canonical_a_star(SharedMap map) {
+  return std::make_unique<CanonicalAStar>(std::move(map));
+}
+
+}  // namespace skein::navigation::grid
