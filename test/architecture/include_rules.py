@@ -21,6 +21,7 @@ FLOORS = {
     "profile": 7,
     "launch": 7,
     "navigation": 7,
+    "navigation/grid": 1.5,
     "navigation/components": 7.5,
     "skein": 8,
     "asio.hpp": 0.5,

@@ -6,9 +6,9 @@
 
 namespace skein::navigation::grid {
 
-/// What waits to be expanded, ordered by estimate in steps of 2^shift; within a step, the latest comes
-/// first, which is mostly the one that is nearest to the goal. Estimates never fall below the step that was taken last
-/// (the heuristic is consistent). Keeps its memory.
+/// What waits to be expanded, ordered by estimate in steps of 2^shift; within a step, the latest
+/// comes first, which is mostly the one that is nearest to the goal. Estimates never fall below the
+/// step that was taken last (the heuristic is consistent). Keeps its memory.
 class BucketQueue {
  public:
   struct Entry {

@@ -44,8 +44,8 @@ class Numbering {
   std::array<std::uint32_t, kMoveCount> offsets_{};
 };
 
-/// A* on a map of any dimension that makes no move that Pruning leaves out, and runs on without a word to the
-/// queue where only one move is left and the estimate does not grow.
+/// A* on a map of any dimension that makes no move that Pruning leaves out, and runs on without a
+/// word to the queue where only one move is left and the estimate does not grow.
 class CanonicalAStar : public GridPlanner {
  public:
   explicit CanonicalAStar(SharedMap shared)

@@ -18,10 +18,10 @@ constexpr unsigned kAllDirections = 0xff;
 
 constexpr unsigned direction_bit(int direction) { return 1U << (direction & 7); }
 
-/// Jump point search (Harabor and Grastien, AAAI 2011) by the rules without corner cutting, where only
-/// straight rays meet turns. Points at which a diagonal ray sends out straight ones are not put into the queue,
-/// but their straight rays' ends. Ends met from several directions at the same cost go on in the
-/// directions of all.
+/// Jump point search (Harabor and Grastien, AAAI 2011) by the rules without corner cutting, where
+/// only straight rays meet turns. Points at which a diagonal ray sends out straight ones are not
+/// put into the queue, but their straight rays' ends. Ends met from several directions at the same
+/// cost go on in the directions of all.
 class JumpPointSearch : public GridPlanner {
  public:
   explicit JumpPointSearch(SharedMap shared)

@@ -12,9 +12,9 @@ namespace {
 
 double distance(const Cell& a, const Cell& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// Lazy Theta* (Nash, Koenig and Tovey, AAAI 2010): a cell's parent is its predecessor's parent, which is
-/// checked only when the cell is expanded. It may come out longer than the shortest path on the grid; then that one is
-/// given, pulled taut.
+/// Lazy Theta* (Nash, Koenig and Tovey, AAAI 2010): a cell's parent is its predecessor's parent,
+/// which is checked only when the cell is expanded. It may come out longer than the shortest path
+/// on the grid; then that one is given, pulled taut.
 class LazyThetaStar : public GridPlanner {
  public:
   explicit LazyThetaStar(SharedMap shared)

@@ -2,64 +2,33 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "skein/core/error.hpp"
-
 namespace skein::navigation::grid {
 
-/// The lines of a text file, each with its number for messages.
+/// The lines of a text file, each with its number for messages. All refusals are InvalidArgument.
 class LineReader {
  public:
-  explicit LineReader(const std::filesystem::path& file) : file_(file), in_(file) {
-    if (!in_) throw InvalidArgument(file.string() + ": cannot be read; does it exist?");
-  }
+  explicit LineReader(const std::filesystem::path& file);
 
   /// False at the end.
-  bool next() {
-    ++number_;
-    if (!std::getline(in_, line_)) return false;
-    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-    return true;
-  }
-
+  bool next();
   /// As next(), past empty lines.
-  bool next_filled() {
-    while (next()) {
-      if (line_.find_first_not_of(" \t") != std::string::npos) return true;
-    }
-    return false;
-  }
+  bool next_filled();
 
   const std::string& line() const { return line_; }
+  std::vector<std::string> words() const;
 
-  std::vector<std::string> words() const {
-    std::istringstream in(line_);
-    std::vector<std::string> words;
-    for (std::string word; in >> word;) words.push_back(word);
-    return words;
-  }
+  /// The number that `word` is; refuses everything else.
+  int integer(const std::string& word) const;
+  double real(const std::string& word) const;
 
-  /// A whole number of `word`; refuses everything else.
-  int integer(const std::string& word) const { return number<int>(word, "a whole number"); }
-  double real(const std::string& word) const { return number<double>(word, "a number"); }
-
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw InvalidArgument(file_.string() + ":" + std::to_string(number_) + ": " + why);
-  }
+  [[noreturn]] void refuse(const std::string& why) const;
 
  private:
   template <class Number>
-  Number number(const std::string& word, const char* kind) const {
-    std::istringstream in(word);
-    Number value{};
-    if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof()) {
-      refuse("'" + word + "' is not " + kind);
-    }
-    return value;
-  }
+  Number number(const std::string& word, const char* kind) const;
 
   std::filesystem::path file_;
   std::ifstream in_;

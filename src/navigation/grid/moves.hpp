@@ -13,7 +13,9 @@ namespace skein::navigation::grid {
 using Neighbourhood = std::uint32_t;
 constexpr Neighbourhood kAllFree = (1U << 27) - 1;
 
-constexpr int neighbour_bit(int dx, int dy, int dz) { return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1); }
+constexpr int neighbour_bit(int dx, int dy, int dz) {
+  return (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1);
+}
 
 struct Move {
   int dx = 0;
@@ -71,7 +73,9 @@ struct MoveCosts {
   std::uint32_t two;
   std::uint32_t three;
 
-  constexpr std::uint32_t along(int axes) const { return axes == 1 ? one : axes == 2 ? two : three; }
+  constexpr std::uint32_t along(int axes) const {
+    return axes == 1 ? one : axes == 2 ? two : three;
+  }
 
   /// Of the shortest way where all is free.
   std::uint32_t between(const Cell& a, const Cell& b) const {
@@ -85,8 +89,9 @@ struct MoveCosts {
   }
 };
 
-/// 8119/5741 is a convergent of the continued fraction of sqrt(2): the order of two paths that differ by
-/// less than 5741 diagonals is that of their true lengths, and on longer ones the error is 1.1e-8.
+/// 8119/5741 is a convergent of the continued fraction of sqrt(2): the order of two paths that
+/// differ by less than 5741 diagonals is that of their true lengths, and on longer ones the error
+/// is 1.1e-8.
 constexpr MoveCosts kPlaneCosts{5741, 8119, 5741 + 8119};
 /// sqrt(2) and sqrt(3) with one denominator; relative error below 1.1e-7.
 constexpr MoveCosts kSpaceCosts{20586, 29113, 35656};

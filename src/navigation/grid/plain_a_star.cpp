@@ -80,8 +80,7 @@ class PlainAStar : public GridPlanner {
   }
 
   std::size_t index(const Cell& cell) const {
-    return static_cast<std::size_t>(cell.x +
-                                    map().width() * (cell.y + map().height() * cell.z));
+    return static_cast<std::size_t>(cell.x + map().width() * (cell.y + map().height() * cell.z));
   }
   Cell cell_at(int node) const {
     const int row = node / map().width();

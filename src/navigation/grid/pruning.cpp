@@ -10,7 +10,8 @@ struct Offset {
   bool operator==(const Offset&) const = default;
 };
 
-/// The move between two of the 27 cells; null where they are no neighbours, the same, or it does not fit.
+/// The move between two of the 27 cells; null where they are no neighbours, the same, or it does
+/// not fit.
 const Move* move_between(const Offset& a, const Offset& b, Neighbourhood free) {
   const Offset step{b.x - a.x, b.y - a.y, b.z - a.z};
   for (const Move& move : kMoves) {
@@ -47,7 +48,8 @@ bool is_needless(const Move& first, const Move& second, Neighbourhood free) {
 }  // namespace
 
 std::uint32_t Pruning::class_of(Neighbourhood free) {
-  const auto [known, is_new] = numbers_.try_emplace(free, static_cast<std::uint32_t>(classes_.size()));
+  const auto [known, is_new] =
+      numbers_.try_emplace(free, static_cast<std::uint32_t>(classes_.size()));
   if (is_new) {
     classes_.push_back({free, {}});
     classes_.back().after.fill(kUnknown);
@@ -59,7 +61,8 @@ MoveSet Pruning::find_moves_after(Neighbourhood free, int move) {
   MoveSet moves = 0;
   for (std::size_t next = 0; next < kMoveCount; ++next) {
     if (!kMoves[next].fits(free)) continue;
-    if (move != kNoMove && is_needless(kMoves[static_cast<std::size_t>(move)], kMoves[next], free)) {
+    if (move != kNoMove &&
+        is_needless(kMoves[static_cast<std::size_t>(move)], kMoves[next], free)) {
       continue;
     }
     moves |= MoveSet{1} << next;

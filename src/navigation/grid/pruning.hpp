@@ -12,11 +12,12 @@ namespace skein::navigation::grid {
 /// A set of moves: bit i stands for kMoves[i].
 using MoveSet = std::uint32_t;
 
-/// Which moves are worth making from a cell, given the move that led to it. Of all paths of the same length, the one
-/// whose moves come first in kMoves (compared in order) shall survive: a move is left out where the cell
-/// before and the cell after are joined by a shorter way, or by an equally long one that comes first, of at most
-/// two moves among the 27 cells around. The shortest path that comes first of all never makes a move that is left out, so the
-/// search stays exact. Generalises jump point search's rules, which are those of a plane.
+/// Which moves are worth making from a cell, given the move that led to it. Of all paths of the
+/// same length, the one whose moves come first in kMoves (compared in order) shall survive: a move
+/// is left out where the cell before and the cell after are joined by a shorter way, or by an
+/// equally long one that comes first, of at most two moves among the 27 cells around. The shortest
+/// path that comes first of all never makes a move that is left out, so the search stays exact.
+/// Generalises jump point search's rules, which are those of a plane.
 class Pruning {
  public:
   /// Stands for the move that led to the start.

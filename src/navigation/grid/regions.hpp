@@ -8,7 +8,8 @@
 namespace skein::navigation::grid {
 
 /// Which free cells can be reached from each other. As no move cuts a corner, straight moves alone
-/// reach all that can be reached; so rows are cut into runs of free cells, and runs that touch belong together.
+/// reach all that can be reached; so rows are cut into runs of free cells, and runs that touch
+/// belong together.
 class Regions {
  public:
   explicit Regions(const GridMap& map);
@@ -30,7 +31,8 @@ class Regions {
   std::uint32_t root(std::uint32_t run);
 
   int height_;
-  std::vector<Run> runs_;             ///< Row by row; until all are joined, `region` is a run of the same region.
+  std::vector<Run>
+      runs_;  ///< Row by row; until all are joined, `region` is a run of the same region.
   std::vector<std::uint32_t> begin_;  ///< Of each row's runs; one more than there are rows.
 };
 

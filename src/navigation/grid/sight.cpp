@@ -10,7 +10,8 @@ bool in_sight(const GridMap& map, const Cell& a, const Cell& b) {
   const int dx = b.x > a.x ? 1 : -1;
   const int dy = b.y > a.y ? 1 : -1;
   Cell cell = a;
-  // Times at which the line crosses the next side of either kind, in units of 1 / (2 sides_x sides_y).
+  // Times at which the line crosses the next side of either kind, in units of 1 / (2 sides_x
+  // sides_y).
   long next_x = sides_y;
   long next_y = sides_x;
   for (int left = sides_x + sides_y; left > 0; --left) {

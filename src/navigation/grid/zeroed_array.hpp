@@ -7,7 +7,8 @@
 
 namespace skein::navigation::grid {
 
-/// An array of zeros that takes memory only where it is written: most of a large map is never visited.
+/// An array of zeros that takes memory only where it is written: most of a large map is never
+/// visited.
 template <class Element>
 class ZeroedArray {
   static_assert(std::is_trivial_v<Element>);

@@ -47,7 +47,8 @@ void plan(Contestant& contestant, const Scenario& scenario) {
   contestant.unreachable += path ? 0 : 1;
 }
 
-/// For each task all contestants in a new random order, so that what disturbs the machine disturbs all alike.
+/// For each task all contestants in a new random order, so that what disturbs the machine disturbs
+/// all alike.
 void plan_all(std::vector<Contestant>& contestants, const std::vector<Scenario>& scenarios,
               std::size_t every) {
   const Scenario* scenario = scenarios.data();
@@ -99,7 +100,8 @@ int main(int argc, char** argv) {
   app.add_option("SCENARIOS", arguments.scenarios, "Scenarios (.scen, .3dscen)")->required();
   app.add_option("--planner", arguments.planner,
                  "astar, canonical-astar, jps (2-D; the default there), theta (2-D)");
-  app.add_option("--against", arguments.against, "A second planner, which takes turns with the first");
+  app.add_option("--against", arguments.against,
+                 "A second planner, which takes turns with the first");
   app.add_option("--every", arguments.every, "Only each n-th scenario")->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   try {

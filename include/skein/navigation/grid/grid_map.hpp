@@ -60,8 +60,8 @@ class GridMap {
 };
 
 /// A map in one of the formats of movingai.com: `type octile` (a plane; `.`, `G` and `S` are free,
-/// `@`, `O`, `T` and `W` are not) or `voxel` (a space: its sides, then the blocked cells), told apart by
-/// its first word. Throws InvalidArgument with file, line and reason.
+/// `@`, `O`, `T` and `W` are not) or `voxel` (a space: its sides, then the blocked cells), told
+/// apart by its first word. Throws InvalidArgument with file, line and reason.
 GridMap read_grid_map(const std::filesystem::path& file);
 
 }  // namespace skein::navigation::grid

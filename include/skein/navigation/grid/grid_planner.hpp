@@ -13,13 +13,13 @@ namespace skein::navigation::grid {
 struct GridPath {
   /// In cells' widths: the sum of the distances between the corners.
   double length = 0;
-  /// From start to goal, both included; one cell where they are the same. Between two corners the way
-  /// is straight, and every cell that it touches is free.
+  /// From start to goal, both included; one cell where they are the same. Between two corners the
+  /// way is straight, and every cell that it touches is free.
   std::vector<Cell> corners;
 };
 
-/// Plans on one map, as often as one likes: its memory is kept from one task to the next, so it is for
-/// one thread at a time. Planners of the same map on several threads share the map.
+/// Plans on one map, as often as one likes: its memory is kept from one task to the next, so it is
+/// for one thread at a time. Planners of the same map on several threads share the map.
 class GridPlanner {
  public:
   virtual ~GridPlanner() = default;
@@ -46,7 +46,8 @@ class GridPlanner {
 /// All but `theta` find a shortest path on the grid.
 std::vector<std::string> grid_planner_names(const GridMap& map);
 
-/// Throws InvalidArgument for a name that is not among grid_planner_names(map), and says which is near.
+/// Throws InvalidArgument for a name that is not among grid_planner_names(map), and says which is
+/// near.
 std::unique_ptr<GridPlanner> make_grid_planner(std::string_view name,
                                                std::shared_ptr<const GridMap> map);
 
