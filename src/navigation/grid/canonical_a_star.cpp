@@ -44,6 +44,9 @@ class Numbering {
   std::array<std::uint32_t, kMoveCount> offsets_{};
 };
 
+/// Cells of a neighbourhood whose dx is -1.
+constexpr Neighbourhood kColumn = 0b001001001001001001001001001;
+
 /// A* on a map of any dimension that makes no move that Pruning leaves out, and runs on without a
 /// word to the queue where only one move is left and the estimate does not grow.
 class CanonicalAStar : public GridPlanner {
@@ -55,7 +58,7 @@ class CanonicalAStar : public GridPlanner {
         numbering_(map()),
         classes_(numbering_.count()),
         nodes_(numbering_.count()),
-        open_(map().is_plane() ? 11 : 13) {
+        open_(map().is_plane() ? 9 : 12) {
     classify_cells();
   }
 
@@ -75,14 +78,31 @@ class CanonicalAStar : public GridPlanner {
   /// Cells with all neighbours free keep class 0, and no memory is touched for them.
   void classify_cells() {
     for (int z = 0; z < map().depth(); ++z) {
-      for (int y = 0; y < map().height(); ++y) {
-        for (int x = 0; x < map().width(); ++x) {
-          if (!map().is_free({x, y, z})) continue;
-          const Neighbourhood free = neighbourhood(map(), {x, y, z});
-          if (free != kAllFree) classes_[numbering_.number({x, y, z})] = pruning_.class_of(free);
-        }
+      for (int y = 0; y < map().height(); ++y) classify_row(y, z);
+    }
+  }
+
+  void classify_row(int y, int z) {
+    Neighbourhood free = column(0, y, z) << 2;
+    for (int x = 0; x < map().width(); ++x) {
+      free = (free >> 1 & ~(kColumn << 2)) | column(x + 1, y, z) << 2;
+      const bool is_free = (free >> neighbour_bit(0, 0, 0) & 1) != 0;
+      if (is_free && free != kAllFree) {
+        classes_[numbering_.number({x, y, z})] = pruning_.class_of(free);
       }
     }
+  }
+
+  /// The free cells of a neighbourhood whose dx is -1, moved there from `x`.
+  Neighbourhood column(int x, int y, int z) const {
+    Neighbourhood free = 0;
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const bool is_free = map().is_free({x, y + dy, z + dz});
+        free |= Neighbourhood{is_free} << neighbour_bit(-1, dy, dz);
+      }
+    }
+    return free;
   }
 
   std::optional<GridPath> find_path(const Cell& start, const Cell& goal) override {

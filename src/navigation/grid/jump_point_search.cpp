@@ -204,7 +204,7 @@ class JumpPointSearch : public GridPlanner {
   BitRows rows_;
   BitRows columns_;
   ZeroedArray<Node> nodes_;
-  BucketQueue open_{11};
+  BucketQueue open_{9};
   std::uint32_t task_ = 0;
   Cell goal_;
   std::uint32_t best_ = 0;  ///< Cost of the best path so far.

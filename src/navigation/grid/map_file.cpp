@@ -1,4 +1,5 @@
 #include "line_reader.hpp"
+#include "skein/core/error.hpp"
 #include "skein/navigation/grid/grid_map.hpp"
 
 namespace skein::navigation::grid {
