@@ -1,5 +1,5 @@
 #include "route_making.hpp"
-#include "skein/navigation/grid_search.hpp"
+#include "skein/navigation/grid/graph_search.hpp"
 #include "skein/navigation/planners.hpp"
 #include "surface_graph.hpp"
 
@@ -30,9 +30,9 @@ class AStarPlanner final : public AE_navigator::IPlanner {
  private:
   AE_navigator::Route plan_on(const PlanningScene& scene, Berth berth) const {
     const SurfaceGraph graph(scene, berth);
-    const SearchResult found = find_cheapest_path(graph, graph.start(), graph.goal(),
-                                                  [&] { return scene.budget().spent(); });
-    if (found.end == SearchEnd::Unreachable) {
+    const grid::SearchResult found = grid::find_cheapest_path(
+        graph, graph.start(), graph.goal(), [&] { return scene.budget().spent(); });
+    if (found.end == grid::SearchEnd::Unreachable) {
       if (berth == Berth::ForTurns) throw Unflyable("there is no room for turns");
       throw AE_navigator::NoRoute(graph.explain_separation(), true);
     }

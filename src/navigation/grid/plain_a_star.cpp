@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <queue>
 
 #include "moves.hpp"
 #include "planners.hpp"
+#include "skein/navigation/grid/graph_search.hpp"
 
 namespace skein::navigation::grid {
 namespace {
@@ -17,78 +17,54 @@ double shortest_where_all_is_free(const Cell& a, const Cell& b) {
          kLengths[1] * (sides[2] - sides[1]);
 }
 
-/// As in a textbook, but for the marks by which it need not clear its memory before each task.
-class PlainAStar : public GridPlanner {
+/// A map's cells, on the way to a goal, as find_cheapest_path wants them.
+class CellGraph {
  public:
-  explicit PlainAStar(SharedMap map)
-      : GridPlanner(std::move(map)),
-        nodes_(static_cast<std::size_t>(this->map().width()) *
-               static_cast<std::size_t>(this->map().height()) *
-               static_cast<std::size_t>(this->map().depth())) {}
+  CellGraph(const GridMap& map, const Cell& goal) : map_(map), goal_(goal) {}
 
- private:
-  struct Node {
-    double cost;
-    int parent;
-    unsigned task;
-    bool closed;
-  };
-  struct Open {
-    double estimate;
-    double cost;
-    int node;
-    bool operator<(const Open& other) const {
-      return estimate != other.estimate ? estimate > other.estimate : cost < other.cost;
-    }
-  };
+  int node_count() const { return map_.width() * map_.height() * map_.depth(); }
+  double lower_bound(int node) const { return shortest_where_all_is_free(cell(node), goal_); }
 
-  std::optional<GridPath> find_path(const Cell& start, const Cell& goal) override {
-    ++task_;
-    std::priority_queue<Open> open;
-    nodes_[index(start)] = {0, -1, task_, false};
-    open.push({shortest_where_all_is_free(start, goal), 0, static_cast<int>(index(start))});
-    while (!open.empty()) {
-      const Open best = open.top();
-      open.pop();
-      const Cell cell = cell_at(best.node);
-      if (cell == goal) return path_to(best.node);
-      Node& node = nodes_[static_cast<std::size_t>(best.node)];
-      if (node.closed) continue;
-      node.closed = true;
-      const Neighbourhood free = neighbourhood(map(), cell);
-      for (const Move& move : kMoves) {
-        if (!move.fits(free)) continue;
-        const Cell to{cell.x + move.dx, cell.y + move.dy, cell.z + move.dz};
-        const double cost = best.cost + kLengths[move.axes];
-        Node& next = nodes_[index(to)];
-        if (next.task == task_ && (next.closed || next.cost <= cost)) continue;
-        next = {cost, best.node, task_, false};
-        open.push({cost + shortest_where_all_is_free(to, goal), cost, static_cast<int>(index(to))});
-      }
+  template <class Visit>
+  void for_each_edge(int node, Visit&& visit) const {
+    const Cell from = cell(node);
+    const Neighbourhood free = neighbourhood(map_, from);
+    for (const Move& move : kMoves) {
+      if (!move.fits(free)) continue;
+      visit(number({from.x + move.dx, from.y + move.dy, from.z + move.dz}), kLengths[move.axes]);
     }
-    return std::nullopt;
   }
 
-  GridPath path_to(int node) const {
+  int number(const Cell& cell) const {
+    return cell.x + map_.width() * (cell.y + map_.height() * cell.z);
+  }
+  Cell cell(int node) const {
+    const int row = node / map_.width();
+    return {node % map_.width(), row % map_.height(), row / map_.height()};
+  }
+
+ private:
+  const GridMap& map_;
+  Cell goal_;
+};
+
+class PlainAStar : public GridPlanner {
+ public:
+  explicit PlainAStar(SharedMap map) : GridPlanner(std::move(map)) {}
+
+ private:
+  std::optional<GridPath> find_path(const Cell& start, const Cell& goal) override {
+    const CellGraph graph(map(), goal);
+    const SearchResult found =
+        find_cheapest_path(graph, graph.number(start), graph.number(goal), {}, memory_);
+    if (found.end != SearchEnd::Found) return std::nullopt;
     GridPath path;
-    for (; node != -1; node = nodes_[static_cast<std::size_t>(node)].parent) {
-      path.corners.push_back(cell_at(node));
-    }
-    std::reverse(path.corners.begin(), path.corners.end());
+    for (const int node : found.path.nodes) path.corners.push_back(graph.cell(node));
     path.length = length_of(path.corners);
     return path;
   }
 
-  std::size_t index(const Cell& cell) const {
-    return static_cast<std::size_t>(cell.x + map().width() * (cell.y + map().height() * cell.z));
-  }
-  Cell cell_at(int node) const {
-    const int row = node / map().width();
-    return {node % map().width(), row % map().height(), row / map().height()};
-  }
-
-  std::vector<Node> nodes_;
-  unsigned task_ = 0;
+  SearchMemory memory_;
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "skein/navigation/grid_search.hpp"
+#include "skein/navigation/grid/graph_search.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-using namespace skein::navigation;
+using namespace skein::navigation::grid;
 
 namespace {
 
@@ -72,12 +72,13 @@ double cheapest_by_force(const PricedGrid& grid, int start) {
 TEST_CASE(
     "The path found is as cheap as any, and there is none only where brute force finds none") {
   std::mt19937 random(5);
+  SearchMemory memory;  // Handed on, also between graphs of different sizes.
   int unreachable = 0;
   for (int round = 0; round < 500; ++round) {
     const PricedGrid grid = make_grid(random);
     const int start = std::uniform_int_distribution<int>(0, grid.node_count() - 1)(random);
     const double expected = cheapest_by_force(grid, start);
-    const SearchResult found = find_cheapest_path(grid, start, grid.goal, {});
+    const SearchResult found = find_cheapest_path(grid, start, grid.goal, {}, memory);
     if (std::isinf(expected)) {
       ++unreachable;
       REQUIRE(found.end == SearchEnd::Unreachable);
