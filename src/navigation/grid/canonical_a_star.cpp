@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "bucket_queue.hpp"
+#include "landmarks.hpp"
+#include "numbering.hpp"
 #include "planners.hpp"
 #include "pruning.hpp"
 #include "regions.hpp"
@@ -11,39 +12,6 @@
 namespace skein::navigation::grid {
 namespace {
 
-/// Numbers of cells with a margin of one cell around the map, so that a move is an offset.
-class Numbering {
- public:
-  explicit Numbering(const GridMap& map)
-      : width_(static_cast<std::uint32_t>(map.width()) + 2),
-        height_(static_cast<std::uint32_t>(map.height()) + 2),
-        count_(std::size_t{width_} * height_ * (static_cast<std::size_t>(map.depth()) + 2)) {
-    for (std::size_t i = 0; i < kMoveCount; ++i) {
-      const Move& move = kMoves[i];
-      offsets_[i] = static_cast<std::uint32_t>(
-          move.dx + static_cast<int>(width_) * (move.dy + static_cast<int>(height_) * move.dz));
-    }
-  }
-
-  std::size_t count() const { return count_; }
-  std::uint32_t offset(int move) const { return offsets_[static_cast<std::size_t>(move)]; }
-  std::uint32_t number(const Cell& cell) const {
-    const auto at = [](int side) { return static_cast<std::uint32_t>(side + 1); };
-    return at(cell.x) + width_ * (at(cell.y) + height_ * at(cell.z));
-  }
-  Cell cell(std::uint32_t number) const {
-    const std::uint32_t row = number / width_;
-    return {static_cast<int>(number % width_) - 1, static_cast<int>(row % height_) - 1,
-            static_cast<int>(row / height_) - 1};
-  }
-
- private:
-  std::uint32_t width_;
-  std::uint32_t height_;
-  std::size_t count_;
-  std::array<std::uint32_t, kMoveCount> offsets_{};
-};
-
 /// Cells of a neighbourhood whose dx is -1.
 constexpr Neighbourhood kColumn = 0b001001001001001001001001001;
 
@@ -51,11 +19,12 @@ constexpr Neighbourhood kColumn = 0b001001001001001001001001001;
 /// word to the queue where only one move is left and the estimate does not grow.
 class CanonicalAStar : public GridPlanner {
  public:
-  explicit CanonicalAStar(SharedMap shared)
+  CanonicalAStar(SharedMap shared, int landmarks)
       : GridPlanner(std::move(shared)),
         costs_(map().is_plane() ? kPlaneCosts : kSpaceCosts),
         regions_(map()),
         numbering_(map()),
+        landmarks_(map(), numbering_, costs_, regions_, landmarks),
         classes_(numbering_.count()),
         nodes_(numbering_.count()),
         open_(map().is_plane() ? 9 : 12) {
@@ -110,8 +79,9 @@ class CanonicalAStar : public GridPlanner {
     ++task_;
     goal_ = {numbering_.number(goal), goal};
     best_ = UINT32_MAX;
-    const std::uint32_t least = costs_.between(start, goal);
     const std::uint32_t first = numbering_.number(start);
+    landmarks_.aim(first, goal_.number);
+    const std::uint32_t least = left({first, start});
     open_.reset(least);
     nodes_[first] = {task_, 0, first, pruning_.moves_after(classes_[first], Pruning::kNoMove), 0};
     open_.push({least, 0, first});
@@ -131,6 +101,11 @@ class CanonicalAStar : public GridPlanner {
     return path();
   }
 
+  /// No more than the cost from there to the goal.
+  std::uint32_t left(const Place& place) const {
+    return std::max(costs_.between(place.cell, goal_.cell), landmarks_.bound(place.number));
+  }
+
   /// By `move` from `place` on, until there is a choice.
   void run(const BucketQueue::Entry& from, Place place, int move) {
     const Move& step = kMoves[static_cast<std::size_t>(move)];
@@ -143,7 +118,7 @@ class CanonicalAStar : public GridPlanner {
       if (place.number == goal_.number) return reach_goal(cost, from.node);
       const MoveSet moves = pruning_.moves_after(classes_[place.number], move);
       if (moves == 0) return;
-      const std::uint32_t estimate = cost + costs_.between(place.cell, goal_.cell);
+      const std::uint32_t estimate = cost + left(place);
       if (estimate >= best_) return;
       if (moves != MoveSet{1} << move || estimate > from.estimate) {
         return reach({estimate, cost, place.number}, from.node, moves);
@@ -182,6 +157,7 @@ class CanonicalAStar : public GridPlanner {
   MoveCosts costs_;
   Regions regions_;
   Numbering numbering_;
+  Landmarks landmarks_;
   Pruning pruning_;
   ZeroedArray<std::uint32_t> classes_;
   ZeroedArray<Node> nodes_;
@@ -194,7 +170,12 @@ class CanonicalAStar : public GridPlanner {
 }  // namespace
 
 std::unique_ptr<GridPlanner> make_canonical_a_star(SharedMap map) {
-  return std::make_unique<CanonicalAStar>(std::move(map));
+  return std::make_unique<CanonicalAStar>(std::move(map), 0);
+}
+
+std::unique_ptr<GridPlanner> make_landmark_a_star(SharedMap map) {
+  constexpr int kLandmarks = 32;
+  return std::make_unique<CanonicalAStar>(std::move(map), kLandmarks);
 }
 
 }  // namespace skein::navigation::grid

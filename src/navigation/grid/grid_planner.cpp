@@ -16,9 +16,8 @@ struct Maker {
 };
 
 constexpr Maker kMakers[] = {
-    {"astar", make_plain_a_star, true},
-    {"canonical-astar", make_canonical_a_star, true},
-    {"jps", make_jump_point_search, false},
+    {"astar", make_plain_a_star, true},         {"canonical-astar", make_canonical_a_star, true},
+    {"landmarks", make_landmark_a_star, false}, {"jps", make_jump_point_search, false},
     {"theta", make_lazy_theta_star, false},
 };
 

@@ -11,6 +11,8 @@ using SharedMap = std::shared_ptr<const GridMap>;
 std::unique_ptr<GridPlanner> make_plain_a_star(SharedMap map);
 std::unique_ptr<GridPlanner> make_canonical_a_star(SharedMap map);
 /// For planes.
+std::unique_ptr<GridPlanner> make_landmark_a_star(SharedMap map);
+/// For planes.
 std::unique_ptr<GridPlanner> make_jump_point_search(SharedMap map);
 /// For planes.
 std::unique_ptr<GridPlanner> make_lazy_theta_star(SharedMap map);

@@ -27,6 +27,17 @@ std::uint32_t Regions::region_of(const Cell& cell) const {
   return std::prev(after)->region;
 }
 
+std::optional<Cell> Regions::cell_of_largest() const {
+  std::vector<int> cells(runs_.size());
+  for (const Run& run : runs_) cells[run.region] += run.last - run.first + 1;
+  const auto most = std::max_element(cells.begin(), cells.end());
+  if (most == cells.end()) return std::nullopt;
+  // The region's name is one of its runs.
+  const auto run = static_cast<std::uint32_t>(most - cells.begin());
+  const auto row = std::upper_bound(begin_.begin(), begin_.end(), run) - begin_.begin() - 1;
+  return Cell{runs_[run].first, static_cast<int>(row) % height_, static_cast<int>(row) / height_};
+}
+
 void Regions::cut_rows(const GridMap& map) {
   for (int z = 0; z < map.depth(); ++z) {
     for (int y = 0; y < map.height(); ++y) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "skein/navigation/grid/grid_map.hpp"
@@ -16,6 +17,9 @@ class Regions {
 
   /// Both cells are free.
   bool connected(const Cell& a, const Cell& b) const { return region_of(a) == region_of(b); }
+
+  /// A cell of the region that has the most; empty where no cell is free.
+  std::optional<Cell> cell_of_largest() const;
 
  private:
   struct Run {
