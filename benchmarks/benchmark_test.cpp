@@ -73,6 +73,16 @@ TEST_CASE("a comparison that was not measured has no figures, only the reason") 
   CHECK(row.at("ratio_p50").is_null());
 }
 
+TEST_CASE("where both took turns, a ratio is the median of the rounds' ratios") {
+  skein::benchmarks::Comparison comparison{"claim", "own", "other"};
+  comparison.samples = {2, 2, 200, 200, 6, 6};
+  comparison.rival_samples = {1, 1, 10, 10, 3, 3};
+  CHECK(comparison.ratio_p50() == 6.0 / 3.0);
+  comparison.rounds = 3;
+  CHECK(comparison.ratio_p50() == 2.0);
+  CHECK(comparison.ratio_p99() == 20.0);  // too few for a p99 of each turn
+}
+
 TEST_CASE("a ratio is the subject's time by the rival's") {
   Comparison comparison{"claim", "subject", "rival"};
   comparison.samples = {30, 10, 20};

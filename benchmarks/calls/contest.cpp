@@ -61,6 +61,7 @@ void Contest::take_turn(Contender& contender, std::size_t trial, Placement place
     contender.running->place(placement);
     const auto measured = trials_[trial].take(*contender.running);
     outcome.samples.insert(outcome.samples.end(), measured.begin(), measured.end());
+    ++outcome.turns;
   } catch (const Skipped& reason) {
     outcome.skipped = reason.what();
   }
@@ -98,6 +99,7 @@ std::vector<Comparison> Contest::compared(const std::string& subject, const std:
       if (comparison.skipped.empty()) {
         comparison.samples = own.samples;
         comparison.rival_samples = other.samples;
+        if (own.turns == other.turns) comparison.rounds = own.turns;
       }
       comparisons.push_back(std::move(comparison));
     }
@@ -114,7 +116,7 @@ std::vector<Comparison> Contest::compare(const std::string& subject,
 
 std::vector<Comparison> Contest::compare(const std::string& subject, const Limit& limit) const {
   return compared(subject, limit.name, [&](std::size_t, Placement) {
-    return Outcome{{limit.time_us}, ""};
+    return Outcome{{limit.time_us}};
   });
 }
 

@@ -50,6 +50,7 @@ class Contest {
   struct Outcome {
     std::vector<double> samples;
     std::string skipped;
+    std::size_t turns = 0;
   };
 
   void take_turn(Contender& contender, std::size_t trial, Placement placement);

@@ -1,5 +1,6 @@
 #include "harness/comparison.hpp"
 
+#include <cmath>
 #include <fstream>
 
 #include "skein/core/error.hpp"
@@ -21,8 +22,11 @@ void put_figures(json& object, const std::string& prefix, const Summary& summary
   put("p999", summary.p999);
 }
 
-json ratio(double subject, double rival) {
-  return subject > 0 && rival > 0 ? json(subject / rival) : json(nullptr);
+json ratio(const Comparison& comparison, double q) {
+  if (comparison.samples.empty() || comparison.rival_samples.empty()) return nullptr;
+  const double ratio =
+      ratio_of_quantiles(comparison.samples, comparison.rival_samples, comparison.rounds, q);
+  return std::isfinite(ratio) && ratio > 0 ? json(ratio) : json(nullptr);
 }
 
 }  // namespace
@@ -36,8 +40,8 @@ json to_json(const Comparison& comparison) {
               {"samples", own.samples},    {"rival_samples", rival.samples}};
   put_figures(object, "", own, comparison.unit);
   put_figures(object, "rival_", rival, comparison.unit);
-  object["ratio_p50"] = ratio(own.p50, rival.p50);
-  object["ratio_p99"] = ratio(own.p99, rival.p99);
+  object["ratio_p50"] = ratio(comparison, 0.5);
+  object["ratio_p99"] = ratio(comparison, 0.99);
   if (comparison.goal_p50) object["goal_p50"] = *comparison.goal_p50;
   if (comparison.goal_p99) object["goal_p99"] = *comparison.goal_p99;
   if (!comparison.skipped.empty()) object["skipped"] = comparison.skipped;

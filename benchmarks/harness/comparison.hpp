@@ -18,6 +18,7 @@ struct Comparison {
   nlohmann::json parameters = nlohmann::json::object();
   std::vector<double> samples{};        ///< In `unit`, as measured.
   std::vector<double> rival_samples{};  ///< A promise is one sample.
+  std::size_t rounds = 0;  ///< Where the samples come turn after turn, a turn of both in each; else 0.
   /// The greatest ratios that the project is content with, where it has said so.
   std::optional<double> goal_p50{};
   std::optional<double> goal_p99{};
@@ -27,15 +28,16 @@ struct Comparison {
 
   Summary summary() const { return summarize(samples); }
   Summary rival_summary() const { return summarize(rival_samples); }
-  /// Of a measured one: the subject's figure by the rival's.
-  double ratio_p50() const { return summary().p50 / rival_summary().p50; }
-  double ratio_p99() const { return summary().p99 / rival_summary().p99; }
+  /// Of a measured one: the subject's figure by the rival's, round by round where there are rounds.
+  double ratio_p50() const { return ratio_of_quantiles(samples, rival_samples, rounds, 0.5); }
+  double ratio_p99() const { return ratio_of_quantiles(samples, rival_samples, rounds, 0.99); }
 };
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 
 /// Figures with their unit: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us` (or `p50_octets`, ...), the same
-/// with `rival_` before it, and the quotients `ratio_p50` and `ratio_p99`, below 1 where the subject is faster or thriftier.
+/// with `rival_` before it, of all samples together, and the quotients `ratio_p50` and `ratio_p99` (see
+/// ratio_of_quantiles), below 1 where the subject is faster or thriftier.
 /// `unit` says which. All of them null in a skipped comparison, which says why in `skipped`.
 nlohmann::json to_json(const Comparison& comparison);
 

@@ -1,5 +1,6 @@
 #include "skein/rpc/dds_channel.hpp"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -10,8 +11,10 @@
 namespace skein::rpc {
 namespace {
 
-// DDS tells no one that the other side has matched, so `open` is repeated until it is answered.
-constexpr std::chrono::milliseconds kOpenInterval{20};
+// DDS tells no one that the other side has matched, so `open` is repeated until it is answered: soon at
+// first, since the other side is mostly about to match, then less often.
+constexpr std::chrono::milliseconds kFirstOpenInterval{1};
+constexpr std::chrono::milliseconds kLastOpenInterval{20};
 
 }  // namespace
 
@@ -58,6 +61,7 @@ void DdsChannel::State::await_open() {
   const Instant deadline = clock.now() + options.timeout;
   std::unique_lock lock(mutex);
   std::size_t greeted = 0;
+  auto interval = kFirstOpenInterval;
   while (phase == Phase::Opening && !refusal) {
     if (clock.now() >= deadline) {
       throw Unavailable(
@@ -75,9 +79,10 @@ void DdsChannel::State::await_open() {
     }
     if (greeted > 0) send_open();
     lock.lock();
-    changed.wait_for(lock, kOpenInterval, [&] {
+    changed.wait_for(lock, greeted > 0 ? interval : kLastOpenInterval, [&] {
       return phase != Phase::Opening || refusal || matched_servers != greeted;
     });
+    if (greeted > 0) interval = std::min(2 * interval, kLastOpenInterval);
   }
   if (refusal) std::rethrow_exception(refusal);
   if (phase != Phase::Open)
