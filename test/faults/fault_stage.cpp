@@ -40,8 +40,9 @@ ChildProcess& FaultStage::add(std::vector<std::unique_ptr<ChildProcess>>& to,
   return *to.back();
 }
 
-ChildProcess& FaultStage::add_server(const Place& place, std::size_t queue) {
-  ChildProcess& server = add(servers_, "server", *Pairing::get().server, place);
+ChildProcess& FaultStage::add_server(const Place& place, std::size_t queue,
+                                     std::chrono::milliseconds lease) {
+  ChildProcess& server = add(servers_, "server", *Pairing::get().server, place, lease);
   server.send("provide " + std::to_string(queue));
   server.expect("provided");
   return server;

@@ -23,10 +23,15 @@ struct Place {
 /// calls one journal records.
 class FaultStage {
  public:
-  /// Its service is provided when this returns; `queue` requests may wait.
-  ChildProcess& add_server(const Place& place = {}, std::size_t queue = 4096);
-  /// A process with so many clients; they are connecting when this returns. Others trust it for
+  static constexpr std::chrono::milliseconds kLease{1000};
+  /// So long that a silence is nobody's end, neither for the others nor for who was stopped.
+  static constexpr std::chrono::milliseconds kLongLease{60'000};
+
+  /// Its service is provided when this returns; `queue` requests may wait. Others trust it for
   /// `lease`.
+  ChildProcess& add_server(const Place& place = {}, std::size_t queue = 4096,
+                           std::chrono::milliseconds lease = kLease);
+  /// A process with so many clients; they are connecting when this returns.
   ChildProcess& add_clients(int count, const Place& place = {},
                             std::chrono::milliseconds lease = kLease);
   /// Waits until all clients are connected, and each peer knows all providers.
@@ -51,10 +56,9 @@ class FaultStage {
   ChildProcess& client(std::size_t index = 0) { return *clients_[index]; }
 
  private:
-  static constexpr std::chrono::milliseconds kLease{1000};
   ChildProcess& add(std::vector<std::unique_ptr<ChildProcess>>& to, const std::string& name,
                     const dds::Vendor& vendor, const Place& place,
-                    std::chrono::milliseconds lease = kLease);
+                    std::chrono::milliseconds lease);
   bool everybody_knows_all();
   std::vector<ChildProcess*> everybody();
 

@@ -55,8 +55,9 @@ TEST_CASE("matrix: a partition of 30 s", "[long]") {
   hosts.stage.start("timeout 1000 bytes 4000 pause 50");
   hosts.stage.run_for_calls(50);
   hosts.cable.disturb(Disturbance::cut());
-  let_last(30s);
+  let_last(30s - kNear);
   hosts.stage.journal().mark();
+  let_last(kNear);
   hosts.cable.heal();
   hosts.stage.run_for_calls(50);
   hosts.stage.stop();

@@ -12,14 +12,10 @@ namespace {
 
 const std::set<std::string> kLostProvider{"Ok", "Disconnected", "TimedOut", "Unavailable"};
 
-/// How near to its end a call may be taken for one that still has time: its provider estimates how
-/// long the request was under way, and a loaded machine blurs that.
-constexpr auto kNear = 200ms;
-
-void stop_a_provider_for(std::chrono::seconds pause) {
+void stop_a_provider_for(std::chrono::seconds pause, std::chrono::milliseconds lease) {
   FaultStage stage;
-  ChildProcess& server = stage.add_server();
-  stage.add_clients(8);
+  ChildProcess& server = stage.add_server({}, 4096, lease);
+  stage.add_clients(8, {}, lease);
   stage.connect();
   stage.start("timeout 300 bytes 2000");
   stage.run_for_calls(200);
@@ -96,12 +92,13 @@ TEST_CASE("matrix: a provider is killed under load") {
   stage.check("killed under load", kLostProvider);
 }
 
-TEST_CASE("matrix: a provider is stopped for 1 s under load, and goes on") {
-  stop_a_provider_for(1s);
+TEST_CASE("matrix: a provider is stopped for 1 s under load, within its lease, and goes on") {
+  stop_a_provider_for(1s, FaultStage::kLongLease);
 }
 
-TEST_CASE("matrix: a provider is stopped for 10 s under load, and goes on", "[long]") {
-  stop_a_provider_for(10s);
+TEST_CASE("matrix: a provider is stopped for 10 s under load, beyond its lease, and goes on",
+          "[long]") {
+  stop_a_provider_for(10s, FaultStage::kLease);
 }
 
 TEST_CASE("matrix: clients are stopped for 1 s under load, and go on") { stop_clients_for(1s); }
@@ -123,8 +120,8 @@ TEST_CASE("matrix: a hundred clients join at once", "[long]") {
 
 TEST_CASE("matrix: a client that reads nothing for a while holds up nobody") {
   FaultStage stage;
-  stage.add_server();
-  ChildProcess& deaf = stage.add_clients(2, {}, 60s);
+  stage.add_server({}, 4096, FaultStage::kLongLease);
+  ChildProcess& deaf = stage.add_clients(2, {}, FaultStage::kLongLease);
   ChildProcess& good = stage.add_clients(2);
   stage.connect();
   deaf.send("burst 100 timeout 10000 work 1 bytes 100000");

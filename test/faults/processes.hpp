@@ -13,6 +13,10 @@ namespace skein::test {
 /// Lets a fault last: its length is a test's input, not a wait for what comes of it.
 inline void let_last(std::chrono::milliseconds length) { std::this_thread::sleep_for(length); }
 
+/// How near to its end a call may be taken for one that still has time: its provider estimates how
+/// long the request was under way, and a loaded machine blurs that.
+inline constexpr std::chrono::milliseconds kNear{200};
+
 /// The peer program (peer.cpp) as `name` on that vendor. `more` are further arguments of it.
 inline ChildProcess start_peer(const std::string& name, const dds::Vendor& vendor,
                                const std::vector<std::string>& more = {},
