@@ -122,7 +122,7 @@ TEST_CASE("matrix: a client that reads nothing for a while holds up nobody") {
   FaultStage stage;
   stage.add_server({}, 4096, FaultStage::kLongLease);
   ChildProcess& deaf = stage.add_clients(2, {}, FaultStage::kLongLease);
-  ChildProcess& good = stage.add_clients(2);
+  ChildProcess& good = stage.add_clients(2, {}, FaultStage::kLongLease);
   stage.connect();
   deaf.send("burst 100 timeout 10000 work 1 bytes 100000");
   deaf.expect("sent");
