@@ -215,6 +215,14 @@ TEST_CASE("no rival and no way to call is missing") {
   }
 }
 
+TEST_CASE("no kind of grid is missing, and those of the test data are skipped without it") {
+  const json& results = QuickRun::get().results;
+  const std::string mean = "a path on a grid, mean over a map";
+  CHECK(has(results, mean, "skein jps", {{"where", "made caves"}}, "plain A*"));
+  CHECK(has(results, mean, "skein landmarks", {{"where", "made scatter, a third blocked"}}, "plain A*"));
+  CHECK(has(results, mean, "skein canonical-astar", json::object(), "plain A*"));
+}
+
 TEST_CASE("a user measures calls by the command, and compares what it saved") {
   const auto folder = std::filesystem::current_path() / "command_bench";
   std::filesystem::remove_all(folder);

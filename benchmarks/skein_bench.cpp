@@ -7,6 +7,7 @@
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
+#include "grids/compare_grids.hpp"
 #include "harness/goals.hpp"
 #include "harness/private_network.hpp"
 #include "report/report.hpp"
@@ -26,19 +27,20 @@ struct Plan {
   IdlePlan idle_peers;
   std::size_t kills_on_one_host;
   std::size_t kills_across_hosts;
+  GridPlan grids;
 };
 
 Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 100}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5};
+  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5, {300, 1}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1};
+  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1, {3, 100}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -61,7 +63,7 @@ void print_summary(const std::vector<Comparison>& comparisons) {
 
 const std::vector<std::string> kParts{"calls",        "ways",         "rivals",      "in_process",
                                       "idle_clients", "find_service", "cold_starts", "joins",        "idle_peers",
-                                      "deaths"};
+                                      "deaths",       "grids"};
 
 void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
@@ -89,6 +91,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
     append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
     append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
   }
+  if (wanted("grids")) append(comparisons, compare_grids(plan.grids));
   set_goals(comparisons);
   write_results(comparisons, output + "/results.json");
   write_report(comparisons, facts, output + "/report.html");

@@ -21,6 +21,14 @@ bool is_death(const Comparison& comparison, const char* where) {
          comparison.parameters.at("where") == where;
 }
 
+/// Of all scenarios of a map, as long as the map is large enough for a promise.
+bool is_mean_on_grids(const Comparison& comparison, bool in_space) {
+  if (comparison.claim != "a path on a grid, mean over a map" || !comparison.skipped.empty()) return false;
+  const auto& parameters = comparison.parameters;
+  const bool is_space = parameters.at("depth") > 1;
+  return is_space == in_space && (is_space || (parameters.at("width") >= 256 && parameters.at("height") >= 256));
+}
+
 /// How far beyond its limits a measured comparison is: over 1 it misses them.
 double strain(const Comparison& comparison) {
   const double p50 = comparison.ratio_p50() / *comparison.goal_p50;
@@ -65,6 +73,10 @@ const std::vector<Goal>& goals() {
        [](const Comparison& c) { return is_death(c, "one host"); }},
       {"The death of a provider on another host is known within the lease and 50 ms", 1.0, 1.0,
        [](const Comparison& c) { return is_death(c, "across two hosts"); }},
+      {"A path on a plane of 256 x 256 cells and more takes a tenth of plain A*'s mean", 0.1, {},
+       [](const Comparison& c) { return is_mean_on_grids(c, false); }},
+      {"A path in a space takes a fifth of plain A*'s mean", 0.2, {},
+       [](const Comparison& c) { return is_mean_on_grids(c, true); }},
   };
   return kGoals;
 }
