@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <string_view>
 
@@ -23,6 +24,16 @@ std::uint32_t parse_seed(std::string_view name) {
         "terrain '{}': the seed must be a number from 0 to 4294967295, as in synthetic:7", name));
   }
   return seed;
+}
+
+using Reader = Terrain (*)(const std::filesystem::path&);
+
+/// By the end of the name; nullptr for an unknown one.
+Reader reader_of(std::string_view name) {
+  std::string ending(name.substr(std::min(name.size(), name.find_last_of('.'))));
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".hgt") return read_hgt;
+  return ending == ".dt0" || ending == ".dt1" || ending == ".dt2" ? read_dted : nullptr;
 }
 
 }  // namespace
@@ -47,10 +58,12 @@ std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) co
   if (name.starts_with(kSynthetic)) {
     return std::make_shared<const Terrain>(make_synthetic_terrain(parse_seed(name)));
   }
-  if (!name.ends_with(".hgt") && !name.ends_with(".HGT")) {
-    throw InvalidArgument(fmt::format(
-        "there is no terrain '{}'; a terrain is synthetic:<seed> or the name of an .hgt file",
-        name));
+  const Reader read_tile = reader_of(name);
+  if (read_tile == nullptr) {
+    throw InvalidArgument(
+        fmt::format("there is no terrain '{}'; a terrain is synthetic:<seed> or the "
+                    "name of a file that ends with .hgt, .dt0, .dt1 or .dt2",
+                    name));
   }
   std::string searched;
   std::vector<std::filesystem::path> candidates{name};
@@ -58,7 +71,7 @@ std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) co
   for (const auto& candidate : candidates) {
     std::error_code ignored;
     if (std::filesystem::exists(candidate, ignored)) {
-      const Terrain tile = read_hgt(candidate);
+      const Terrain tile = read_tile(candidate);
       return std::make_shared<const Terrain>(name, tile.rows(), tile.columns(),
                                              tile.north_spacing_m(), tile.east_spacing_m(),
                                              tile.heights_m());

@@ -63,4 +63,52 @@ inline void write_hgt(const std::filesystem::path& file,
   write_hgt(file, posts);
 }
 
+/// A DTED tile, whose bytes can be spoilt before they are written.
+struct MadeDted {
+  int level = 0;
+  int column_spacing_tenths = 300;
+  std::string latitude = "0530000N";
+
+  int rows() const { return level == 0 ? 121 : level == 1 ? 1201 : 3601; }
+  int columns() const { return 36000 / column_spacing_tenths + 1; }
+
+  /// Row 0 is the southernmost; -32767 is a void.
+  std::string bytes(const std::function<int(int, int)>& height_m) const {
+    std::string text(3428, ' ');
+    const auto put = [&](std::size_t at, const std::string& what) {
+      text.replace(at, what.size(), what);
+    };
+    const auto digits = [](int number) { return std::to_string(10000 + number).substr(1); };
+    put(0,
+        "UHL10270000E" + latitude + digits(column_spacing_tenths) + digits(36000 / (rows() - 1)));
+    put(47, digits(columns()) + digits(rows()));
+    put(80, "DSI");
+    put(728, "ACC");
+    for (int column = 0; column < columns(); ++column) text += record(column, height_m);
+    return text;
+  }
+
+ private:
+  std::string record(int column, const std::function<int(int, int)>& height_m) const {
+    std::string record("\xAA\0\0\0", 4);
+    const auto put = [&](int value) {
+      record += static_cast<char>(value >> 8 & 0xFF);
+      record += static_cast<char>(value & 0xFF);
+    };
+    record[2] = static_cast<char>(column >> 8);
+    record[3] = static_cast<char>(column);
+    put(column);
+    put(0);
+    for (int row = 0; row < rows(); ++row) {
+      const int height = height_m(row, column);
+      put(height < 0 ? 0x8000 - height : height);
+    }
+    unsigned sum = 0;
+    for (const char byte : record) sum += static_cast<unsigned char>(byte);
+    put(static_cast<int>(sum >> 16));
+    put(static_cast<int>(sum & 0xFFFF));
+    return record;
+  }
+};
+
 }  // namespace skein::navigation::testing

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "demo.hpp"
+#include "made_terrain.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;
@@ -36,6 +37,15 @@ TEST_CASE("Planner and checker read the same ground by their own means") {
   CHECK(ground.heights_m == terrain.heights_m());
   CHECK(ground.north_spacing_m == Approx(terrain.north_spacing_m()).epsilon(1e-12));
   CHECK(ground.east_spacing_m == Approx(terrain.east_spacing_m()).epsilon(1e-12));
+}
+
+TEST_CASE("A real tile has the same heights after a way through DTED") {
+  const Terrain terrain = read_hgt(tile());
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "n53.dt1";
+  std::ofstream(file, std::ios::binary) << MadeDted{1, 30}.bytes(
+      [&](int row, int column) { return static_cast<int>(terrain.post_m(row, column)); });
+  CHECK(read_dted(file).heights_m() == terrain.heights_m());
 }
 
 TEST_CASE("Over real ground every planner's route is valid, and an enclosed goal is refused") {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "dted_posts.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein::navigation {
@@ -47,8 +48,8 @@ std::vector<int> read_all(const std::string& path) {
   return values;
 }
 
-void fill_voids(std::vector<float>& heights, int side) {
-  const auto width = static_cast<std::size_t>(side);
+void fill_voids(std::vector<float>& heights, int columns) {
+  const auto width = static_cast<std::size_t>(columns);
   const auto is_void = [&](std::size_t post) { return heights[post] == kNoData; };
   if (std::none_of(heights.begin(), heights.end(), [](float h) { return h == kNoData; })) return;
   Sets sets(heights.size());
@@ -72,9 +73,8 @@ void fill_voids(std::vector<float>& heights, int side) {
   }
 }
 
-}  // namespace
-
-HeightGrid read_height_grid(const std::filesystem::path& file) {
+/// What the name and the size of an SRTM tile say, and its posts.
+TilePosts read_srtm_posts(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   int degrees = 0;
   char hemisphere = 0;
@@ -82,24 +82,39 @@ HeightGrid read_height_grid(const std::filesystem::path& file) {
     throw InvalidArgument(
         fmt::format("{}: the name does not begin with a latitude", file.string()));
   }
-  if (std::toupper(hemisphere) == 'S') degrees = -degrees;
-
   const std::vector<int> values = read_all(file.string());
-  HeightGrid grid;
-  grid.rows = grid.columns = static_cast<int>(std::lround(std::sqrt(values.size())));
-  if (grid.rows != 1201 && grid.rows != 3601) {
+  TilePosts tile;
+  tile.southern_latitude_deg = std::toupper(hemisphere) == 'S' ? -degrees : degrees;
+  tile.rows = tile.columns = static_cast<int>(std::lround(std::sqrt(values.size())));
+  if (tile.rows != 1201 && tile.rows != 3601) {
     throw InvalidArgument(fmt::format("{}: {} heights are no tile of 1201 or 3601 squared",
                                       file.string(), values.size()));
   }
-  for (int row = grid.rows; row-- > 0;) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row) * grid.columns;
-    grid.heights_m.insert(grid.heights_m.end(), begin, begin + grid.columns);
+  for (int row = tile.rows; row-- > 0;) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row) * tile.columns;
+    tile.heights_m.insert(tile.heights_m.end(), begin, begin + tile.columns);
   }
-  fill_voids(grid.heights_m, grid.rows);
+  return tile;
+}
+
+bool is_dted(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending.size() == 4 && (ending[1] == 'd' || ending[1] == 'D');
+}
+
+}  // namespace
+
+HeightGrid read_height_grid(const std::filesystem::path& file) {
+  TilePosts tile = is_dted(file) ? read_dted_posts(file) : read_srtm_posts(file);
+  fill_voids(tile.heights_m, tile.columns);
+  HeightGrid grid;
+  grid.rows = tile.rows;
+  grid.columns = tile.columns;
+  grid.heights_m = std::move(tile.heights_m);
   const double degree_m = 2 * std::numbers::pi * 6371008.8 / 360;
+  const double middle = (2 * tile.southern_latitude_deg + 1) * std::numbers::pi / 360;
   grid.north_spacing_m = degree_m / (grid.rows - 1);
-  grid.east_spacing_m =
-      degree_m * std::cos((2 * degrees + 1) * std::numbers::pi / 360) / (grid.columns - 1);
+  grid.east_spacing_m = degree_m * std::cos(middle) / (grid.columns - 1);
   return grid;
 }
 
