@@ -10,6 +10,7 @@
 #include "grids/compare_grids.hpp"
 #include "harness/goals.hpp"
 #include "harness/private_network.hpp"
+#include "report/goals.hpp"
 #include "report/report.hpp"
 #include "report/sections.hpp"
 #include "skein/core/error.hpp"
@@ -95,8 +96,10 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   set_goals(comparisons);
   write_results(comparisons, output + "/results.json");
   write_report(comparisons, facts, output + "/report.html");
+  write_goals(comparisons, output + "/goals.md");
   print_summary(comparisons);
-  std::printf("%s/report.html, %s/results.json\n", output.c_str(), output.c_str());
+  std::printf("\n%s\n", goals_table(comparisons).c_str());
+  std::printf("%s/report.html, %s/results.json, %s/goals.md\n", output.c_str(), output.c_str(), output.c_str());
 }
 
 }  // namespace

@@ -17,10 +17,13 @@ inline constexpr double kToldBeyondLeaseUs = 50'000;
 
 /// One goal, and the comparisons that it speaks of.
 struct Goal {
+  /// Where the project wants to be in the end: the report says how far it is, and does not call it missed.
+  enum class Kind { Promise, Aim };
   std::string text;
   double p50 = 0;  ///< The greatest ratio.
   std::optional<double> p99{};
   bool (*covers)(const Comparison&) = nullptr;
+  Kind kind = Kind::Promise;
 };
 
 const std::vector<Goal>& goals();

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "harness/goals.hpp"
 #include "report/plot.hpp"
 #include "report/sections.hpp"
+#include "skein/core/error.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -24,14 +27,28 @@ std::string worst_text(const Goal& goal, const Comparison& worst) {
       escaped(worst.subject), escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
 }
 
+std::string judgement_of(const Verdict& verdict) {
+  const bool met = verdict.met == verdict.measured;
+  const char* word = met ? "met" : verdict.goal->kind == Goal::Kind::Aim ? "not yet" : "missed";
+  return fmt::format("{} ({} of {})", word, verdict.met, verdict.measured);
+}
+
 std::string row_of(const Verdict& verdict) {
   const std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", escaped(verdict.goal->text),
                                       limit_text(*verdict.goal));
   if (verdict.worst == nullptr) return row + "<td colspan='4' class='skipped'>not measured</td></tr>";
   const bool met = verdict.met == verdict.measured;
+  const char* look = met ? "good" : verdict.goal->kind == Goal::Kind::Aim ? "skipped" : "bad";
   return row + worst_text(*verdict.goal, *verdict.worst) +
-         fmt::format("<td class='{}'>{} ({} of {})</td></tr>", met ? "good" : "bad",
-                     met ? "met" : "missed", verdict.met, verdict.measured);
+         fmt::format("<td class='{}'>{}</td></tr>", look, judgement_of(verdict));
+}
+
+std::string markdown_row_of(const Verdict& verdict) {
+  const Goal& goal = *verdict.goal;
+  if (verdict.worst == nullptr) return fmt::format("| {} | {} | | not measured |\n", goal.text, limit_text(goal));
+  const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", verdict.worst->ratio_p99()) : "";
+  return fmt::format("| {} | {} | p50 {:.2f}×{} | {} |\n", goal.text, limit_text(goal),
+                     verdict.worst->ratio_p50(), p99, judgement_of(verdict));
 }
 
 }  // namespace
@@ -42,6 +59,18 @@ std::string goals_section(const std::vector<Comparison>& comparisons) {
   return "<section><h2>Goals</h2><table><thead><tr><th>goal</th><th>limit</th><th>worst in this "
          "run</th><th>medians</th><th>where</th><th>comparisons that meet it</th></tr></thead><tbody>" +
          rows + "</tbody></table></section>";
+}
+
+std::string goals_table(const std::vector<Comparison>& comparisons) {
+  std::string table = "| goal | limit | worst | comparisons that meet it |\n|---|---|---|---|\n";
+  for (const Verdict& verdict : judge(comparisons)) table += markdown_row_of(verdict);
+  return table;
+}
+
+void write_goals(const std::vector<Comparison>& comparisons, const std::string& path) {
+  std::ofstream file(path);
+  file << goals_table(comparisons);
+  if (!file.flush()) throw Internal(path + " cannot be written; is its folder there and writable?");
 }
 
 }  // namespace skein::benchmarks
