@@ -22,6 +22,7 @@ struct Plan {
   CallPlan calls;
   CallPlan ways;
   RivalPlan rivals;
+  CallPlan idle_clients;
   FindPlan find;
   std::size_t cold_starts;
   JoinPlan joins;
@@ -35,13 +36,13 @@ Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 100}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5, {300, 1}};
+  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5, {300, 1}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1, {3, 100}};
+  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {{{64, 3}}, 1}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1, {3, 100}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -81,7 +82,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
   if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
   if (wanted("idle_clients"))
-    append(comparisons, compare_idle_clients(configurations, plan.rivals));
+    append(comparisons, compare_idle_clients(configurations, plan.idle_clients));
   if (wanted("find_service")) append(comparisons, compare_find_service(configurations, plan.find));
   if (wanted("cold_starts")) {
     append(comparisons, compare_cold_starts(configurations, plan.cold_starts));

@@ -46,7 +46,7 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
 std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan);
 
 /// A call while 32 other clients of the same service do nothing, beside one without them.
-std::vector<Comparison> compare_idle_clients(Configurations& configurations, const RivalPlan& plan);
+std::vector<Comparison> compare_idle_clients(Configurations& configurations, const CallPlan& plan);
 
 struct FindPlan {
   std::size_t searches;

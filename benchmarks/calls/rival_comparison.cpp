@@ -114,9 +114,13 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
 }
 
 std::vector<Comparison> compare_idle_clients(Configurations& configurations,
-                                             const RivalPlan& plan) {
-  Contest contest("idle clients",
-                  {closed_loop("a call beside idle clients", kSmall, plan.crowd_calls)},
+                                             const CallPlan& plan) {
+  std::vector<Trial> trials;
+  for (const auto& size : plan.sizes) {
+    trials.push_back(
+        closed_loop("a call beside idle clients", size.size_bytes, size.calls_per_turn));
+  }
+  Contest contest("idle clients", std::move(trials),
                   {Placement::OneCore, Placement::OneCoreEach});
   std::list<Child> crowds;
   std::vector<std::pair<std::string, std::string>> pairs;
