@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "check_calls.hpp"
+#include "footprint.hpp"
 #include "processes.hpp"
 
 namespace skein::test {
@@ -17,18 +17,14 @@ using namespace std::chrono_literals;
 /// More than any healing takes, on a loaded machine too.
 constexpr auto kHealing = 60s;
 
-std::size_t threads_of(const ChildProcess& peer) {
-  const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(peer.pid()) + "/task");
-  return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
-}
-
 }  // namespace
 
-ChildProcess& FaultStage::add(std::vector<std::unique_ptr<ChildProcess>>& to,
-                              const std::string& name, const dds::Vendor& vendor,
-                              const Place& place, std::chrono::milliseconds lease) {
+std::unique_ptr<ChildProcess> FaultStage::make_peer(const std::string& name,
+                                                    const dds::Vendor& vendor, const Place& place,
+                                                    std::chrono::milliseconds lease) {
   const std::string number = std::to_string(++last_number_);
   ChildProcess::Options options;
+  options.watchdog = watchdog_;
   options.arguments = {"vendor=" + vendor.name(), "name=" + name + number, "number=" + number,
                        "journal=" + journal_.place(), "lease=" + std::to_string(lease.count())};
   if (place.space != nullptr) {
@@ -36,13 +32,13 @@ ChildProcess& FaultStage::add(std::vector<std::unique_ptr<ChildProcess>>& to,
     options.arguments.push_back("interface=skein0");
     options.arguments.push_back("host=" + place.other_host);
   }
-  to.push_back(std::make_unique<ChildProcess>("tally_peer", options));
-  return *to.back();
+  return std::make_unique<ChildProcess>("tally_peer", options);
 }
 
 ChildProcess& FaultStage::add_server(const Place& place, std::size_t queue,
                                      std::chrono::milliseconds lease) {
-  ChildProcess& server = add(servers_, "server", *Pairing::get().server, place, lease);
+  servers_.push_back(make_peer("server", *Pairing::get().server, place, lease));
+  ChildProcess& server = *servers_.back();
   server.send("provide " + std::to_string(queue));
   server.expect("provided");
   return server;
@@ -50,17 +46,16 @@ ChildProcess& FaultStage::add_server(const Place& place, std::size_t queue,
 
 ChildProcess& FaultStage::add_clients(int count, const Place& place,
                                       std::chrono::milliseconds lease) {
-  ChildProcess& client = add(clients_, "client", *Pairing::get().client, place, lease);
-  client.send("connect " + std::to_string(count));
-  client_count_ += count;
-  return client;
+  auto process = make_peer("client", *Pairing::get().client, place, lease);
+  process->send("connect " + std::to_string(count));
+  clients_.push_back({std::move(process), last_number_, count});
+  return *clients_.back().process;
 }
 
 std::vector<ChildProcess*> FaultStage::everybody() {
   std::vector<ChildProcess*> all;
-  for (auto* group : {&servers_, &clients_}) {
-    for (auto& peer : *group) all.push_back(peer.get());
-  }
+  for (auto& server : servers_) all.push_back(server.get());
+  for (auto& client : clients_) all.push_back(client.process.get());
   return all;
 }
 
@@ -71,14 +66,14 @@ bool FaultStage::everybody_knows_all() {
 }
 
 void FaultStage::connect() {
-  for (auto& client : clients_) client->expect("connected", kHealing);
+  for (auto& client : clients_) client.process->expect("connected", kHealing);
   REQUIRE(eventually([&] { return everybody_knows_all(); }, kHealing));
-  for (ChildProcess* peer : everybody()) threads_.emplace_back(peer, threads_of(*peer));
+  for (ChildProcess* peer : everybody()) threads_.emplace_back(peer, footprint_of(*peer).threads);
 }
 
 void FaultStage::start(const std::string& shape) {
-  for (auto& client : clients_) client->send("start " + shape);
-  for (auto& client : clients_) client->expect("started");
+  for (auto& client : clients_) client.process->send("start " + shape);
+  for (auto& client : clients_) client.process->expect("started");
 }
 
 void FaultStage::run_for_calls(int calls) {
@@ -89,8 +84,8 @@ void FaultStage::run_for_calls(int calls) {
 }
 
 void FaultStage::stop() {
-  for (auto& client : clients_) client->send("stop");
-  for (auto& client : clients_) client->expect("stopped", kHealing);
+  for (auto& client : clients_) client.process->send("stop");
+  for (auto& client : clients_) client.process->expect("stopped", kHealing);
 }
 
 void FaultStage::bury(ChildProcess& server) {
@@ -98,34 +93,44 @@ void FaultStage::bury(ChildProcess& server) {
   std::erase_if(servers_, [&](const auto& owned) { return owned.get() == &server; });
 }
 
+void FaultStage::bury_clients(ChildProcess& clients) {
+  const auto found =
+      std::ranges::find(clients_, &clients, [](const Clients& all) { return all.process.get(); });
+  journal_.bury(found->number);
+  std::erase_if(threads_, [&](const auto& entry) { return entry.first == &clients; });
+  clients_.erase(found);
+}
+
+bool FaultStage::nothing_left() {
+  std::size_t expected = 0, active = 0, clients = 0, sessions = 0;
+  for (const auto& client : clients_) expected += static_cast<std::size_t>(client.count);
+  for (auto& server : servers_) {
+    server->send("server");
+    std::istringstream counts(server->expect("server"));
+    std::size_t one[3]{};
+    counts >> one[0] >> one[1] >> one[2];
+    active += one[0], clients += one[1], sessions += one[2];
+  }
+  UNSCOPED_INFO(active << " active, " << clients << " clients, " << sessions << " sessions");
+  return active == 0 && clients == expected && sessions == expected;
+}
+
+void FaultStage::check_healed() {
+  CHECK(eventually([&] { return everybody_knows_all(); }, kHealing));
+  for (auto& client : clients_) client.process->send("call timeout 20000");
+  for (auto& client : clients_) CHECK(client.process->read(2 * kHealing) == "called Ok");
+  for (auto& client : clients_) CHECK(client.process->ask("pending") == "pending 0");
+  CHECK(eventually([&] { return nothing_left(); }));
+}
+
 void FaultStage::check(const std::string& cell, const std::set<std::string>& outcomes) {
   INFO(cell);
-  const auto healing_since = std::chrono::steady_clock::now();
-  CHECK(eventually([&] { return everybody_knows_all(); }, kHealing));
-  for (auto& client : clients_) client->send("call timeout 20000");
-  for (auto& client : clients_) CHECK(client->read(2 * kHealing) == "called Ok");
-  const auto healed_in = std::chrono::steady_clock::now() - healing_since;
-
-  for (auto& client : clients_) CHECK(client->ask("pending") == "pending 0");
-  const auto count_all = [&] {
-    std::size_t active = 0, clients = 0, sessions = 0;
-    for (auto& server : servers_) {
-      server->send("server");
-      std::istringstream counts(server->expect("server"));
-      std::size_t one[3]{};
-      counts >> one[0] >> one[1] >> one[2];
-      active += one[0], clients += one[1], sessions += one[2];
-    }
-    UNSCOPED_INFO(active << " active, " << clients << " clients, " << sessions << " sessions");
-    return active == 0 && clients == static_cast<std::size_t>(client_count_) && sessions == clients;
-  };
-  CHECK(eventually(count_all));
+  check_healed();
   for (const auto& [peer, before] : threads_) {
-    CHECK(eventually([&, peer = peer, before = before] { return threads_of(*peer) <= before; }));
+    CHECK(eventually(
+        [&, peer = peer, before = before] { return footprint_of(*peer).threads <= before; }));
   }
   check_calls(journal_, cell, outcomes);
-  std::printf("%s: all tables complete and all clients served %.0f ms after\n", cell.c_str(),
-              std::chrono::duration<double, std::milli>(healed_in).count());
 }
 
 CableStage::CableStage(std::uint64_t seed, int clients)

@@ -23,6 +23,10 @@ struct Place {
 /// calls one journal records.
 class FaultStage {
  public:
+  /// No process outlives `watchdog`.
+  explicit FaultStage(std::chrono::seconds watchdog = ChildProcess::Options{}.watchdog)
+      : watchdog_(watchdog) {}
+
   static constexpr std::chrono::milliseconds kLease{1000};
   /// So long that a silence is nobody's end, neither for the others nor for who was stopped.
   static constexpr std::chrono::milliseconds kLongLease{60'000};
@@ -45,28 +49,37 @@ class FaultStage {
 
   /// A provider that is dead, and not waited for.
   void bury(ChildProcess& server);
+  /// A process of clients that has left or is dead; what it was calling ends as "Killed".
+  void bury_clients(ChildProcess& clients);
 
-  /// What must be true again after every fault: all tables know all living providers, and each
-  /// client's calls succeed; then nothing is left behind: no pending call at a client, no active
-  /// one at a provider, a session for each client and no more, and no thread that was not there in
+  /// All tables know all living providers, and each client's calls succeed; then nothing is left
+  /// behind: no pending call at a client, no active one at a provider, a session for each client and
+  /// no more.
+  void check_healed();
+  /// What must be true again after every fault: check_healed(), and no thread that was not there in
   /// connect(). At last the journal is held to check_calls().
   void check(const std::string& cell, const std::set<std::string>& outcomes);
 
   Journal& journal() { return journal_; }
-  ChildProcess& client(std::size_t index = 0) { return *clients_[index]; }
+  ChildProcess& client(std::size_t index = 0) { return *clients_[index].process; }
 
  private:
-  ChildProcess& add(std::vector<std::unique_ptr<ChildProcess>>& to, const std::string& name,
-                    const dds::Vendor& vendor, const Place& place,
-                    std::chrono::milliseconds lease);
+  struct Clients {
+    std::unique_ptr<ChildProcess> process;
+    std::uint64_t number;
+    int count;
+  };
+  std::unique_ptr<ChildProcess> make_peer(const std::string& name, const dds::Vendor& vendor,
+                                          const Place& place, std::chrono::milliseconds lease);
   bool everybody_knows_all();
+  bool nothing_left();
   std::vector<ChildProcess*> everybody();
 
+  const std::chrono::seconds watchdog_;
   Journal journal_;
-  int last_number_ = 0;
-  int client_count_ = 0;
+  std::uint64_t last_number_ = 0;
   std::vector<std::unique_ptr<ChildProcess>> servers_;
-  std::vector<std::unique_ptr<ChildProcess>> clients_;
+  std::vector<Clients> clients_;
   std::vector<std::pair<ChildProcess*, std::size_t>> threads_;
 };
 

@@ -50,6 +50,11 @@ std::map<std::uint64_t, CallRecord> Journal::read() const {
       over.merge(ended);
       continue;
     }
+    if (what == "bury") {
+      for (auto& [call_number, call] : calls)
+        if (call_number >> 48 == number && call.outcome.empty()) call.outcome = "Killed";
+      continue;
+    }
     CallRecord& call = calls[number];
     if (what == "begin") {
       call.begun = true;

@@ -16,7 +16,8 @@ struct CallRecord {
   /// that.
   bool executed_after_end = false;
   std::string
-      outcome;  ///< "Ok", "Wrong" (another's result), or an error's code; empty until it ends.
+      outcome;  ///< "Ok", "Wrong" (another's result), an error's code, or "Killed" with its caller;
+                ///< empty until it ends.
   std::int64_t overdue_us = 0;  ///< From its deadline to its end; negative where it ended earlier.
 };
 
@@ -41,6 +42,8 @@ class Journal {
   /// Something that stood in the way is about to go: what has ended by now must not be executed any
   /// more.
   void mark() { write("mark", 0); }
+  /// A caller's process is dead: its calls' numbers are `number << 48` and up.
+  void bury(std::uint64_t number) { write("bury", number); }
 
   std::map<std::uint64_t, CallRecord> read() const;
   /// Of all calls; reads what is new since it was last asked.

@@ -1,9 +1,9 @@
 // A process of the fault matrix: an entity with the tally service, with clients of it, or with
 // both, that writes what they do into a journal. It obeys the lines it reads, answers each with one
 // line, and ends with its standard input. Arguments are `name=value`; commands stand in obey().
+#include <malloc.h>
+
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
@@ -72,7 +72,7 @@ class Peer {
     if (command == "burst") return burst(rest);
     if (command == "settle") return settle();
     if (command == "pending") return pending();
-    if (command == "memory") return memory();
+    if (command == "heap") return heap();
     return "error no command '" + command + "'";
   }
 
@@ -151,14 +151,10 @@ class Peer {
     return "pending " + std::to_string(count);
   }
 
-  // Resident, in KiB.
-  static std::string memory() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-      if (line.starts_with("VmRSS:"))
-        return "memory " + std::to_string(std::stoull(line.substr(6)));
-    }
-    return "error no VmRSS";
+  // What is in use of it, in bytes.
+  static std::string heap() {
+    const struct mallinfo2 all = mallinfo2();
+    return "heap " + std::to_string(all.uordblks + all.hblkhd);
   }
 
   Journal journal_;
