@@ -8,7 +8,8 @@ set(skein_package ${CMAKE_INSTALL_LIBDIR}/cmake/skein)
 set_target_properties(skein_navigation_idl PROPERTIES EXPORT_NAME navigation_idl)
 set_target_properties(skein_navigation PROPERTIES EXPORT_NAME navigation)
 set_target_properties(skein_route_checker PROPERTIES EXPORT_NAME route_checker)
-set(skein_libraries skein skein_navigation_idl skein_navigation skein_route_checker)
+set_target_properties(skein_fusion PROPERTIES EXPORT_NAME fusion)
+set(skein_libraries skein skein_fusion skein_navigation_idl skein_navigation skein_route_checker)
 set_target_properties(${skein_libraries} PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
 

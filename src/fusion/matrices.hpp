@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+
+#include "skein/fusion/estimate.hpp"
+
+namespace skein::fusion {
+
+/// An estimate as the linear algebra sees it.
+struct Gaussian {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
+/// Throws as check() does.
+Gaussian gaussian_of(const Estimate& estimate, const char* who = "an estimate");
+/// At least one, all of one size.
+std::vector<Gaussian> gaussians_of(std::span<const Estimate> estimates);
+/// Symmetric to the last bit.
+Estimate estimate_of(const Gaussian& gaussian);
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& covariance);
+double squared_norm(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
+
+}  // namespace skein::fusion

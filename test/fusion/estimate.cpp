@@ -1,0 +1,37 @@
+#include "estimates.hpp"
+#include "skein/core/error.hpp"
+#include "skein/fusion/fuse.hpp"
+
+using namespace skein::fusion;
+using Catch::Contains;
+
+TEST_CASE("an estimate that cannot be one is refused with what is wrong with it") {
+  const auto fused = [](Estimate estimate) {
+    const Estimate estimates[]{{{0, 0}, {1, 0, 0, 1}}, std::move(estimate)};
+    return intersect(estimates);
+  };
+  CHECK_THROWS_WITH(fused({{1, 2}, {1, 0, 0}}), Contains("estimate 2 of 2") &&
+                                                    Contains("a covariance of 4") &&
+                                                    Contains("it has 3"));
+  CHECK_THROWS_WITH(fused({{1, 2}, {1, 0.5, 0.4, 1}}), Contains("not symmetric"));
+  CHECK_THROWS_WITH(fused({{1, 2}, {1, 2, 2, 1}}), Contains("not positive definite"));
+  CHECK_THROWS_WITH(fused({{1, NAN}, {1, 0, 0, 1}}), Contains("not finite"));
+  CHECK_THROWS_WITH(fused({{1, 2, 3}, {1, 0, 0, 0, 1, 0, 0, 0, 1}}),
+                    Contains("3 quantities") && Contains("2"));
+  CHECK_THROWS_AS(intersect({}), skein::InvalidArgument);
+}
+
+TEST_CASE("chi-square quantiles are those of the tables") {
+  CHECK(chi_square_quantile(0.95, 1) == Approx(3.841).margin(5e-4));
+  CHECK(chi_square_quantile(0.99, 2) == Approx(9.210).margin(5e-4));
+  CHECK(chi_square_quantile(0.975, 10) == Approx(20.483).margin(5e-4));
+  CHECK_THROWS_AS(chi_square_quantile(1, 2), skein::InvalidArgument);
+  CHECK_THROWS_AS(chi_square_quantile(0.5, 0), skein::InvalidArgument);
+}
+
+TEST_CASE("distances are measured in the errors that are to be expected") {
+  const Estimate near{{0, 0}, {4, 0, 0, 1}};
+  CHECK(squared_distance(near, {{3, 0}, {5, 0, 0, 1}}) == Approx(1));
+  CHECK(nees(near, {4, 3}) == Approx(4 + 9));
+  CHECK_THROWS_AS(nees(near, {4}), skein::InvalidArgument);
+}
