@@ -15,23 +15,57 @@ namespace {
 
 /// What one quick run of the benchmark wrote.
 struct QuickRun {
-  std::filesystem::path folder = std::filesystem::current_path() / "quick_bench";
+  std::filesystem::path folder;
   int exit_code = 0;
   json results;
 
-  QuickRun() {
+  explicit QuickRun(const std::string& name, const std::filesystem::path& program = SKEIN_BENCH,
+                    const std::string& options = "")
+      : folder(std::filesystem::current_path() / name) {
     std::filesystem::remove_all(folder);
     exit_code = std::system(
-        (std::string(SKEIN_BENCH) + " --quick --output '" + folder.string() + "'").c_str());
+        (program.string() + " --quick --output '" + folder.string() + "'" + options).c_str());
     std::ifstream file(folder / "results.json");
     results = json::parse(file, nullptr, false);
   }
 
   static const QuickRun& get() {
-    static const QuickRun run;
+    static const QuickRun run("quick_bench");
     return run;
   }
 };
+
+/// A folder with the benchmark and its peers, of which the raw ones of Fast DDS are `script`
+/// instead.
+class Workshop {
+ public:
+  explicit Workshop(const std::string& script) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    const std::filesystem::path programs = std::filesystem::path(SKEIN_BENCH).parent_path();
+    std::filesystem::copy_file(SKEIN_BENCH, program());  // looks for its peers beside itself
+    for (const char* name : {"skein_bench_raw_unix", "skein_bench_raw_cyclonedds"}) {
+      if (std::filesystem::exists(programs / name))
+        std::filesystem::create_symlink(programs / name, folder_ / name);
+    }
+    const auto broken = folder_ / "skein_bench_raw_fastdds";
+    std::ofstream(broken) << "#!/bin/sh\n" << script << '\n';
+    std::filesystem::permissions(broken, std::filesystem::perms::owner_all);
+  }
+  std::filesystem::path program() const { return folder_ / "skein_bench"; }
+
+ private:
+  const std::filesystem::path folder_ = std::filesystem::current_path() / "broken_workshop";
+};
+
+bool is_about_raw_fastdds(const json& row) {
+  for (const char* side : {"subject", "rival"}) {
+    const auto name = row.at(side).get<std::string>();
+    const bool raw = name.starts_with("raw ") || name.starts_with("fastdds by ");
+    if (raw && name.find("fastdds") != std::string::npos) return true;
+  }
+  return false;
+}
 
 const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds",
                                    "cyclonedds-fastdds"};
@@ -65,7 +99,7 @@ TEST_CASE("a percentile is the smallest sample that so many do not exceed") {
 
 TEST_CASE("a comparison that was not measured has no figures, only the reason") {
   Comparison comparison{"claim", "subject", "rival"};
-  comparison.skipped = "not here";
+  comparison.absence = {"not here"};
   const json row = skein::benchmarks::to_json(comparison);
   CHECK(row.at("skipped") == "not here");
   CHECK(row.at("samples") == 0);
@@ -83,6 +117,23 @@ TEST_CASE("where both took turns, a ratio is the median of the rounds' ratios") 
   CHECK(comparison.ratio_p99() == 20.0);  // too few for a p99 of each turn
 }
 
+TEST_CASE("a failure is never taken for a thing that is missing here") {
+  using namespace skein::benchmarks;
+  const Outcome measured{{1}}, skipped{{}, {"not here"}}, failed{{}, {"died", true}};
+  const auto row_of = [](const Outcome& own, const Outcome& rival) {
+    Comparison comparison{"claim", "subject", "rival"};
+    fill(comparison, own, rival);
+    return to_json(comparison);
+  };
+  for (const json& row :
+       {row_of(skipped, failed), row_of(failed, skipped), row_of(measured, failed)}) {
+    CHECK(row.at("failed") == "died");
+    CHECK_FALSE(row.contains("skipped"));
+    CHECK(row.at("samples") == 0);
+  }
+  CHECK(row_of(skipped, measured).at("skipped") == "not here");
+}
+
 TEST_CASE("a ratio is the subject's time by the rival's") {
   Comparison comparison{"claim", "subject", "rival"};
   comparison.samples = {30, 10, 20};
@@ -96,7 +147,7 @@ TEST_CASE("a goal is missed where one comparison misses it, and unknown where no
     Comparison comparison{"process start to first reply", "skein fastdds", "raw fastdds"};
     comparison.samples = {took};
     comparison.rival_samples = {100};
-    comparison.skipped = skipped;
+    comparison.absence = {skipped};
     return comparison;
   };
   const auto verdict_of = [](const std::vector<Comparison>& comparisons) {
@@ -146,6 +197,41 @@ TEST_CASE("a quick run writes every row of results.json in the common shape") {
   }
 }
 
+TEST_CASE("a contender that dies costs its own rows and nobody else's, and the exit code tells") {
+  struct Death {
+    const char* script;
+    const char* parts;
+    std::set<std::string> claims;
+  };
+  const auto death =
+      GENERATE(Death{"exit 1",
+                     "calls ways cold_starts joins idle_peers",
+                     {"a call over DDS", "other ways of the vendors",
+                      "process start to first reply", "peers that start at once until all see all",
+                      "octets that an idle peer sends, per second",
+                      "packets that an idle peer sends, per second",
+                      "processor time of an idle peer, per second"}},
+               Death{"echo ready 1; read command", "calls", {"a call over DDS"}});
+  CAPTURE(death.script);
+  const Workshop workshop(death.script);
+  const QuickRun run("broken_bench", workshop.program(), std::string(" --only ") + death.parts);
+  CHECK(WEXITSTATUS(run.exit_code) == 1);
+  std::set<std::string> failed, measured;
+  for (const json& row : run.results) {
+    CAPTURE(row.dump());
+    const auto claim = row.at("claim").get<std::string>();
+    if (is_about_raw_fastdds(row)) {
+      CHECK(row.at("failed").get<std::string>().find("skein_bench_raw_") != std::string::npos);
+      failed.insert(claim);
+    } else {
+      CHECK_FALSE(row.contains("failed"));
+      if (row.at("samples") > 0) measured.insert(claim);
+    }
+  }
+  CHECK(failed == death.claims);
+  CHECK(measured == death.claims);
+}
+
 TEST_CASE("no pair of vendors, size or way to die is missing") {
   const json& results = QuickRun::get().results;
   for (const std::string& pair : kPairs) {
@@ -178,9 +264,10 @@ TEST_CASE("no vendor is missing where peers start at once and where they are idl
   const json& results = QuickRun::get().results;
   for (const std::string vendor : {"fastdds", "cyclonedds"}) {
     CAPTURE(vendor);
-    for (const char* claim :
-         {"peers that start at once until all see all", "octets that an idle peer sends, per second",
-          "packets that an idle peer sends, per second", "processor time of an idle peer, per second"}) {
+    for (const char* claim : {"peers that start at once until all see all",
+                              "octets that an idle peer sends, per second",
+                              "packets that an idle peer sends, per second",
+                              "processor time of an idle peer, per second"}) {
       CHECK(has(results, claim, "skein " + vendor, {{"peers", 4}}, "raw " + vendor));
     }
   }
@@ -252,7 +339,8 @@ TEST_CASE("the report is one page that refers to nothing outside") {
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   CHECK(page.find("<svg") != std::string::npos);
   CHECK(page.find("Where Skein loses") != std::string::npos);
-  for (const auto& goal : skein::benchmarks::goals()) CHECK(page.find(goal.text.substr(0, 20)) != std::string::npos);
+  for (const auto& goal : skein::benchmarks::goals())
+    CHECK(page.find(goal.text.substr(0, 20)) != std::string::npos);
   for (const char* reference : {"http://", "https://", "src=", "<link", "@import", "url("}) {
     CHECK(page.find(reference) == std::string::npos);
   }

@@ -1,7 +1,9 @@
-// Measures Skein beside its rivals and writes results.json and report.html.
+// Measures Skein beside its rivals and writes results.json and report.html. Exit code 1: something
+// failed; what did not fail is written all the same.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
@@ -49,11 +51,12 @@ void print_summary(const std::vector<Comparison>& comparisons) {
   std::printf("%-72s %-30s %-24s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us",
               "p99 us", "p50 x", "p99 x");
   for (const Comparison& comparison : comparisons) {
-    if (!comparison.goal_p50) continue;
+    const Absence& absence = comparison.absence;
+    if (!comparison.goal_p50 && !absence.failed) continue;
     const std::string claim = comparison.claim + ", " + place_of(comparison);
-    if (!comparison.skipped.empty()) {
-      std::printf("%-72.72s %-30s skipped: %s\n", claim.c_str(), comparison.subject.c_str(),
-                  comparison.skipped.c_str());
+    if (absence) {
+      std::printf("%-72.72s %-30s %s: %s\n", claim.c_str(), comparison.subject.c_str(),
+                  absence.failed ? "failed" : "skipped", absence.reason.c_str());
       continue;
     }
     const Summary own = comparison.summary();
@@ -63,37 +66,66 @@ void print_summary(const std::vector<Comparison>& comparisons) {
   }
 }
 
-const std::vector<std::string> kParts{"calls",        "ways",         "rivals",      "in_process",
-                                      "idle_clients", "find_service", "cold_starts", "joins",        "idle_peers",
-                                      "deaths",       "grids"};
+struct Part {
+  const char* name;
+  std::vector<Comparison> (*measure)(Configurations&, const Plan&);
+};
 
-void run(const std::string& output, bool quick, const std::vector<std::string>& parts) {
+const std::vector<Part> kParts{
+    {"calls", [](Configurations& all, const Plan& plan) { return compare_calls(all, plan.calls); }},
+    {"ways", [](Configurations& all, const Plan& plan) { return compare_ways(all, plan.ways); }},
+    {"rivals",
+     [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
+    {"in_process",
+     [](Configurations& all, const Plan& plan) { return compare_in_process(all, plan.rivals); }},
+    {"idle_clients",
+     [](Configurations& all, const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
+    {"find_service",
+     [](Configurations& all, const Plan& plan) { return compare_find_service(all, plan.find); }},
+    {"cold_starts", [](Configurations& all,
+                       const Plan& plan) { return compare_cold_starts(all, plan.cold_starts); }},
+    {"joins", [](Configurations& all, const Plan& plan) { return compare_joins(all, plan.joins); }},
+    {"idle_peers", [](Configurations& all,
+                      const Plan& plan) { return compare_idle_peers(all, plan.idle_peers); }},
+    {"deaths",
+     [](Configurations& all, const Plan& plan) {
+       auto deaths = compare_deaths_on_one_host(all, plan.kills_on_one_host);
+       append(deaths, compare_deaths_across_hosts(all, plan.kills_across_hosts));
+       return deaths;
+     }},
+    {"grids", [](Configurations&, const Plan& plan) { return compare_grids(plan.grids); }},
+};
+
+std::vector<std::string> names_of_parts() {
+  std::vector<std::string> names;
+  for (const Part& part : kParts) names.push_back(part.name);
+  return names;
+}
+
+/// The part's comparisons; or one that tells why there are none.
+std::vector<Comparison> measure(const Part& part, Configurations& configurations,
+                                const Plan& plan) {
+  std::vector<Comparison> comparisons;
+  const Absence absence =
+      attempt(part.name, [&] { comparisons = part.measure(configurations, plan); });
+  if (!absence) return comparisons;
+  Comparison missing{part.name, "skein", "all its rivals"};
+  missing.absence = absence;
+  return {missing};
+}
+
+/// Whether everything was measured that could be.
+bool run(const std::string& output, bool quick, const std::vector<std::string>& wanted) {
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
   facts.remarks.push_back(enter_private_network());
   std::filesystem::create_directories(output);
   const Plan plan = quick ? quick_plan() : full_plan();
   Configurations configurations(std::filesystem::read_symlink("/proc/self/exe").parent_path());
   std::vector<Comparison> comparisons;
-  const auto wanted = [&](const char* part) {
-    return std::ranges::find(parts, part) != parts.end();
-  };
-  if (wanted("calls")) append(comparisons, compare_calls(configurations, plan.calls));
-  if (wanted("ways")) append(comparisons, compare_ways(configurations, plan.ways));
-  if (wanted("rivals")) append(comparisons, compare_rivals(configurations, plan.rivals));
-  if (wanted("in_process")) append(comparisons, compare_in_process(configurations, plan.rivals));
-  if (wanted("idle_clients"))
-    append(comparisons, compare_idle_clients(configurations, plan.idle_clients));
-  if (wanted("find_service")) append(comparisons, compare_find_service(configurations, plan.find));
-  if (wanted("cold_starts")) {
-    append(comparisons, compare_cold_starts(configurations, plan.cold_starts));
+  for (const Part& part : kParts) {
+    if (std::ranges::find(wanted, part.name) == wanted.end()) continue;
+    append(comparisons, measure(part, configurations, plan));
   }
-  if (wanted("joins")) append(comparisons, compare_joins(configurations, plan.joins));
-  if (wanted("idle_peers")) append(comparisons, compare_idle_peers(configurations, plan.idle_peers));
-  if (wanted("deaths")) {
-    append(comparisons, compare_deaths_on_one_host(configurations, plan.kills_on_one_host));
-    append(comparisons, compare_deaths_across_hosts(configurations, plan.kills_across_hosts));
-  }
-  if (wanted("grids")) append(comparisons, compare_grids(plan.grids));
   set_goals(comparisons);
   write_results(comparisons, output + "/results.json");
   write_report(comparisons, facts, output + "/report.html");
@@ -101,6 +133,7 @@ void run(const std::string& output, bool quick, const std::vector<std::string>& 
   print_summary(comparisons);
   std::printf("\n%s\n", goals_table(comparisons).c_str());
   std::printf("%s/report.html, %s/results.json, %s/goals.md\n", output.c_str(), output.c_str(), output.c_str());
+  return std::ranges::none_of(comparisons, [](const auto& each) { return each.absence.failed; });
 }
 
 }  // namespace
@@ -111,10 +144,11 @@ int main(int argc, char** argv) {
   CLI::App app("Skein beside its rivals, in one interleaved run");
   std::string output = "bench";
   bool quick = false;
-  std::vector<std::string> parts = kParts;
+  const std::vector<std::string> known = names_of_parts();
+  std::vector<std::string> parts = known;
   app.add_option("--output", output, "Folder for results.json and report.html");
   app.add_flag("--quick", quick, "A smoke test of a few seconds");
-  app.add_option("--only", parts, "Parts of the run")->check(CLI::IsMember(kParts));
+  app.add_option("--only", parts, "Parts of the run")->check(CLI::IsMember(known));
   SkeinPeer peer;
   CLI::App* as_peer =
       app.add_subcommand("peer", "One process of a measured configuration")->group("");
@@ -128,8 +162,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (*as_peer) return run_skein_peer(peer);
-    run(output, quick, parts);
-    return 0;
+    std::signal(SIGPIPE, SIG_IGN);  // a peer that has died does not read
+    return run(output, quick, parts) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "skein_bench: %s\n", error.what());
     return 1;

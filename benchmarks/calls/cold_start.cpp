@@ -12,16 +12,13 @@ constexpr std::uint32_t kSeed = 11;
 
 struct Starter {
   Configuration configuration;
-  std::vector<double> samples{};
-  std::string skipped{};
+  Outcome outcome{};
 
   void start_once() {
-    if (!skipped.empty()) return;
-    try {
-      samples.push_back(Running(configuration).first_reply_us);
-    } catch (const Skipped& reason) {
-      skipped = reason.what();
-    }
+    if (outcome.absence) return;
+    outcome.absence = attempt(configuration.name, [&] {
+      outcome.samples.push_back(Running(configuration).first_reply_us);
+    });
   }
 };
 
@@ -48,11 +45,7 @@ std::vector<Comparison> compare_cold_starts(Configurations& configurations, std:
     const Starter& raw = starters.at("raw " + pair);
     Comparison comparison{kClaim, own.configuration.name, raw.configuration.name};
     comparison.parameters["provider"] = "already up";
-    comparison.skipped = !own.skipped.empty() ? own.skipped : raw.skipped;
-    if (comparison.skipped.empty()) {
-      comparison.samples = own.samples;
-      comparison.rival_samples = raw.samples;
-    }
+    fill(comparison, own.outcome, raw.outcome);
     comparisons.push_back(std::move(comparison));
   }
   return comparisons;

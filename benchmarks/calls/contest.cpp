@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "harness/skipped.hpp"
 #include "harness/turns.hpp"
 
 namespace skein::benchmarks {
@@ -25,9 +24,11 @@ const char* text_of(Placement placement) {
 }  // namespace
 
 struct Contest::Contender {
+  std::string name;
   bool needs_a_core_each = false;
   std::optional<Running> running;
-  std::string skipped;
+  /// Of all its trials.
+  Absence absence;
   std::map<std::pair<std::size_t, Placement>, Outcome> outcomes;
 };
 
@@ -36,35 +37,41 @@ Contest::Contest(std::string name, std::vector<Trial> trials, std::vector<Placem
 
 Contest::~Contest() = default;
 
-bool Contest::enter(const Configuration& configuration) {
+void Contest::enter(const Configuration& configuration,
+                    const std::function<void(Running&)>& prepare) {
   std::fprintf(stderr, "starting: %s\n", configuration.name.c_str());
   Contender& contender = contenders_[configuration.name];
+  contender.name = configuration.name;
   contender.needs_a_core_each = configuration.needs_a_core_each;
-  try {
+  contender.absence = attempt(contender.name, [&] {
     contender.running.emplace(configuration);
-    return true;
-  } catch (const Skipped& reason) {
-    contender.skipped = reason.what();
-    return false;
-  }
+    prepare(*contender.running);
+  });
 }
 
 void Contest::take_turn(Contender& contender, std::size_t trial, Placement placement) {
   Outcome& outcome = contender.outcomes[{trial, placement}];
-  outcome.skipped = contender.skipped;
-  if (outcome.skipped.empty() && contender.needs_a_core_each &&
-      placement != Placement::OneCoreEach) {
-    outcome.skipped = "it spins: both sides need a core of their own";
-  }
-  if (!outcome.skipped.empty()) return;
-  try {
+  if (contender.absence || outcome.absence) return;
+  outcome.absence = attempt(contender.name, [&] {
+    if (contender.needs_a_core_each && placement != Placement::OneCoreEach)
+      throw Skipped("it spins: both sides need a core of their own");
     contender.running->place(placement);
     const auto measured = trials_[trial].take(*contender.running);
     outcome.samples.insert(outcome.samples.end(), measured.begin(), measured.end());
-    ++outcome.turns;
-  } catch (const Skipped& reason) {
-    outcome.skipped = reason.what();
+    ++outcome.rounds;
+  });
+  // A peer that has failed once may be dead, or answer late: no later figure of it could be
+  // trusted.
+  if (outcome.absence.failed) {
+    contender.absence = outcome.absence;
+    contender.running.reset();
   }
+}
+
+Outcome Contest::outcome_of(const std::string& name, std::size_t trial, Placement placement) const {
+  const Contender& contender = contenders_.at(name);
+  if (contender.absence) return {{}, contender.absence};
+  return contender.outcomes.at({trial, placement});
 }
 
 void Contest::run(std::size_t rounds) {
@@ -85,22 +92,15 @@ void Contest::run(std::size_t rounds) {
   for (auto& [name, contender] : contenders_) contender.running.reset();
 }
 
-template <class Fill>
+template <class OutcomeOfRival>
 std::vector<Comparison> Contest::compared(const std::string& subject, const std::string& rival,
-                                          Fill fill) const {
+                                          OutcomeOfRival outcome_of_rival) const {
   std::vector<Comparison> comparisons;
   for (std::size_t trial = 0; trial < trials_.size(); ++trial) {
     for (const Placement placement : placements_) {
       Comparison comparison{trials_[trial].claim, subject, rival, trials_[trial].parameters};
       comparison.parameters["placement"] = text_of(placement);
-      const Outcome& own = contenders_.at(subject).outcomes.at({trial, placement});
-      const Outcome other = fill(trial, placement);
-      comparison.skipped = own.skipped.empty() ? other.skipped : own.skipped;
-      if (comparison.skipped.empty()) {
-        comparison.samples = own.samples;
-        comparison.rival_samples = other.samples;
-        if (own.turns == other.turns) comparison.rounds = own.turns;
-      }
+      fill(comparison, outcome_of(subject, trial, placement), outcome_of_rival(trial, placement));
       comparisons.push_back(std::move(comparison));
     }
   }
@@ -110,14 +110,13 @@ std::vector<Comparison> Contest::compared(const std::string& subject, const std:
 std::vector<Comparison> Contest::compare(const std::string& subject,
                                          const std::string& rival) const {
   return compared(subject, rival, [&](std::size_t trial, Placement placement) {
-    return contenders_.at(rival).outcomes.at({trial, placement});
+    return outcome_of(rival, trial, placement);
   });
 }
 
 std::vector<Comparison> Contest::compare(const std::string& subject, const Limit& limit) const {
-  return compared(subject, limit.name, [&](std::size_t, Placement) {
-    return Outcome{{limit.time_us}};
-  });
+  return compared(subject, limit.name,
+                  [&](std::size_t, Placement) { return Outcome{{limit.time_us}}; });
 }
 
 Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count) {

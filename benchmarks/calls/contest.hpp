@@ -34,8 +34,11 @@ class Contest {
   Contest(std::string name, std::vector<Trial> trials, std::vector<Placement> placements);
   ~Contest();
 
-  /// Starts its processes; false where it has to be skipped.
-  bool enter(const Configuration& configuration);
+  /// Starts its processes and prepares them. One that cannot be started, is skipped, or fails then
+  /// or later has no figures, and leaves the others alone.
+  void enter(
+      const Configuration& configuration,
+      const std::function<void(Running&)>& prepare = [](Running&) {});
 
   /// Every contender takes every trial at every placement once a round, in a new random order.
   void run(std::size_t rounds);
@@ -47,16 +50,11 @@ class Contest {
 
  private:
   struct Contender;
-  struct Outcome {
-    std::vector<double> samples;
-    std::string skipped;
-    std::size_t turns = 0;
-  };
-
   void take_turn(Contender& contender, std::size_t trial, Placement placement);
-  template <class Fill>
+  Outcome outcome_of(const std::string& name, std::size_t trial, Placement placement) const;
+  template <class OutcomeOfRival>
   std::vector<Comparison> compared(const std::string& subject, const std::string& rival,
-                                   Fill fill) const;
+                                   OutcomeOfRival outcome_of_rival) const;
 
   const std::string name_;
   const std::vector<Trial> trials_;

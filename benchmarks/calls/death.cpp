@@ -27,15 +27,11 @@ struct Victim {
   Configuration configuration;
   std::vector<double> told_us{};
   std::vector<double> gone_us{};
-  std::string skipped{};
+  Absence absence{};
 
   void kill_once(const TwoHosts* hosts, std::mt19937& random) {
-    if (!skipped.empty()) return;
-    try {
-      kill_provider(hosts, random);
-    } catch (const Skipped& reason) {
-      skipped = reason.what();
-    }
+    if (absence) return;
+    absence = attempt(configuration.name, [&] { kill_provider(hosts, random); });
   }
 
  private:
@@ -62,11 +58,7 @@ Comparison comparison_of(const char* claim, const Victim& victim,
                          const std::vector<double>& samples, const Limit& limit,
                          const std::string& where) {
   Comparison comparison{claim, victim.configuration.name, limit.name, {{"where", where}}};
-  comparison.skipped = victim.skipped;
-  if (victim.skipped.empty()) {
-    comparison.samples = samples;
-    comparison.rival_samples = {limit.time_us};
-  }
+  fill(comparison, {samples, victim.absence}, {{limit.time_us}});
   return comparison;
 }
 
@@ -99,24 +91,20 @@ std::vector<Comparison> compare_deaths_on_one_host(Configurations& configuration
   for (const auto& [server, client] : vendor_pairs()) {
     victims.push_back({configurations.skein(server, client, 2)});
   }
-  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", kToldOnOneHostUs}, "one host");
+  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", kToldOnOneHostUs},
+                        "one host");
 }
 
 std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
                                                     std::size_t kills) {
   std::optional<TwoHosts> hosts;
-  std::string skipped;
-  try {
-    hosts.emplace();
-  } catch (const Skipped& reason) {
-    skipped = reason.what();
-  }
+  const Absence absence = attempt("two hosts", [&] { hosts.emplace(); });
   const Place first = hosts ? Place{hosts->first().address, hosts->second().address} : Place{};
   const Place second{first.peer, first.interface};
   std::vector<Victim> victims;
   for (const auto& [server, client] : vendor_pairs()) {
     victims.push_back({configurations.skein(server, client, 2, first, second)});
-    victims.back().skipped = skipped;
+    victims.back().absence = absence;
   }
   return compare_deaths(std::move(victims), kills, hosts ? &*hosts : nullptr,
                         {"limit lease + 50 ms", kLeaseUs + kToldBeyondLeaseUs}, "across two hosts");

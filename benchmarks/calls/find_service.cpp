@@ -4,14 +4,14 @@
 
 #include "calls/benchmarks.hpp"
 #include "harness/goals.hpp"
-#include "harness/skipped.hpp"
 #include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {
 
 constexpr const char* kClaim = "find_service among many descriptions";
-constexpr const char* kChoosing = "find_service by constraints among many providers of one interface";
+constexpr const char* kChoosing =
+    "find_service by constraints among many providers of one interface";
 constexpr const char* kLimit = "limit 1 us";
 constexpr std::uint32_t kSeed = 19;
 
@@ -34,56 +34,47 @@ class LogFolder {
 
 /// A process that knows `bind COUNT` and `find COUNT`, and what it needs beside it. Skein's knows
 /// `choose COUNT`, too.
-struct Finder {
-  std::optional<Child> service{};
-  std::optional<Child> client{};
-  std::string skipped{};
-
-  explicit Finder(const Configuration& configuration) {
-    try {
-      if (!configuration.server.empty()) service.emplace(configuration.server);
-      client.emplace(configuration.client);
-      client->receive();
-    } catch (const Skipped& reason) {
-      skipped = reason.what();
-    }
-  }
-
-  std::vector<double> search(const char* how, std::size_t count) {
-    client->send(std::string(how) + ' ' + std::to_string(count));
-    return times_us(client->receive());
+class Finder {
+ public:
+  explicit Finder(const Configuration& configuration) : name_(configuration.name) {
+    absence_ = attempt(name_, [&] {
+      if (!configuration.server.empty()) service_.emplace(configuration.server);
+      client_.emplace(configuration.client);
+      client_->receive();
+    });
   }
 
   void bind(std::size_t count) {
-    client->send("bind " + std::to_string(count));
-    client->receive();
+    if (!absence_) absence_ = attempt(name_, [&] { ask("bind", count); });
   }
+
+  /// Adds to `outcome`, or tells there why it cannot.
+  void search(const char* how, std::size_t count, Outcome& outcome) {
+    if (!absence_) {
+      absence_ = attempt(name_, [&] {
+        for (const double time : times_us(ask(how, count))) outcome.samples.push_back(time);
+      });
+    }
+    outcome.absence = absence_;
+  }
+
+ private:
+  std::string ask(const char* command, std::size_t count) {
+    client_->send(std::string(command) + ' ' + std::to_string(count));
+    return client_->receive();
+  }
+
+  const std::string name_;
+  std::optional<Child> service_;
+  std::optional<Child> client_;
+  Absence absence_;
 };
 
-Comparison measure(Finder& own, Finder& other, std::size_t count, const FindPlan& plan) {
-  Comparison comparison{kClaim, "skein", "omniORB's name server", {{"descriptions", count}}};
+Comparison comparison_of(const char* claim, const char* rival, std::size_t count,
+                         const Outcome& own, const Outcome& other) {
+  Comparison comparison{claim, "skein", rival, {{"descriptions", count}}};
   comparison.parameters["placement"] = "anywhere";
-  comparison.skipped = own.skipped.empty() ? other.skipped : own.skipped;
-  if (!comparison.skipped.empty()) return comparison;
-  other.bind(count);
-  const auto add = [&](std::vector<double>& samples, Finder& finder) {
-    for (const double time : finder.search("find", plan.searches)) samples.push_back(time);
-  };
-  take_turns(plan.rounds,
-             {[&] { add(comparison.samples, own); }, [&] { add(comparison.rival_samples, other); }},
-             kSeed);
-  return comparison;
-}
-
-/// Beside the promise alone: omniORB's name server knows no constraints.
-Comparison measure_choosing(Finder& own, std::size_t count, const FindPlan& plan) {
-  Comparison comparison{kChoosing, "skein", kLimit, {{"descriptions", count}}};
-  comparison.parameters["placement"] = "anywhere";
-  comparison.rival_samples = {kLookUpUs};
-  comparison.skipped = own.skipped;
-  for (std::size_t round = 0; round < plan.rounds && own.skipped.empty(); ++round) {
-    for (const double time : own.search("choose", plan.searches)) comparison.samples.push_back(time);
-  }
+  fill(comparison, own, other);
   return comparison;
 }
 
@@ -93,17 +84,22 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
   const LogFolder log;
   Finder own(configurations.skein_finder());
   Finder other(configurations.name_server(log.path()));
+  const Outcome promise{{kLookUpUs}};
   std::vector<Comparison> comparisons;
   for (const std::size_t count : {10, 100, 1000, 10'000}) {
-    if (own.skipped.empty()) own.bind(count);
-    comparisons.push_back(measure(own, other, count, plan));
-    if (comparisons.back().skipped.empty()) {
-      Comparison limited = comparisons.back();
-      limited.rival = kLimit;
-      limited.rival_samples = {kLookUpUs};
-      comparisons.push_back(std::move(limited));
-    }
-    comparisons.push_back(measure_choosing(own, count, plan));
+    own.bind(count);
+    other.bind(count);
+    Outcome found, found_there, chosen;
+    take_turns(plan.rounds,
+               {[&] { own.search("find", plan.searches, found); },
+                [&] { other.search("find", plan.searches, found_there); }},
+               kSeed);
+    for (std::size_t i = 0; i < plan.rounds; ++i) own.search("choose", plan.searches, chosen);
+    comparisons.push_back(
+        comparison_of(kClaim, "omniORB's name server", count, found, found_there));
+    comparisons.push_back(comparison_of(kClaim, kLimit, count, found, promise));
+    // omniORB's name server knows no constraints.
+    comparisons.push_back(comparison_of(kChoosing, kLimit, count, chosen, promise));
   }
   return comparisons;
 }

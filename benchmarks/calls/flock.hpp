@@ -11,6 +11,10 @@ class Flock {
  public:
   /// Returns when all see all. Throws what Child throws.
   Flock(const Configuration& neighbour, std::size_t count);
+  /// Kills them.
+  ~Flock();
+  Flock(const Flock&) = delete;
+  Flock& operator=(const Flock&) = delete;
 
   /// From just before the first process was made until the last peer saw all others.
   double joined_us() const noexcept { return joined_us_; }
@@ -18,6 +22,9 @@ class Flock {
   double cpu_us();
 
  private:
+  void await(Child& peer);
+  void end() noexcept;
+
   std::list<Child> peers_;
   double joined_us_ = 0;
 };

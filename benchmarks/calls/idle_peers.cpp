@@ -36,16 +36,15 @@ constexpr std::array<Figure, 3> kFigures{{
 struct Idler {
   Configuration configuration;
   Cost cost{};
-  std::string skipped{};
+  Absence absence{};
 
   void rest(std::size_t peers, const IdlePlan& plan) {
-    try {
+    absence = attempt(configuration.name, [&] {
       Flock flock(configuration, peers);
       std::this_thread::sleep_for(std::min(kSettling, plan.window * 2));
-      for (std::size_t i = 0; i < plan.windows; ++i) watch(flock, static_cast<double>(peers), plan.window);
-    } catch (const Skipped& reason) {
-      skipped = reason.what();
-    }
+      for (std::size_t i = 0; i < plan.windows; ++i)
+        watch(flock, static_cast<double>(peers), plan.window);
+    });
   }
 
  private:
@@ -66,15 +65,12 @@ struct Idler {
 void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& raw,
              std::size_t peers) {
   for (const Figure& figure : kFigures) {
-    Comparison comparison{figure.claim, own.configuration.name, raw.configuration.name,
-                          {{"peers", peers}}};
+    Comparison comparison{
+        figure.claim, own.configuration.name, raw.configuration.name, {{"peers", peers}}};
     comparison.parameters["processes"] = peers;
     comparison.unit = figure.unit;
-    comparison.skipped = own.skipped.empty() ? raw.skipped : own.skipped;
-    if (comparison.skipped.empty()) {
-      comparison.samples = own.cost.*figure.samples;
-      comparison.rival_samples = raw.cost.*figure.samples;
-    }
+    fill(comparison, {own.cost.*figure.samples, own.absence},
+         {raw.cost.*figure.samples, raw.absence});
     comparisons.push_back(std::move(comparison));
   }
 }

@@ -12,27 +12,20 @@ constexpr std::uint32_t kSeed = 23;
 
 struct Joiner {
   Configuration configuration;
-  std::vector<double> samples{};
-  std::string skipped{};
+  Outcome outcome{};
 
   void join_once(std::size_t peers) {
-    if (!skipped.empty()) return;
-    try {
-      samples.push_back(Flock(configuration, peers).joined_us());
-    } catch (const Skipped& reason) {
-      skipped = reason.what();
-    }
+    if (outcome.absence) return;
+    outcome.absence = attempt(configuration.name, [&] {
+      outcome.samples.push_back(Flock(configuration, peers).joined_us());
+    });
   }
 };
 
 Comparison comparison_of(const Joiner& own, const Joiner& raw, std::size_t peers) {
   Comparison comparison{kClaim, own.configuration.name, raw.configuration.name, {{"peers", peers}}};
   comparison.parameters["processes"] = peers;
-  comparison.skipped = !own.skipped.empty() ? own.skipped : raw.skipped;
-  if (comparison.skipped.empty()) {
-    comparison.samples = own.samples;
-    comparison.rival_samples = raw.samples;
-  }
+  fill(comparison, own.outcome, raw.outcome);
   return comparison;
 }
 

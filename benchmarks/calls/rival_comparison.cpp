@@ -82,8 +82,7 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
   for (const char* skein : kSkeins) {
-    for (const std::string& rival : rivals)
-      append(comparisons, contest.compare(skein, rival));
+    for (const std::string& rival : rivals) append(comparisons, contest.compare(skein, rival));
     for (const char* floor : {"unix socket", "spinning shared memory"}) {
       append(comparisons, contest.compare(skein, std::string(floor)));
     }
@@ -131,11 +130,12 @@ std::vector<Comparison> compare_idle_clients(Configurations& configurations,
     crowded.name += ", 32 idle clients";
     pairs.emplace_back(crowded.name, alone.name);
     contest.enter(alone);
-    if (!contest.enter(crowded)) continue;
-    crowds.emplace_back(crowded.client);
-    crowds.back().receive();
-    crowds.back().send("idle 31");
-    crowds.back().receive();
+    contest.enter(crowded, [&](Running&) {
+      Child& crowd = crowds.emplace_back(crowded.client);
+      crowd.receive();
+      crowd.send("idle 31");
+      crowd.receive();
+    });
   }
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;

@@ -21,7 +21,7 @@ constexpr const char* kRival = "plain A*";
 
 Comparison skipped(const char* planner, const char* maps) {
   Comparison comparison{kMean, planner, kRival, {{"where", maps}}};
-  comparison.skipped = std::string("SKEIN_TEST_DATA names no folder with ") + maps;
+  comparison.absence.reason = std::string("SKEIN_TEST_DATA names no folder with ") + maps;
   return comparison;
 }
 

@@ -32,6 +32,7 @@ struct Pipe {
 
 [[noreturn]] void become(std::vector<std::string>& command, int input, int output, int network) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  signal(SIGPIPE, SIG_DFL);  // which outlives the change of program
   if (network >= 0 && setns(network, CLONE_NEWNET) != 0) _exit(126);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
@@ -117,8 +118,10 @@ std::string Child::receive(std::chrono::milliseconds patience) {
 
 Instant Child::kill() {
   const Instant before = std::chrono::steady_clock::now();
-  ::kill(pid_, SIGKILL);
-  reap();
+  if (pid_ > 0) {  // no other: -1 would be everybody
+    ::kill(pid_, SIGKILL);
+    reap();
+  }
   return before;
 }
 

@@ -34,7 +34,7 @@ class Child {
   /// where the child has ended, says `failed REASON`, or is silent for longer than `patience`.
   std::string receive(std::chrono::milliseconds patience = kPatience);
 
-  /// SIGKILL. Returns the instant just before.
+  /// SIGKILL, where it has not ended yet. Returns the instant just before.
   Instant kill();
 
  private:

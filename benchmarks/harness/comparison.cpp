@@ -34,18 +34,27 @@ json ratio(const Comparison& comparison, double q) {
 json to_json(const Comparison& comparison) {
   const Summary own = comparison.summary();
   const Summary rival = comparison.rival_summary();
-  json object{{"claim", comparison.claim}, {"subject", comparison.subject},
-              {"rival", comparison.rival}, {"parameters", comparison.parameters},
-              {"unit", comparison.unit},
-              {"samples", own.samples},    {"rival_samples", rival.samples}};
+  json object{{"claim", comparison.claim},     {"subject", comparison.subject},
+              {"rival", comparison.rival},     {"parameters", comparison.parameters},
+              {"unit", comparison.unit},       {"samples", own.samples},
+              {"rival_samples", rival.samples}};
   put_figures(object, "", own, comparison.unit);
   put_figures(object, "rival_", rival, comparison.unit);
   object["ratio_p50"] = ratio(comparison, 0.5);
   object["ratio_p99"] = ratio(comparison, 0.99);
   if (comparison.goal_p50) object["goal_p50"] = *comparison.goal_p50;
   if (comparison.goal_p99) object["goal_p99"] = *comparison.goal_p99;
-  if (!comparison.skipped.empty()) object["skipped"] = comparison.skipped;
+  if (const Absence& absence = comparison.absence)
+    object[absence.failed ? "failed" : "skipped"] = absence.reason;
   return object;
+}
+
+void fill(Comparison& comparison, const Outcome& own, const Outcome& rival) {
+  comparison.absence = graver(own.absence, rival.absence);
+  if (comparison.absence) return;
+  comparison.samples = own.samples;
+  comparison.rival_samples = rival.samples;
+  if (own.rounds == rival.rounds) comparison.rounds = own.rounds;
 }
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more) {

@@ -5,9 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "harness/absence.hpp"
 #include "harness/statistics.hpp"
 
 namespace skein::benchmarks {
+
+/// What one contender showed: samples, or why there are none.
+struct Outcome {
+  std::vector<double> samples{};
+  Absence absence{};
+  std::size_t rounds = 0;  ///< In which it took its turn; 0 where that is not counted.
+};
 
 /// A subject beside its rival, both measured in the same run with the same parameters; or a subject
 /// that was not measured, and why. One object of results.json.
@@ -22,8 +30,8 @@ struct Comparison {
   /// The greatest ratios that the project is content with, where it has said so.
   std::optional<double> goal_p50{};
   std::optional<double> goal_p99{};
-  /// Not empty: why there are no samples.
-  std::string skipped{};
+  /// Why there are no samples, where there are none.
+  Absence absence{};
   std::string unit = "us";  ///< `us`, `octets` or `packets`.
 
   Summary summary() const { return summarize(samples); }
@@ -33,12 +41,15 @@ struct Comparison {
   double ratio_p99() const { return ratio_of_quantiles(samples, rival_samples, rounds, 0.99); }
 };
 
+/// Gives `comparison` what both showed; nothing but the reason where one of them showed nothing.
+void fill(Comparison& comparison, const Outcome& own, const Outcome& rival);
+
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 
 /// Figures with their unit: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us` (or `p50_octets`, ...), the same
 /// with `rival_` before it, of all samples together, and the quotients `ratio_p50` and `ratio_p99` (see
 /// ratio_of_quantiles), below 1 where the subject is faster or thriftier.
-/// `unit` says which. All of them null in a skipped comparison, which says why in `skipped`.
+/// `unit` says which. All of them null where nothing was measured; `skipped` or `failed` then says why.
 nlohmann::json to_json(const Comparison& comparison);
 
 /// Writes results.json: an array of all comparisons. Throws Error where the file cannot be written.

@@ -23,7 +23,7 @@ bool is_death(const Comparison& comparison, const char* where) {
 
 /// Of all scenarios of a map, as long as the map is large enough for a promise.
 bool is_mean_on_grids(const Comparison& comparison, bool in_space) {
-  if (comparison.claim != "a path on a grid, mean over a map" || !comparison.skipped.empty()) return false;
+  if (comparison.claim != "a path on a grid, mean over a map" || comparison.absence) return false;
   const auto& parameters = comparison.parameters;
   const bool is_space = parameters.at("depth") > 1;
   return is_space == in_space && (is_space || (parameters.at("width") >= 256 && parameters.at("height") >= 256));
@@ -100,7 +100,7 @@ std::vector<Verdict> judge(const std::vector<Comparison>& comparisons) {
   for (const Goal& goal : goals()) {
     Verdict& verdict = verdicts.emplace_back(Verdict{&goal});
     for (const Comparison& comparison : comparisons) {
-      if (!comparison.skipped.empty() || goal_of(comparison) != &goal) continue;
+      if (comparison.absence || goal_of(comparison) != &goal) continue;
       ++verdict.measured;
       verdict.met += meets_goal(comparison) ? 1 : 0;
       if (verdict.worst == nullptr || strain(comparison) > strain(*verdict.worst))

@@ -29,7 +29,7 @@ class Ordered {
 
 struct Cell {
   Summary summary;
-  std::string skipped;
+  Absence absence;
 };
 
 struct Matrix {
@@ -49,14 +49,14 @@ Ordered<Matrix> matrices_of(const Comparisons& comparisons) {
     if (std::ranges::find(matrix.variants, variant) == matrix.variants.end()) {
       matrix.variants.push_back(variant);
     }
-    // Of a skipped pair it is the rival that was not measured, unless the subject never was.
-    const auto put = [&](const std::string& name, const Summary& summary,
-                         const std::string& skipped) {
+    // Of a pair with an absence it is the rival that was not measured, unless the subject never
+    // was.
+    const auto put = [&](const std::string& name, const Summary& summary, const Absence& absence) {
       Cell& cell = matrix.contenders[name][variant];
-      if (cell.summary.samples == 0) cell = {summary, skipped};
+      if (cell.summary.samples == 0) cell = {summary, absence};
     };
-    put(comparison->subject, comparison->summary(), comparison->skipped);
-    put(comparison->rival, comparison->rival_summary(), comparison->skipped);
+    put(comparison->subject, comparison->summary(), comparison->absence);
+    put(comparison->rival, comparison->rival_summary(), comparison->absence);
   }
   return matrices;
 }
@@ -75,7 +75,8 @@ double best_of(const Matrix& matrix, const std::string& variant, bool skein) {
 std::string cell_text(const Matrix& matrix, const std::string& name, const std::string& variant,
                       const Cell& cell) {
   if (cell.summary.samples == 0) {
-    return fmt::format("<td class='skipped' title='{}'>not measured</td>", escaped(cell.skipped));
+    return fmt::format("<td class='{}' title='{}'>not measured</td>", class_of(cell.absence),
+                       escaped(cell.absence.reason));
   }
   const bool skein = name.starts_with("skein");
   const double other = best_of(matrix, variant, !skein);
@@ -132,7 +133,7 @@ bool is_of_matrix(const Comparison& comparison) {
 std::string rivals_verdict(const std::vector<Comparison>& comparisons) {
   Ordered<Verdict> verdicts;
   for (const Comparison& comparison : comparisons) {
-    if (!is_of_matrix(comparison) || !comparison.goal_p50 || !comparison.skipped.empty()) continue;
+    if (!is_of_matrix(comparison) || !comparison.goal_p50 || comparison.absence) continue;
     const double ratio = comparison.ratio_p50();
     Verdict& verdict =
         verdicts[fmt::format("{}, {}, {}: {}", comparison.claim, variant_of(comparison),

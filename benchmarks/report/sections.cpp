@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<double, 7> kTail{0.5, 0.75, 0.9, 0.95, 0.99, 0.995, 0.999};
 
-bool measured(const Comparison& comparison) { return comparison.skipped.empty(); }
+bool measured(const Comparison& comparison) { return !comparison.absence; }
 bool has_goal(const Comparison& comparison) { return comparison.goal_p50.has_value(); }
 
 bool is_beside_raw(const Comparison& comparison) {
@@ -190,16 +190,19 @@ std::string place_of(const Comparison& comparison) {
 
 std::string verdict_section(const std::vector<Comparison>& comparisons) {
   std::string beyond, slower, without_goal, faster;
-  std::set<std::string> skipped;
+  std::set<std::string> skipped, failed;
   for (const Comparison& comparison : comparisons) {
     if (!measured(comparison)) {
-      skipped.insert(fmt::format("<li>{}, {} beside {}: {}</li>", escaped(comparison.claim),
-                                 escaped(comparison.subject), escaped(comparison.rival),
-                                 escaped(comparison.skipped)));
+      (comparison.absence.failed ? failed : skipped)
+          .insert(fmt::format("<li>{}, {} beside {}: {}</li>", escaped(comparison.claim),
+                              escaped(comparison.subject), escaped(comparison.rival),
+                              escaped(comparison.absence.reason)));
     } else if (is_beside_raw(comparison) && !has_goal(comparison)) {
       if (comparison.ratio_p50() > 1) without_goal += sentence_of(comparison);
     } else if (has_goal(comparison) && !is_of_matrix(comparison)) {
-      (!meets_goal(comparison) ? beyond : comparison.ratio_p50() > 1 ? slower : faster) += sentence_of(comparison);
+      (!meets_goal(comparison)      ? beyond
+       : comparison.ratio_p50() > 1 ? slower
+                                    : faster) += sentence_of(comparison);
     }
   }
   std::string html = list_of("Skein misses its goal", beyond, "Nowhere.") +
@@ -207,9 +210,13 @@ std::string verdict_section(const std::vector<Comparison>& comparisons) {
                      list_of("Skein loses, where there is no goal", without_goal, "Nowhere.") +
                      list_of("Skein is level or ahead", faster, "Nowhere.");
   html += rivals_verdict(comparisons);
-  std::string missing;
-  for (const std::string& item : skipped) missing += item;
-  if (!missing.empty()) html += list_of("Not measured here", missing, "");
+  const auto list_reasons = [&](const char* title, const std::set<std::string>& reasons) {
+    std::string items;
+    for (const std::string& item : reasons) items += item;
+    if (!items.empty()) html += list_of(title, items, "");
+  };
+  list_reasons("Failed, and not measured", failed);
+  list_reasons("Not measured here", skipped);
   return "<section><h2>Where Skein loses</h2>" + html + "</section>";
 }
 

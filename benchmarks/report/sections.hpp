@@ -13,10 +13,13 @@ using Comparisons = std::vector<const Comparison*>;
 /// `1 KiB`.
 std::string size_text(std::size_t size_bytes);
 
+/// How the page's style calls it.
+inline const char* class_of(const Absence& absence) { return absence.failed ? "bad" : "skipped"; }
+
 /// What tells a comparison from others of its claim: `1 KiB, one core each`.
 std::string place_of(const Comparison& comparison);
 
-/// Verdicts in words: every comparison beyond its goal, and what was skipped.
+/// Verdicts in words: every comparison beyond its goal, and what failed or was skipped.
 std::string verdict_section(const std::vector<Comparison>& comparisons);
 
 /// Latency by size, ratios and tails of one claim.

@@ -15,9 +15,9 @@ std::string row_of(const Comparison& comparison) {
   std::string row =
       fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>", escaped(comparison.subject),
                   escaped(comparison.rival), place_of(comparison));
-  if (!comparison.skipped.empty()) {
-    return row + fmt::format("<td colspan='12' class='skipped'>skipped: {}</td></tr>",
-                             escaped(comparison.skipped));
+  if (const Absence& absence = comparison.absence) {
+    return row + fmt::format("<td colspan='12' class='{}'>{}: {}</td></tr>", class_of(absence),
+                             absence.failed ? "failed" : "skipped", escaped(absence.reason));
   }
   const Summary own = comparison.summary(), rival = comparison.rival_summary();
   row += fmt::format("<td>{}</td>", own.samples);

@@ -1,0 +1,24 @@
+#include "harness/absence.hpp"
+
+#include <cstdio>
+
+namespace skein::benchmarks {
+
+Absence attempt(const std::string& who, const std::function<void()>& measure) {
+  try {
+    measure();
+    return {};
+  } catch (const Skipped& reason) {
+    return {reason.what(), false};
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "\nfailed: %s: %s\n", who.c_str(), error.what());
+    return {error.what(), true};
+  }
+}
+
+const Absence& graver(const Absence& one, const Absence& other) {
+  if (!one) return other;
+  return other.failed && !one.failed ? other : one;
+}
+
+}  // namespace skein::benchmarks
