@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "moving_call.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein {
@@ -20,7 +21,8 @@ bool suits(const Link& link, const Wanted& wanted) {
 }  // namespace
 
 std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
-  std::shared_ptr<void> copy(type.make(), type.destroy);
+  std::shared_ptr<void> copy(type.make(), type.destroy,
+                             std::pmr::polymorphic_allocator<>(&call_memory()));
   type.assign(copy.get(), value);
   return copy;
 }

@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "failover_channel.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein {
 
 void MovingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                        const std::shared_ptr<PendingCall>& call, const void* in) {
-  const auto moving = std::make_shared<MovingCall>(channel, call, in);
+  const auto moving = make_shared_in_call_memory<MovingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
   if (const auto delay = channel->hedge_after()) moving->hedge_later(*delay);
   if (const auto link = channel->ready(moving->retries_.wanted())) {
@@ -38,10 +39,10 @@ MovingCall::~MovingCall() {
 void MovingCall::try_at(const Link& link) {
   const TypeSupport& type = *call_->operation().out;
   std::shared_ptr<void> own;
-  if (hedged_) own = {type.make(), type.destroy};
-  const auto attempt = std::make_shared<Attempt>(call_, own ? own.get() : call_->out());
-  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider, own] {
-    self->ended(*attempt, provider, own.get());
+  if (hedged_) own = {type.make(), type.destroy, std::pmr::polymorphic_allocator<>(&call_memory())};
+  const auto attempt = make_shared_in_call_memory<Attempt>(call_, std::move(own));
+  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider] {
+    self->ended(*attempt, provider);
   });
   link.channel->start(attempt, in_.get());
   bool cancelled;
@@ -53,11 +54,11 @@ void MovingCall::try_at(const Link& link) {
   if (cancelled) attempt->cancel();
 }
 
-void MovingCall::ended(Attempt& attempt, const Guid& provider, const void* own_out) {
+void MovingCall::ended(Attempt& attempt, const Guid& provider) {
   auto error = attempt.take_error();
   if (!error) {
     if (!call_->claim()) return;
-    if (own_out) call_->operation().out->assign(call_->out(), own_out);
+    if (hedged_) call_->operation().out->assign(call_->out(), attempt.out());
     call_->finish();
     if (hedged_) cancel();
     return;
@@ -144,7 +145,7 @@ void MovingCall::go_on(std::exception_ptr why) {
 }
 
 void MovingCall::cancel() {
-  std::vector<std::pair<Guid, std::shared_ptr<Attempt>>> attempts;
+  Attempts attempts;
   {
     std::lock_guard lock(mutex_);
     cancelled_ = true;

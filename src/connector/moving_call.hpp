@@ -6,21 +6,24 @@
 #include <vector>
 
 #include "retries.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/channel.hpp"
 
 namespace skein {
 
 class FailoverChannel;
 
-/// One try of a call, at one provider. `out` is the call's own out struct where no two tries are made
-/// at once.
+/// One try of a call, at one provider. Without an out struct of its own it fills the call's.
 class Attempt final : public PendingCall {
  public:
-  Attempt(std::shared_ptr<PendingCall> call, void* out)
-      : PendingCall(call->operation(), out, call->deadline(), false), call_(std::move(call)) {}
+  Attempt(std::shared_ptr<PendingCall> call, std::shared_ptr<void> own_out)
+      : PendingCall(call->operation(), own_out ? own_out.get() : call->out(), call->deadline(), false),
+        call_(std::move(call)),
+        own_out_(std::move(own_out)) {}
 
  private:
   std::shared_ptr<PendingCall> call_;  // may own the out struct
+  std::shared_ptr<void> own_out_;
 };
 
 /// A call to an idempotent operation that keeps a copy of its in struct: where a provider fails it moves
@@ -37,8 +40,10 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
   ~MovingCall();
 
  private:
+  using Attempts = std::pmr::vector<std::pair<Guid, std::shared_ptr<Attempt>>>;
+
   void try_at(const Link& link);
-  void ended(Attempt& attempt, const Guid& provider, const void* own_out);
+  void ended(Attempt& attempt, const Guid& provider);
   bool others_run() const;
   void hedge_later(Duration delay);
   void hedge();
@@ -55,7 +60,7 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
   const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
   std::mutex mutex_;  // guards what follows
   Retries retries_;
-  std::vector<std::pair<Guid, std::shared_ptr<Attempt>>> attempts_;
+  Attempts attempts_{&call_memory()};
   TimerId deadline_timer_ = 0;
   TimerId hedge_timer_ = 0;
   bool cancelled_ = false;

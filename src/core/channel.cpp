@@ -10,14 +10,14 @@
 namespace skein {
 
 void PendingCall::finish(std::exception_ptr error) {
-  std::function<void()> action;
-  std::function<void()> canceller;  // dropped outside the lock: it owns parts of the lane
+  Action action;
+  Action canceller;  // dropped outside the lock: it owns parts of the lane
   {
     std::lock_guard lock(mutex_);
     error_ = std::move(error);
     finished_ = true;
-    action.swap(action_);
-    canceller.swap(canceller_);
+    action = std::move(action_);
+    canceller = std::move(canceller_);
     changed_.notify_all();
   }
   if (action) action();
@@ -50,7 +50,7 @@ std::exception_ptr PendingCall::take_error() {
   return std::exchange(error_, nullptr);
 }
 
-void PendingCall::on_finished(std::function<void()> action) {
+void PendingCall::on_finished(Action action) {
   {
     std::lock_guard lock(mutex_);
     if (!finished_) {
@@ -61,7 +61,7 @@ void PendingCall::on_finished(std::function<void()> action) {
   action();
 }
 
-void PendingCall::set_canceller(std::function<void()> canceller) {
+void PendingCall::set_canceller(Action canceller) {
   std::lock_guard lock(mutex_);
   if (!finished_) canceller_ = std::move(canceller);
 }
@@ -72,10 +72,10 @@ void PendingCall::cancel() {
 }
 
 void PendingCall::abandon(std::exception_ptr error) {
-  std::function<void()> canceller;
+  Action canceller;
   {
     std::lock_guard lock(mutex_);
-    canceller.swap(canceller_);
+    canceller = std::move(canceller_);
   }
   if (fail(std::move(error)) && canceller) canceller();
 }

@@ -5,14 +5,17 @@
 #include <thread>
 #include <unordered_map>
 
+#include "skein/core/call_memory.hpp"
+
 namespace skein {
 
 struct SystemClock::State {
   std::mutex mutex;
   std::condition_variable changed;   // a timer was added before the earliest, or the end has come
   std::condition_variable finished;  // the running action has returned
-  std::map<std::pair<Instant, TimerId>, std::function<void()>> timers;
-  std::unordered_map<TimerId, Instant> instants;
+  // A queued call within the process has a timer of its own.
+  std::pmr::map<std::pair<Instant, TimerId>, Action> timers{&call_memory()};
+  std::pmr::unordered_map<TimerId, Instant> instants{&call_memory()};
   TimerId last = 0;
   TimerId running = 0;
   bool stopping = false;
@@ -63,7 +66,7 @@ SystemClock::~SystemClock() {
   }
 }
 
-TimerId SystemClock::call_at(Instant when, std::function<void()> action) {
+TimerId SystemClock::call_at(Instant when, Action action) {
   std::lock_guard lock(state_->mutex);
   const TimerId id = ++state_->last;
   const auto position = state_->timers.emplace(std::pair(when, id), std::move(action)).first;
@@ -73,7 +76,7 @@ TimerId SystemClock::call_at(Instant when, std::function<void()> action) {
 }
 
 void SystemClock::cancel(TimerId timer) {
-  std::function<void()> dropped;  // destroyed outside the lock: it may own what calls back here
+  Action dropped;  // destroyed outside the lock: it may own what calls back here
   std::unique_lock lock(state_->mutex);
   if (const auto found = state_->instants.find(timer); found != state_->instants.end()) {
     const auto position = state_->timers.find({found->second, timer});
@@ -92,7 +95,7 @@ Instant ManualClock::now() const {
   return now_;
 }
 
-TimerId ManualClock::call_at(Instant when, std::function<void()> action) {
+TimerId ManualClock::call_at(Instant when, Action action) {
   std::lock_guard lock(mutex_);
   timers_.emplace(std::pair(when, ++last_), std::move(action));
   return last_;

@@ -3,11 +3,35 @@
 #include <algorithm>
 
 #include "common.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/stream.hpp"
 
 namespace skein::rpc {
 namespace {
+
+/// An invocation that knows its caller.
+struct QueuedCall final : Invocation {
+  QueuedCall(std::shared_ptr<PendingCall> call_, std::shared_ptr<Clock> clock_)
+      : call(std::move(call_)), clock(std::move(clock_)) {}
+
+  void end(const void* out, std::exception_ptr error) {
+    clock->cancel(timer);
+    if (!call->claim()) return;
+    if (!error && out) operation->out->assign(call->out(), out);
+    call->finish(std::move(error));
+  }
+
+  void expire(const std::string& peer) {
+    cancel();
+    call->fail(std::make_exception_ptr(
+        TimedOut(peer + " did not answer " + std::string(operation->name) + " in time")));
+  }
+
+  const std::shared_ptr<PendingCall> call;
+  const std::shared_ptr<Clock> clock;
+  std::atomic<TimerId> timer{0};
+};
 
 void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call,
                     Clock& clock) {
@@ -35,7 +59,7 @@ std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service,
       new LocalChannel(service, std::move(clock), std::move(continuations)));
   const auto target = service.lock();
   if (!target) throw Unavailable("the service has been withdrawn");
-  channel->peer_ = std::string(target->interface_info().name) + " in this process";
+  channel->peer_ = std::make_shared<std::string>(std::string(target->interface_info().name) + " in this process");
   channel->session_ = target->open({Guid{}, strategy});
   return channel;
 }
@@ -49,7 +73,7 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock
 std::shared_ptr<Service> LocalChannel::service() const {
   auto service = service_.lock();
   if (service && !closed_) return service;
-  throw Unavailable("no connection to " + peer_ + ": it was " + (service ? "disconnected" : "withdrawn"));
+  throw Unavailable("no connection to " + *peer_ + ": it was " + (service ? "disconnected" : "withdrawn"));
 }
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
@@ -74,7 +98,7 @@ void LocalChannel::disconnect() {
 void LocalChannel::lose(const std::string& how) {
   for (const auto& call : close()) {
     call->abandon(std::make_exception_ptr(Disconnected(
-        "the connection to " + peer_ + " is gone (" + how + "); whether " +
+        "the connection to " + *peer_ + " is gone (" + how + "); whether " +
         std::string(call->operation().name) + " ran is unknown")));
   }
 }
@@ -97,7 +121,7 @@ std::vector<std::shared_ptr<PendingCall>> LocalChannel::close() {
 // Until disconnect() may have to end it.
 void LocalChannel::remember(const std::shared_ptr<PendingCall>& call) {
   std::lock_guard lock(mutex_);
-  if (closed_) throw Unavailable("no connection to " + peer_ + ": it was disconnected");
+  if (closed_) throw Unavailable("no connection to " + *peer_ + ": it was disconnected");
   if (queued_.size() >= look_at_) {
     std::erase_if(queued_, [](const std::weak_ptr<PendingCall>& weak) {
       const auto queued = weak.lock();
@@ -111,7 +135,7 @@ void LocalChannel::remember(const std::shared_ptr<PendingCall>& call) {
 void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
                            const void* in) {
   const OperationInfo& operation = call->operation();
-  auto invocation = std::make_shared<Invocation>();
+  const auto invocation = make_shared_in_call_memory<QueuedCall>(call, clock_);
   invocation->operation = &operation;
   invocation->connection = id_;
   invocation->in = {operation.in->make(), operation.in->destroy};
@@ -119,26 +143,19 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   invocation->deadline = call->deadline();
   invocation->session = session_;
   if (call->blocking()) invocation->chain = inherited_chain();
-
-  const auto timer = std::make_shared<std::atomic<TimerId>>(0);
-  invocation->respond = [call, timer, clock = clock_](const void* out, std::exception_ptr error) {
-    clock->cancel(timer->load());
-    if (!call->claim()) return;
-    if (!error && out) call->operation().out->assign(call->out(), out);
-    call->finish(std::move(error));
+  invocation->respond = [self = invocation.get()](const void* out, std::exception_ptr error) {
+    self->end(out, std::move(error));
   };
   if (operation.stream) connect_stream(*invocation, call, *clock_);
   call->set_canceller([invocation] { invocation->cancel(); });
   remember(call);
-  timer->store(clock_->call_at(call->deadline(), [call, invocation, peer = peer_] {
-    invocation->cancel();
-    call->fail(std::make_exception_ptr(
-        TimedOut(peer + " did not answer " + std::string(call->operation().name) + " in time")));
-  }));
+  invocation->timer = clock_->call_at(call->deadline(), [invocation, peer = peer_] {
+    invocation->expire(*peer);
+  });
   try {
     service.submit(invocation);
   } catch (...) {
-    clock_->cancel(timer->load());
+    clock_->cancel(invocation->timer);
     throw;
   }
   if (operation.oneway && call->claim()) call->finish();

@@ -52,7 +52,7 @@ class Call {
 
   /// Runs `action` once the call is finished, on the thread that finishes it, which may be a vendor's: it
   /// must neither block nor run user code. One action at most, and no then() or co_await beside it.
-  void notify(std::function<void()> action) { pending_->on_finished(std::move(action)); }
+  void notify(Action action) { pending_->on_finished(std::move(action)); }
 
   /// cancel() for others, who may ask for it at any time and on any thread; without effect once the call
   /// has ended.
@@ -67,7 +67,7 @@ class Call {
   template <class Continuation>
   void then(Continuation continuation) && {
     auto pending = pending_;
-    auto shared = std::make_shared<Call>(std::move(*this));
+    auto shared = make_shared_in_call_memory<Call>(std::move(*this));
     auto run = [shared, continuation = std::move(continuation)]() mutable {
       continuation(std::move(*shared));
     };

@@ -3,11 +3,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "skein/core/action.hpp"
 #include "skein/core/clock.hpp"
 #include "skein/core/executor.hpp"
 #include "skein/core/operation.hpp"
@@ -64,10 +64,10 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
 
   /// Runs `action` once the call is finished, at once where it is already; on the thread that finishes
   /// it, which may be a vendor's: it must neither block nor run user code. One action at most.
-  void on_finished(std::function<void()> action);
+  void on_finished(Action action);
 
   /// Set by the lane: what tells the server that nobody waits any more.
-  void set_canceller(std::function<void()> canceller);
+  void set_canceller(Action canceller);
 
   /// Ends the call as Cancelled, unless it has ended, and tells the server.
   void cancel();
@@ -86,8 +86,8 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   mutable std::condition_variable changed_;
   std::atomic<bool> finished_{false};  // written under the lock
   std::exception_ptr error_;
-  std::function<void()> action_;
-  std::function<void()> canceller_;
+  Action action_;
+  Action canceller_;
 };
 
 /// When a call began, and until when its answer is of use.

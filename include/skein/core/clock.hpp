@@ -3,10 +3,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
+
+#include "skein/core/action.hpp"
+#include "skein/core/call_memory.hpp"
 
 namespace skein {
 
@@ -23,13 +26,13 @@ class Clock {
 
   /// Runs `action` once at `when` (at once where that has passed) on the clock's own thread; it must
   /// not block. Never 0.
-  virtual TimerId call_at(Instant when, std::function<void()> action) = 0;
+  virtual TimerId call_at(Instant when, Action action) = 0;
 
   /// Forgets a timer. After it has returned the action is not running and will not run, unless
   /// called from the action itself. A timer that has run, or 0, is no error.
   virtual void cancel(TimerId timer) = 0;
 
-  TimerId call_after(Duration delay, std::function<void()> action) {
+  TimerId call_after(Duration delay, Action action) {
     return call_at(now() + delay, std::move(action));
   }
 };
@@ -40,7 +43,7 @@ class SystemClock final : public Clock {
   SystemClock();
   ~SystemClock() override;
   Instant now() const override { return std::chrono::steady_clock::now(); }
-  TimerId call_at(Instant when, std::function<void()> action) override;
+  TimerId call_at(Instant when, Action action) override;
   void cancel(TimerId timer) override;
 
  private:
@@ -53,7 +56,7 @@ class SystemClock final : public Clock {
 class ManualClock final : public Clock {
  public:
   Instant now() const override;
-  TimerId call_at(Instant when, std::function<void()> action) override;
+  TimerId call_at(Instant when, Action action) override;
   void cancel(TimerId timer) override;
 
   /// Moves time forward; each timer sees the instant for which it was set.
@@ -63,7 +66,7 @@ class ManualClock final : public Clock {
   mutable std::mutex mutex_;
   Instant now_{std::chrono::hours(1)};
   TimerId last_ = 0;
-  std::map<std::pair<Instant, TimerId>, std::function<void()>> timers_;
+  std::pmr::map<std::pair<Instant, TimerId>, Action> timers_{&call_memory()};
 };
 
 }  // namespace skein

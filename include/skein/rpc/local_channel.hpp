@@ -24,7 +24,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) override;
   Clock& clock() const noexcept override { return *clock_; }
   Executor& continuations() const noexcept override { return *continuations_; }
-  std::string peer() const override { return peer_; }
+  std::string peer() const override { return *peer_; }
   bool connected() const override { return !closed_ && !service_.expired(); }
   void disconnect() override;
   void lose(const std::string& how) override;
@@ -42,7 +42,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   std::weak_ptr<Service> service_;
   const std::shared_ptr<Clock> clock_;
   const std::shared_ptr<Executor> continuations_;
-  std::string peer_;
+  std::shared_ptr<const std::string> peer_;  // shared with calls on their way
   std::shared_ptr<Session> session_;
   std::atomic<bool> closed_{false};
   std::mutex mutex_;

@@ -88,7 +88,7 @@ void Hub::kill(const Guid& participant) {
   run_callbacks(lock);
 }
 
-void Hub::post(const EndpointCore* target, std::function<void()> callback) {
+void Hub::post(const EndpointCore* target, Action callback) {
   callbacks_.push_back({target, std::move(callback)});
 }
 

@@ -5,21 +5,24 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <memory_resource>
 #include <mutex>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "../deadline_watch.hpp"
 #include "../keyed_queue.hpp"
 #include "../sample_gate.hpp"
 #include "../topic_table.hpp"
-#include "skein/core/bytes.hpp"
+#include "skein/core/action.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/dds/loopback.hpp"
 
 namespace skein::dds::loopback {
 
 struct Message {
-  Bytes cdr;
+  std::pmr::vector<std::byte> cdr;
   KeyHash key;
   InstanceState state;
   Guid writer;
@@ -104,7 +107,7 @@ struct Link {
   bool alive = true;
   bool repeating = false;  // a timer will repeat what was lost
   std::uint64_t delivered = 0;
-  std::map<std::uint64_t, Unacknowledged> pending{};  // reliable only
+  std::pmr::map<std::uint64_t, Unacknowledged> pending{&call_memory()};  // reliable only
 };
 
 /// The network's whole state behind one mutex. Listeners run outside it, from one queue, one at a time.
@@ -183,7 +186,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void schedule_deadline(const std::shared_ptr<EndpointCore>& endpoint);
   void check_deadline(const std::shared_ptr<EndpointCore>& endpoint);
 
-  void post(const EndpointCore* target, std::function<void()> callback);
+  void post(const EndpointCore* target, Action callback);
   void run_callbacks(Lock& lock);
   void wait_until_idle(const void* target, Lock& lock);
   void after(Duration delay, std::function<void(Hub&)> action);
@@ -203,9 +206,9 @@ class Hub : public std::enable_shared_from_this<Hub> {
 
   struct Callback {
     const void* target;
-    std::function<void()> run;
+    Action run;
   };
-  std::deque<Callback> callbacks_;
+  std::pmr::deque<Callback> callbacks_{&call_memory()};
   const void* running_ = nullptr;
   std::thread::id runner_;
   bool draining_ = false;

@@ -17,8 +17,8 @@ class Owner final : public SampleOwner {
 
 void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
                 InstanceState state) {
-  auto message = std::make_shared<Message>(
-      Message{Bytes(cdr), key, state, writer.guid, source_time(), 0});
+  const auto message = make_shared_in_call_memory<Message>(
+      Message{{cdr.begin(), cdr.end(), &call_memory()}, key, state, writer.guid, source_time(), 0});
   Lock lock(mutex_);
   wait_for_room(writer, lock);
   message->sequence = ++writer.last_sequence;
@@ -199,7 +199,7 @@ void Hub::repeat_between(const ParticipantCore& one, const ParticipantCore& othe
 
 std::size_t Hub::take(ReaderCore& reader, const std::function<void(const Sample&)>& consumer,
                       std::size_t limit) {
-  std::vector<MessagePtr> taken;
+  std::pmr::vector<MessagePtr> taken{&call_memory()};
   {
     Lock lock(mutex_);
     while (taken.size() < limit) {
