@@ -93,6 +93,11 @@ void check_options(const ParticipantOptions& options) {
   }
 }
 
+void refuse_shared_memory(const ParticipantOptions& options, const std::string& vendor) {
+  if (!options.network.shared_memory) return;
+  throw InvalidArgument(vendor + " has no shared memory here; leave it off, or use the vendor 'fastdds'");
+}
+
 std::vector<std::string> interface_addresses(const Network& network) {
   if (network.interfaces.empty()) return {kLoopbackAddress};
   const auto host = interfaces_of_this_host();

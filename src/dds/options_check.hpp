@@ -16,6 +16,9 @@ void check_domain(const ParticipantOptions& options);
 /// Domain, interfaces and peers. An interface must exist on this host, by name or by address.
 void check_options(const ParticipantOptions& options);
 
+/// For back ends that have none.
+void refuse_shared_memory(const ParticipantOptions& options, const std::string& vendor);
+
 /// The IPv4 addresses of `network.interfaces`, in dotted form; 127.0.0.1 where none is named.
 std::vector<std::string> interface_addresses(const Network& network);
 

@@ -38,16 +38,17 @@ sigset_t ending_signals() {
                         suggestion(process, names));
 }
 
-EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer,
-                             const std::string& name, const std::string& vendor,
-                             std::chrono::microseconds spin) {
+// `owner` is a peer or one of its CSPs.
+template <class Profile>
+EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer, const Profile& owner) {
   EntityOptions options;
-  options.name = name;
+  options.name = peer.name;
   options.system = peer.system;
-  options.vendor = dds::load_vendor(vendor);
+  options.vendor = dds::load_vendor(owner.vendor);
   options.domain = static_cast<std::uint32_t>(mission.domain);
-  options.spin = spin;
+  options.spin = owner.threads.settings.spin;
   if (!peer.interface.empty()) options.network.interfaces = {peer.interface};
+  options.network.shared_memory = owner.shared_memory;
   return options;
 }
 
@@ -138,8 +139,9 @@ void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
 int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
             ComponentRegistry& registry) {
   load_plugin(registry, csp.plugin);
-  Entity entity(entity_options(mission, peer, peer.name + "." + csp.name, csp.vendor,
-                               csp.threads.settings.spin));
+  EntityOptions options = options_of(mission, peer, csp);
+  options.name += "." + csp.name;
+  Entity entity(std::move(options));
   provide_csp(entity, peer.system + "/" + peer.name, csp, registry);
   report_ready();
   return await_end();
@@ -156,7 +158,7 @@ void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
 
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
   load_plugins(registry, peer);
-  Entity entity(entity_options(mission, peer, peer.name, peer.vendor, peer.threads.settings.spin));
+  Entity entity(entity_options(mission, peer));
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);
@@ -171,6 +173,10 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
 }
 
 }  // namespace
+
+EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer) {
+  return options_of(mission, peer, peer);
+}
 
 int run_process(const MissionProfile& mission, const std::string& process,
                 ComponentRegistry& registry) {

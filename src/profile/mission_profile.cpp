@@ -80,6 +80,8 @@ const std::vector<std::string>& known_vendors() {
   return kVendors;
 }
 
+bool has_shared_memory(std::string_view vendor) { return vendor == "fastdds"; }
+
 void apply_setting(MissionProfile& profile, std::string_view assignment) {
   const auto equals = assignment.find('=');
   const auto dot = assignment.substr(0, equals).find('.');

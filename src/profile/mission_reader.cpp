@@ -96,6 +96,17 @@ class MissionReader {
     return vendor->value;
   }
 
+  bool shared_memory_of(const XmlElement& element, const std::string& vendor, bool fallback) {
+    const bool wanted = read_boolean(element, "shared_memory", fallback);
+    const auto attribute = element.maybe_attribute("shared_memory");
+    if (!wanted || has_shared_memory(vendor)) return wanted;
+    if (attribute) {
+      findings_.error(attribute->where, in_quotes(vendor) + " has no shared memory",
+                      "leave shared_memory out, or write vendor=\"fastdds\"");
+    }
+    return false;
+  }
+
   Defaults defaults_of(const XmlElement& element, const Defaults& outer) {
     return {vendor_of(element, outer.vendor), value_or(element, "system", outer.system),
             value_or(element, "host", outer.host), value_or(element, "interface", outer.interface),
@@ -124,7 +135,7 @@ class MissionReader {
   }
 
   PeerProfile peer_of(const XmlElement& element, const Defaults& mission) {
-    element.allow({"name", "component", "vendor", "system", "host", "interface", "plugin", "role",
+    element.allow({"name", "component", "vendor", "system", "host", "interface", "shared_memory", "plugin", "role",
                    "required", "restart", "restart_delay", "max_restart_delay", "max_restarts",
                    "restart_window", "ready_timeout", "stop_timeout", "threads", "scheduling", "priority",
                    "nice", "cpus", "spin", "lock_memory"},
@@ -142,6 +153,7 @@ class MissionReader {
     peer.system = std::move(values.system);
     peer.host = std::move(values.host);
     peer.interface = std::move(values.interface);
+    peer.shared_memory = shared_memory_of(element, peer.vendor, false);
     peer.plugin = std::move(values.plugin);
     peer.runs_mission = runs_mission(element);
     peer.required = read_boolean(element, "required", true);
@@ -164,7 +176,7 @@ class MissionReader {
 
   CspProfile csp_of(const XmlElement& element, const PeerProfile& peer) {
     element.allow(
-        {"name", "component", "process", "vendor", "plugin", "required", "restart", "restart_delay",
+        {"name", "component", "process", "vendor", "shared_memory", "plugin", "required", "restart", "restart_delay",
          "max_restart_delay", "max_restarts", "restart_window", "ready_timeout", "stop_timeout",
          "scheduling", "priority", "nice", "cpus", "spin", "lock_memory"},
         {"parameter"});
@@ -178,6 +190,7 @@ class MissionReader {
     demand_plain_name(csp.name, name ? name->where : element.where());
     csp.process = process_of(element);
     csp.vendor = vendor_of(element, peer.vendor);
+    csp.shared_memory = shared_memory_of(element, csp.vendor, peer.shared_memory);
     csp.plugin = value_or(element, "plugin", peer.plugin);
     csp.required = read_boolean(element, "required", false);
     csp.rules = read_process_rules(element);

@@ -32,6 +32,7 @@ inline EntityOptions entity_options(const PeerArguments& arguments) {
   if (arguments.contains("interface")) options.network.interfaces = {arguments.at("interface")};
   if (arguments.contains("host")) options.network.peers = {arguments.at("host")};
   options.network.multicast_discovery = arguments.contains("multicast");
+  options.network.shared_memory = arguments.contains("shared_memory");
   return options;
 }
 

@@ -120,6 +120,33 @@ TEST_CASE("What the mission says holds for every peer that does not say otherwis
   CHECK(mission.peers.at(1).interface == "lan0");
 }
 
+TEST_CASE("Shared memory is the peer's word, and holds for its CSPs on the same vendor") {
+  ProfileFolder folder;
+  folder.write("m.xml", R"(<mission name="m">
+    <peer name="plain" component="n.xml"/>
+    <peer name="shared" component="n.xml" shared_memory="true">
+      <csp component="p.xml" process="own"/>
+      <csp name="other" component="p.xml" process="own" vendor="cyclonedds"/>
+      <csp name="none" component="p.xml" process="own" shared_memory="false"/></peer>
+  </mission>)");
+  const auto mission = read_mission_profile(folder.path() / "m.xml");
+  CHECK_FALSE(mission.peers.at(0).shared_memory);
+  const auto& peer = mission.peers.at(1);
+  CHECK(peer.shared_memory);
+  CHECK(peer.csps.at(0).shared_memory);
+  CHECK_FALSE(peer.csps.at(1).shared_memory);
+  CHECK_FALSE(peer.csps.at(2).shared_memory);
+}
+
+TEST_CASE("Shared memory of a vendor that has none is found, with its place and the remedy") {
+  ProfileFolder folder;
+  const auto text = folder.check(R"(<peer name="n" component="n.xml" vendor="cyclonedds" shared_memory="true">
+    <csp component="p.xml" vendor="loopback" shared_memory="true"/></peer>)");
+  CHECK_THAT(text, Catch::Contains("m.xml:2:") && Catch::Contains("\"cyclonedds\" has no shared memory") &&
+                       Catch::Contains("vendor=\"fastdds\""));
+  CHECK_THAT(text, Catch::Contains("m.xml:3:") && Catch::Contains("\"loopback\" has no shared memory"));
+}
+
 TEST_CASE("A profile's words that are unknown are answered with the nearest known ones") {
   ProfileFolder folder;
   const auto [attributes, finding] = GENERATE(table<std::string, std::string>({

@@ -190,6 +190,10 @@ struct Network {
   std::vector<std::string> peers;
   /// Greatest number of participants on each host that unicast discovery looks for.
   std::uint32_t max_participants = 120;
+  /// Samples between two participants of this host that both want it go by the vendor's shared memory;
+  /// discovery, and all else, does not. Fast DDS alone has it: others throw InvalidArgument. Who is killed
+  /// leaves its segments in /dev/shm.
+  bool shared_memory = false;
 };
 
 struct ParticipantOptions {

@@ -3,9 +3,14 @@
 #include <string>
 
 #include "skein/entity/component_registry.hpp"
+#include "skein/entity/entity.hpp"
 #include "skein/profile/mission_profile.hpp"
 
 namespace skein::launch {
+
+/// How a peer joins its mission: vendor, domain, system, interface, shared memory, and how long its callers
+/// spin. Throws what dds::load_vendor throws.
+EntityOptions entity_options(const profile::MissionProfile& mission, const profile::PeerProfile& peer);
 
 /// Runs one process of a mission as its profile says, from the implementations in `registry` and in
 /// the plugins that the profile names: `navigator` for a peer with its in-process CSPs,

@@ -33,6 +33,7 @@ struct CspProfile {
   std::shared_ptr<const ComponentDescription> component;
   CspProcess process = CspProcess::InOwner;
   std::string vendor;     ///< The peer's, unless the profile says otherwise.
+  bool shared_memory = false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
   std::string plugin;     ///< The peer's, unless the profile says otherwise.
   ProcessRules rules;     ///< Of a process of its own.
   ThreadRules threads;    ///< Of the thread that runs it.
@@ -54,6 +55,7 @@ struct PeerProfile {
   std::string system;         ///< The vehicle or station it belongs to.
   std::string host;           ///< Empty for the host of the launcher.
   std::string interface;      ///< Network interface; empty for this host alone (127.0.0.1).
+  bool shared_memory = false;  ///< Fast DDS's, between the processes of one host.
   std::string plugin;         ///< Library with its providers; empty where main() registers them.
   bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
   bool required = true;       ///< Whether its loss ends the mission.
@@ -82,6 +84,9 @@ struct MissionProfile {
 
 /// The vendors that a profile may name, in the spelling of the XML.
 const std::vector<std::string>& known_vendors();
+
+/// Whether samples can go by shared memory between that vendor's peers on one host.
+bool has_shared_memory(std::string_view vendor);
 
 /// Reads a profile with its dictionary and all of its components. Says nothing of the composition:
 /// see check.hpp. Throws DescriptionError with every finding of every file.

@@ -31,6 +31,7 @@ Entity make_domain(const ParticipantOptions& options, dds_domainid_t id) {
 
 CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : options_(options) {
   check_options(options);
+  refuse_shared_memory(options, "Cyclone DDS");
   const dds_domainid_t id = next_internal_domain();
   domain_ = make_domain(options, id);
   const QosSet qos;

@@ -1,9 +1,12 @@
 #include "attributes.hpp"
 
+#include <fastdds/rtps/transport/TransportInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
 #include <algorithm>
+#include <random>
 
 #include "../options_check.hpp"
 
@@ -18,6 +21,8 @@ constexpr std::uint32_t kReceiveBuffer = 4u << 20;
 /// again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the reader asks for what is
 /// on its way to him.
 constexpr std::uint32_t kSendBuffer = 64u << 20;
+/// Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
+constexpr std::uint32_t kSharedMemory = 16u << 20;
 constexpr auto kAnnouncementPeriod = 250ms;
 constexpr auto kHeartbeatPeriod = 100ms;
 constexpr auto kNackSuppression = 10ms;
@@ -82,6 +87,26 @@ void fill_endpoint(rtps::EndpointAttributes& endpoint, const Topic& topic, const
   endpoint.set_data_sharing_configuration(off);
 }
 
+// Here a port is a name in /dev/shm and no more. One that was a killed process's would be made anew, while
+// others would go on writing to the old one, in which nobody reads.
+std::uint32_t unused_port() {
+  constexpr std::uint32_t kBeyondUdp = 1u << 16;
+  std::random_device random;
+  return kBeyondUdp + random() / 2;
+}
+
+// Beside UDP, and for samples alone: discovery, and with it the repairs and signs of life of `transport`, goes
+// by UDP. Fast DDS then speaks to who has such a locator, on this host, by nothing else.
+void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
+  const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+  memory->segment_size(kSharedMemory);
+  // The locator holds this host's number, which Fast DDS keeps to itself.
+  const std::unique_ptr<eprosima::fastdds::rtps::TransportInterface> transport(
+      memory->create_transport());
+  transport->getDefaultUnicastLocators(attributes.defaultUnicastLocatorList, unused_port());
+  attributes.userTransports.push_back(memory);
+}
+
 }  // namespace
 
 std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOptions& options) {
@@ -127,6 +152,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
       builtin.initialPeersList.push_back(locator(address, 0));
     }
   }
+  if (options.network.shared_memory) add_shared_memory(attributes);
   if (options.network.multicast_discovery) {
     const auto group = locator("239.255.0.1", base);
     builtin.metatrafficMulticastLocatorList.push_back(group);

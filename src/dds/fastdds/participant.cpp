@@ -4,6 +4,8 @@
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 
+#include <algorithm>
+
 #include "../options_check.hpp"
 #include "attributes.hpp"
 #include "identity.hpp"
@@ -29,9 +31,9 @@ FastParticipant::FastParticipant(const ParticipantOptions& options)
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.
-  const auto needed = attributes.builtin.metatrafficUnicastLocatorList.size() +
-                      attributes.defaultUnicastLocatorList.size();
-  if (transport_->state->ports < needed) {
+  const auto needed = std::ranges::count(attributes.defaultUnicastLocatorList, LOCATOR_KIND_UDPv4,
+                                         &rtps::Locator_t::kind);
+  if (transport_->state->ports < 2 * needed) {  // each address has a port for discovery, too
     rtps::RTPSDomain::removeRTPSParticipant(participant_);
     throw_no_participant(options);
   }

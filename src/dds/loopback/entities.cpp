@@ -70,6 +70,7 @@ constexpr std::uint8_t kReaderKind = 0x07;
 
 std::unique_ptr<Participant> LoopbackVendor::create_participant(const ParticipantOptions& options) {
   check_options(options);
+  refuse_shared_memory(options, "the loopback network");
   return std::make_unique<LoopbackParticipant>(hub_, options);
 }
 
