@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include "harness/comparison.hpp"
 #include "harness/goals.hpp"
 
+using Catch::Contains;
 using nlohmann::json;
 using skein::benchmarks::Comparison;
 
@@ -69,6 +71,21 @@ bool is_about_raw_fastdds(const json& row) {
 
 const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds",
                                    "cyclonedds-fastdds"};
+
+struct CommandResult {
+  int exit_code;
+  std::string output;  // both streams
+};
+
+CommandResult command_result(const std::string& arguments) {
+  FILE* const pipe = popen((std::string(SKEIN_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  CommandResult result{};
+  char buffer[4096];
+  for (std::size_t count; (count = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+    result.output.append(buffer, count);
+  result.exit_code = WEXITSTATUS(pclose(pipe));
+  return result;
+}
 
 bool has(const json& results, const std::string& claim, const std::string& subject,
          const json& parameters, const std::string& rival = "") {
@@ -332,6 +349,49 @@ TEST_CASE("a user measures calls by the command, and compares what it saved") {
   }
   std::ofstream(folder / "broken.json") << "{}";
   CHECK(std::system((command + "compare" + file("fastdds") + file("broken")).c_str()) != 0);
+}
+
+TEST_CASE("calls are measured as a mission's peers would make them") {
+  const auto folder = std::filesystem::current_path() / "profile_bench";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "dictionary.xml") << "<dictionary/>";
+  std::ofstream(folder / "mirror.xml") << "<component name='Mirror'/>";
+  std::ofstream(folder / "mission.xml") << R"(<mission name="survey" vendor="cyclonedds">
+      <peer name="navigator" component="mirror.xml" threads="2" nice="1" spin="50us"/>
+      <peer name="camera" component="mirror.xml" vendor="fastdds" shared_memory="true"/>
+      <peer name="alone" component="mirror.xml" vendor="loopback"/>
+    </mission>)";
+  const auto run = [&](const std::string& options) {
+    return command_result("bench latency --payload 64 --count 20 --profile '" +
+                          (folder / "mission.xml").string() + "' " + options);
+  };
+  const auto measured = [&](const std::string& options) {
+    const auto file = folder / "result.json";
+    const CommandResult result = run(options + " --output '" + file.string() + "'");
+    INFO(result.output);
+    REQUIRE(result.exit_code == 0);
+    std::ifstream saved(file);
+    const json row = json::parse(saved).at(0);
+    CHECK(row.at("p50_us") > 0);
+    return row.at("vendor").get<std::string>();
+  };
+  CHECK(measured("") == "cyclonedds");
+  CHECK(measured("--provider camera") == "fastdds");
+  CHECK(measured("--provider camera --caller navigator") == "fastdds-cyclonedds");
+
+  const auto complaint = [&](const std::string& options) {
+    const CommandResult result = run(options);
+    CHECK(result.exit_code != 0);
+    return result.output;
+  };
+  CHECK_THAT(complaint("--provider navigatr"),
+             Contains("has no peer 'navigatr'") && Contains("navigator"));
+  CHECK_THAT(complaint("--caller alone"), Contains("mission.xml") && Contains("loopback"));
+  CHECK_THAT(complaint("--vendor fastdds"), Contains("excludes"));
+  CHECK_THAT(complaint("--peer 10.77.0.2"), Contains("10.77.0.2") && Contains("interface"));
+  std::ofstream(folder / "mission.xml") << "<mission name='m' vendr='fastdds'/>";
+  CHECK_THAT(complaint(""), Contains("mission.xml:1") && Contains("did you mean 'vendor'?"));
 }
 
 TEST_CASE("the report is one page that refers to nothing outside") {

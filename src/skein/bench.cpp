@@ -64,6 +64,7 @@ void save(const Rows& rows, const std::string& path) {
 
 void run(const Arguments& arguments, Rows (*measure)(const Arguments&)) {
   if (arguments.serve) return bench::serve(arguments);
+  bench::vendors_of(arguments);  // throws, where it must, before there is another process
   std::unique_ptr<Server> server;
   if (!arguments.remote) server = std::make_unique<Server>(arguments);
   const Rows rows = measure(arguments);
@@ -75,12 +76,29 @@ CLI::App* add(CLI::App& bench, const char* name, const char* help,
               Rows (*measure)(const Arguments&), const std::shared_ptr<Arguments>& arguments,
               int& result) {
   auto* command = bench.add_subcommand(name, help);
-  command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")
-      ->capture_default_str();
+  auto* vendor = command->add_option("--vendor", arguments->vendor, "fastdds or cyclonedds")
+                     ->capture_default_str();
   command->add_option("--domain", arguments->domain, "DDS domain")->capture_default_str();
   auto* interface = command->add_option("--interface", arguments->interface,
                                         "Network interface; loopback by default");
-  command->add_option("--peer", arguments->peer, "The other host's address")->needs(interface);
+  command->add_option("--peer", arguments->peer,
+                      "The other host's address, with an interface of this one");
+  auto* profile =
+      command
+          ->add_option("--profile", arguments->profile,
+                       "Mission profile whose peers' vendor, interface, shared memory, threads and "
+                       "spinning are measured")
+          ->check(CLI::ExistingFile)
+          ->excludes(vendor)
+          ->excludes(interface);
+  command
+      ->add_option("--provider", arguments->provider,
+                   "Peer of the profile that is called; its first by default")
+      ->needs(profile);
+  command
+      ->add_option("--caller", arguments->caller,
+                   "Peer of the profile that calls; the provider by default")
+      ->needs(profile);
   auto* serve = command->add_flag("--serve", arguments->serve, "Be the other side, until ended");
   command->add_flag("--remote", arguments->remote, "The other side runs already (--serve)")
       ->excludes(serve);

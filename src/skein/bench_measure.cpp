@@ -28,17 +28,6 @@ class MirrorBody final : public Mirror {
   Content reflect(const Content& content) override { return content; }
 };
 
-EntityOptions entity_options(const Arguments& arguments, const std::string& name) {
-  EntityOptions options;
-  options.name = name + "-" + std::to_string(getpid());
-  options.system = "bench";
-  options.vendor = dds::load_vendor(arguments.vendor);
-  options.domain = arguments.domain;
-  if (!arguments.interface.empty()) options.network.interfaces = {arguments.interface};
-  if (!arguments.peer.empty()) options.network.peers = {arguments.peer};
-  return options;
-}
-
 Mirror::Proxy connected(Entity& entity) {
   return entity.connect<Mirror>({.timeout = kCallTimeout}).within(kCallTimeout);
 }
@@ -50,8 +39,8 @@ double microseconds_since(std::chrono::steady_clock::time_point begin) {
 
 Rows row(const char* what, const Arguments& arguments, const std::vector<double>& times_us) {
   const Summary summary = benchmarks::summarize(times_us);
-  return {{"what", what},          {"vendor", arguments.vendor}, {"samples", summary.samples},
-          {"p50_us", summary.p50}, {"p90_us", summary.p90},      {"p99_us", summary.p99}};
+  return {{"what", what},          {"vendor", vendors_of(arguments)}, {"samples", summary.samples},
+          {"p50_us", summary.p50}, {"p90_us", summary.p90},           {"p99_us", summary.p99}};
 }
 
 // Payloads of which `count` would take minutes are sent less often.
@@ -65,7 +54,9 @@ using Measure =
     std::function<std::vector<double>(Mirror::Proxy&, const Content&, std::size_t count)>;
 
 Rows measure_each_payload(const Arguments& arguments, const char* what, const Measure& measure) {
-  Entity entity(entity_options(arguments, "caller"));
+  const Side side = side_of(arguments, Role::Caller);
+  if (side.lock_memory) lock_memory();
+  Entity entity(side.entity);
   auto proxy = connected(entity);
   Rows rows = Rows::array();
   for (const std::size_t payload : arguments.payloads) {
@@ -87,8 +78,10 @@ void serve(const Arguments& arguments) {
   sigaddset(&ending, SIGINT);
   sigaddset(&ending, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &ending, nullptr);  // before the vendor makes threads
-  Entity entity(entity_options(arguments, "mirror"));
-  entity.provide<Mirror>(std::make_shared<MirrorBody>());
+  const Side side = side_of(arguments, Role::Provider);
+  if (side.lock_memory) lock_memory();
+  Entity entity(side.entity);
+  entity.provide<Mirror>(std::make_shared<MirrorBody>(), side.service);
   int signal = 0;
   sigwait(&ending, &signal);
 }
@@ -131,10 +124,11 @@ Rows measure_throughput(const Arguments& arguments) {
 }
 
 Rows measure_discovery(const Arguments& arguments) {
+  const Side side = side_of(arguments, Role::Caller);
   std::vector<double> times(kDiscoveries);
   for (double& time : times) {
     const auto begin = std::chrono::steady_clock::now();
-    Entity entity(entity_options(arguments, "caller"));
+    Entity entity(side.entity);
     connected(entity).reflect({});
     time = microseconds_since(begin);
   }
