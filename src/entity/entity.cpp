@@ -84,7 +84,9 @@ struct Entity::State {
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
                    process->shared_clock(), options.spin, journal}),
-        head(connector, broker, process->directory(), process->clock()) {}
+        head({connector, broker, process->directory(), process->clock(), *participant, control,
+              options.system + "/" + options.name},
+             options.head) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
     if (!options.vendor) {

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "selection_text.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/suggestion.hpp"
+
 namespace skein {
 namespace {
 
-std::string in_ms(Duration duration) {
-  return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(duration).count()) + " ms";
-}
+using selection_text::in_ms;
+using selection_text::number;
 
 // A latency that is not declared is taken for none: such a candidate is never ruled out by time.
 Duration latency_of(const Candidate& candidate) { return candidate.latency.value_or(Duration::zero()); }
@@ -16,7 +19,8 @@ class DeclaredSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "declared"; }
 
-  Selection select(const std::vector<Candidate>& candidates, Duration remaining) const override {
+  Selection select(const std::vector<Candidate>& candidates, const Situation& situation) const override {
+    const Duration remaining = situation.remaining;
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates) {
       if (latency_of(candidate) > remaining) continue;
@@ -28,7 +32,7 @@ class DeclaredSelection final : public SelectionStrategy {
                          ") of those whose latency fits into " + in_ms(remaining) + " (its own: " +
                          in_ms(latency_of(*best)) + ")";
     if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
-    return {index_of(*best, candidates), remaining - reserve, std::move(reason)};
+    return {index_of(*best, candidates), remaining - reserve, std::move(reason), latency_of(*best)};
   }
 
  private:
@@ -39,13 +43,6 @@ class DeclaredSelection final : public SelectionStrategy {
 
   static std::size_t index_of(const Candidate& candidate, const std::vector<Candidate>& candidates) {
     return static_cast<std::size_t>(&candidate - candidates.data());
-  }
-
-  static std::string number(double value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
   }
 
   static Duration reserve_beside(const Candidate& best, const std::vector<Candidate>& candidates,
@@ -65,7 +62,8 @@ class DeclaredSelection final : public SelectionStrategy {
         [](const Candidate& a, const Candidate& b) { return latency_of(a) < latency_of(b); });
     return {index_of(*fastest, candidates), remaining,
             "no declared latency fits into " + in_ms(remaining) + "; " + fastest->name +
-                " is the fastest (" + in_ms(latency_of(*fastest)) + ")"};
+                " is the fastest (" + in_ms(latency_of(*fastest)) + ")",
+            latency_of(*fastest)};
   }
 };
 
@@ -73,10 +71,11 @@ class FixedOrderSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "fixed_order"; }
 
-  Selection select(const std::vector<Candidate>& candidates, Duration remaining) const override {
-    return {0, remaining / static_cast<Duration::rep>(candidates.size()),
+  Selection select(const std::vector<Candidate>& candidates, const Situation& situation) const override {
+    return {0, situation.remaining / static_cast<Duration::rep>(candidates.size()),
             candidates.front().name + " is the next in order; " + std::to_string(candidates.size() - 1) +
-                " others share the time that is left"};
+                " others share the time that is left",
+            latency_of(candidates.front())};
   }
 };
 
@@ -88,6 +87,62 @@ std::shared_ptr<const SelectionStrategy> make_declared_selection() {
 
 std::shared_ptr<const SelectionStrategy> make_fixed_order_selection() {
   return std::make_shared<FixedOrderSelection>();
+}
+
+StrategyFactory::StrategyFactory() {
+  add(make_fixed_order_selection());
+  add(make_declared_selection());
+  add(make_learned_selection());
+}
+
+void StrategyFactory::add(std::shared_ptr<const SelectionStrategy> strategy) {
+  const std::string name = strategy->name();
+  strategies_[name] = std::move(strategy);
+}
+
+std::shared_ptr<const SelectionStrategy> StrategyFactory::make(const std::string& name) const {
+  if (const auto found = strategies_.find(name); found != strategies_.end()) return found->second;
+  std::vector<std::string> known;
+  std::string list;
+  for (const auto& [known_name, strategy] : strategies_) {
+    known.push_back(known_name);
+    list += (list.empty() ? "" : ", ") + known_name;
+  }
+  throw InvalidArgument("unknown selection strategy '" + name + "'" + suggestion(name, known) +
+                        "; there are: " + list);
+}
+
+CandidateIterator::CandidateIterator(const SelectionStrategy& strategy, std::vector<Candidate> candidates,
+                                     Situation situation)
+    : strategy_(strategy), situation_(std::move(situation)) {
+  add(std::move(candidates));
+}
+
+void CandidateIterator::add(std::vector<Candidate> candidates) {
+  left_ = std::move(candidates);
+  const auto closed = [](const Candidate& candidate) {
+    return candidate.breaker == CircuitBreaker::State::Open;
+  };
+  const auto first_out = std::min_element(
+      left_.begin(), left_.end(),
+      [](const Candidate& a, const Candidate& b) { return a.quarantine < b.quarantine; });
+  if (std::all_of(left_.begin(), left_.end(), closed) && !left_.empty()) {
+    left_ = {Candidate(*first_out)};
+  } else {
+    std::erase_if(left_, closed);
+  }
+}
+
+CandidateIterator::Next CandidateIterator::next(Duration remaining) {
+  situation_.remaining = remaining;
+  Selection selection = strategy_.select(left_, situation_);
+  situation_.exploration = 0;  // only a request's first choice explores
+  const auto chosen = left_.begin() + static_cast<std::ptrdiff_t>(selection.candidate);
+  Next next{std::move(*chosen), {}};
+  left_.erase(chosen);
+  next.choice = {next.candidate.name, remaining,          selection.slice,
+                 selection.expected,  selection.explores, std::move(selection.reason)};
+  return next;
 }
 
 }  // namespace skein

@@ -14,6 +14,9 @@ void add_calls(CLI::App& app, int& result);
 /// `skein check PROFILE`: everything that is wrong with a mission profile.
 void add_check(CLI::App& app, int& result);
 
+/// `skein decisions`: how the Heads on a domain decide, live or from a log.
+void add_decisions(CLI::App& app, int& result);
+
 /// `skein launch PROFILE`: each peer in a process of its own.
 void add_launch(CLI::App& app, int& result);
 

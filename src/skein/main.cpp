@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   skein::command::add_bench(app, result);
   skein::command::add_calls(app, result);
   skein::command::add_check(app, result);
+  skein::command::add_decisions(app, result);
   skein::command::add_launch(app, result);
   skein::command::add_peer(app, result);
   skein::command::add_services(app, result);

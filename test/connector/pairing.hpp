@@ -39,13 +39,14 @@ struct Pairing {
 
 inline std::unique_ptr<Entity> make_entity(const std::string& name, std::shared_ptr<dds::Vendor> vendor,
                                            const std::string& system = "uav-1",
-                                           std::shared_ptr<Process> process = nullptr) {
+                                           std::shared_ptr<Process> process = nullptr, HeadOptions head = {}) {
   EntityOptions options;
   options.name = name;
   options.system = system;
   options.vendor = std::move(vendor);
   options.domain = 17;
   options.process = std::move(process);
+  options.head = std::move(head);
   return std::make_unique<Entity>(std::move(options));
 }
 

@@ -64,3 +64,36 @@ TEST_CASE("CSPs come and go under load and no task is lost") {
   CHECK(wrong == 0);
   CHECK(right >= 5);
 }
+
+TEST_CASE("two CSPs take turns under load and no task is lost") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
+  Office office;
+  WorkTask task = Office::task();
+  task.run = [](crew::Worker::Proxy& worker, Duration) { return worker.async_work("x"); };
+  task.execution = execution;
+  office.add("even", place, answer_as("even"), declared("10", "0.9"));
+  std::atomic<bool> done = false;
+  std::atomic<int> right = 0, wrong = 0;
+  std::thread client([&] {
+    while (!done) {
+      try {
+        const std::string result = office.owner->head().perform(task, nullptr, 30s);
+        ++(result.ends_with(" did x") ? right : wrong);
+      } catch (const Error&) {
+        ++wrong;
+      }
+    }
+  });
+  std::string here = "even", next = "odd";
+  for (int round = 0; round < 8; ++round) {
+    const auto worker = office.add(next, place, answer_as(next), declared("10", "0.9"));
+    office.remove(here);
+    CHECK(eventually([&] { return worker->calls > 0; }));
+    std::swap(here, next);
+  }
+  done = true;
+  client.join();
+  CHECK(wrong == 0);
+  CHECK(right >= 8);
+}

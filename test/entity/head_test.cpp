@@ -56,7 +56,8 @@ TEST_CASE("only the CSP that is asked for by name runs") {
   CHECK(office.perform(task, 10s) == "quick did it");
   task.only = "nobody";
   CHECK_THROWS_AS(office.perform(task, 10s), Unavailable);
-  CHECK_THROWS_WITH(office.perform(task, 10s), Catch::Contains("'nobody'") && Catch::Contains("crew/Worker"));
+  CHECK_THROWS_WITH(office.perform(task, 10s),
+                    Catch::Contains("'nobody'") && Catch::Contains("crew/Worker"));
 }
 
 TEST_CASE("without any CSP a task is refused with the reason") {
@@ -68,12 +69,13 @@ TEST_CASE("without any CSP a task is refused with the reason") {
 TEST_CASE("a client's session selects by the strategy that it asked for") {
   struct Slowest final : SelectionStrategy {
     std::string name() const override { return "slowest"; }
-    Selection select(const std::vector<Candidate>& candidates, Duration remaining) const override {
+    Selection select(const std::vector<Candidate>& candidates,
+                     const Situation& situation) const override {
       std::size_t slowest = 0;
       for (std::size_t i = 1; i < candidates.size(); ++i) {
         if (candidates[i].latency > candidates[slowest].latency) slowest = i;
       }
-      return {slowest, remaining, "it is the slowest"};
+      return {slowest, situation.remaining, "it is the slowest"};
     }
   };
   Office office;
@@ -114,4 +116,36 @@ TEST_CASE("who works for the Head now is known while it works") {
   CHECK(running[0].csp == "slow");
   CHECK(running[0].pid == static_cast<std::uint32_t>(getpid()));
   CHECK(office.owner->head().running().empty());
+}
+
+TEST_CASE("a client changes its strategy by disconnecting and connecting again") {
+  Office office;
+  office.add("a", Place::Inside, answer_as("a"), declared("10", "0.1"));
+  office.add("b", Place::Inside, answer_as("b"), declared("10", "0.9"));
+  office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(office.owner->head()));
+  const auto client = make_client();
+  const std::string first = office.owner->broker().find_service(
+      office.owner->broker().query("crew/Worker")).front()->entity;
+  for (const std::string strategy : {"declared", "fixed_order", "learned"}) {
+    auto desk = client->connect<crew::Desk>({.strategy = strategy});
+    CHECK(desk.ask("it") == (strategy == "fixed_order" ? first : "b") + " did it");
+    CHECK(office.owner->head().decisions().back().strategy == strategy);
+    desk.disconnect();
+  }
+}
+
+TEST_CASE("a Body may call the CSP that the Head selects beforehand itself") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Office office;
+  office.add("better", place, answer_as("better"), declared("10", "0.9"));
+  office.add("other", Place::Inside, answer_as("other"), declared("10", "0.5"));
+  auto worker = office.owner->head().preselect<crew::Worker>();
+  CHECK(worker.work("a") == "better did a");
+  CHECK(worker.work("b") == "better did b");
+  CHECK(office.owner->head().decisions().empty());
+}
+
+TEST_CASE("without any CSP nothing can be selected beforehand") {
+  Office office;
+  CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>(), NoCandidate);
 }

@@ -32,7 +32,8 @@ inline ServiceOptions declared(const std::string& latency_ms, const std::string&
 /// An autonomous entity whose Head is tested, and its CSPs.
 class Office {
  public:
-  Office() : owner(make_entity("office", Pairing::get().server)) {}
+  explicit Office(HeadOptions head = {})
+      : owner(make_entity("office", Pairing::get().server, "uav-1", nullptr, std::move(head))) {}
 
   /// Adds a CSP and waits until the Head could select it.
   std::shared_ptr<ScriptedWorker> add(const std::string& name, Place place, ScriptedWorker::Script script,
@@ -82,6 +83,14 @@ class Office {
     std::vector<std::string> lines;
     for (const Attempt& attempt : record.attempts) lines.push_back(attempt.csp + " " + to_string(attempt.outcome));
     return lines;
+  }
+
+  /// The attempt of that CSP; throws where there is none.
+  const Attempt& attempt_of(const std::string& csp) const {
+    for (const Attempt& attempt : record.attempts) {
+      if (attempt.csp == csp) return attempt;
+    }
+    throw std::runtime_error(csp + " was not tried");
   }
 
   std::unique_ptr<Entity> owner;

@@ -15,6 +15,11 @@ std::string ScriptedWorker::work(const std::string& task) {
   return script_(task);
 }
 
+void ScriptedWorker::improve(const std::string& task, StreamSink<std::string>& sink) {
+  sink.push("draft of " + task);
+  sink.push(work(task));
+}
+
 ScriptedWorker::Script answer_as(const std::string& name) {
   return [name](const std::string& task) { return name + " did " + task; };
 }

@@ -15,6 +15,8 @@ class ScriptedWorker final : public crew::Worker {
   explicit ScriptedWorker(Script script) : script_(std::move(script)) {}
 
   std::string work(const std::string& task) override;
+  /// First `draft of TASK`, then what the script says.
+  void improve(const std::string& task, StreamSink<std::string>& sink) override;
 
   std::atomic<int> calls{0};
   std::atomic<int> inside{0};

@@ -18,8 +18,10 @@ Candidate candidate(std::string name, std::optional<Duration> latency, double qu
 const std::vector<Candidate> kThree{candidate("thorough", 1500ms, 0.95), candidate("quick", 20ms, 0.5),
                                     candidate("middling", 300ms, 0.9)};
 
+Selection declared(Duration remaining) { return make_declared_selection()->select(kThree, {.remaining = remaining}); }
+
 std::string chosen(const std::vector<Candidate>& candidates, Duration remaining) {
-  return candidates[make_declared_selection()->select(candidates, remaining).candidate].name;
+  return candidates[make_declared_selection()->select(candidates, {.remaining = remaining}).candidate].name;
 }
 
 }  // namespace
@@ -31,15 +33,15 @@ TEST_CASE("the best declared quality that fits into the time left is selected") 
 }
 
 TEST_CASE("where no declared latency fits the fastest is selected and gets all of the time") {
-  const Selection selection = make_declared_selection()->select(kThree, 5ms);
+  const Selection selection = declared(5ms);
   CHECK(kThree[selection.candidate].name == "quick");
   CHECK(selection.slice == 5ms);
   CHECK_THAT(selection.reason, Catch::Contains("no declared latency fits"));
 }
 
 TEST_CASE("time for the fastest other candidate is kept in reserve where that leaves enough") {
-  CHECK(make_declared_selection()->select(kThree, 2s).slice == 1980ms);
-  CHECK(make_declared_selection()->select(kThree, 1510ms).slice == 1510ms);
+  CHECK(declared(2s).slice == 1980ms);
+  CHECK(declared(1510ms).slice == 1510ms);
 }
 
 TEST_CASE("equal quality is decided by latency") {
@@ -51,13 +53,13 @@ TEST_CASE("a candidate that declares no latency is not ruled out by time") {
 }
 
 TEST_CASE("the reason of a selection names the candidate, its quality and the time") {
-  CHECK_THAT(make_declared_selection()->select(kThree, 2s).reason,
+  CHECK_THAT(declared(2s).reason,
              Catch::Contains("thorough") && Catch::Contains("0.95") && Catch::Contains("2000 ms") &&
                  Catch::Contains("1500 ms"));
 }
 
 TEST_CASE("the fixed order takes the first and shares the time evenly") {
-  const Selection selection = make_fixed_order_selection()->select(kThree, 900ms);
+  const Selection selection = make_fixed_order_selection()->select(kThree, {.remaining = 900ms});
   CHECK(selection.candidate == 0);
   CHECK(selection.slice == 300ms);
 }

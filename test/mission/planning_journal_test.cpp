@@ -16,11 +16,22 @@ Candidate candidate(const std::string& name, Duration latency, double quality) {
   return candidate;
 }
 
+Attempt attempt(const std::string& csp, const std::string& reason, Duration took, Attempt::Outcome outcome,
+                const std::string& text) {
+  Attempt attempt;
+  attempt.csp = csp;
+  attempt.reason = reason;
+  attempt.took = took;
+  attempt.outcome = outcome;
+  attempt.text = text;
+  return attempt;
+}
+
 DecisionRecord record() {
   DecisionRecord record;
   record.candidates = {candidate("RRTstar", 1500ms, 0.95), candidate("AStar", 300ms, 0.9)};
-  record.attempts = {{"RRTstar", 1s, 200ms, Attempt::Outcome::Disconnected, "it died", "it is the best"},
-                     {"AStar", 1s, 100ms, Attempt::Outcome::Accepted, "", "it is the next best"}};
+  record.attempts = {attempt("RRTstar", "it is the best", 200ms, Attempt::Outcome::Disconnected, "it died"),
+                     attempt("AStar", "it is the next best", 100ms, Attempt::Outcome::Accepted, "")};
   record.took = 301ms;
   return record;
 }

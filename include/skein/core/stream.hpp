@@ -110,6 +110,13 @@ class Stream {
     return Awaiter{*this};
   }
 
+  /// Whether next() would return at once.
+  bool ready() const { return pending_->ready(); }
+
+  /// Runs `action` once that is so, on the thread that delivers, which may be a vendor's: it must neither
+  /// block nor run user code. One action at a time, and no next_async() beside it.
+  void notify(std::function<void()> action) { pending_->on_ready(std::move(action)); }
+
   /// Tells the provider that nobody waits any more; a later next() throws Cancelled.
   void cancel() { pending_->drop(); }
 

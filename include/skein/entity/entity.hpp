@@ -35,6 +35,8 @@ struct EntityOptions {
   /// How long a thread that waits for the answer of a blocking call to another process looks for it
   /// before it sleeps: a wake-up saved for a processor spent.
   std::chrono::microseconds spin{0};
+  /// How its Head decides.
+  HeadOptions head{};
 };
 
 struct ServiceAttribute {

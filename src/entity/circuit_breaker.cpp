@@ -1,0 +1,45 @@
+#include "skein/entity/circuit_breaker.hpp"
+
+#include <algorithm>
+
+namespace skein {
+
+const char* to_string(CircuitBreaker::State state) noexcept {
+  switch (state) {
+    case CircuitBreaker::State::Closed:
+      return "closed";
+    case CircuitBreaker::State::Open:
+      return "open";
+    case CircuitBreaker::State::HalfOpen:
+      break;
+  }
+  return "half-open";
+}
+
+CircuitBreaker::State CircuitBreaker::state(Instant now) const noexcept {
+  if (quarantine_ == Duration::zero()) return State::Closed;
+  return probing_ || now < opened_ + quarantine_ ? State::Open : State::HalfOpen;
+}
+
+Duration CircuitBreaker::quarantine(Instant now) const noexcept {
+  return std::max(Duration::zero(), opened_ + quarantine_ - now);
+}
+
+void CircuitBreaker::begin(Instant now) noexcept { probing_ = state(now) != State::Closed; }
+
+void CircuitBreaker::succeed() noexcept {
+  faults_ = 0;
+  quarantine_ = Duration::zero();
+  probing_ = false;
+}
+
+void CircuitBreaker::fail(Instant now) noexcept {
+  probing_ = false;
+  if (++faults_ < rules_.faults && quarantine_ == Duration::zero()) return;
+  quarantine_ = quarantine_ == Duration::zero()
+                    ? rules_.first_quarantine
+                    : std::min(2 * quarantine_, rules_.longest_quarantine);
+  opened_ = now;
+}
+
+}  // namespace skein

@@ -1,0 +1,64 @@
+#include "selection_text.hpp"
+#include "skein/entity/decision.hpp"
+
+namespace skein {
+namespace {
+
+using selection_text::in_ms;
+using selection_text::number;
+
+std::string learned_text(const Prediction& learned) {
+  std::string text = "has shown over " + std::to_string(learned.samples) + " like runs";
+  if (learned.median) text += " " + in_ms(*learned.median);
+  if (learned.q95) text += ", " + in_ms(*learned.q95) + " at 95 %";
+  if (learned.quality) text += ", quality " + number(*learned.quality);
+  return text + ", " + number(100 * learned.reliability) + " % accepted";
+}
+
+std::string line_of(const Candidate& candidate) {
+  std::string text = "  " + candidate.name;
+  text +=
+      candidate.in_process ? " (in the process)" : " (pid " + std::to_string(candidate.pid) + ")";
+  text += candidate.latency ? " declares " + in_ms(*candidate.latency) : " declares no latency";
+  text += ", quality " + number(candidate.quality);
+  text += candidate.learned ? "; " + learned_text(*candidate.learned) : "; has not run before";
+  if (candidate.breaker == CircuitBreaker::State::Open) {
+    text += "; in quarantine for " + in_ms(candidate.quarantine) + " more";
+  } else if (candidate.breaker == CircuitBreaker::State::HalfOpen) {
+    text += "; may be probed after quarantine";
+  }
+  return text + "\n";
+}
+
+std::string line_of(const Attempt& attempt) {
+  std::string text = "  at " + in_ms(attempt.began) + " " + attempt.csp + ", for " +
+                     in_ms(attempt.slice) + ": " + attempt.reason + "\n    " +
+                     to_string(attempt.outcome) + " after " + in_ms(attempt.took);
+  if (!attempt.check.empty()) text += " by the check '" + attempt.check + "'";
+  if (attempt.quality) text += ", quality " + number(*attempt.quality);
+  if (!attempt.text.empty()) text += ": " + attempt.text;
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string explain(const DecisionRecord& record) {
+  std::string text = "decision " + std::to_string(record.number) + " of " + record.entity;
+  if (!record.request.empty()) text += " on '" + record.request + "'";
+  text += ": " + record.interface + " within " + in_ms(record.available) + ", strategy " +
+          record.strategy + ", " + record.execution + " at a time\n";
+  for (const Feature& feature : record.situation.features) {
+    text += "  " + feature.name + " = " + number(feature.value) + "\n";
+  }
+  for (const Candidate& candidate : record.candidates) text += line_of(candidate);
+  for (const Attempt& attempt : record.attempts) text += line_of(attempt);
+  if (record.stuck > 0)
+    text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";
+  text += record.failure.empty() ? "  answered" : "  failed";
+  text += " after " + in_ms(record.took);
+  if (!record.synthesis.empty()) text += ": " + record.synthesis;
+  if (!record.failure.empty()) text += ": " + record.failure;
+  return text + "\n";
+}
+
+}  // namespace skein

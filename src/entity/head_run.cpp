@@ -1,0 +1,234 @@
+#include "head_run.hpp"
+
+#include <algorithm>
+
+#include "skein/core/error.hpp"
+
+namespace skein {
+namespace {
+
+using Outcome = Attempt::Outcome;
+using task_run::Verdict;
+
+// A CSP whose connection is not open by then is passed over: it is about to leave, or was not
+// found.
+constexpr std::chrono::seconds kOpeningPatience{2};
+
+// A CSP that takes so many times as long as was expected of it hangs.
+constexpr int kHangs = 4;
+
+}  // namespace
+
+Verdict task_run::verdict_of_current_exception() {
+  Verdict verdict;
+  verdict.error = std::current_exception();
+  try {
+    throw;
+  } catch (const UserException& exception) {
+    verdict.outcome = Outcome::Refused;
+    verdict.fault = false;
+    verdict.text = exception.what();
+  } catch (const Error& error) {
+    verdict.text = error.what();
+    if (error.code() == ErrorCode::TimedOut) verdict.outcome = Outcome::TimedOut;
+    if (error.code() == ErrorCode::Disconnected) verdict.outcome = Outcome::Disconnected;
+    // Not executed: nothing is known of how it works.
+    verdict.fault = error.code() != ErrorCode::Unavailable && error.code() != ErrorCode::Overloaded;
+  } catch (const std::exception& exception) {
+    verdict.text = exception.what();
+  } catch (...) {
+    verdict.text = "it threw something that is no std::exception";
+  }
+  return verdict;
+}
+
+void Head::Run::Bell::ring() {
+  std::lock_guard lock(mutex_);
+  rung_ = true;
+  changed_.notify_one();
+}
+
+void Head::Run::Bell::await() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return rung_; });
+  rung_ = false;
+}
+
+Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
+               task_run::TaskRun& task, DecisionRecord& record, Instant begin)
+    : state_(state),
+      interface_(interface),
+      task_(task),
+      record_(record),
+      begin_(begin),
+      deadline_(begin + record.available),
+      iterator_(strategy, record.candidates, record.situation) {
+  last_.error = std::make_exception_ptr(TimedOut("no time was left to run a CSP"));
+}
+
+bool Head::Run::run() {
+  while (!done_ && !settled_) {
+    while (may_begin()) begin_next();
+    if (live_.empty()) {
+      if (!look_again()) break;
+      continue;
+    }
+    await();
+    judge_ready();
+  }
+  if (!done_ && !settled_) {
+    if (auto how = task_.synthesise()) {
+      record_.synthesis = std::move(*how);
+      done_ = true;
+    }
+  }
+  cancel_rest();
+  return done_;
+}
+
+// Where all have failed others may have joined: those that left, say, have been replaced.
+bool Head::Run::look_again() {
+  if (done_ || settled_ || now() >= deadline_) return false;
+  const auto& options = task_.options();
+  auto joined = state_.candidates(interface_, options.only, options.features);
+  std::erase_if(joined, [&](const Candidate& candidate) {
+    return std::any_of(record_.candidates.begin(), record_.candidates.end(),
+                       [&](const Candidate& known) { return known.provider == candidate.provider; });
+  });
+  if (joined.empty()) return false;
+  ++round_;
+  for (Candidate& candidate : joined) candidate.round = round_;
+  record_.candidates.insert(record_.candidates.end(), joined.begin(), joined.end());
+  iterator_.add(std::move(joined));
+  return true;
+}
+
+bool Head::Run::may_begin() const {
+  if (done_ || settled_ || iterator_.done() || now() >= deadline_) return false;
+  if (live_.empty()) return true;
+  if (live_.size() >= task_.options().width) return false;
+  switch (task_.options().execution) {
+    case Execution::One:
+      return false;
+    case Execution::Staggered:
+      return late_at_ && now() >= *late_at_;
+    case Execution::All:
+      break;
+  }
+  return true;
+}
+
+void Head::Run::begin_next() { begin(iterator_.next(deadline_ - now())); }
+
+void Head::Run::begin(CandidateIterator::Next next) {
+  const Instant began = now();
+  Attempt& attempt = record_.attempts.emplace_back();
+  static_cast<Choice&>(attempt) = std::move(next.choice);
+  attempt.round = round_;
+  attempt.began = began - begin_;
+  Live live{record_.attempts.size() - 1, std::move(next.candidate), 0, nullptr};
+  if (!state_.begin(interface_, live.candidate, live.run)) {
+    attempt.outcome = Outcome::Cancelled;
+    attempt.text = "it has been quarantined meanwhile";
+    return;
+  }
+  const Instant end =
+      task_.options().execution == Execution::One ? began + attempt.slice : deadline_;
+  // What is late before the next may begin is late only by what it was expected to take.
+  late_at_ =
+      began + (attempt.expected > Duration::zero() ? std::min(attempt.expected, attempt.slice)
+                                                   : attempt.slice);
+  try {
+    auto channel =
+        state_.channel_to(live.candidate, std::min(end - began, Duration(kOpeningPatience)));
+    live.work =
+        task_.begin(std::move(channel), std::max(Duration::zero(), end - now()), live.candidate);
+    live_.push_back(std::move(live));
+  } catch (...) {
+    note(live, task_run::verdict_of_current_exception());
+  }
+}
+
+bool Head::Run::waits_for_late_ones() const {
+  return task_.options().execution == Execution::Staggered && !iterator_.done() &&
+         live_.size() < task_.options().width;
+}
+
+// A CSP that works alone is waited for in its call itself.
+void Head::Run::await() {
+  if (live_.size() == 1 && !waits_for_late_ones()) return;
+  for (const Live& live : live_) {
+    if (live.work->ready()) return;
+  }
+  for (const Live& live : live_) live.work->notify([bell = bell_] { bell->ring(); });
+  Clock& clock = state_.parts.clock;
+  const TimerId timer = waits_for_late_ones()
+                            ? clock.call_at(*late_at_, [bell = bell_] { bell->ring(); })
+                            : TimerId(0);
+  bell_->await();
+  clock.cancel(timer);
+}
+
+void Head::Run::judge_ready() {
+  const bool alone = live_.size() == 1 && !waits_for_late_ones();
+  for (std::size_t i = 0; i < live_.size() && !done_ && !settled_;) {
+    if (!alone && !live_[i].work->ready()) {
+      ++i;
+      continue;
+    }
+    Live live = std::move(live_[i]);
+    live_.erase(live_.begin() + static_cast<std::ptrdiff_t>(i));
+    note(live, live.work->judge());
+    conclude_if_enough();
+  }
+}
+
+void Head::Run::note(Live& live, Verdict verdict) {
+  Attempt& attempt = record_.attempts[live.attempt];
+  attempt.took = now() - begin_ - attempt.began;
+  attempt.outcome = verdict.outcome;
+  attempt.check = verdict.check;
+  attempt.text = verdict.text;
+  attempt.quality = verdict.quality;
+  // Late by less is a matter of load, and for the history.
+  const bool hardly_late =
+      verdict.outcome == Outcome::TimedOut && attempt.took < kHangs * attempt.expected;
+  state_.end(interface_, live.candidate, record_.situation.features, live.run, attempt,
+             verdict.fault && !hardly_late);
+  settled_ = verdict.settled;
+  last_ = std::move(verdict);
+}
+
+void Head::Run::conclude_if_enough() {
+  const std::size_t enough = task_.options().enough;
+  if (last_.outcome != Outcome::Accepted || enough == TaskOptions::kAll ||
+      task_.accepted() < enough)
+    return;
+  if (auto how = task_.synthesise()) {
+    record_.synthesis = std::move(*how);
+    done_ = true;
+  }
+}
+
+void Head::Run::cancel_rest() {
+  for (Live& live : live_) {
+    Verdict verdict;
+    verdict.outcome = Outcome::Cancelled;
+    verdict.fault = false;
+    verdict.text = done_ ? "others were enough" : "another CSP's word settled the matter";
+    const Verdict last = std::exchange(last_, {});
+    note(live, std::move(verdict));
+    last_ = last;
+  }
+  live_.clear();
+}
+
+void Head::Run::fail() const {
+  if (task_.accepted() > 0 && !settled_) {
+    throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
+  }
+  if (last_.error) std::rethrow_exception(last_.error);
+  throw NoneAccepted("no result was good enough; the last one: " + last_.text);
+}
+
+}  // namespace skein

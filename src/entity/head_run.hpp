@@ -1,0 +1,72 @@
+#pragma once
+
+#include <condition_variable>
+#include <optional>
+
+#include "head_state.hpp"
+
+namespace skein {
+
+/// One request on its way through the Head, on the caller's thread.
+class Head::Run {
+ public:
+  /// All arguments outlive the run. `record` has the candidates.
+  Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
+      task_run::TaskRun& task, DecisionRecord& record, Instant begin);
+
+  /// Until there is a result, no CSP is left, or the time is up. Whether there is a result.
+  bool run();
+
+  /// Throws why there is none.
+  [[noreturn]] void fail() const;
+
+ private:
+  /// One CSP at work.
+  struct Live {
+    std::size_t attempt;  // index into the record's
+    Candidate candidate;
+    std::uint64_t run;
+    std::unique_ptr<task_run::Work> work;
+  };
+
+  /// Where the caller's thread waits for several CSPs.
+  class Bell {
+   public:
+    void ring();
+    void await();
+
+   private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool rung_ = false;
+  };
+
+  Instant now() const { return state_.parts.clock.now(); }
+  bool may_begin() const;
+  void begin_next();
+  bool look_again();
+  void begin(CandidateIterator::Next next);
+  void await();
+  void judge_ready();
+  void note(Live& live, task_run::Verdict verdict);
+  void conclude_if_enough();
+  void cancel_rest();
+  bool waits_for_late_ones() const;
+
+  State& state_;
+  const InterfaceInfo& interface_;
+  task_run::TaskRun& task_;
+  DecisionRecord& record_;
+  const Instant begin_;
+  const Instant deadline_;
+  CandidateIterator iterator_;
+  std::uint32_t round_ = 0;
+  std::vector<Live> live_;
+  std::optional<Instant> late_at_;
+  std::shared_ptr<Bell> bell_ = std::make_shared<Bell>();
+  task_run::Verdict last_;
+  bool done_ = false;
+  bool settled_ = false;
+};
+
+}  // namespace skein

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+
+#include "skein/core/call_context.hpp"
+#include "skein/entity/selection.hpp"
+
+namespace skein {
+
+/// What a connected client has asked the Head for.
+struct HeadSession final : Session {
+  explicit HeadSession(std::shared_ptr<const SelectionStrategy> asked)
+      : strategy(std::move(asked)) {}
+  const std::shared_ptr<const SelectionStrategy> strategy;
+};
+
+}  // namespace skein

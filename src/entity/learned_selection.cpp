@@ -1,0 +1,161 @@
+#include <algorithm>
+
+#include "selection_text.hpp"
+#include "skein/entity/selection.hpp"
+
+namespace skein {
+namespace {
+
+using selection_text::in_ms;
+using selection_text::number;
+
+// Utilities this near to each other are taken for equal: they rest on few samples.
+constexpr double kEqual = 0.95;
+// So that reliability counts where neither declares nor measures a quality.
+constexpr double kLeastQuality = 1e-9;
+
+// What is expected of a candidate: of its history, or of its description where it has none.
+struct Outlook {
+  explicit Outlook(const Candidate& candidate) {
+    typical = safe = candidate.latency.value_or(Duration::zero());
+    double quality = candidate.quality;
+    double reliability = 1;
+    if (const auto& learned = candidate.learned) {
+      typical = learned->median.value_or(typical);
+      safe = learned->q95.value_or(safe);
+      quality = learned->quality.value_or(quality);
+      reliability = learned->reliability;
+    }
+    utility = reliability * std::max(quality, kLeastQuality);
+  }
+
+  Duration typical;
+  Duration safe;
+  double utility;
+};
+
+class Choice {
+ public:
+  Choice(const std::vector<Candidate>& candidates, const Situation& situation)
+      : candidates_(candidates),
+        situation_(situation),
+        outlooks_(candidates.begin(), candidates.end()) {}
+
+  Selection select() const {
+    const auto best = best_that_fits();
+    if (!best) return fastest_anyway();
+    if (const auto other = to_explore(*best)) return explore(*other, *best);
+    return take(*best);
+  }
+
+ private:
+  std::optional<std::size_t> best_that_fits() const {
+    double greatest = 0;
+    for (const Outlook& outlook : outlooks_) {
+      if (outlook.safe <= situation_.remaining) greatest = std::max(greatest, outlook.utility);
+    }
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < outlooks_.size(); ++i) {
+      if (outlooks_[i].safe > situation_.remaining || outlooks_[i].utility < kEqual * greatest)
+        continue;
+      if (!best || outlooks_[i].typical < outlooks_[*best].typical) best = i;
+    }
+    return best;
+  }
+
+  // The one that has not run for longest, where there is time for it and then for the best.
+  std::optional<std::size_t> to_explore(std::size_t best) const {
+    const auto& past = situation_.past;
+    if (static_cast<double>(past.explored + 1) >
+        situation_.exploration * static_cast<double>(past.made + 1)) {
+      return std::nullopt;
+    }
+    std::optional<std::size_t> other;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      if (i == best || outlooks_[i].safe + outlooks_[best].safe > situation_.remaining) continue;
+      if (!other || idle(i) > idle(*other)) other = i;
+    }
+    return other;
+  }
+
+  std::uint64_t idle(std::size_t index) const {
+    const auto& learned = candidates_[index].learned;
+    return learned ? learned->idle : UINT64_MAX;
+  }
+
+  Selection explore(std::size_t other, std::size_t best) const {
+    std::string reason = candidates_[other].name + " is tried to learn of it";
+    reason += candidates_[other].learned
+                  ? " (it has not run for " + std::to_string(candidates_[other].learned->idle) +
+                        " decisions)"
+                  : " (it has not run before)";
+    reason += "; " + in_ms(outlooks_[best].safe) + " are kept for " + candidates_[best].name +
+              ", which is the best by its history";
+    return {other, situation_.remaining - outlooks_[best].safe, std::move(reason),
+            outlooks_[other].safe, true};
+  }
+
+  Selection take(std::size_t best) const {
+    const Duration reserve = reserve_beside(best);
+    std::string reason = candidates_[best].name + " has " + outlook_text(best) +
+                         ": the best that fits into " + in_ms(situation_.remaining);
+    if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
+    return {best, situation_.remaining - reserve, std::move(reason), outlooks_[best].safe};
+  }
+
+  std::string outlook_text(std::size_t index) const {
+    const Candidate& candidate = candidates_[index];
+    std::string text =
+        candidate.learned
+            ? "by its last " + std::to_string(candidate.learned->samples) + " like runs "
+            : "by its description (it has not run before) ";
+    text += "a 95 % latency of " + in_ms(outlooks_[index].safe) + ", quality " +
+            number(candidate.learned ? candidate.learned->quality.value_or(candidate.quality)
+                                     : candidate.quality);
+    if (candidate.learned)
+      text += " and " + number(100 * candidate.learned->reliability) + " % accepted";
+    return text;
+  }
+
+  Duration reserve_beside(std::size_t best) const {
+    std::optional<Duration> least;
+    for (std::size_t i = 0; i < outlooks_.size(); ++i) {
+      if (i != best) least = std::min(least.value_or(Duration::max()), outlooks_[i].safe);
+    }
+    const Duration reserve = least.value_or(Duration::zero());
+    return outlooks_[best].safe + reserve <= situation_.remaining ? reserve : Duration::zero();
+  }
+
+  Selection fastest_anyway() const {
+    std::size_t fastest = 0;
+    for (std::size_t i = 1; i < outlooks_.size(); ++i) {
+      if (outlooks_[i].safe < outlooks_[fastest].safe) fastest = i;
+    }
+    return {fastest, situation_.remaining,
+            "no predicted latency fits into " + in_ms(situation_.remaining) + "; " +
+                candidates_[fastest].name + " is the fastest (" + in_ms(outlooks_[fastest].safe) +
+                " at 95 %)",
+            outlooks_[fastest].safe};
+  }
+
+  const std::vector<Candidate>& candidates_;
+  const Situation& situation_;
+  const std::vector<Outlook> outlooks_;
+};
+
+class LearnedSelection final : public SelectionStrategy {
+ public:
+  std::string name() const override { return "learned"; }
+  Selection select(const std::vector<Candidate>& candidates,
+                   const Situation& situation) const override {
+    return Choice(candidates, situation).select();
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const SelectionStrategy> make_learned_selection() {
+  return std::make_shared<LearnedSelection>();
+}
+
+}  // namespace skein

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "skein/core/clock.hpp"
+
+/// How reasons are put in words.
+namespace skein::selection_text {
+
+inline std::string number(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+/// Whole milliseconds; below ten with a tenth.
+inline std::string in_ms(Duration duration) {
+  const auto tenths =
+      std::chrono::duration_cast<std::chrono::duration<long long, std::ratio<1, 10000>>>(duration)
+          .count();
+  if (tenths >= 100 || tenths % 10 == 0) return std::to_string(tenths / 10) + " ms";
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " ms";
+}
+
+}  // namespace skein::selection_text

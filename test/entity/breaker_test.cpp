@@ -1,0 +1,88 @@
+#include <catch2/catch.hpp>
+
+#include "office.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+constexpr CircuitBreaker::Rules kHasty{
+    .faults = 2, .first_quarantine = 1ms, .longest_quarantine = 1ms};
+
+ScriptedWorker::Script crash_while(std::shared_ptr<std::atomic<bool>> sick) {
+  return [sick](const std::string& task) -> std::string {
+    if (*sick) throw std::runtime_error("a bug");
+    return "patient did " + task;
+  };
+}
+
+}  // namespace
+
+TEST_CASE("a CSP that fails again and again is quarantined, whatever it declares") {
+  Office office;
+  const auto sick = std::make_shared<std::atomic<bool>>(true);
+  const auto patient =
+      office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
+  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  for (int i = 0; i < 3; ++i) office.perform(Office::task(), 10s);
+  CHECK(office.attempts() == Lines{"patient failed", "sound accepted"});
+  office.perform(Office::task(), 10s);
+  CHECK(office.attempts() == Lines{"sound accepted"});
+  CHECK(patient->calls == 3);
+}
+
+TEST_CASE("after its quarantine a CSP is probed, and works again once it is well") {
+  Office office(HeadOptions{.breaker = kHasty});
+  const auto sick = std::make_shared<std::atomic<bool>>(true);
+  const auto patient =
+      office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
+  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  CHECK(eventually([&] {
+    office.perform(Office::task(), 10s);
+    return patient->calls >= 4;
+  }));
+  *sick = false;
+  CHECK(eventually([&] { return office.perform(Office::task(), 10s) == "patient did it"; }));
+  office.perform(Office::task(), 10s);
+  CHECK(office.attempts() == Lines{"patient accepted"});
+}
+
+TEST_CASE("where every CSP is quarantined the one whose quarantine ends first is tried") {
+  Office office;
+  const auto sick = std::make_shared<std::atomic<bool>>(true);
+  office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
+  for (int i = 0; i < 3; ++i) CHECK_THROWS_WITH(office.perform(Office::task(), 10s), "a bug");
+  *sick = false;
+  CHECK(office.perform(Office::task(), 10s) == "patient did it");
+  CHECK(office.record.candidates[0].breaker == CircuitBreaker::State::Open);
+}
+
+TEST_CASE("what is late by less than four times what was expected of it is not quarantined") {
+  Hang hang;
+  Office office;
+  office.add("thorough", Place::Outside, hang.script(), declared("60000", "0.9"));
+  for (int i = 0; i < 4; ++i) CHECK_THROWS_AS(office.perform(Office::task(), 30ms), TimedOut);
+  CHECK(office.record.candidates[0].breaker == CircuitBreaker::State::Closed);
+  hang.release();
+}
+
+TEST_CASE(
+    "a result of which the CSP itself admits that it is approximate is no success and no fault") {
+  Office office;
+  office.add("rough", Place::Inside, answer_as("about"), declared("10", "0.9"));
+  office.add("exact", Place::Inside, answer_as("exact"), declared("10", "0.5"));
+  WorkTask task = Office::task();
+  task.evaluate = {};
+  task.evaluate.admitted("exact", [](const std::string& result) {
+    return result.starts_with("about") ? std::optional<std::string>("it is approximate")
+                                       : std::nullopt;
+  });
+  for (int i = 0; i < 5; ++i) {
+    CHECK(office.perform(task, 10s) == "exact did it");
+    CHECK(office.attempts() == Lines{"rough rejected", "exact accepted"});
+    CHECK(office.record.attempts[0].check == "exact");
+  }
+}

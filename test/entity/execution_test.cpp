@@ -1,0 +1,180 @@
+#include <catch2/catch.hpp>
+
+#include "office.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+/// A task that may run on several CSPs at a time.
+WorkTask task(Execution execution, std::size_t enough = 1) {
+  WorkTask task = Office::task();
+  task.run = [](crew::Worker::Proxy& worker, Duration) { return worker.async_work("it"); };
+  task.execution = execution;
+  task.enough = enough;
+  return task;
+}
+
+ScriptedWorker::Script say(const std::string& words) {
+  return [words](const std::string&) { return words; };
+}
+
+}  // namespace
+
+TEST_CASE(
+    "of all that work at once the first acceptable result is taken, and the slowest is not waited "
+    "for") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Hang hang;
+  Office office;
+  const auto slow = office.add("slow", place, hang.script(), declared("10", "0.9"));
+  office.add("wrong", Place::Inside, say("wrong"), declared("10", "0.8"));
+  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.1"));
+  CHECK(office.perform(task(Execution::All), 60s) == "quick did it");
+  CHECK(office.attempt_of("slow").outcome == Attempt::Outcome::Cancelled);
+  CHECK(office.attempt_of("quick").outcome == Attempt::Outcome::Accepted);
+  CHECK(office.record.execution == "all");
+  CHECK(office.record.took < 30s);
+  hang.release();
+}
+
+TEST_CASE("the next CSP begins when the first is late, and the late one may still win") {
+  Hang hang, other_hang;
+  Office office;
+  const auto late = office.add("late", Place::Outside, hang.script(), declared("50", "0.9"));
+  const auto next = office.add("next", Place::Outside, other_hang.script(), declared("50", "0.5"));
+  std::string result;
+  std::thread performer([&] { result = office.perform(task(Execution::Staggered), 60s); });
+  const bool both = eventually([&] { return late->inside == 1 && next->inside == 1; });
+  SECTION("the late one") {
+    hang.release();
+    performer.join();
+    CHECK(office.attempts() == Lines{"late accepted", "next cancelled"});
+    other_hang.release();
+  }
+  SECTION("the next one") {
+    other_hang.release();
+    performer.join();
+    CHECK(office.attempts() == Lines{"late cancelled", "next accepted"});
+    hang.release();
+  }
+  REQUIRE(both);
+  CHECK(office.record.attempts[1].began >= 50ms);
+}
+
+TEST_CASE("where the first is not late no other CSP begins") {
+  Office office;
+  office.add("first", Place::Inside, answer_as("first"), declared("5000", "0.9"));
+  const auto second =
+      office.add("second", Place::Inside, answer_as("second"), declared("5000", "0.5"));
+  CHECK(office.perform(task(Execution::Staggered), 60s) == "first did it");
+  CHECK(second->calls == 0);
+}
+
+TEST_CASE("a vote ends as soon as enough agree") {
+  Hang hang;
+  Office office;
+  office.add("a", Place::Inside, say("yes"), declared("10", "0.5"));
+  office.add("b", Place::Outside, say("no"), declared("10", "0.5"));
+  office.add("c", Place::Outside, say("yes"), declared("10", "0.5"));
+  office.add("d", Place::Outside, hang.script(), declared("10", "0.5"));
+  WorkTask vote = task(Execution::All, 2);
+  vote.synthesis = majority_vote<std::string>(2);
+  CHECK(office.perform(vote, 60s) == "yes");
+  CHECK_THAT(office.record.synthesis,
+             Catch::Contains("a") && Catch::Contains("c") && Catch::Contains("agree"));
+  hang.release();
+}
+
+TEST_CASE("where no majority agrees the task fails and says so") {
+  Office office;
+  office.add("a", Place::Inside, say("yes"), declared("10", "0.5"));
+  office.add("b", Place::Inside, say("no"), declared("10", "0.5"));
+  WorkTask vote = task(Execution::All, 2);
+  vote.synthesis = majority_vote<std::string>(2);
+  CHECK_THROWS_AS(office.perform(vote, 60s), NoneAccepted);
+  CHECK_THAT(office.record.failure, Catch::Contains("do not agree"));
+}
+
+TEST_CASE("the best of all results is taken when all have answered, or the time is up") {
+  Hang hang;
+  Office office;
+  office.add("short", Place::Inside, say("x"), declared("10", "0.5"));
+  office.add("long", Place::Outside, say("xxxx"), declared("10", "0.5"));
+  if (GENERATE(false, true))
+    office.add("hung", Place::Outside, hang.script(), declared("10", "0.5"));
+  WorkTask best = task(Execution::All, TaskOptions::kAll);
+  SECTION("by quality") {
+    best.quality = [](const std::string& result) { return static_cast<double>(result.size()); };
+    CHECK(office.perform(best, 1s) == "xxxx");
+    CHECK(office.attempt_of("long").quality == 4.0);
+  }
+  SECTION("by cost") {
+    best.synthesis = best_by_cost<std::string>(
+        [](const std::string& result) { return static_cast<double>(result.size()); });
+    CHECK(office.perform(best, 1s) == "x");
+  }
+  hang.release();
+}
+
+TEST_CASE("no more CSPs work at a time than the task allows") {
+  Hang hang;
+  Office office;
+  for (const char* name : {"a", "b", "c"})
+    office.add(name, Place::Outside, hang.script(), declared("10", "0.5"));
+  WorkTask two = task(Execution::All);
+  two.width = 2;
+  CHECK_THROWS_AS(office.perform(two, 500ms), TimedOut);
+  CHECK(office.record.attempts.size() == 2);
+  hang.release();
+}
+
+TEST_CASE("the answer is there at the deadline although every CSP hangs") {
+  const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Hang hang;
+  Office office(HeadOptions{.most_stuck = 2});
+  for (const char* name : {"a", "b", "c"})
+    office.add(name, place, hang.script(), declared("10", "0.5"));
+  CHECK_THROWS_AS(office.perform(task(execution), 300ms), TimedOut);
+  CHECK(office.record.took < 10s);
+  CHECK(office.record.took >= 300ms);
+  CHECK(office.record.stuck == (place == Place::Inside ? office.record.attempts.size() : 0));
+  CHECK(office.owner->head().degraded() == (place == Place::Inside));
+  hang.release();
+  CHECK(eventually([&] { return !office.owner->head().degraded(); }));
+}
+
+TEST_CASE("who hangs in another process is told") {
+  Hang hang;
+  std::vector<std::string> told;
+  HeadOptions options;
+  options.on_hang = [&](const Candidate& candidate) { told.push_back(candidate.name); };
+  Office office(options);
+  office.add("inside", Place::Inside, hang.script(), declared("10", "0.5"));
+  office.add("outside", Place::Outside, hang.script(), declared("10", "0.9"));
+  CHECK_THROWS_AS(office.perform(task(Execution::One), 300ms), TimedOut);
+  CHECK(told == Lines{"outside"});
+  hang.release();
+}
+
+TEST_CASE("of a stream of results the last one counts, and at the deadline the last so far") {
+  const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  Hang hang;
+  Office office;
+  WorkTask anytime = task(execution);
+  anytime.run = [](crew::Worker::Proxy& worker, Duration) { return worker.improve("it"); };
+  SECTION("the last one") {
+    office.add("quick", place, answer_as("quick"), declared("10", "0.9"));
+    CHECK(office.perform(anytime, 60s) == "quick did it");
+  }
+  SECTION("the last so far") {
+    office.add("slow", place, hang.script(), declared("10", "0.9"));
+    CHECK(office.perform(anytime, 500ms) == "draft of it");
+  }
+  hang.release();
+}

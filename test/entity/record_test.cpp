@@ -1,0 +1,193 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+
+#include "office.hpp"
+#include "skein/entity/decision_topic.hpp"
+#include "skein/idl/type_support.hpp"
+#include "skein/introspection.idl.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using introspection::Decision;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+struct File {
+  explicit File(const std::string& name)
+      : path("record_test." + std::to_string(getpid()) + "." + name) {}
+  ~File() { std::remove(path.c_str()); }
+  Lines lines() const {
+    Lines lines;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  }
+  const std::string path;
+};
+
+std::vector<Choice> choices(const DecisionRecord& record) {
+  return {record.attempts.begin(), record.attempts.end()};
+}
+
+/// Two that disagree with what they declare, one that crashes, and a task with features.
+struct Mixed {
+  explicit Mixed(HeadOptions options) : office(std::move(options)) {
+    office.add(
+        "wrong", Place::Inside, [](const std::string&) { return std::string("wrong"); },
+        declared("20", "0.9"));
+    office.add(
+        "crash", Place::Inside,
+        [](const std::string&) -> std::string { throw std::runtime_error("a bug"); },
+        declared("30", "0.7"));
+    office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+    task.request = "route 7";
+    task.quality = [](const std::string&) { return 0.3; };
+  }
+  void perform(int times) {
+    for (int i = 0; i < times; ++i) {
+      task.features = {{"size", 100.0 + i}};
+      office.perform(task, 10s);
+    }
+  }
+  Office office;
+  WorkTask task = Office::task();
+};
+
+}  // namespace
+
+TEST_CASE("each decision's choices come out of its record again, bit for bit") {
+  const std::string strategy = GENERATE("learned", "declared", "fixed_order");
+  Mixed mixed({.strategy = strategy, .exploration = 0.3});
+  mixed.perform(40);
+  bool explored = false;
+  for (const DecisionRecord& record : mixed.office.owner->head().decisions()) {
+    const auto carried = record_of(idl::from_json<Decision>(idl::to_json(report_of(record))));
+    REQUIRE(replay(carried) == choices(record));
+    REQUIRE(report_of(carried) == report_of(record));
+    for (const Attempt& attempt : record.attempts) explored = explored || attempt.explores;
+  }
+  CHECK(explored == (strategy == "learned"));
+}
+
+TEST_CASE("a record that was changed does not come out again") {
+  Mixed mixed({.strategy = "learned"});
+  mixed.perform(3);
+  DecisionRecord record = mixed.office.owner->head().decisions().back();
+  std::swap(record.candidates.front().quality, record.candidates.back().quality);
+  for (Candidate& candidate : record.candidates) candidate.learned.reset();
+  CHECK(replay(record) != choices(record));
+  record.strategy = "no such";
+  CHECK_THROWS_AS(replay(record), InvalidArgument);
+}
+
+TEST_CASE(
+    "a record tells of features, predictions, breakers, the check that rejected, and the request") {
+  Mixed mixed({});
+  mixed.perform(4);
+  const auto& record = mixed.office.record;
+  CHECK(record.entity == "uav-1/office");
+  CHECK(record.request == "route 7");
+  CHECK(record.situation.features == Features{{"size", 103}});
+  CHECK(record.failure.empty());
+  CHECK(record.number == 4);
+  REQUIRE(record.candidates.size() == 3);
+  for (const Candidate& candidate : record.candidates) {
+    const bool sound = candidate.name == "sound";
+    CHECK(candidate.breaker ==
+          (sound ? CircuitBreaker::State::Closed : CircuitBreaker::State::Open));
+    REQUIRE(candidate.learned);
+    CHECK(candidate.learned->samples == 3);
+    CHECK(candidate.learned->reliability == (sound ? 1 : 0.25));
+    CHECK(candidate.learned->median.has_value() == sound);
+  }
+  CHECK(mixed.office.attempts() == Lines{"sound accepted"});
+  CHECK(record.attempts[0].quality == 0.3);
+  const auto first = mixed.office.owner->head().decisions().front();
+  REQUIRE(first.attempts.size() == 3);
+  CHECK(first.attempts[0].check == "evaluation");
+  CHECK(first.attempts[0].text == "it is wrong");
+  CHECK(first.attempts[2].began >= first.attempts[1].began);
+}
+
+TEST_CASE("a decision is explained in plain words") {
+  Mixed mixed({});
+  mixed.perform(4);
+  CHECK_THAT(explain(mixed.office.owner->head().decisions().front()),
+             Catch::Contains("on 'route 7'") &&
+                 Catch::Contains("wrong (in the process) declares 20 ms") &&
+                 Catch::Contains("rejected after") &&
+                 Catch::Contains("by the check 'evaluation': it is wrong") &&
+                 Catch::Contains("failed after") && Catch::Contains("a bug") &&
+                 Catch::Contains("answered after"));
+  CHECK_THAT(explain(mixed.office.record),
+             Catch::Contains("in quarantine for") && Catch::Contains("has shown over 3 like runs"));
+}
+
+TEST_CASE("decisions without a result are recorded with the reason") {
+  Office office;
+  CHECK_THROWS_AS(office.perform(Office::task(), 1s), NoCandidate);
+  CHECK_THAT(office.record.failure, Catch::Contains("crew/Worker"));
+  CHECK(office.owner->head().decisions().size() == 1);
+}
+
+TEST_CASE("each decision is a line of the log that the entity names") {
+  const File log("log");
+  Mixed mixed({.log = log.path});
+  mixed.perform(5);
+  const Lines lines = log.lines();
+  REQUIRE(lines.size() == 5);
+  const auto last = record_of(idl::from_json<Decision>(lines.back()));
+  CHECK(last.number == 5);
+  CHECK(report_of(last) == report_of(mixed.office.owner->head().decisions().back()));
+}
+
+TEST_CASE(
+    "a log that cannot be written and a strategy that is not there are refused at the start") {
+  CHECK_THROWS_WITH(Office(HeadOptions{.log = "no_such_folder/log"}),
+                    Catch::Contains("no_such_folder/log"));
+  CHECK_THROWS_WITH(Office(HeadOptions{.strategy = "learnt"}),
+                    Catch::Contains("did you mean 'learned'"));
+}
+
+TEST_CASE("what a Head has learned it knows again after a restart") {
+  const File history("history");
+  const HeadOptions options{.strategy = "learned", .history = history.path};
+  std::string learned;
+  {
+    Mixed mixed(options);
+    mixed.perform(3);
+    learned = mixed.office.owner->head().history().to_json();
+  }
+  const Office again(options);
+  CHECK(again.owner->head().history().to_json() == learned);
+}
+
+TEST_CASE("who reads the topic of decisions gets each as it is made") {
+  Mixed mixed({});
+  const auto onlooker = make_client();
+  std::mutex mutex;
+  std::vector<Decision> seen;
+  const introspection::DecisionReader reader(onlooker->participant(),
+                                             [&](const Decision& decision) {
+                                               const std::lock_guard lock(mutex);
+                                               seen.push_back(decision);
+                                             });
+  REQUIRE(eventually([&] {
+    mixed.perform(1);
+    const std::lock_guard lock(mutex);
+    return !seen.empty();
+  }));
+  const std::lock_guard lock(mutex);
+  const auto decisions = mixed.office.owner->head().decisions();
+  const auto told = std::find_if(decisions.begin(), decisions.end(), [&](const auto& each) {
+    return each.number == seen.front().number;
+  });
+  REQUIRE(told != decisions.end());
+  CHECK(report_of(*told) == seen.front());
+}
