@@ -56,7 +56,8 @@ class Homes(TreeTest):
     def test_at_home_and_in_peers_without_skein_they_are_welcome(self):
         self.write("src/dds/cyclonedds/x.cpp", "#include <dds/dds.h>\n")
         self.write("test/foreign/fastdds/x.cpp", "#include <fastdds/dds/domain/DomainParticipant.hpp>\n")
-        self.write("src/navigation/x.cpp", "#include <ompl/base/Planner.h>\n#include <Eigen/Core>\n")
+        self.write("src/navigation/x.cpp", "#include <ompl/base/Planner.h>\n")
+        self.write("src/fusion/x.cpp", "#include <Eigen/Core>\n")
         self.assertFindsNothing(include_rules.homes(self.tree))
 
 
