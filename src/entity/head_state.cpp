@@ -23,7 +23,10 @@ constexpr std::size_t kKeptDecisions = 64;
 }  // namespace
 
 Head::State::State(const Parts& parts_, HeadOptions options_)
-    : parts(parts_), options(std::move(options_)), topic(parts.participant, parts.control) {
+    : parts(parts_),
+      options(std::move(options_)),
+      host(brokerless_discovery::ProcessWatch::host()),
+      topic(parts.participant, parts.control) {
   strategies.make(options.strategy);
   if (!options.history.empty()) history = History::load(options.history);
   if (options.log.empty()) return;
@@ -130,7 +133,7 @@ bool Head::State::begin(const InterfaceInfo& interface, const Candidate& candida
   }
   breaker.begin(now);
   run = ++last_run;
-  running[run] = {candidate.name, candidate.pid, brokerless_discovery::ProcessWatch::host()};
+  running[run] = {candidate.name, candidate.pid, host};
   return true;
 }
 

@@ -37,6 +37,7 @@ struct Head::State {
 
   const Parts parts;
   const HeadOptions options;
+  const std::string host;  // looking it up reads a file
   mutable std::mutex mutex;
   StrategyFactory strategies;
   History history;
