@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "plane_geometry.hpp"
-#include "skein/navigation/ground_clearance.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -27,13 +26,8 @@ double exposure_rate(double range_m, double strength, double distance_m) {
   return strength * ratio * ratio * ratio * ratio;
 }
 
-double earth_drop_m(double distance_m) {
-  constexpr double kEffectiveRadius_m = 6371008.8 * 4 / 3;
-  return distance_m * distance_m / (2 * kEffectiveRadius_m);
-}
-
 RadarExposure::RadarExposure(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites)
-    : terrain_(terrain), ceilings_(terrain) {
+    : mask_(terrain) {
   for (const auto& site : sites) {
     const double ground = terrain.height_m(site.site.north_m, site.site.east_m);
     antennas_.push_back({{site.site.north_m, site.site.east_m, ground + site.mast_height_m},
@@ -42,43 +36,8 @@ RadarExposure::RadarExposure(const Terrain& terrain, std::span<const AE_navigato
   }
 }
 
-bool RadarExposure::sees(const Antenna& antenna, const Position& point) const {
-  const double distance = distance_m(on_map(antenna.position), on_map(point));
-  const double drop = earth_drop_m(distance);
-  const auto ray = [&](double share) {
-    Position at = between(antenna.position, point, share);
-    at.altitude_m += earth_drop_m(share * distance) - share * drop;
-    return at;
-  };
-  const bool near = distance < kNear * antenna.range_m;
-  const int pieces = static_cast<int>(distance / ceilings_.block_m()) + 1;
-  // From the aircraft inwards: what hides it is mostly near it.
-  Position outer = point;
-  for (int piece = pieces - 1; piece >= 0; --piece) {
-    const Position inner = ray(static_cast<double>(piece) / pieces);
-    if (std::min(inner.altitude_m, outer.altitude_m) < ceilings_.above(inner, outer) &&
-        hides(inner, outer, near)) {
-      return false;
-    }
-    outer = inner;
-  }
-  return true;
-}
-
-/// Whether the ground reaches up to the piece of a ray; its inner end, the antenna maybe, is left
-/// out where posts are sampled.
-bool RadarExposure::hides(const Position& inner, const Position& outer, bool exactly) const {
-  if (exactly) return ground_clearance(terrain_, inner, outer).lowest_m < 0;
-  constexpr int kSamples = TerrainCeilings::kPosts;
-  for (int i = 1; i <= kSamples; ++i) {
-    const Position at = between(inner, outer, static_cast<double>(i) / kSamples);
-    if (terrain_.height_m(at.north_m, at.east_m) > at.altitude_m) return true;
-  }
-  return false;
-}
-
 double RadarExposure::rate(const Antenna& antenna, const Position& point) const {
-  if (!sees(antenna, point)) return 0;
+  if (!mask_.sees(antenna.position, point, kNear * antenna.range_m)) return 0;
   return exposure_rate(antenna.range_m, antenna.strength, distance_3d_m(antenna.position, point));
 }
 

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "navigator.idl.hpp"
-#include "skein/navigation/terrain.hpp"
-#include "skein/navigation/terrain_ceilings.hpp"
+#include "skein/navigation/terrain_mask.hpp"
 
 namespace skein::navigation {
 
@@ -35,23 +34,15 @@ class RadarExposure {
     double range_m;
     double strength;
   };
-  bool sees(const Antenna& antenna, const AE_navigator::Position& point) const;
-  bool hides(const AE_navigator::Position& inner, const AE_navigator::Position& outer,
-             bool exactly) const;
   double rate(const Antenna& antenna, const AE_navigator::Position& point) const;
   double along(const Antenna& antenna, const AE_navigator::Position& a,
                const AE_navigator::Position& b) const;
 
-  const Terrain& terrain_;
-  TerrainCeilings ceilings_;
+  TerrainMask mask_;
   std::vector<Antenna> antennas_;
 };
 
 /// The rate of a site of that range and strength at a slant range of `distance_m` in plain view.
 double exposure_rate(double range_m, double strength, double distance_m);
-
-/// How far a straight ray that leaves horizontally is above the curved earth after `distance_m`,
-/// over an earth of 4/3 its radius (the usual allowance for refraction).
-double earth_drop_m(double distance_m);
 
 }  // namespace skein::navigation
