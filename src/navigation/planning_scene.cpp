@@ -15,17 +15,6 @@ constexpr double kBuffer_m = 20;
 /// A turn of 60 degrees comes this share of its radius closer than its corner.
 constexpr double kOfTurnRadius = 0.16;
 
-std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
-                                          const AE_navigator::Problem& problem) {
-  try {
-    auto terrain = terrains.load(problem.terrain);
-    require_valid(problem, *terrain);
-    return terrain;
-  } catch (const InvalidArgument& error) {
-    throw AE_navigator::InvalidProblem(error.what());
-  }
-}
-
 /// The buffer must not swallow a start or goal that is close to a zone, but outside.
 double buffer_for(const AE_navigator::NoFlyZone& zone, const AE_navigator::Problem& problem,
                   double wanted_m) {
@@ -36,6 +25,17 @@ double buffer_for(const AE_navigator::NoFlyZone& zone, const AE_navigator::Probl
 }
 
 }  // namespace
+
+std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
+                                          const AE_navigator::Problem& problem) {
+  try {
+    auto terrain = terrains.load(problem.terrain);
+    require_valid(problem, *terrain);
+    return terrain;
+  } catch (const InvalidArgument& error) {
+    throw AE_navigator::InvalidProblem(error.what());
+  }
+}
 
 PlanningScene::PlanningScene(TerrainProvider& terrains, const AE_navigator::Problem& problem,
                              const PlannerOptions& options)

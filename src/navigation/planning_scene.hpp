@@ -14,6 +14,11 @@
 
 namespace skein::navigation {
 
+/// The terrain of a Problem. Throws InvalidProblem where it is not to be had, or the Problem breaks
+/// a rule.
+std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
+                                          const AE_navigator::Problem& problem);
+
 /// One Problem, checked and made ready for a search. Lives for one call of `plan`.
 class PlanningScene {
  public:

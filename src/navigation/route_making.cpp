@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "curved_path.hpp"
 #include "problem_rules.hpp"
 #include "skein/navigation/ground_clearance.hpp"
 #include "skein/navigation/radar_exposure.hpp"
@@ -29,6 +30,10 @@ GroundPath flyable_path(const PlanningScene& scene, const GroundPath& path, cons
     if (const auto taut = pull_taut(scene, points, cost, radius)) {
       return round_corners(*taut, radius);
     }
+  }
+  const double spaced = 2 * radius;
+  if (const auto curved = curve(scene, divide(thin(scene, path, spaced), spaced), radius)) {
+    return *curved;
   }
   throw Unflyable(fmt::format(
       "the way between zones and ground has bends too tight for a turn radius of {:.0f} m",

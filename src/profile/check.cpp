@@ -75,6 +75,20 @@ class Checker {
       check_component(*csp.component, mission_.dictionary, findings_);
       check_settings(csp.parameters, *csp.component, mission_.dictionary, findings_);
       check_references(csp.parameters, peer);
+      check_isolation(csp);
+    }
+  }
+
+  void check_isolation(const CspProfile& csp) {
+    if (csp.process == CspProcess::Own) return;
+    for (const auto& item : csp.component->interfaces) {
+      for (const auto& attribute : item.attributes) {
+        if (attribute.name != "isolated" || attribute.value != "true") continue;
+        findings_.error(csp.where,
+                        "the CSP " + in_quotes(csp.name) + " works in its entity's process, but is " +
+                            "isolated (" + to_text(attribute.where) + ")",
+                        "write process=\"own\": what it may do to its process, it does alone");
+      }
     }
   }
 

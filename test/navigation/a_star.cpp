@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "demo.hpp"
-#include "made_terrain.hpp"
+#include "flat_crossing.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;
@@ -11,26 +11,6 @@ using AE_navigator::Problem;
 using AE_navigator::Route;
 
 namespace {
-
-/// A flat tile, the problem of crossing 40 km of it from west to east, and one radar half way.
-struct FlatCrossing {
-  FlatCrossing() : terrains(std::make_shared<TerrainProvider>(std::vector{folder.path()})) {
-    write_hgt(folder.path() / "N00E000.hgt", [](int, int) { return 100; });
-    problem.terrain = "N00E000.hgt";
-    problem.start = {55000, 35000, 300};
-    problem.goal = {55000, 75000, 300};
-    problem.radar_sites = {{"R", {55000, 55000}, 20, 6000, 1}};
-    problem.minimum_height_above_ground_m = 100;
-    problem.limits = {60, 10, 30, 3000};
-    problem.exposure_weight = 1;
-  }
-
-  Route plan() const { return make_a_star(terrains)->plan(problem); }
-
-  TemporaryFolder folder;
-  std::shared_ptr<TerrainProvider> terrains;
-  Problem problem;
-};
 
 /// How far north of the line from start to goal the route is at that distance east.
 double offset_m(const Route& route, double east_m) {
@@ -112,11 +92,21 @@ TEST_CASE("A zone is passed by the aircraft's turn, not only by the corner of it
   crossing.problem.radar_sites.clear();
   crossing.problem.no_fly_zones = {{"Wall", {{45000, 55000}, {56000, 55000}}, 200, -1000, 9000}};
   const Route route = crossing.plan();
-  CHECK(
-      violations(crossing.problem, route, read_height_grid(crossing.folder.path() / "N00E000.hgt"))
-          .empty());
+  CHECK(violations(crossing.problem, route, crossing.ground()).empty());
   CHECK(route.length_m > 40000);
   CHECK(route.length_m < 40400);
+}
+
+TEST_CASE("A hairpin that is too tight for a turn is flown by a curve that swings out") {
+  FlatCrossing crossing;
+  crossing.problem.radar_sites.clear();
+  crossing.problem.start = {55000, 54000, 300};
+  crossing.problem.goal = {55000, 56000, 300};
+  crossing.problem.no_fly_zones = {{"Wall", {{30000, 55000}, {62000, 55000}}, 200, -1000, 9000}};
+  crossing.problem.limits.speed_m_s = 120;
+  const Route route = crossing.plan();
+  CHECK(violations(crossing.problem, route, crossing.ground()) == "");
+  CHECK(route.length_m > 14000);
 }
 
 TEST_CASE("A zone whose floor is above the route is flown under") {

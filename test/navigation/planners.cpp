@@ -1,8 +1,13 @@
 #include "skein/navigation/planners.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <thread>
 
 #include "demo.hpp"
@@ -66,6 +71,55 @@ TEST_CASE("RRTstar makes good use of more steps") {
   const double later = cost_after(3000);
   CHECK(later < soon);
   CHECK(later < 1.05 * cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem)));
+}
+
+TEST_CASE(
+    "Whoever improves his route while there is time makes a valid one that is worth the time") {
+  const Demo demo;
+  const double best = cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem));
+  for (const std::string name : {"InformedRRTstar", "BITstar", "PRMstar"}) {
+    INFO(name);
+    PlannerOptions options;
+    int left = 4000;
+    options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
+    const Route route = make_planner(name, demo.terrains, options)->plan(demo.problem);
+    CHECK(violations(demo.problem, route, demo.ground) == "");
+    CHECK(route.planner == name);
+    CHECK(cost_m(demo.problem, route) < 1.2 * best);
+  }
+}
+
+TEST_CASE("AITstar makes a valid route or none") {
+  Demo demo;
+  for (const std::uint32_t limit_ms : {50u, 400u}) {
+    demo.problem.time_limit_ms = limit_ms;
+    try {
+      const Route route = make_ait_star(demo.terrains)->plan(demo.problem);
+      CHECK(violations(demo.problem, route, demo.ground) == "");
+    } catch (const NoRoute& refusal) {
+      CHECK_FALSE(refusal.proven);
+    }
+  }
+}
+
+TEST_CASE("LegacyDubins makes a valid route or none, or takes its process with it") {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Demo demo;
+    demo.problem.time_limit_ms = 1500;
+    int result = 0;
+    try {
+      const Route route = make_planner("LegacyDubins", demo.terrains)->plan(demo.problem);
+      result = violations(demo.problem, route, demo.ground).empty() ? 0 : 1;
+    } catch (const NoRoute& refusal) {
+      result = refusal.proven ? 2 : 0;
+    }
+    std::_Exit(result);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  const bool aborted = WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT;
+  CHECK((aborted || (WIFEXITED(status) && WEXITSTATUS(status) == 0)));
 }
 
 TEST_CASE("Each planner brings its routes as it finds them, the last being the best") {

@@ -30,10 +30,9 @@ TEST_CASE("A complete composition has no findings") {
 
 TEST_CASE("A dependency that nobody provides is named where it is written") {
   ProfileFolder folder;
-  CHECK(
-      folder.check(kN) ==
-      "n.xml:5:17: error: \"n\" depends on M/IF, which no peer of \"m\" implements; add a peer "
-      "that does; did you mean 'M/IN'?\n");
+  CHECK(folder.check(kN) ==
+        "n.xml:5:17: error: \"n\" depends on M/IF, which no peer of \"m\" implements; add a peer "
+        "that does; did you mean 'M/IN'?\n");
 }
 
 TEST_CASE("A CSP's dependency is as good as its entity's") {
@@ -65,9 +64,8 @@ TEST_CASE("A subcomponent without a CSP and a CSP without a subcomponent are bot
   ProfileFolder folder;
   const auto text = folder.check(
       kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="f.xml"/></peer>)");
-  CHECK_THAT(text,
-             Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent M/IP "
-                             "(n.xml:6:18)"));
+  CHECK_THAT(text, Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent M/IP "
+                                   "(n.xml:6:18)"));
   CHECK_THAT(text, Catch::Contains("m.xml:3:34: error: the CSP \"F\" implements no subcomponent of "
                                    "\"n\"; it must implement one of them"));
 }
@@ -193,6 +191,26 @@ TEST_CASE("Process rules for a CSP without a process are a mistake") {
   CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
 <csp component="p.xml" process="inside"/></peer>)"),
              Catch::Contains("\"inside\" is no place for a CSP"));
+}
+
+TEST_CASE("A CSP that is isolated must have a process of its own") {
+  ProfileFolder folder;
+  const auto findings = [&](const std::string& isolated, const std::string& process) {
+    folder.write("p.xml",
+                 "<component name=\"P\"><interfaces><implements><type>M/IP</type>\n"
+                 "<attribute name=\"isolated\" value=\"" +
+                     isolated + "\"/></implements></interfaces></component>");
+    return folder.check(
+        kF + "<peer name=\"n\" component=\"n.xml\">\n<csp component=\"p.xml\" process=\"" +
+        process + "\"/></peer>");
+  };
+  CHECK_THAT(
+      findings("true", "in"),
+      Catch::Contains("m.xml:3:1: error: the CSP \"P\" works in its entity's process, but is "
+                      "isolated (p.xml:2:1)") &&
+          Catch::Contains("write process=\"own\""));
+  CHECK(findings("true", "own") == "");
+  CHECK(findings("false", "in") == "");
 }
 
 TEST_CASE("Several processes on loopback are a warning, and no reason to refuse the profile") {

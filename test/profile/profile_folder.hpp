@@ -13,6 +13,7 @@ class ProfileFolder {
   ProfileFolder() {
     write("dictionary.xml", R"(<dictionary>
   <attribute name="latency" type="duration" unit="ms" min="0" max="1000">d</attribute>
+  <attribute name="isolated" type="boolean">d</attribute>
   <parameter name="Planner" type="service" interface="M/IP">d</parameter>
   <parameter name="Time limit" type="duration" unit="ms" min="1">d</parameter>
 </dictionary>)");

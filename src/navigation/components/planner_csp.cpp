@@ -42,6 +42,7 @@ std::shared_ptr<Servant> make_planner_csp(const std::string& name,
                                           const ParameterValues& values) {
   PlannerOptions options;
   options.seed = static_cast<std::uint32_t>(number_of(values, "Seed", options.seed));
+  options.exposure_cap_m = number_of(values, "Exposure cap", options.exposure_cap_m);
   auto planner = make_planner(name, std::move(terrains), std::move(options));
   if (const auto limit = duration_of(values, "Time limit")) {
     const auto limit_ms =

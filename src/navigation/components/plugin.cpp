@@ -27,7 +27,9 @@ extern "C" void skein_register_components(ComponentRegistry& registry) {
         std::make_shared<AE_navigatorI::INavigator::Skeleton>(std::move(body)),
         navigation::Navigator::kThreads};
   });
-  for (const std::string& planner : navigation::planner_names()) {
+  std::vector<std::string> planners = navigation::planner_names();
+  planners.emplace_back("LegacyDubins");
+  for (const std::string& planner : planners) {
     registry.add_csp(planner, [terrains, planner](const ParameterValues& values) {
       return navigation::make_planner_csp(planner, terrains, values);
     });
