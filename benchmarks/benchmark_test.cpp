@@ -182,6 +182,12 @@ TEST_CASE("a goal is missed where one comparison misses it, and unknown where no
   std::vector<Comparison> skipped{start(1, "not here")};
   set_goals(skipped);
   CHECK(verdict_of(skipped).worst == nullptr);
+  std::vector<Comparison> failed{start(119, ""), start(1, "died")};
+  failed.back().absence.failed = true;
+  set_goals(failed);
+  CHECK(verdict_of(failed).failed == 1);
+  CHECK(verdict_of(failed).met == 1);
+  CHECK_FALSE(is_met(verdict_of(failed)));
 }
 
 TEST_CASE("a raw mixed pair has no goal: it is there for information") {

@@ -4,11 +4,15 @@
 namespace skein::benchmarks {
 namespace {
 
-/// Each comparison with whichever rival is slower there: a mixed pair can be no better.
+/// Each comparison with whichever rival is slower there: a mixed pair can be no better. Where one of both is not
+/// known, neither is the slower one.
 std::vector<Comparison> with_slower_rival(std::vector<Comparison> one,
                                           std::vector<Comparison> other) {
   for (std::size_t i = 0; i < one.size(); ++i) {
-    if (other[i].rival_summary().p50 > one[i].rival_summary().p50) one[i] = std::move(other[i]);
+    const bool unknown = one[i].absence || other[i].absence;
+    const bool use_other = unknown ? &graver(one[i].absence, other[i].absence) == &other[i].absence
+                                   : other[i].rival_summary().p50 > one[i].rival_summary().p50;
+    if (use_other) one[i] = std::move(other[i]);
   }
   return one;
 }

@@ -11,8 +11,9 @@ Absence attempt(const std::string& who, const std::function<void()>& measure) {
   } catch (const Skipped& reason) {
     return {reason.what(), false};
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "\nfailed: %s: %s\n", who.c_str(), error.what());
-    return {error.what(), true};
+    const std::string reason = *error.what() != '\0' ? error.what() : "an error without a text";
+    std::fprintf(stderr, "\nfailed: %s: %s\n", who.c_str(), reason.c_str());
+    return {reason, true};
   }
 }
 

@@ -95,12 +95,20 @@ void set_goals(std::vector<Comparison>& comparisons) {
 
 bool meets_goal(const Comparison& comparison) { return strain(comparison) <= 1; }
 
+bool is_met(const Verdict& verdict) {
+  return verdict.failed == 0 && verdict.met == verdict.measured;
+}
+
 std::vector<Verdict> judge(const std::vector<Comparison>& comparisons) {
   std::vector<Verdict> verdicts;
   for (const Goal& goal : goals()) {
     Verdict& verdict = verdicts.emplace_back(Verdict{&goal});
     for (const Comparison& comparison : comparisons) {
-      if (comparison.absence || goal_of(comparison) != &goal) continue;
+      if (goal_of(comparison) != &goal) continue;
+      if (comparison.absence) {
+        verdict.failed += comparison.absence.failed ? 1 : 0;
+        continue;
+      }
       ++verdict.measured;
       verdict.met += meets_goal(comparison) ? 1 : 0;
       if (verdict.worst == nullptr || strain(comparison) > strain(*verdict.worst))

@@ -38,8 +38,12 @@ struct Verdict {
   const Goal* goal = nullptr;
   std::size_t measured = 0;
   std::size_t met = 0;
+  std::size_t failed = 0;  ///< Should have been measured, and were not: then the goal is not met.
   const Comparison* worst = nullptr;  ///< The furthest beyond, or the nearest to its limits; none measured: null.
 };
+
+/// By everything that should have been measured; what was skipped does not count.
+bool is_met(const Verdict& verdict);
 
 /// One for each goal, in their order. The comparisons must stay.
 std::vector<Verdict> judge(const std::vector<Comparison>& comparisons);

@@ -27,25 +27,34 @@ std::string worst_text(const Goal& goal, const Comparison& worst) {
       escaped(worst.subject), escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
 }
 
+const char* unmeasured(const Verdict& verdict) {
+  return verdict.failed > 0 ? "missed: failed" : "not measured";
+}
+
 std::string judgement_of(const Verdict& verdict) {
-  const bool met = verdict.met == verdict.measured;
-  const char* word = met ? "met" : verdict.goal->kind == Goal::Kind::Aim ? "not yet" : "missed";
-  return fmt::format("{} ({} of {})", word, verdict.met, verdict.measured);
+  const bool aim = verdict.goal->kind == Goal::Kind::Aim;
+  const char* word = is_met(verdict) ? "met" : aim ? "not yet" : "missed";
+  const std::string failed = verdict.failed > 0 ? fmt::format(", {} failed", verdict.failed) : "";
+  return fmt::format("{} ({} of {}{})", word, verdict.met, verdict.measured, failed);
 }
 
 std::string row_of(const Verdict& verdict) {
   const std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", escaped(verdict.goal->text),
                                       limit_text(*verdict.goal));
-  if (verdict.worst == nullptr) return row + "<td colspan='4' class='skipped'>not measured</td></tr>";
-  const bool met = verdict.met == verdict.measured;
-  const char* look = met ? "good" : verdict.goal->kind == Goal::Kind::Aim ? "skipped" : "bad";
+  if (verdict.worst == nullptr) {
+    return row + fmt::format("<td colspan='4' class='{}'>{}</td></tr>", verdict.failed > 0 ? "bad" : "skipped",
+                             unmeasured(verdict));
+  }
+  const char* look = is_met(verdict) ? "good" : verdict.goal->kind == Goal::Kind::Aim ? "skipped" : "bad";
   return row + worst_text(*verdict.goal, *verdict.worst) +
          fmt::format("<td class='{}'>{}</td></tr>", look, judgement_of(verdict));
 }
 
 std::string markdown_row_of(const Verdict& verdict) {
   const Goal& goal = *verdict.goal;
-  if (verdict.worst == nullptr) return fmt::format("| {} | {} | | not measured |\n", goal.text, limit_text(goal));
+  if (verdict.worst == nullptr) {
+    return fmt::format("| {} | {} | | {} |\n", goal.text, limit_text(goal), unmeasured(verdict));
+  }
   const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", verdict.worst->ratio_p99()) : "";
   return fmt::format("| {} | {} | p50 {:.2f}×{} | {} |\n", goal.text, limit_text(goal),
                      verdict.worst->ratio_p50(), p99, judgement_of(verdict));

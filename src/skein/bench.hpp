@@ -29,7 +29,6 @@ struct Arguments {
 
 /// One side of the measured calls: as the arguments say, or as the profile says of a peer.
 struct Side {
-  std::string vendor;
   EntityOptions entity;
   ServiceOptions service;  ///< Of the provider.
   bool lock_memory = false;

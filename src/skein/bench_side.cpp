@@ -37,14 +37,14 @@ const PeerProfile& peer_of(const MissionProfile& mission, const Arguments& argum
 Side side_of_profile(const Arguments& arguments, Role role) {
   const MissionProfile mission = profile::read_mission_profile(arguments.profile);
   const PeerProfile& peer = peer_of(mission, arguments, role);
-  Side side{peer.vendor, launch::entity_options(mission, peer), {}, peer.threads.lock_memory};
+  Side side{launch::entity_options(mission, peer), {}, peer.threads.lock_memory};
   side.service.threads = std::max<std::size_t>(peer.threads.count, 1);
   side.service.scheduling = peer.threads.settings;
   return side;
 }
 
 Side side_of_options(const Arguments& arguments) {
-  Side side{arguments.vendor, {}, {}};
+  Side side;
   side.entity.vendor = dds::load_vendor(arguments.vendor);
   if (!arguments.interface.empty()) side.entity.network.interfaces = {arguments.interface};
   return side;

@@ -20,7 +20,7 @@ FLOORS = {
     "entity": 6,
     "profile": 7,
     "launch": 7,
-    "fusion": 1.5,
+    "fusion": 7,
     "navigation": 7,
     "navigation/grid": 1.5,
     "navigation/components": 7.5,

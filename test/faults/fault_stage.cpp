@@ -93,10 +93,10 @@ void FaultStage::bury(ChildProcess& server) {
   std::erase_if(servers_, [&](const auto& owned) { return owned.get() == &server; });
 }
 
-void FaultStage::bury_clients(ChildProcess& clients) {
+void FaultStage::bury_clients(ChildProcess& clients, bool killed) {
   const auto found =
       std::ranges::find(clients_, &clients, [](const Clients& all) { return all.process.get(); });
-  journal_.bury(found->number);
+  if (killed) journal_.bury(found->number);
   std::erase_if(threads_, [&](const auto& entry) { return entry.first == &clients; });
   clients_.erase(found);
 }

@@ -49,8 +49,8 @@ class FaultStage {
 
   /// A provider that is dead, and not waited for.
   void bury(ChildProcess& server);
-  /// A process of clients that has left or is dead; what it was calling ends as "Killed".
-  void bury_clients(ChildProcess& clients);
+  /// A process of clients that has left, or was killed: what it was calling then ended as "Killed".
+  void bury_clients(ChildProcess& clients, bool killed);
 
   /// All tables know all living providers, and each client's calls succeed; then nothing is left
   /// behind: no pending call at a client, no active one at a provider, a session for each client and

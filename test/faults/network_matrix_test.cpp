@@ -19,6 +19,7 @@ void strike_with(const char* cell, const Disturbance& disturbance) {
   hosts.cable.disturb(disturbance);
   hosts.stage.run_for_calls(100);
   hosts.stage.journal().mark();
+  let_last(kNear);
   hosts.cable.heal();
   hosts.stage.stop();
   hosts.stage.check(cell, kAnyEnd);

@@ -153,3 +153,23 @@ TEST_CASE("matrix: a provider that is slower than its callers refuses what it ha
   CHECK(stage.journal().count("Overloaded") > 0);
   CHECK(stage.journal().count("Ok") > 0);
 }
+
+TEST_CASE("matrix: what expires in the queue of a busy provider is not executed") {
+  FaultStage stage;
+  stage.add_server();
+  ChildProcess& first = stage.add_clients(1);
+  ChildProcess& others = stage.add_clients(4);
+  stage.connect();
+  first.send("burst 1 timeout 60000 work 3000");
+  first.expect("sent");
+  REQUIRE(eventually([&] { return stage.journal().executions() == 1; }));
+  others.send("burst 5 timeout 200");
+  others.expect("sent");
+  others.send("settle");
+  others.expect("settled");
+  stage.journal().mark();
+  CHECK(stage.journal().count("TimedOut") == 20);
+  first.send("settle");
+  first.expect("settled");
+  stage.check("a queue that expires", {"Ok", "TimedOut"});
+}

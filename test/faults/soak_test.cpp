@@ -93,7 +93,7 @@ class Soak {
     } else {
       CHECK(guests.finish() == 0);
     }
-    stage_.bury_clients(guests);
+    stage_.bury_clients(guests, kill);
   }
 
   void kill_and_replace() {
