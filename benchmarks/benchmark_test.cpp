@@ -255,7 +255,7 @@ TEST_CASE("a contender that dies costs its own rows and nobody else's, and the e
   CHECK(measured == death.claims);
 }
 
-TEST_CASE("no pair of vendors, size or way to die is missing") {
+TEST_CASE("no pair of vendors, size, way to die or other fault is missing") {
   const json& results = QuickRun::get().results;
   for (const std::string& pair : kPairs) {
     CAPTURE(pair);
@@ -269,6 +269,13 @@ TEST_CASE("no pair of vendors, size or way to die is missing") {
     CHECK(has(results, "process start to first reply", "skein " + pair, json::object()));
     for (const char* where : {"one host", "across two hosts"}) {
       CHECK(has(results, "provider killed to caller told", "skein " + pair, {{"where", where}}));
+    }
+    const std::string stopped = "provider stopped beyond its lease";
+    CHECK(has(results, "deadline to its call's end", "skein " + pair, {{"where", stopped}}));
+    for (const std::string& fault :
+         {stopped, std::string("provider killed, from its new process's start"), std::string("network cut")}) {
+      CHECK(has(results, "a fault's end to an answer", "skein " + pair, {{"where", fault}}));
+      CHECK(has(results, "a fault's end to a complete registry", "skein " + pair, {{"where", fault}}));
     }
   }
 }

@@ -31,6 +31,7 @@ struct Plan {
   IdlePlan idle_peers;
   std::size_t kills_on_one_host;
   std::size_t kills_across_hosts;
+  FaultPlan faults;
   GridPlan grids;
 };
 
@@ -38,13 +39,15 @@ Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 100}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5, {300, 1}};
+  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 1}, {{10, 50}, 3, std::chrono::milliseconds(1500)}, 15, 5,
+          {2, 5, 2, std::chrono::seconds(5)}, {300, 1}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {{{64, 3}}, 1}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1, {3, 100}};
+  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {{{64, 3}}, 1}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1,
+          {1, 2, 1, std::chrono::milliseconds(1500)}, {3, 100}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -92,6 +95,12 @@ const std::vector<Part> kParts{
        auto deaths = compare_deaths_on_one_host(all, plan.kills_on_one_host);
        append(deaths, compare_deaths_across_hosts(all, plan.kills_across_hosts));
        return deaths;
+     }},
+    {"faults",
+     [](Configurations& all, const Plan& plan) {
+       auto faults = compare_faults_on_one_host(all, plan.faults);
+       append(faults, compare_faults_across_hosts(all, plan.faults));
+       return faults;
      }},
     {"grids", [](Configurations&, const Plan& plan) { return compare_grids(plan.grids); }},
 };
@@ -159,6 +168,7 @@ int main(int argc, char** argv) {
   as_peer->add_option("--interface", peer.interface);
   as_peer->add_option("--peer", peer.peer);
   as_peer->add_option("--peers", peer.peers);
+  as_peer->add_flag("--survives", peer.survives);
   CLI11_PARSE(app, argc, argv);
   try {
     if (*as_peer) return run_skein_peer(peer);

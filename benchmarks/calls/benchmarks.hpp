@@ -82,4 +82,18 @@ std::vector<Comparison> compare_deaths_on_one_host(Configurations& configuration
 std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
                                                     std::size_t kills);
 
+/// Providers that are stopped beyond their lease, killed and started anew, and a network that is cut: how
+/// late calls end that nobody answers, and how soon after the fault calls are answered and both peers know
+/// each other's service again.
+struct FaultPlan {
+  std::size_t stops;
+  std::size_t calls;  ///< Unanswered ones, each time.
+  std::size_t cuts;
+  std::chrono::milliseconds cut;
+};
+std::vector<Comparison> compare_faults_on_one_host(Configurations& configurations,
+                                                   const FaultPlan& plan);
+std::vector<Comparison> compare_faults_across_hosts(Configurations& configurations,
+                                                    const FaultPlan& plan);
+
 }  // namespace skein::benchmarks

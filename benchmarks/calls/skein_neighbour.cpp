@@ -5,7 +5,7 @@
 #include <future>
 #include <mutex>
 
-#include "echo.idl.hpp"
+#include "calls/plain_echo.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
 #include "skein/brokerless_discovery/broker.hpp"
@@ -13,14 +13,6 @@
 
 namespace skein::benchmarks {
 namespace {
-
-/// Nobody calls it.
-class IdleBody final : public benchmark::Echo {
- public:
-  Content echo(const Content& content) override { return benchmarks::echo(content); }
-  void hold() override {}
-  bool holding() override { return false; }
-};
 
 EntityOptions options_of(const SkeinPeer& peer) {
   EntityOptions options;
@@ -62,7 +54,7 @@ std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
 
 void be_neighbour(const SkeinPeer& peer) {
   Entity entity(options_of(peer));
-  entity.provide<benchmark::Echo>(std::make_shared<IdleBody>());
+  entity.provide<benchmark::Echo>(std::make_shared<PlainEcho>());
   await_services(entity.broker(), peer.peers);
   run_server();
 }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "calls/skein_neighbour.hpp"
+#include "calls/survivor.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
@@ -35,19 +36,6 @@ class EchoBody final : public Echo {
  private:
   std::atomic<bool> holding_{false};
 };
-
-EntityOptions entity_options(const SkeinPeer& peer) {
-  EntityOptions options;
-  options.name = peer.role;
-  options.vendor = load_or_skip(peer.vendor);
-  options.domain = peer.domain;
-  options.network.max_participants = kMaxParticipants;
-  if (!peer.interface.empty()) {
-    options.network.interfaces = {peer.interface};
-    options.network.peers = {peer.peer};
-  }
-  return options;
-}
 
 void serve(const SkeinPeer& peer) {
   Entity entity(entity_options(peer));
@@ -219,8 +207,22 @@ void find_services() {
 
 }  // namespace
 
+EntityOptions entity_options(const SkeinPeer& peer) {
+  EntityOptions options;
+  options.name = peer.role;
+  options.vendor = load_or_skip(peer.vendor);
+  options.domain = peer.domain;
+  options.network.max_participants = kMaxParticipants;
+  if (!peer.interface.empty()) {
+    options.network.interfaces = {peer.interface};
+    options.network.peers = {peer.peer};
+  }
+  return options;
+}
+
 int run_skein_peer(const SkeinPeer& peer) {
   return run_peer([&] {
+    if (peer.survives) return survive(peer);
     if (peer.role == "server") return serve(peer);
     if (peer.role == "finder") return find_services();
     if (peer.role == "neighbour") return be_neighbour(peer);

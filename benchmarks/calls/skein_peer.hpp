@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "skein/entity/entity.hpp"
+
 namespace skein::benchmarks {
 
 /// One process of a Skein configuration.
@@ -14,8 +16,12 @@ struct SkeinPeer {
   std::size_t threads = 1;
   std::string interface;  ///< Empty: loopback.
   std::string peer;       ///< Address of the other host, with `interface`.
+  bool survives = false;  ///< A server or client that goes through faults (calls/survivor.hpp).
   std::size_t peers = 0;  ///< Of a `neighbour`: how many there are, itself among them.
 };
+
+/// Those of a server or a client. Throws Skipped where its vendor is not installed.
+EntityOptions entity_options(const SkeinPeer& peer);
 
 /// Serves, or calls and obeys. Besides `call` a client knows `hold` (starts a call that does not
 /// return; answers `holding` when the provider is at it) and `told` (waits for that call's end and

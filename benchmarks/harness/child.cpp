@@ -125,6 +125,13 @@ Instant Child::kill() {
   return before;
 }
 
+Instant Child::signal(int number) {
+  const Instant before = std::chrono::steady_clock::now();
+  if (pid_ > 0) ::kill(pid_, number);
+  if (pid_ > 0 && number == SIGSTOP) waitpid(pid_, nullptr, WUNTRACED);
+  return before;
+}
+
 void Child::reap() noexcept {
   waitpid(pid_, nullptr, 0);
   pid_ = -1;

@@ -36,6 +36,8 @@ class Child {
 
   /// SIGKILL, where it has not ended yet. Returns the instant just before.
   Instant kill();
+  /// SIGSTOP or SIGCONT; after SIGSTOP it has stopped when this returns the instant just before.
+  Instant signal(int number);
 
  private:
   void reap() noexcept;

@@ -130,6 +130,20 @@ TwoHosts::TwoHosts() {
   await_running(second_.network, "skein1");
 }
 
+// Each takes the other for a card that does not exist.
+void TwoHosts::cut() {
+  const char* nobody = "02:00:00:00:00:01";
+  run_ip({"neighbour", "replace", second_.address, "lladdr", nobody, "dev", "skein0", "nud", "permanent"},
+         first_.network);
+  run_ip({"neighbour", "replace", first_.address, "lladdr", nobody, "dev", "skein1", "nud", "permanent"},
+         second_.network);
+}
+
+void TwoHosts::heal() {
+  run_ip({"neighbour", "del", second_.address, "dev", "skein0"}, first_.network);
+  run_ip({"neighbour", "del", first_.address, "dev", "skein1"}, second_.network);
+}
+
 TwoHosts::~TwoHosts() {
   close(first_.network);
   close(second_.network);

@@ -24,6 +24,10 @@ class TwoHosts {
     int network = -1;
     std::string address;
   };
+  /// From now on nothing arrives at the other end, and nobody is told: as when a link fails far away.
+  void cut();
+  void heal();
+
   const Host& first() const noexcept { return first_; }
   const Host& second() const noexcept { return second_; }
 
