@@ -300,6 +300,8 @@ TEST_CASE("no vendor is missing where peers start at once and where they are idl
                               "processor time of an idle peer, per second"}) {
       CHECK(has(results, claim, "skein " + vendor, {{"peers", 4}}, "raw " + vendor));
     }
+    CHECK(has(results, "octets that an idle peer sends, per second", "skein " + vendor, {{"peers", 4}},
+              "participants of " + vendor));
   }
 }
 

@@ -67,7 +67,8 @@ struct JoinPlan {
 std::vector<Comparison> compare_joins(Configurations& configurations, const JoinPlan& plan);
 
 /// What peers that see all others and do nothing cost, each: octets and packets on the wire, processor
-/// time; beside raw peers with the same endpoints. So many windows of time for each count.
+/// time; beside raw peers with the same endpoints, and beside participants without any endpoint: what is more than
+/// that is for the registry. So many windows of time for each count.
 struct IdlePlan {
   std::vector<std::size_t> peers;
   std::size_t windows;

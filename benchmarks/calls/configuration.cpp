@@ -72,17 +72,26 @@ Configuration Configurations::raw_by(const std::string& vendor, const std::strin
           way == "polling"};
 }
 
-Configuration Configurations::skein_neighbour(const std::string& vendor, std::size_t count) {
-  return {"skein " + vendor,
+Configuration Configurations::skein_alone(const std::string& name, const std::string& role,
+                                          const std::string& vendor, std::size_t count) {
+  return {name,
           {},
-          {folder_ + "/skein_bench", "peer", "--role", "neighbour", "--vendor", vendor, "--domain",
+          {folder_ + "/skein_bench", "peer", "--role", role, "--vendor", vendor, "--domain",
            next_domain(), "--peers", std::to_string(count)}};
+}
+
+Configuration Configurations::skein_neighbour(const std::string& vendor, std::size_t count) {
+  return skein_alone("skein " + vendor, "neighbour", vendor, count);
 }
 
 Configuration Configurations::raw_neighbour(const std::string& vendor, std::size_t count) {
   return {"raw " + vendor,
           {},
           {folder_ + "/skein_bench_raw_" + vendor, "neighbour", next_domain(), std::to_string(count)}};
+}
+
+Configuration Configurations::bystander(const std::string& vendor, std::size_t count) {
+  return skein_alone("participants of " + vendor, "bystander", vendor, count);
 }
 
 Configuration Configurations::floor(const std::string& name, const std::string& program) {

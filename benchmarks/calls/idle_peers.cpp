@@ -33,6 +33,17 @@ constexpr std::array<Figure, 3> kFigures{{
     {"processor time of an idle peer, per second", "us", &Cost::cpu_us},
 }};
 
+/// What discovery and leases cost grows with the number's square. On two cores 50 peers take half of the
+/// processor while they are idle, and 100 did not find each other within a minute, raw ones neither.
+constexpr std::size_t kMostOnACore = 25;
+
+void refuse_too_many(std::size_t peers) {
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  if (peers <= kMostOnACore * cores) return;
+  throw Skipped(std::to_string(peers) + " peers are too many for " + std::to_string(cores) +
+                " cores: at most " + std::to_string(kMostOnACore) + " a core find each other");
+}
+
 struct Idler {
   Configuration configuration;
   Cost cost{};
@@ -40,12 +51,15 @@ struct Idler {
 
   void rest(std::size_t peers, const IdlePlan& plan) {
     absence = attempt(configuration.name, [&] {
+      refuse_too_many(peers);
       Flock flock(configuration, peers);
       std::this_thread::sleep_for(std::min(kSettling, plan.window * 2));
       for (std::size_t i = 0; i < plan.windows; ++i)
         watch(flock, static_cast<double>(peers), plan.window);
     });
   }
+
+  Outcome outcome_of(std::vector<double> Cost::*samples) const { return {cost.*samples, absence}; }
 
  private:
   void watch(Flock& flock, double peers, std::chrono::milliseconds window) {
@@ -62,15 +76,12 @@ struct Idler {
   }
 };
 
-void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& raw,
-             std::size_t peers) {
+void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& rival, std::size_t peers) {
   for (const Figure& figure : kFigures) {
-    Comparison comparison{
-        figure.claim, own.configuration.name, raw.configuration.name, {{"peers", peers}}};
-    comparison.parameters["processes"] = peers;
+    Comparison comparison{figure.claim, own.configuration.name, rival.configuration.name,
+                          {{"peers", peers}, {"processes", peers}}};
     comparison.unit = figure.unit;
-    fill(comparison, {own.cost.*figure.samples, own.absence},
-         {raw.cost.*figure.samples, raw.absence});
+    fill(comparison, own.outcome_of(figure.samples), rival.outcome_of(figure.samples));
     comparisons.push_back(std::move(comparison));
   }
 }
@@ -84,8 +95,14 @@ std::vector<Comparison> compare_idle_peers(Configurations& configurations, const
       std::fprintf(stderr, "idle: %zu peers on %s\n", peers, vendor);
       Idler own{configurations.skein_neighbour(vendor, peers)};
       Idler raw{configurations.raw_neighbour(vendor, peers)};
-      take_turns(1, {[&] { own.rest(peers, plan); }, [&] { raw.rest(peers, plan); }}, kSeed);
+      Idler participants{configurations.bystander(vendor, peers)};
+      std::vector<std::function<void()>> turns;
+      for (Idler* const idler : {&own, &raw, &participants}) {
+        turns.push_back([&, idler] { idler->rest(peers, plan); });
+      }
+      take_turns(1, std::move(turns), kSeed);
       compare(comparisons, own, raw, peers);
+      compare(comparisons, own, participants, peers);
     }
   }
   return comparisons;

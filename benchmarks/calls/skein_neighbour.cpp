@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <condition_variable>
 #include <future>
 #include <mutex>
+#include <set>
 
 #include "calls/plain_echo.hpp"
 #include "harness/peer.hpp"
@@ -14,10 +16,11 @@
 namespace skein::benchmarks {
 namespace {
 
-EntityOptions options_of(const SkeinPeer& peer) {
-  EntityOptions options;
+/// `Options` are an entity's or a participant's.
+template <class Options>
+Options options_of(const SkeinPeer& peer) {
+  Options options;
   options.name = "neighbour" + std::to_string(getpid());
-  options.vendor = load_or_skip(peer.vendor);
   options.domain = peer.domain;
   options.network.max_participants = static_cast<std::uint32_t>(peer.peers);
   return options;
@@ -42,6 +45,32 @@ void await_services(brokerless_discovery::Broker& broker, std::size_t count) {
                  " services");
 }
 
+/// Who is there. Thread-safe.
+class Attendance {
+ public:
+  void note(const Guid& participant, bool present) {
+    std::lock_guard lock(mutex_);
+    if (present) {
+      present_.insert(participant);
+    } else {
+      present_.erase(participant);
+    }
+    changed_.notify_all();
+  }
+
+  void await(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    if (changed_.wait_for(lock, kJoinPatience, [&] { return present_.size() >= count; })) return;
+    throw Internal("found " + std::to_string(present_.size()) + " of " + std::to_string(count) +
+                   " participants");
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<Guid> present_;
+};
+
 }  // namespace
 
 std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
@@ -52,8 +81,22 @@ std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
   }
 }
 
+void be_bystander(const SkeinPeer& peer) {
+  const auto vendor = load_or_skip(peer.vendor);
+  Attendance attendance;
+  auto options = options_of<dds::ParticipantOptions>(peer);
+  options.on_participant = [&](const Guid& participant, bool present) {
+    attendance.note(participant, present);
+  };
+  const auto participant = vendor->create_participant(options);
+  attendance.await(peer.peers - 1);  // all but itself
+  run_server();
+}
+
 void be_neighbour(const SkeinPeer& peer) {
-  Entity entity(options_of(peer));
+  auto options = options_of<EntityOptions>(peer);
+  options.vendor = load_or_skip(peer.vendor);
+  Entity entity(options);
   entity.provide<benchmark::Echo>(std::make_shared<PlainEcho>());
   await_services(entity.broker(), peer.peers);
   run_server();

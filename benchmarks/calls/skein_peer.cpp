@@ -226,6 +226,7 @@ int run_skein_peer(const SkeinPeer& peer) {
     if (peer.role == "server") return serve(peer);
     if (peer.role == "finder") return find_services();
     if (peer.role == "neighbour") return be_neighbour(peer);
+    if (peer.role == "bystander") return be_bystander(peer);
     peer.role == "local" ? call_in_process() : call(peer);
   });
 }
