@@ -227,6 +227,10 @@ void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }
+  // Not executed, for want of the time to reach it: no word on whether the provider is there.
+  if (last_.outcome == Outcome::Failed && !last_.fault && now() >= deadline_) {
+    throw TimedOut("the time ran out before a CSP could be asked; the last one: " + last_.text);
+  }
   if (last_.error) std::rethrow_exception(last_.error);
   throw NoneAccepted("no result was good enough; the last one: " + last_.text);
 }

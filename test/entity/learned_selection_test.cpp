@@ -196,7 +196,7 @@ class Simulation {
       candidates.push_back(
           candidate(each.name, 50ms, 1, history_.predict("x", each.name, features)));
     }
-    CandidateIterator iterator(*make_learned_selection(), candidates,
+    CandidateIterator iterator(*strategy_, candidates,
                                {features, {}, 0.02, history_.decisions("x")});
     double spent_ms = 0;
     bool explored = false, accepted = false;
@@ -216,6 +216,7 @@ class Simulation {
     return std::chrono::duration_cast<Duration>(std::chrono::duration<double, std::milli>(value));
   }
 
+  const std::shared_ptr<const SelectionStrategy> strategy_ = make_learned_selection();
   std::mt19937 random_;
   History history_;
 };
