@@ -26,9 +26,9 @@ void DdsChannel::State::fail_all(MakeError make_error) {
     failed.swap(entries);
   }
   for (auto& [number, call] : failed) {
-    const auto error = make_error(call->operation());
+    auto error = make_error(call->operation());
     note_end(number, call->operation(), error);
-    call->fail(error);
+    call->fail(std::move(error));
   }
 }
 
