@@ -116,12 +116,12 @@ std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Kee
 void DdsChannel::State::expire(std::uint64_t number) {
   const auto call = remove(number);
   if (!call) return;
-  const auto error = std::make_exception_ptr(
+  auto error = std::make_exception_ptr(
       TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
                " before its deadline; whether it ran is unknown"));
   if (!call->claim()) return;
   note_end(number, call->operation(), error);
-  call->finish(error);
+  call->finish(std::move(error));
   tell_server(number);
 }
 
