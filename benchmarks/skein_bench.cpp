@@ -39,7 +39,7 @@ Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 100}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 45}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 1}, {{10, 50, 100}, 3, std::chrono::milliseconds(1500)}, 15, 5,
+  return {{sizes, 90}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 3}, {{10, 50, 100}, 3, std::chrono::milliseconds(1500)}, 15, 5,
           {2, 5, 2, std::chrono::seconds(5)}, {300, 1}};
 }
 
