@@ -108,6 +108,7 @@ void EchoService::count_up(std::int32_t count, std::int32_t fail_at, StreamSink<
 void EchoService::burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>>& sink) {
   const Inside inside(*this);
   while (sink.try_push(std::vector<std::uint8_t>(size))) ++pushed;
+  stream_ended = true;
 }
 
 std::string EchoService::shout(const std::string& text) {
