@@ -145,7 +145,13 @@ void Head::Run::begin(CandidateIterator::Next next) {
         task_.begin(std::move(channel), std::max(Duration::zero(), end - now()), live.candidate);
     live_.push_back(std::move(live));
   } catch (...) {
-    note(live, task_run::verdict_of_current_exception());
+    Verdict verdict = task_run::verdict_of_current_exception();
+    // It was not reached, and only for want of time: that says nothing of whether it is there.
+    if (now() >= deadline_) {
+      verdict.error = std::make_exception_ptr(
+          TimedOut("the time ran out before a CSP could be asked; the last one: " + verdict.text));
+    }
+    note(live, std::move(verdict));
   }
 }
 
@@ -226,10 +232,6 @@ void Head::Run::cancel_rest() {
 void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
-  }
-  // Not executed, for want of the time to reach it: no word on whether the provider is there.
-  if (last_.outcome == Outcome::Failed && !last_.fault && now() >= deadline_) {
-    throw TimedOut("the time ran out before a CSP could be asked; the last one: " + last_.text);
   }
   if (last_.error) std::rethrow_exception(last_.error);
   throw NoneAccepted("no result was good enough; the last one: " + last_.text);
