@@ -23,6 +23,10 @@ double distance_m(const GroundPoint& a, const GroundPoint& b) {
   return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m);
 }
 
+double slant_range_m(const Position& a, const Position& b) {
+  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
+}
+
 double distance_m(const GroundPoint& point, const GroundPoint& a, const GroundPoint& b) {
   const double north = b.north_m - a.north_m;
   const double east = b.east_m - a.east_m;

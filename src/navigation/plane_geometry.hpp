@@ -2,7 +2,7 @@
 
 #include "navigator.idl.hpp"
 
-// Distances on the map.
+// Distances on the map, and straight ones.
 namespace skein::navigation {
 
 using AE_navigator::GroundPoint;
@@ -11,6 +11,9 @@ using AE_navigator::Position;
 inline GroundPoint on_map(const Position& position) { return {position.north_m, position.east_m}; }
 
 double distance_m(const GroundPoint& a, const GroundPoint& b);
+
+/// The straight way, altitudes counted.
+double slant_range_m(const Position& a, const Position& b);
 
 /// From a point to the nearest point of the segment a-b.
 double distance_m(const GroundPoint& point, const GroundPoint& a, const GroundPoint& b);

@@ -8,10 +8,6 @@
 namespace skein::navigation {
 namespace {
 
-double distance_3d_m(const Position& a, const Position& b) {
-  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
-}
-
 /// Within this many ranges of a site its shadows matter: rays are followed exactly, not post by
 /// post.
 constexpr double kNear = 2;
@@ -29,16 +25,14 @@ double exposure_rate(double range_m, double strength, double distance_m) {
 RadarExposure::RadarExposure(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites)
     : mask_(terrain) {
   for (const auto& site : sites) {
-    const double ground = terrain.height_m(site.site.north_m, site.site.east_m);
-    antennas_.push_back({{site.site.north_m, site.site.east_m, ground + site.mast_height_m},
-                         site.range_m,
-                         site.strength});
+    antennas_.push_back(
+        {mast_top(terrain, site.site, site.mast_height_m), site.range_m, site.strength});
   }
 }
 
 double RadarExposure::rate(const Antenna& antenna, const Position& point) const {
   if (!mask_.sees(antenna.position, point, kNear * antenna.range_m)) return 0;
-  return exposure_rate(antenna.range_m, antenna.strength, distance_3d_m(antenna.position, point));
+  return exposure_rate(antenna.range_m, antenna.strength, slant_range_m(antenna.position, point));
 }
 
 double RadarExposure::rate(const Position& point) const {
@@ -48,7 +42,7 @@ double RadarExposure::rate(const Position& point) const {
 }
 
 double RadarExposure::along(const Antenna& antenna, const Position& a, const Position& b) const {
-  const double length = distance_3d_m(a, b);
+  const double length = slant_range_m(a, b);
   const double nearest = distance_m(on_map(antenna.position), on_map(a), on_map(b));
   const double step = nearest < kNear * antenna.range_m ? kNearStep_m : kFarStep_m;
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / step)));

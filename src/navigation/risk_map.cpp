@@ -44,8 +44,7 @@ RiskMap::RiskMap(const Terrain& terrain, std::span<const AE_navigator::RadarSite
         static_cast<float>(terrain.height_m(point.north_m, point.east_m));
   }
   for (const auto& site : sites) {
-    const double foot = terrain.height_m(site.site.north_m, site.site.east_m);
-    add_site(site, foot + site.mast_height_m, ground, altitudes_m);
+    add_site(site, mast_top(terrain, site.site, site.mast_height_m).altitude_m, ground, altitudes_m);
   }
 }
 

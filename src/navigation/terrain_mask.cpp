@@ -49,6 +49,10 @@ bool TerrainMask::hides(const Position& inner, const Position& outer, bool exact
   return false;
 }
 
+Position mast_top(const Terrain& terrain, const GroundPoint& foot, double height_m) {
+  return {foot.north_m, foot.east_m, terrain.height_m(foot.north_m, foot.east_m) + height_m};
+}
+
 double earth_drop_m(double distance_m) {
   return distance_m * distance_m / (2 * kEffectiveRadius_m);
 }

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kStep_m = 40;
 
-double distance_3d_m(const Position& a, const Position& b) {
-  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
-}
-
 /// The part of a-b within a sphere, as shares of the way; the first not below the second where
 /// there is none.
 struct Part {
@@ -67,10 +63,8 @@ double cumulative_detection(std::span<const double> probabilities) {
 MissileThreat::MissileThreat(const Terrain& terrain, std::span<const LaunchSite> sites)
     : mask_(terrain) {
   for (const LaunchSite& site : sites) {
-    const double ground = terrain.height_m(site.site.north_m, site.site.east_m);
-    launchers_.push_back({{site.site.north_m, site.site.east_m, ground + site.mast_height_m},
-                          site.range_m,
-                          site.kills_per_second});
+    launchers_.push_back(
+        {mast_top(terrain, site.site, site.mast_height_m), site.range_m, site.kills_per_second});
   }
 }
 
@@ -81,7 +75,7 @@ bool MissileThreat::sees(const Launcher& launcher, const Position& point) const 
 double MissileThreat::hazard(const Position& point) const {
   double sum = 0;
   for (const Launcher& launcher : launchers_) {
-    if (distance_3d_m(launcher.position, point) < launcher.range_m && sees(launcher, point)) {
+    if (slant_range_m(launcher.position, point) < launcher.range_m && sees(launcher, point)) {
       sum += launcher.kills_per_second;
     }
   }
@@ -92,7 +86,7 @@ double MissileThreat::seconds_in_danger(const Launcher& launcher, const Position
                                         const Position& b, double speed_m_s) const {
   const Part part = within(launcher.position, launcher.range_m, a, b);
   if (part.begin >= part.end) return 0;
-  const double length = (part.end - part.begin) * distance_3d_m(a, b);
+  const double length = (part.end - part.begin) * slant_range_m(a, b);
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / kStep_m)));
   int seen = 0;
   for (int look = 0; look < 3 * pieces; ++look) {

@@ -25,6 +25,10 @@ class TerrainMask {
   TerrainCeilings ceilings_;
 };
 
+/// The top of a mast of `height_m` above the ground at its foot: where an antenna is.
+AE_navigator::Position mast_top(const Terrain& terrain, const AE_navigator::GroundPoint& foot,
+                                double height_m);
+
 /// How far a straight ray that leaves horizontally is above the curved earth after `distance_m`,
 /// over an earth of 4/3 its radius.
 double earth_drop_m(double distance_m);
