@@ -273,9 +273,11 @@ TEST_CASE("no pair of vendors, size, way to die or other fault is missing") {
     const std::string stopped = "provider stopped beyond its lease";
     CHECK(has(results, "deadline to its call's end", "skein " + pair, {{"where", stopped}}));
     for (const std::string& fault :
-         {stopped, std::string("provider killed, from its new process's start"), std::string("network cut")}) {
+         {stopped, std::string("provider killed, from its new process's start"),
+          std::string("network cut")}) {
       CHECK(has(results, "a fault's end to an answer", "skein " + pair, {{"where", fault}}));
-      CHECK(has(results, "a fault's end to a complete registry", "skein " + pair, {{"where", fault}}));
+      CHECK(has(results, "a fault's end to a complete registry", "skein " + pair,
+                {{"where", fault}}));
     }
   }
 }
@@ -300,8 +302,8 @@ TEST_CASE("no vendor is missing where peers start at once and where they are idl
                               "processor time of an idle peer, per second"}) {
       CHECK(has(results, claim, "skein " + vendor, {{"peers", 4}}, "raw " + vendor));
     }
-    CHECK(has(results, "octets that an idle peer sends, per second", "skein " + vendor, {{"peers", 4}},
-              "participants of " + vendor));
+    CHECK(has(results, "octets that an idle peer sends, per second", "skein " + vendor,
+              {{"peers", 4}}, "participants of " + vendor));
   }
 }
 
@@ -338,7 +340,8 @@ TEST_CASE("no kind of grid is missing, and those of the test data are skipped wi
   const json& results = QuickRun::get().results;
   const std::string mean = "a path on a grid, mean over a map";
   CHECK(has(results, mean, "skein jps", {{"where", "made caves"}}, "plain A*"));
-  CHECK(has(results, mean, "skein landmarks", {{"where", "made scatter, a third blocked"}}, "plain A*"));
+  CHECK(has(results, mean, "skein landmarks", {{"where", "made scatter, a third blocked"}},
+            "plain A*"));
   CHECK(has(results, mean, "skein canonical-astar", json::object(), "plain A*"));
 }
 

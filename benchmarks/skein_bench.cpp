@@ -39,15 +39,35 @@ Plan full_plan() {
   const std::vector<CallPlan::Size> sizes{
       {16, 200}, {64, 200}, {1024, 200}, {65'536, 100}, {1'048'576, 15}};
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
-  return {{sizes, 90}, ways, {sizes, 15, 400, 320, 1000, 200, 3000}, {{{64, 300}}, 60}, {200, 20}, 20, {50, 3}, {{10, 50, 100}, 3, std::chrono::milliseconds(1500)}, 15, 5,
-          {2, 5, 2, std::chrono::seconds(5)}, {300, 1}};
+  return {{sizes, 90},
+          ways,
+          {sizes, 15, 400, 320, 1000, 200, 3000},
+          {{{64, 300}}, 60},
+          {200, 20},
+          20,
+          {50, 3},
+          {{10, 50, 100}, 3, std::chrono::milliseconds(1500)},
+          15,
+          5,
+          {2, 5, 2, std::chrono::seconds(5)},
+          {300, 1}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
 Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
-  return {{sizes, 1}, {sizes, 1}, {sizes, 1, 5, 32, 64, 5, 10}, {{{64, 3}}, 1}, {3, 1}, 1, {4, 1}, {{4}, 1, std::chrono::milliseconds(1000)}, 1, 1,
-          {1, 2, 1, std::chrono::milliseconds(1500)}, {3, 100}};
+  return {{sizes, 1},
+          {sizes, 1},
+          {sizes, 1, 5, 32, 64, 5, 10},
+          {{{64, 3}}, 1},
+          {3, 1},
+          1,
+          {4, 1},
+          {{4}, 1, std::chrono::milliseconds(1000)},
+          1,
+          1,
+          {1, 2, 1, std::chrono::milliseconds(1500)},
+          {3, 100}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -81,8 +101,8 @@ const std::vector<Part> kParts{
      [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
     {"in_process",
      [](Configurations& all, const Plan& plan) { return compare_in_process(all, plan.rivals); }},
-    {"idle_clients",
-     [](Configurations& all, const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
+    {"idle_clients", [](Configurations& all,
+                        const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
     {"find_service",
      [](Configurations& all, const Plan& plan) { return compare_find_service(all, plan.find); }},
     {"cold_starts", [](Configurations& all,
@@ -141,7 +161,8 @@ bool run(const std::string& output, bool quick, const std::vector<std::string>& 
   write_goals(comparisons, output + "/goals.md");
   print_summary(comparisons);
   std::printf("\n%s\n", goals_table(comparisons).c_str());
-  std::printf("%s/report.html, %s/results.json, %s/goals.md\n", output.c_str(), output.c_str(), output.c_str());
+  std::printf("%s/report.html, %s/results.json, %s/goals.md\n", output.c_str(), output.c_str(),
+              output.c_str());
   return std::ranges::none_of(comparisons, [](const auto& each) { return each.absence.failed; });
 }
 

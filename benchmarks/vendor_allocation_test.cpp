@@ -44,8 +44,9 @@ TEST_CASE("a steady call over a vendor allocates no more than the vendor's own")
       try {
         const Allocations raw = measure(configurations.raw(vendor, vendor));
         const Allocations own = measure(configurations.skein(vendor, vendor));
-        std::cout << vendor << ": a call allocates " << own.server << " at the server, " << own.client
-                  << " at the client; raw " << raw.server << ", " << raw.client << '\n';
+        std::cout << vendor << ": a call allocates " << own.server << " at the server, "
+                  << own.client << " at the client; raw " << raw.server << ", " << raw.client
+                  << '\n';
         CHECK(own.server <= raw.server + kNoise);
         CHECK(own.client <= raw.client + kNoise);
       } catch (const Skipped& reason) {

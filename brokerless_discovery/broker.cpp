@@ -8,10 +8,10 @@
 #include <mutex>
 #include <set>
 
-#include "skein/discovery.idl.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/idl/type_support.hpp"
 
 namespace skein::brokerless_discovery {
@@ -111,7 +111,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
     } catch (const std::exception& error) {
       std::lock_guard lock(mutex);
       if (++malformed > 1) return;
-      log(LogLevel::Warning, "broker", std::string("dropped a malformed service description: ") + error.what());
+      log(LogLevel::Warning, "broker",
+          std::string("dropped a malformed service description: ") + error.what());
     }
   }
 
@@ -131,8 +132,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
     });
   }
 
-  // R17: a writer that comes back need not know that it was gone, and some vendors do not deliver again
-  // what a reader has had from it. A new reader gets everything from everybody.
+  // R17: a writer that comes back need not know that it was gone, and some vendors do not deliver
+  // again what a reader has had from it. A new reader gets everything from everybody.
   void renew_reader() {
     std::lock_guard lock(writing);
     if (closed) return;
@@ -141,7 +142,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
       reader.swap(renewed);
       last_renewal = clock.now();
     } catch (const Error& error) {
-      log(LogLevel::Error, "broker", std::string("descriptions cannot be read again: ") + error.what());
+      log(LogLevel::Error, "broker",
+          std::string("descriptions cannot be read again: ") + error.what());
     }
   }
 
@@ -155,8 +157,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
       apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
     };
     return participant.create_reader(
-        kTopic, description_qos({"", owner_partition(asker)}, options.lease),
-        std::move(listener));
+        kTopic, description_qos({"", owner_partition(asker)}, options.lease), std::move(listener));
   }
 
   void watch_process(const ServiceDescription& description) {
@@ -233,8 +234,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
     apply([&](Table& table) { return table.on_withdrawn(provider); });
   }
 
-  // R17: a peer that slept through its lease is suspect to others, and on some vendors stays so until it
-  // writes again.
+  // R17: a peer that slept through its lease is suspect to others, and on some vendors stays so
+  // until it writes again.
   void tick() {
     if (suspects_stay()) renew_reader();
     std::lock_guard lock(writing);
@@ -245,7 +246,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
         try {
           write(mine);
         } catch (const Error& error) {
-          log(LogLevel::Warning, "broker", std::string("a description was not sent again: ") + error.what());
+          log(LogLevel::Warning, "broker",
+              std::string("a description was not sent again: ") + error.what());
         }
       }
     }
@@ -348,7 +350,8 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
       return late || state_->leaving || !found.empty() || state_->clock.now() >= deadline;
     });
     if (found.empty()) {
-      reason = state_->leaving ? "the entity that looked for it has ended" : state_->table.explain(query);
+      reason = state_->leaving ? "the entity that looked for it has ended"
+                               : state_->table.explain(query);
     }
   } catch (...) {
     lock.unlock();

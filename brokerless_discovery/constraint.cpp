@@ -17,14 +17,20 @@ using discovery::ServiceDescription;
 constexpr std::array<std::pair<std::string_view, double>, 6> kTimeUnits{
     {{"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}}};
 
-bool is_order(Relation relation) { return relation == Relation::AtMost || relation == Relation::AtLeast; }
+bool is_order(Relation relation) {
+  return relation == Relation::AtMost || relation == Relation::AtLeast;
+}
 
 const char* words_of(Relation relation) {
   switch (relation) {
-    case Relation::Equal: return "";
-    case Relation::NotEqual: return "anything but ";
-    case Relation::AtMost: return "at most ";
-    case Relation::AtLeast: break;
+    case Relation::Equal:
+      return "";
+    case Relation::NotEqual:
+      return "anything but ";
+    case Relation::AtMost:
+      return "at most ";
+    case Relation::AtLeast:
+      break;
   }
   return "at least ";
 }
@@ -46,11 +52,13 @@ Quantity quantity_of(std::string_view text) {
 }
 
 void check(const Constraint& constraint) {
-  if (!is_order(constraint.relation) || quantity_of(constraint.value).kind != Quantity::Kind::Text) {
+  if (!is_order(constraint.relation) ||
+      quantity_of(constraint.value).kind != Quantity::Kind::Text) {
     return;
   }
-  throw InvalidArgument("the constraint '" + constraint.attribute + "' " + words_of(constraint.relation) +
-                        "'" + constraint.value + "' asks for an order, and '" + constraint.value +
+  throw InvalidArgument("the constraint '" + constraint.attribute + "' " +
+                        words_of(constraint.relation) + "'" + constraint.value +
+                        "' asks for an order, and '" + constraint.value +
                         "' is no number; write a number, or a length of time such as '100 ms'");
 }
 
@@ -61,10 +69,14 @@ bool meets(const ServiceDescription& provider, const Constraint& constraint) {
   const Quantity want = quantity_of(constraint.value);
   const bool numbers = have.kind == want.kind && have.kind != Quantity::Kind::Text;
   switch (constraint.relation) {
-    case Relation::Equal: return numbers ? have.value == want.value : *declared == constraint.value;
-    case Relation::NotEqual: return numbers ? have.value != want.value : *declared != constraint.value;
-    case Relation::AtMost: return numbers && have.value <= want.value;
-    case Relation::AtLeast: break;
+    case Relation::Equal:
+      return numbers ? have.value == want.value : *declared == constraint.value;
+    case Relation::NotEqual:
+      return numbers ? have.value != want.value : *declared != constraint.value;
+    case Relation::AtMost:
+      return numbers && have.value <= want.value;
+    case Relation::AtLeast:
+      break;
   }
   return numbers && have.value >= want.value;
 }

@@ -64,7 +64,8 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
     };
     listener.on_matched = [this](const Guid& gone, bool matched) {
       std::lock_guard lock(mutex);
-      if (!matched) std::erase_if(loads, [&](const auto& load) { return load.second.writer == gone; });
+      if (!matched)
+        std::erase_if(loads, [&](const auto& load) { return load.second.writer == gone; });
     };
     std::lock_guard lock(telling);
     reader = participant.create_reader(kTopic, load_qos(), std::move(listener));

@@ -36,7 +36,9 @@ socklen_t fill(sockaddr_un& address, const std::string& name) {
   return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
 }
 
-std::string system_error(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
+std::string system_error(const char* what) {
+  return std::string(what) + ": " + std::strerror(errno);
+}
 
 }  // namespace
 
@@ -60,7 +62,8 @@ struct ProcessWatch::State {
     if (listener < 0 || epoll < 0 || wake < 0 ||
         bind(listener, reinterpret_cast<sockaddr*>(&name), length) != 0 ||
         ::listen(listener, SOMAXCONN) != 0) {
-      const std::string text = system_error("cannot open the socket by which peers see this process end");
+      const std::string text =
+          system_error("cannot open the socket by which peers see this process end");
       close_all();
       throw Unavailable(text);
     }

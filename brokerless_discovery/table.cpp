@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/suggestion.hpp"
+#include "skein/discovery.idl.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -149,7 +149,8 @@ Table::Found Table::find(const Query& query) const {
   return found;
 }
 
-// Why an entry of the wanted name does not suit; empty where it does, or where it was not asked for.
+// Why an entry of the wanted name does not suit; empty where it does, or where it was not asked
+// for.
 std::string Table::obstacle(const Entry& entry, const Query& query) {
   const ServiceDescription& description = *entry.description;
   const std::string who = description.entity + " (" + description.system + ")";
@@ -157,14 +158,17 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
   if (!visible(description, query)) {
     return who + " is managed by " + description.owner + ", and only that entity may use it";
   }
-  if (!in_system(description, query)) return "only " + who + " offers it; name that system to use it";
+  if (!in_system(description, query))
+    return "only " + who + " offers it; name that system to use it";
   if (entry.suspect) return who + " has not been heard of for its lease";
-  if (const auto* operation = query.client ? missing_operation(*query.client, description) : nullptr) {
+  if (const auto* operation =
+          query.client ? missing_operation(*query.client, description) : nullptr) {
     return who + " offers another version of it: operation '" + std::string(operation->name) +
            "' is missing there or has another signature; build both sides from the same IDL";
   }
   for (const Constraint& constraint : query.constraints) {
-    if (!meets(description, constraint)) return who + " does not suit: " + shortfall(description, constraint);
+    if (!meets(description, constraint))
+      return who + " does not suit: " + shortfall(description, constraint);
   }
   return {};
 }
@@ -211,7 +215,8 @@ Table::Found Table::all() const {
 }
 
 bool Table::has_suspects() const {
-  return std::any_of(entries_.begin(), entries_.end(), [](const auto& entry) { return entry.second.suspect; });
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const auto& entry) { return entry.second.suspect; });
 }
 
 bool Table::knows_process(const std::string& process) const {
@@ -231,7 +236,8 @@ const Shelf* Table::find_shelf(const PlaceView& place) const {
 }
 
 // Null where nothing of that name stands in that system.
-const Shelf* Table::shelf_of(const std::string& name, const std::optional<std::string>& system) const {
+const Shelf* Table::shelf_of(const std::string& name,
+                             const std::optional<std::string>& system) const {
   if (const Shelf* const shelf = find_shelf({name, system})) return shelf;
   if (system && find_shelf({name, std::nullopt})) return nullptr;
   return find_shelf({resolve(name), system});
@@ -241,8 +247,10 @@ std::string Table::resolve(const std::string& name) const {
   if (const auto found = short_names_.find(name); found != short_names_.end()) {
     if (found->second.size() == 1) return found->second.begin()->first;
     std::string both;
-    for (const auto& [canonical, count] : found->second) both += (both.empty() ? "" : " and ") + canonical;
-    throw InvalidArgument("'" + name + "' is ambiguous: it may be " + both + "; write the whole name");
+    for (const auto& [canonical, count] : found->second)
+      both += (both.empty() ? "" : " and ") + canonical;
+    throw InvalidArgument("'" + name + "' is ambiguous: it may be " + both +
+                          "; write the whole name");
   }
   return is_interface_name(name) ? canonical_interface_name(name) : name;
 }

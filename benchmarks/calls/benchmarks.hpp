@@ -59,16 +59,17 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
 /// Fresh pairs of processes; the provider is up, the client's process begins.
 std::vector<Comparison> compare_cold_starts(Configurations& configurations, std::size_t starts);
 
-/// Peers that start at once, a process each, until all see all, beside raw peers with the same endpoints.
+/// Peers that start at once, a process each, until all see all, beside raw peers with the same
+/// endpoints.
 struct JoinPlan {
   std::size_t peers;
   std::size_t rounds;
 };
 std::vector<Comparison> compare_joins(Configurations& configurations, const JoinPlan& plan);
 
-/// What peers that see all others and do nothing cost, each: octets and packets on the wire, processor
-/// time; beside raw peers with the same endpoints, and beside participants without any endpoint: what is more than
-/// that is for the registry. So many windows of time for each count.
+/// What peers that see all others and do nothing cost, each: octets and packets on the wire,
+/// processor time; beside raw peers with the same endpoints, and beside participants without any
+/// endpoint: what is more than that is for the registry. So many windows of time for each count.
 struct IdlePlan {
   std::vector<std::size_t> peers;
   std::size_t windows;
@@ -83,9 +84,9 @@ std::vector<Comparison> compare_deaths_on_one_host(Configurations& configuration
 std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
                                                     std::size_t kills);
 
-/// Providers that are stopped beyond their lease, killed and started anew, and a network that is cut: how
-/// late calls end that nobody answers, and how soon after the fault calls are answered and both peers know
-/// each other's service again.
+/// Providers that are stopped beyond their lease, killed and started anew, and a network that is
+/// cut: how late calls end that nobody answers, and how soon after the fault calls are answered and
+/// both peers know each other's service again.
 struct FaultPlan {
   std::size_t stops;
   std::size_t calls;  ///< Unanswered ones, each time.

@@ -4,8 +4,8 @@
 namespace skein::benchmarks {
 namespace {
 
-/// Each comparison with whichever rival is slower there: a mixed pair can be no better. Where one of both is not
-/// known, neither is the slower one.
+/// Each comparison with whichever rival is slower there: a mixed pair can be no better. Where one
+/// of both is not known, neither is the slower one.
 std::vector<Comparison> with_slower_rival(std::vector<Comparison> one,
                                           std::vector<Comparison> other) {
   for (std::size_t i = 0; i < one.size(); ++i) {

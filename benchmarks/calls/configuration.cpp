@@ -85,9 +85,10 @@ Configuration Configurations::skein_neighbour(const std::string& vendor, std::si
 }
 
 Configuration Configurations::raw_neighbour(const std::string& vendor, std::size_t count) {
-  return {"raw " + vendor,
-          {},
-          {folder_ + "/skein_bench_raw_" + vendor, "neighbour", next_domain(), std::to_string(count)}};
+  return {
+      "raw " + vendor,
+      {},
+      {folder_ + "/skein_bench_raw_" + vendor, "neighbour", next_domain(), std::to_string(count)}};
 }
 
 Configuration Configurations::bystander(const std::string& vendor, std::size_t count) {

@@ -42,8 +42,8 @@ class Configurations {
   /// The vendor's own API in a way that differs from Skein's: `shared_memory`, `data_sharing`,
   /// `listener` or `polling`, as far as the vendor has it (raw/main.hpp).
   Configuration raw_by(const std::string& vendor, const std::string& way);
-  /// One of `count` peers that find each other, each a process: a Skein entity with one service, a raw peer with
-  /// the same endpoints, and a participant without any. Only `client` is set.
+  /// One of `count` peers that find each other, each a process: a Skein entity with one service, a
+  /// raw peer with the same endpoints, and a participant without any. Only `client` is set.
   Configuration skein_neighbour(const std::string& vendor, std::size_t count);
   Configuration raw_neighbour(const std::string& vendor, std::size_t count);
   Configuration bystander(const std::string& vendor, std::size_t count);
@@ -61,8 +61,8 @@ class Configurations {
   Configuration name_server(const std::string& log_folder);
 
  private:
-  Configuration skein_alone(const std::string& name, const std::string& role, const std::string& vendor,
-                            std::size_t count);
+  Configuration skein_alone(const std::string& name, const std::string& role,
+                            const std::string& vendor, std::size_t count);
   Configuration floor(const std::string& name, const std::string& program);
   std::string next_domain() { return std::to_string(++last_domain_); }
 

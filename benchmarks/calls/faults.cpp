@@ -46,7 +46,8 @@ struct Survivors {
     for (Child* peer : {&running->client, &running->client, &*running->server}) peer->receive();
   }
 
-  /// From now on the client calls without rest until it is answered, and both wait until they know all.
+  /// From now on the client calls without rest until it is answered, and both wait until they know
+  /// all.
   void watch() {
     running->client.send("answered");
     running->client.send("complete");
@@ -108,8 +109,8 @@ void add_comparisons(std::vector<Comparison>& all, const std::vector<Survivors>&
   for (const Survivors& pair : pairs) {
     const auto measured = pair.samples.find({claim, where});
     const auto samples = measured == pair.samples.end() ? std::vector<double>() : measured->second;
-    Comparison& comparison = all.emplace_back(
-        Comparison{claim, pair.configuration.name, limit, {{"where", where}}});
+    Comparison& comparison =
+        all.emplace_back(Comparison{claim, pair.configuration.name, limit, {{"where", where}}});
     fill(comparison, {samples, pair.absence}, {{limit_us}});
   }
 }
@@ -131,7 +132,8 @@ std::vector<Comparison> compare_faults_on_one_host(Configurations& configuration
   for (Survivors& pair : pairs)
     turns.push_back([&] { unless_absent(pair, [&] { stop_and_kill(pair, plan.calls); }); });
   take_turns(plan.stops, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rproviders stopped and killed: round %zu of %zu ", round + 1, plan.stops);
+    std::fprintf(stderr, "\rproviders stopped and killed: round %zu of %zu ", round + 1,
+                 plan.stops);
   });
   std::fputc('\n', stderr);
   std::vector<Comparison> comparisons;

@@ -33,8 +33,9 @@ constexpr std::array<Figure, 3> kFigures{{
     {"processor time of an idle peer, per second", "us", &Cost::cpu_us},
 }};
 
-/// What discovery and leases cost grows with the number's square. On two cores 50 peers take half of the
-/// processor while they are idle, and 100 did not find each other within a minute, raw ones neither.
+/// What discovery and leases cost grows with the number's square. On two cores 50 peers take half
+/// of the processor while they are idle, and 100 did not find each other within a minute, raw ones
+/// neither.
 constexpr std::size_t kMostOnACore = 25;
 
 void refuse_too_many(std::size_t peers) {
@@ -76,9 +77,12 @@ struct Idler {
   }
 };
 
-void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& rival, std::size_t peers) {
+void compare(std::vector<Comparison>& comparisons, const Idler& own, const Idler& rival,
+             std::size_t peers) {
   for (const Figure& figure : kFigures) {
-    Comparison comparison{figure.claim, own.configuration.name, rival.configuration.name,
+    Comparison comparison{figure.claim,
+                          own.configuration.name,
+                          rival.configuration.name,
                           {{"peers", peers}, {"processes", peers}}};
     comparison.unit = figure.unit;
     fill(comparison, own.outcome_of(figure.samples), rival.outcome_of(figure.samples));

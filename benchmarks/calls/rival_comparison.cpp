@@ -112,15 +112,13 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
   return comparisons;
 }
 
-std::vector<Comparison> compare_idle_clients(Configurations& configurations,
-                                             const CallPlan& plan) {
+std::vector<Comparison> compare_idle_clients(Configurations& configurations, const CallPlan& plan) {
   std::vector<Trial> trials;
   for (const auto& size : plan.sizes) {
     trials.push_back(
         closed_loop("a call beside idle clients", size.size_bytes, size.calls_per_turn));
   }
-  Contest contest("idle clients", std::move(trials),
-                  {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("idle clients", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
   std::list<Child> crowds;
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const char* vendor : kVendors) {

@@ -136,8 +136,8 @@ std::string service_name(std::size_t number) {
 /// Of all services that `Finder` binds.
 constexpr const char* kCommonBase = "benchmark/IService";
 
-/// A Broker with many descriptions, and how long it takes to find one: by a name that it alone has, or
-/// among all by what it alone declares.
+/// A Broker with many descriptions, and how long it takes to find one: by a name that it alone has,
+/// or among all by what it alone declares.
 class Finder {
  public:
   explicit Finder(brokerless_discovery::Broker& broker) : broker_(broker) {}
@@ -150,7 +150,8 @@ class Finder {
       description.service = service_name(registrations_.size());
       description.bases = {kCommonBase};
       description.entity = "entity" + std::to_string(registrations_.size());
-      description.attributes = {{"latency", std::to_string(registrations_.size())}, {"quality", "1.0"}};
+      description.attributes = {{"latency", std::to_string(registrations_.size())},
+                                {"quality", "1.0"}};
       registrations_.push_back(broker_.add_service(description));
     }
     while (broker_.all().size() < count) std::this_thread::sleep_for(1ms);
@@ -159,15 +160,17 @@ class Finder {
 
   std::string find(std::size_t count) {
     return timed(count, [&](std::size_t number) {
-      return [this, name = service_name(number)] { return broker_.find_service(broker_.query(name)); };
+      return
+          [this, name = service_name(number)] { return broker_.find_service(broker_.query(name)); };
     });
   }
 
   std::string choose(std::size_t count) {
     return timed(count, [&](std::size_t number) {
       using namespace brokerless_discovery;
-      const std::vector<Constraint> constraints{{"quality", Relation::AtLeast, "0.5"},
-                                                {"latency", Relation::Equal, std::to_string(number)}};
+      const std::vector<Constraint> constraints{
+          {"quality", Relation::AtLeast, "0.5"},
+          {"latency", Relation::Equal, std::to_string(number)}};
       return [this, constraints] {
         auto query = broker_.query(kCommonBase);
         query.constraints = constraints;

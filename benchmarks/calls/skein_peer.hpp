@@ -10,14 +10,16 @@ namespace skein::benchmarks {
 
 /// One process of a Skein configuration.
 struct SkeinPeer {
-  std::string role;  ///< `server`, `client`, or `local`: both in one process; `finder`; `neighbour`; or `bystander`.
+  std::string role;  ///< `server`, `client`, or `local`: both in one process; `finder`;
+                     ///< `neighbour`; or `bystander`.
   std::string vendor;
   std::uint32_t domain = 0;
   std::size_t threads = 1;
   std::string interface;  ///< Empty: loopback.
   std::string peer;       ///< Address of the other host, with `interface`.
   bool survives = false;  ///< A server or client that goes through faults (calls/survivor.hpp).
-  std::size_t peers = 0;  ///< Of a `neighbour` or `bystander`: how many there are, itself among them.
+  std::size_t peers =
+      0;  ///< Of a `neighbour` or `bystander`: how many there are, itself among them.
 };
 
 /// Those of a server or a client. Throws Skipped where its vendor is not installed.

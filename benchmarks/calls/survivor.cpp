@@ -79,8 +79,8 @@ void survive(const SkeinPeer& peer) {
   if (peer.role == "server") return run_commands(commands);
   const auto proxy = entity.connect<Echo>({.name = "server", .timeout = 20s}).within(kDeadline);
   commands.emplace_back("answered", [&](const std::string&) { return answered(proxy); });
-  commands.emplace_back("overdue",
-                        [&](const std::string& count) { return overdue(proxy, std::stoul(count)); });
+  commands.emplace_back(
+      "overdue", [&](const std::string& count) { return overdue(proxy, std::stoul(count)); });
   run_commands(commands);
 }
 

@@ -5,8 +5,8 @@
 namespace skein::benchmarks {
 
 /// One of two peers that go through faults; both provide the service, so that each has something to
-/// find again, and the one whose role is `client` calls the other. Every one knows `complete` (waits
-/// until it knows both providers; answers with the time, in ns), the client also
+/// find again, and the one whose role is `client` calls the other. Every one knows `complete`
+/// (waits until it knows both providers; answers with the time, in ns), the client also
 ///
 /// | command | answer |
 /// |---|---|

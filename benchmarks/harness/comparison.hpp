@@ -26,7 +26,8 @@ struct Comparison {
   nlohmann::json parameters = nlohmann::json::object();
   std::vector<double> samples{};        ///< In `unit`, as measured.
   std::vector<double> rival_samples{};  ///< A promise is one sample.
-  std::size_t rounds = 0;  ///< Where the samples come turn after turn, a turn of both in each; else 0.
+  std::size_t rounds =
+      0;  ///< Where the samples come turn after turn, a turn of both in each; else 0.
   /// The greatest ratios that the project is content with, where it has said so.
   std::optional<double> goal_p50{};
   std::optional<double> goal_p99{};
@@ -46,10 +47,11 @@ void fill(Comparison& comparison, const Outcome& own, const Outcome& rival);
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 
-/// Figures with their unit: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us` (or `p50_octets`, ...), the same
-/// with `rival_` before it, of all samples together, and the quotients `ratio_p50` and `ratio_p99` (see
-/// ratio_of_quantiles), below 1 where the subject is faster or thriftier.
-/// `unit` says which. All of them null where nothing was measured; `skipped` or `failed` then says why.
+/// Figures with their unit: `p50_us`, `p90_us`, `p95_us`, `p99_us`, `p999_us` (or `p50_octets`,
+/// ...), the same with `rival_` before it, of all samples together, and the quotients `ratio_p50`
+/// and `ratio_p99` (see ratio_of_quantiles), below 1 where the subject is faster or thriftier.
+/// `unit` says which. All of them null where nothing was measured; `skipped` or `failed` then says
+/// why.
 nlohmann::json to_json(const Comparison& comparison);
 
 /// Writes results.json: an array of all comparisons. Throws Error where the file cannot be written.

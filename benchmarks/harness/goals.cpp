@@ -14,7 +14,9 @@ bool is_call_beside(const Comparison& comparison, const char* rival) {
   return comparison.claim != "a call in the same process" && comparison.rival.starts_with(rival);
 }
 
-bool is_look_up(const Comparison& comparison) { return comparison.claim.starts_with("find_service"); }
+bool is_look_up(const Comparison& comparison) {
+  return comparison.claim.starts_with("find_service");
+}
 
 bool is_death(const Comparison& comparison, const char* where) {
   return comparison.claim.starts_with("provider killed") &&
@@ -26,7 +28,8 @@ bool is_mean_on_grids(const Comparison& comparison, bool in_space) {
   if (comparison.claim != "a path on a grid, mean over a map" || comparison.absence) return false;
   const auto& parameters = comparison.parameters;
   const bool is_space = parameters.at("depth") > 1;
-  return is_space == in_space && (is_space || (parameters.at("width") >= 256 && parameters.at("height") >= 256));
+  return is_space == in_space &&
+         (is_space || (parameters.at("width") >= 256 && parameters.at("height") >= 256));
 }
 
 /// How far beyond its limits a measured comparison is: over 1 it misses them.
@@ -36,8 +39,8 @@ double strain(const Comparison& comparison) {
 }
 
 const Goal* goal_of(const Comparison& comparison) {
-  const auto found = std::ranges::find_if(
-      goals(), [&](const Goal& goal) { return goal.covers(comparison); });
+  const auto found =
+      std::ranges::find_if(goals(), [&](const Goal& goal) { return goal.covers(comparison); });
   return found == goals().end() ? nullptr : &*found;
 }
 
@@ -46,31 +49,53 @@ const Goal* goal_of(const Comparison& comparison) {
 const std::vector<Goal>& goals() {
   static const std::vector<Goal> kGoals{
       {"A call over DDS costs what a raw call does (mixed pairs: the slower vendor's)", 1.05, 1.15,
-       [](const Comparison& c) { return c.claim == "a call over DDS" && is_vendor_alone(c.rival); }},
-      {"A call in the same process takes at most 1 µs", 1.0, {},
+       [](const Comparison& c) {
+         return c.claim == "a call over DDS" && is_vendor_alone(c.rival);
+       }},
+      {"A call in the same process takes at most 1 µs",
+       1.0,
+       {},
        [](const Comparison& c) {
          return c.claim == "a call in the same process" && c.rival.starts_with("limit");
        }},
-      {"A call in the same process is ahead of omniORB's collocated call", 1.0, {},
+      {"A call in the same process is ahead of omniORB's collocated call",
+       1.0,
+       {},
        [](const Comparison& c) { return c.rival == "omniorb collocated"; }},
-      {"Calls to another process are ahead of omniORB", 1.0, {},
+      {"Calls to another process are ahead of omniORB",
+       1.0,
+       {},
        [](const Comparison& c) { return is_call_beside(c, "omniorb "); },
        Goal::Kind::Aim},
-      {"Calls to another process are ahead of gRPC", 1.0, {},
+      {"Calls to another process are ahead of gRPC",
+       1.0,
+       {},
        [](const Comparison& c) { return is_call_beside(c, "grpc "); },
        Goal::Kind::Aim},
-      {"Calls to another process are ahead of ZeroMQ", 1.0, {},
+      {"Calls to another process are ahead of ZeroMQ",
+       1.0,
+       {},
        [](const Comparison& c) { return is_call_beside(c, "zeromq "); },
        Goal::Kind::Aim},
-      {"32 idle clients of the same service cost a call nothing", 1.05, {},
+      {"32 idle clients of the same service cost a call nothing",
+       1.05,
+       {},
        [](const Comparison& c) { return c.claim == "a call beside idle clients"; }},
-      {"The first reply comes as soon as a raw one after the process's start", 1.2, {},
+      {"The first reply comes as soon as a raw one after the process's start",
+       1.2,
+       {},
        [](const Comparison& c) { return c.claim == "process start to first reply"; }},
-      {"50 peers that start at once see each other as soon as raw ones", 1.2, {},
+      {"50 peers that start at once see each other as soon as raw ones",
+       1.2,
+       {},
        [](const Comparison& c) { return c.claim == "peers that start at once until all see all"; }},
-      {"find_service among 10 to 10,000 descriptions takes at most 1 µs, with constraints too", 1.0, {},
+      {"find_service among 10 to 10,000 descriptions takes at most 1 µs, with constraints too",
+       1.0,
+       {},
        [](const Comparison& c) { return is_look_up(c) && c.rival.starts_with("limit"); }},
-      {"find_service is ahead of omniORB's name server", 1.0, {},
+      {"find_service is ahead of omniORB's name server",
+       1.0,
+       {},
        [](const Comparison& c) { return is_look_up(c) && c.rival.starts_with("omniORB"); }},
       {"The death of a provider on the same host is known within 20 ms", 1.0, 1.0,
        [](const Comparison& c) { return is_death(c, "one host"); }},
@@ -80,9 +105,13 @@ const std::vector<Goal>& goals() {
        [](const Comparison& c) { return c.claim == "deadline to its call's end"; }},
       {"2 s after a fault calls are answered and all services known again", 1.0, 1.0,
        [](const Comparison& c) { return c.claim.starts_with("a fault's end to "); }},
-      {"A path on a plane of 256 x 256 cells and more takes a tenth of plain A*'s mean", 0.1, {},
+      {"A path on a plane of 256 x 256 cells and more takes a tenth of plain A*'s mean",
+       0.1,
+       {},
        [](const Comparison& c) { return is_mean_on_grids(c, false); }},
-      {"A path in a space takes a fifth of plain A*'s mean", 0.2, {},
+      {"A path in a space takes a fifth of plain A*'s mean",
+       0.2,
+       {},
        [](const Comparison& c) { return is_mean_on_grids(c, true); }},
   };
   return kGoals;

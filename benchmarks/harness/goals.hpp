@@ -19,7 +19,8 @@ inline constexpr double kHealedUs = 2'000'000;
 
 /// One goal, and the comparisons that it speaks of.
 struct Goal {
-  /// Where the project wants to be in the end: the report says how far it is, and does not call it missed.
+  /// Where the project wants to be in the end: the report says how far it is, and does not call it
+  /// missed.
   enum class Kind { Promise, Aim };
   std::string text;
   double p50 = 0;  ///< The greatest ratio.
@@ -41,7 +42,8 @@ struct Verdict {
   std::size_t measured = 0;
   std::size_t met = 0;
   std::size_t failed = 0;  ///< Should have been measured, and were not: then the goal is not met.
-  const Comparison* worst = nullptr;  ///< The furthest beyond, or the nearest to its limits; none measured: null.
+  const Comparison* worst =
+      nullptr;  ///< The furthest beyond, or the nearest to its limits; none measured: null.
 };
 
 /// By everything that should have been measured; what was skipped does not count.

@@ -114,7 +114,9 @@ std::string enter_private_network() {
     map_to_root(user, group);
   }
   if (!raise_loopback()) return "loopback cannot be switched on";
-  return hide_shared_memory() ? "" : "the run shares /dev/shm with the machine, and may leave files there";
+  return hide_shared_memory()
+             ? ""
+             : "the run shares /dev/shm with the machine, and may leave files there";
 }
 
 TwoHosts::TwoHosts() {
@@ -133,9 +135,11 @@ TwoHosts::TwoHosts() {
 // Each takes the other for a card that does not exist.
 void TwoHosts::cut() {
   const char* nobody = "02:00:00:00:00:01";
-  run_ip({"neighbour", "replace", second_.address, "lladdr", nobody, "dev", "skein0", "nud", "permanent"},
+  run_ip({"neighbour", "replace", second_.address, "lladdr", nobody, "dev", "skein0", "nud",
+          "permanent"},
          first_.network);
-  run_ip({"neighbour", "replace", first_.address, "lladdr", nobody, "dev", "skein1", "nud", "permanent"},
+  run_ip({"neighbour", "replace", first_.address, "lladdr", nobody, "dev", "skein1", "nud",
+          "permanent"},
          second_.network);
 }
 

@@ -5,9 +5,9 @@
 namespace skein::benchmarks {
 
 /// Moves this process into a network of its own that has nothing but loopback, so that a run
-/// neither disturbs others nor is disturbed; with a /dev/shm that vanishes with it, and with it whatever a killed
-/// peer leaves there. Before any thread exists. Returns what stood in the
-/// way, or "".
+/// neither disturbs others nor is disturbed; with a /dev/shm that vanishes with it, and with it
+/// whatever a killed peer leaves there. Before any thread exists. Returns what stood in the way, or
+/// "".
 std::string enter_private_network();
 
 /// Two hosts for this kernel: network namespaces with one cable (veth) between them. They vanish
@@ -24,7 +24,8 @@ class TwoHosts {
     int network = -1;
     std::string address;
   };
-  /// From now on nothing arrives at the other end, and nobody is told: as when a link fails far away.
+  /// From now on nothing arrives at the other end, and nobody is told: as when a link fails far
+  /// away.
   void cut();
   void heal();
 

@@ -24,10 +24,10 @@ double quantile(const std::vector<double>& sorted, double q);
 /// All zero for no samples.
 Summary summarize(std::vector<double> samples);
 
-/// The subject's quantile by the rival's, where both took a turn in each of so many rounds: the median over
-/// the rounds, so that what disturbs one turn counts once, and what lasts for a round disturbs both. Where a
-/// turn has too few samples for that quantile (a p99 needs 100), or there are no rounds, all are taken together.
-/// Samples lie turn after turn; neither is empty.
+/// The subject's quantile by the rival's, where both took a turn in each of so many rounds: the
+/// median over the rounds, so that what disturbs one turn counts once, and what lasts for a round
+/// disturbs both. Where a turn has too few samples for that quantile (a p99 needs 100), or there
+/// are no rounds, all are taken together. Samples lie turn after turn; neither is empty.
 double ratio_of_quantiles(const std::vector<double>& subject, const std::vector<double>& rival,
                           std::size_t rounds, double q);
 

@@ -9,7 +9,8 @@ namespace skein::benchmarks::raw {
 namespace {
 
 void read_announcements(dds_entity_t reader, void* census) {
-  for (Message message; take(reader, message);) static_cast<Census*>(census)->add(message.head.client);
+  for (Message message; take(reader, message);)
+    static_cast<Census*>(census)->add(message.head.client);
 }
 
 }  // namespace

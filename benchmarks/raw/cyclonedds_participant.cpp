@@ -6,20 +6,20 @@ namespace skein::benchmarks::raw {
 namespace {
 
 std::string configuration(std::uint32_t greatest_number) {
-  return
-    "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
-    "<NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
-    "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65000 B</MaxMessageSize>"
-    "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 "
-    "B</MaxRexmitMessageSize></General>"
-    "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-    "<MaxAutoParticipantIndex>" +
+  return "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
+         "<NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
+         "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65000 B</MaxMessageSize>"
+         "<FragmentSize>63000 B</FragmentSize><MaxRexmitMessageSize>65000 "
+         "B</MaxRexmitMessageSize></General>"
+         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+         "<MaxAutoParticipantIndex>" +
          std::to_string(greatest_number) +
          "</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>"
-    "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
-    "<Internal><SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>"
-    "<Watermarks><WhcHigh>4 MiB</WhcHigh><WhcHighInit>1 MiB</WhcHighInit></Watermarks>"
-    "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval><NackDelay>10 ms</NackDelay></Internal></Domain></CycloneDDS>";
+         "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
+         "<Internal><SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>"
+         "<Watermarks><WhcHigh>4 MiB</WhcHigh><WhcHighInit>1 MiB</WhcHighInit></Watermarks>"
+         "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval><NackDelay>10 "
+         "ms</NackDelay></Internal></Domain></CycloneDDS>";
 }
 
 class Qos {
@@ -90,9 +90,7 @@ dds_entity_t CycloneddsParticipant::reader(const Topic& topic, Delivery delivery
   return check(dds_create_reader(participant_, topic.entity, Qos(delivery).get(), listener));
 }
 
-dds_entity_t CycloneddsParticipant::waitset() {
-  return check(dds_create_waitset(participant_));
-}
+dds_entity_t CycloneddsParticipant::waitset() { return check(dds_create_waitset(participant_)); }
 
 void write(dds_entity_t writer, const ddsi_sertype* type, const Outgoing& message) {
   Sample* sample = Sample::make(type, SDK_DATA, encoded_size(message));

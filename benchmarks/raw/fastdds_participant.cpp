@@ -136,8 +136,7 @@ dds::DataWriter* FastddsParticipant::make(const char* topic, dds::DataWriterQos 
   qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
   qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
   qos.reliable_writer_qos().times.nackSupressionDuration = Duration_t(0, 10'000'000);
-  return publisher_->create_datawriter(topic_of(topic),
-                                       qos);
+  return publisher_->create_datawriter(topic_of(topic), qos);
 }
 
 dds::DataReader* FastddsParticipant::make(const char* topic, const dds::DataReaderQos& given,

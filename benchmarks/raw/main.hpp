@@ -99,7 +99,8 @@ inline int raw_main(
   return run_peer([&] {
     const bool alone = neighbour && argc > 1 && argv[1] == std::string("neighbour");
     if (alone ? argc != 4 : argc != 3 && argc != 4) {
-      throw InvalidArgument(std::string(argv[0]) + " server|client DOMAIN [WAY], neighbour DOMAIN PEERS");
+      throw InvalidArgument(std::string(argv[0]) +
+                            " server|client DOMAIN [WAY], neighbour DOMAIN PEERS");
     }
     const auto number = [](const char* text) {
       return static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));

@@ -8,8 +8,8 @@
 #include "raw/message.hpp"
 #include "skein/core/error.hpp"
 
-/// A raw peer with the endpoints of a Skein entity that provides one service: it announces itself on
-/// a topic that all read, and is ready once it has read all others' announcements.
+/// A raw peer with the endpoints of a Skein entity that provides one service: it announces itself
+/// on a topic that all read, and is ready once it has read all others' announcements.
 namespace skein::benchmarks::raw {
 
 /// A description of the benchmark's service takes about as many octets.

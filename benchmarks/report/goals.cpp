@@ -20,11 +20,10 @@ std::string limit_text(const Goal& goal) {
 std::string worst_text(const Goal& goal, const Comparison& worst) {
   const std::string place = place_of(worst);
   const std::string p99 = goal.p99 ? fmt::format(", p99 {:.2f}×", worst.ratio_p99()) : "";
-  return fmt::format(
-      "<td>p50 {:.2f}×{}</td><td>{} against {}</td><td>{} beside {}{}{}</td>", worst.ratio_p50(),
-      p99, figure_text(worst.summary().p50, worst.unit),
-      figure_text(worst.rival_summary().p50, worst.unit),
-      escaped(worst.subject), escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
+  return fmt::format("<td>p50 {:.2f}×{}</td><td>{} against {}</td><td>{} beside {}{}{}</td>",
+                     worst.ratio_p50(), p99, figure_text(worst.summary().p50, worst.unit),
+                     figure_text(worst.rival_summary().p50, worst.unit), escaped(worst.subject),
+                     escaped(worst.rival), place.empty() ? "" : "; ", escaped(place));
 }
 
 const char* unmeasured(const Verdict& verdict) {
@@ -42,10 +41,12 @@ std::string row_of(const Verdict& verdict) {
   const std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", escaped(verdict.goal->text),
                                       limit_text(*verdict.goal));
   if (verdict.worst == nullptr) {
-    return row + fmt::format("<td colspan='4' class='{}'>{}</td></tr>", verdict.failed > 0 ? "bad" : "skipped",
-                             unmeasured(verdict));
+    return row + fmt::format("<td colspan='4' class='{}'>{}</td></tr>",
+                             verdict.failed > 0 ? "bad" : "skipped", unmeasured(verdict));
   }
-  const char* look = is_met(verdict) ? "good" : verdict.goal->kind == Goal::Kind::Aim ? "skipped" : "bad";
+  const char* look = is_met(verdict)                         ? "good"
+                     : verdict.goal->kind == Goal::Kind::Aim ? "skipped"
+                                                             : "bad";
   return row + worst_text(*verdict.goal, *verdict.worst) +
          fmt::format("<td class='{}'>{}</td></tr>", look, judgement_of(verdict));
 }
@@ -66,7 +67,8 @@ std::string goals_section(const std::vector<Comparison>& comparisons) {
   std::string rows;
   for (const Verdict& verdict : judge(comparisons)) rows += row_of(verdict);
   return "<section><h2>Goals</h2><table><thead><tr><th>goal</th><th>limit</th><th>worst in this "
-         "run</th><th>medians</th><th>where</th><th>comparisons that meet it</th></tr></thead><tbody>" +
+         "run</th><th>medians</th><th>where</th><th>comparisons that meet "
+         "it</th></tr></thead><tbody>" +
          rows + "</tbody></table></section>";
 }
 

@@ -15,9 +15,9 @@ struct RunFacts {
   std::vector<std::string> remarks;
 };
 
-/// Writes a self-contained page: the goals, where Skein loses and wins, plots, all figures, the machine.
-/// Claims whose comparisons have the parameter `size_bytes` are drawn by size, others as single
-/// times. Throws Error where the file cannot be written.
+/// Writes a self-contained page: the goals, where Skein loses and wins, plots, all figures, the
+/// machine. Claims whose comparisons have the parameter `size_bytes` are drawn by size, others as
+/// single times. Throws Error where the file cannot be written.
 void write_report(const std::vector<Comparison>& comparisons, const RunFacts& run,
                   const std::string& path);
 

@@ -20,7 +20,8 @@ using AE_flightControllerI::IFlightController;
 using AE_navigator::Problem;
 using skein::ParameterValues;
 
-std::string value_or(const ParameterValues& values, const std::string& name, std::string otherwise) {
+std::string value_or(const ParameterValues& values, const std::string& name,
+                     std::string otherwise) {
   const auto found = values.find(name);
   return found == values.end() ? std::move(otherwise) : found->second;
 }
@@ -29,7 +30,8 @@ bool is_synthetic(const std::string& terrain) { return terrain.starts_with("synt
 
 /// Other peers look for the file too, from folders of their own.
 std::string name_for_all(const std::string& terrain) {
-  return is_synthetic(terrain) ? terrain : std::filesystem::absolute(terrain).lexically_normal().string();
+  return is_synthetic(terrain) ? terrain
+                               : std::filesystem::absolute(terrain).lexically_normal().string();
 }
 
 /// The checker's own view of the ground.
@@ -82,16 +84,18 @@ bool GroundStation::fly() {
 void GroundStation::introduce() {
   const Problem problem = skein::navigation::demo_problem(*terrain_);
   print_heading("Route planning over " + terrain_title_);
-  print_field("terrain", fmt::format("{:.0f} by {:.0f} km, {:.0f} to {:.0f} m high; {} radar sites, {} "
-                                     "no-fly zones",
-                                     terrain_->east_extent_m() / 1000, terrain_->north_extent_m() / 1000,
-                                     terrain_->lowest_m(), terrain_->highest_m(),
-                                     problem.radar_sites.size(), problem.no_fly_zones.size()));
-  print_field("aircraft", fmt::format("{:.0f} m/s, climbs {:.0f} degrees, banks {:.0f} degrees, flies up "
-                                      "to {:.0f} m and no lower than {:.0f} m above ground",
-                                      limits_.speed_m_s, limits_.maximum_climb_angle_deg,
-                                      limits_.maximum_bank_angle_deg, limits_.maximum_altitude_m,
-                                      problem.minimum_height_above_ground_m));
+  print_field("terrain",
+              fmt::format("{:.0f} by {:.0f} km, {:.0f} to {:.0f} m high; {} radar sites, {} "
+                          "no-fly zones",
+                          terrain_->east_extent_m() / 1000, terrain_->north_extent_m() / 1000,
+                          terrain_->lowest_m(), terrain_->highest_m(), problem.radar_sites.size(),
+                          problem.no_fly_zones.size()));
+  print_field("aircraft",
+              fmt::format("{:.0f} m/s, climbs {:.0f} degrees, banks {:.0f} degrees, flies up "
+                          "to {:.0f} m and no lower than {:.0f} m above ground",
+                          limits_.speed_m_s, limits_.maximum_climb_angle_deg,
+                          limits_.maximum_bank_angle_deg, limits_.maximum_altitude_m,
+                          problem.minimum_height_above_ground_m));
 }
 
 void GroundStation::brief_planners() {
@@ -130,8 +134,9 @@ void GroundStation::ask_and_kill_the_planner() {
     fail(kill.planner + " answered although it had been killed");
   }
   navigator_.brief(kill.planner, question.problem);
-  print_field("back", fmt::format("{} was started again, and had planned a route {:.1f} s after its end",
-                                  kill.planner, seconds(entity_.clock().now() - kill.at)));
+  print_field("back",
+              fmt::format("{} was started again, and had planned a route {:.1f} s after its end",
+                          kill.planner, seconds(entity_.clock().now() - kill.at)));
 }
 
 void GroundStation::ask_for_the_unreachable() {
@@ -155,20 +160,23 @@ Answer GroundStation::show(const Question& question, Answer answer) {
   return answer;
 }
 
-void GroundStation::accept(const std::string& label, const Question& question, const Answer& answer) {
+void GroundStation::accept(const std::string& label, const Question& question,
+                           const Answer& answer) {
   if (!answer.route) return fail("no route (" + label + ")");
   routes_.push_back({label + ": " + answer.route->planner, *answer.route});
   const auto violations = skein::navigation::check_route(question.problem, *answer.route, ground_);
   if (violations.empty()) return print_field("check", "valid");
   for (const auto& violation : violations) {
-    print_field("check", fmt::format("INVALID ({}): {}", to_string(violation.rule), violation.text));
+    print_field("check",
+                fmt::format("INVALID ({}): {}", to_string(violation.rule), violation.text));
   }
   fail("the route checker refuses the route (" + label + ")");
 }
 
 void GroundStation::draw() {
-  skein::navigation::write_route_picture(picture_, *terrain_, skein::navigation::demo_problem(*terrain_),
-                                         routes_, "Route planning over " + terrain_title_);
+  skein::navigation::write_route_picture(picture_, *terrain_,
+                                         skein::navigation::demo_problem(*terrain_), routes_,
+                                         "Route planning over " + terrain_title_);
 }
 
 bool GroundStation::conclude() {
@@ -176,8 +184,9 @@ bool GroundStation::conclude() {
   print_field("picture", std::filesystem::absolute(picture_).lexically_normal().string());
   for (const std::string& failure : failures_) print_field("failed", failure);
   if (failures_.empty()) {
-    print_field("done", fmt::format("{} routes, all valid; the unreachable goal was refused as such",
-                                    routes_.size()));
+    print_field("done",
+                fmt::format("{} routes, all valid; the unreachable goal was refused as such",
+                            routes_.size()));
   }
   return failures_.empty();
 }

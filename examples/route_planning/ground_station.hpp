@@ -14,13 +14,13 @@
 
 namespace route_planning {
 
-/// Asks a navigator for routes across a terrain, past radar sites and no-fly zones: with time to think,
-/// in a hurry, with the planner killed while it plans, and to a goal that cannot be reached. Believes
-/// none of the answers before the route checker has seen them.
+/// Asks a navigator for routes across a terrain, past radar sites and no-fly zones: with time to
+/// think, in a hurry, with the planner killed while it plans, and to a goal that cannot be reached.
+/// Believes none of the answers before the route checker has seen them.
 ///
-/// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the SVG
-/// to write; route.svg), `Planners` (names, separated by commas, of the planners that must know the
-/// terrain before the first question).
+/// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the
+/// SVG to write; route.svg), `Planners` (names, separated by commas, of the planners that must know
+/// the terrain before the first question).
 class GroundStation {
  public:
   /// Throws InvalidArgument for a terrain that cannot be read, Unavailable without a navigator or

@@ -78,11 +78,11 @@ void print_decision(const Answer& answer) {
 }
 
 void print_route(const AE_navigator::Route& route) {
-  print_field("route", fmt::format("{:.2f} km by {}, lowest {:.0f} m above ground, radar exposure "
-                                   "{:.2f} km, {} waypoints",
-                                   route.length_m / 1000, route.planner,
-                                   route.lowest_height_above_ground_m, route.radar_exposure / 1000,
-                                   route.waypoints.size()));
+  print_field("route",
+              fmt::format("{:.2f} km by {}, lowest {:.0f} m above ground, radar exposure "
+                          "{:.2f} km, {} waypoints",
+                          route.length_m / 1000, route.planner, route.lowest_height_above_ground_m,
+                          route.radar_exposure / 1000, route.waypoints.size()));
 }
 
 void print_time(const Answer& answer, skein::Duration allowed) {

@@ -110,7 +110,8 @@ PlanningStatus NavigatorLink::await_planner(Instant deadline) {
       since = now;
     }
     if (status.planning && now - since >= kLeftToPlan) return status;
-    if (now >= deadline) throw skein::TimedOut("no planner was seen at work for long enough to kill it");
+    if (now >= deadline)
+      throw skein::TimedOut("no planner was seen at work for long enough to kill it");
     std::this_thread::sleep_for(2ms);
   }
 }

@@ -42,15 +42,16 @@ class NavigatorLink {
   /// Waits for the navigator. Throws Unavailable, with the reason, where it does not appear.
   explicit NavigatorLink(skein::Entity& entity);
 
-  /// Has that planner plan once without a hurry, so that it knows the terrain. Waits until the planner
-  /// stands by; throws Unavailable where it does not in 20 s.
+  /// Has that planner plan once without a hurry, so that it knows the terrain. Waits until the
+  /// planner stands by; throws Unavailable where it does not in 20 s.
   void brief(const std::string& planner, AE_navigator::Problem problem);
 
   /// Asks for a route. Throws what the navigator throws apart from its refusals.
   Answer ask(const Question& question);
 
   /// Asks, looks which planner works on it, and kills that planner's process with SIGKILL. Throws
-  /// InvalidArgument where it may not be killed: it shares the navigator's process, or another host.
+  /// InvalidArgument where it may not be killed: it shares the navigator's process, or another
+  /// host.
   Answer ask_and_kill(const Question& question, Kill& kill);
 
  private:

@@ -74,9 +74,9 @@ struct Wait {
 }  // namespace asio_detail
 
 /// Waits for a call as the completion token says: `asio::use_future`, `asio::use_awaitable`, a
-/// callback with `(std::exception_ptr, Result)`, or `(std::exception_ptr)` where the result is void,
-/// and any of them bound to an executor or a cancellation slot. What ended the call arrives as the
-/// exception.
+/// callback with `(std::exception_ptr, Result)`, or `(std::exception_ptr)` where the result is
+/// void, and any of them bound to an executor or a cancellation slot. What ended the call arrives
+/// as the exception.
 ///
 /// The handler runs on its associated executor, which is kept busy until then; where it has none,
 /// on the connection's executor for continuations. Emitting the associated cancellation slot's

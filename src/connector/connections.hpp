@@ -11,12 +11,12 @@
 
 namespace skein {
 
-/// What an entity has connected to: all of it ends with the entity, whoever still holds proxies, calls or
-/// streams. Thread-safe.
+/// What an entity has connected to: all of it ends with the entity, whoever still holds proxies,
+/// calls or streams. Thread-safe.
 class Connections {
  public:
-  /// Held while a connection is being opened, since that uses the entity's parts. Throws Unavailable
-  /// once the entity has ended.
+  /// Held while a connection is being opened, since that uses the entity's parts. Throws
+  /// Unavailable once the entity has ended.
   class Opening {
    public:
     explicit Opening(Connections& connections);

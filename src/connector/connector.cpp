@@ -7,9 +7,9 @@
 #include "connections.hpp"
 #include "failover_channel.hpp"
 #include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/rpc/dds_channel.hpp"
 #include "skein/rpc/local_channel.hpp"
 
@@ -22,7 +22,8 @@ using brokerless_discovery::ServiceDescription;
 using brokerless_discovery::Table;
 
 std::string peer_name(const ServiceDescription& provider) {
-  return scoped_interface_name(provider.service) + " of " + provider.entity + " (" + provider.system + ")";
+  return scoped_interface_name(provider.service) + " of " + provider.entity + " (" +
+         provider.system + ")";
 }
 
 // How long one provider may take to answer `open` while others stand by.
@@ -31,9 +32,12 @@ constexpr std::chrono::milliseconds kRetryPause{20};
 
 const char* ending_of(brokerless_discovery::Departure departure) {
   switch (departure) {
-    case brokerless_discovery::Departure::Left: return "it withdrew its service";
-    case brokerless_discovery::Departure::Lost: return "it was not heard of for longer than its lease";
-    case brokerless_discovery::Departure::Died: break;
+    case brokerless_discovery::Departure::Left:
+      return "it withdrew its service";
+    case brokerless_discovery::Departure::Lost:
+      return "it was not heard of for longer than its lease";
+    case brokerless_discovery::Departure::Died:
+      break;
   }
   return "its process ended";
 }
@@ -42,8 +46,9 @@ const char* ending_of(brokerless_discovery::Departure departure) {
 void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::DdsChannel>& channel,
             const Link& link) {
   using brokerless_discovery::Broker;
-  auto registration = std::make_shared<Broker::Registration>(broker.observe(
-      [weak = std::weak_ptr(channel), provider = link.provider, suspect = link.suspect](const Change& change) {
+  auto registration = std::make_shared<Broker::Registration>(
+      broker.observe([weak = std::weak_ptr(channel), provider = link.provider,
+                      suspect = link.suspect](const Change& change) {
         if (change.description->provider != provider.bytes) return;
         if (change.kind != Change::Kind::Removed) {
           *suspect = change.kind == Change::Kind::Suspect;
@@ -60,8 +65,8 @@ bool contains(const std::vector<Guid>& providers, const ServiceDescription& prov
   return std::find(providers.begin(), providers.end(), Guid{provider.provider}) != providers.end();
 }
 
-// Power of two choices (R22): all clients that look for the least loaded provider at once would find the
-// same one.
+// Power of two choices (R22): all clients that look for the least loaded provider at once would
+// find the same one.
 void put_less_loaded_first(Table::Found& providers, std::size_t equals,
                            const brokerless_discovery::LoadBoard& loads) {
   const auto load = [&](std::size_t index) { return loads.load_of({providers[index]->provider}); };
@@ -74,13 +79,15 @@ void put_less_loaded_first(Table::Found& providers, std::size_t equals,
   bool level = true;
   for (std::size_t i = 1; i < equals; ++i) level = level && load(i) == load(0);
   if (level) return;
-  const auto chosen = providers.begin() + static_cast<std::ptrdiff_t>(load(other) < load(one) ? other : one);
+  const auto chosen =
+      providers.begin() + static_cast<std::ptrdiff_t>(load(other) < load(one) ? other : one);
   std::rotate(providers.begin(), chosen, chosen + 1);
 }
 
 void arrange(Table::Found& providers, const Wanted& wanted, const std::string& preferred_host,
              const brokerless_discovery::LoadBoard& loads) {
-  std::erase_if(providers, [&](const auto& provider) { return contains(wanted.excluded, *provider); });
+  std::erase_if(providers,
+                [&](const auto& provider) { return contains(wanted.excluded, *provider); });
   const auto last = std::stable_partition(
       providers.begin(), providers.end(),
       [&](const auto& provider) { return !contains(wanted.last, *provider); });
@@ -135,7 +142,8 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
 }
 
 Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& options) const {
-  Query query = parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
+  Query query =
+      parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
   query.client = &interface;
   query.provider = options.provider;
   query.constraints = options.constraints;
@@ -171,8 +179,9 @@ std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interfac
   for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
     const Duration left = std::max(Duration::zero(), deadline - parts_.clock->now());
     try {
-      all.push_back({Guid{provider->provider}, provider->entity,
-                     open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
+      all.push_back(
+          {Guid{provider->provider}, provider->entity,
+           open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
     } catch (const Unavailable&) {
       failure = std::current_exception();
     }
@@ -183,7 +192,8 @@ std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interfac
 
 ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions options) {
   if (reference.is_nil()) {
-    throw InvalidArgument("the reference to " + reference.interface_name + " is nil: it names no provider");
+    throw InvalidArgument("the reference to " + reference.interface_name +
+                          " is nil: it names no provider");
   }
   options.name = reference.interface_name;
   options.provider = reference.provider;
@@ -211,9 +221,12 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
 }
 
 // The first provider that answers: in the Broker's order, those to be asked last at the end.
-Link Connector::open_next(const Query& query, const std::string& strategy, const Wanted& wanted) const {
+Link Connector::open_next(const Query& query, const std::string& strategy,
+                          const Wanted& wanted) const {
   const Connections::Opening opening(*connections_);
-  const auto left = [&] { return std::max(Duration::zero(), wanted.deadline - parts_.clock->now()); };
+  const auto left = [&] {
+    return std::max(Duration::zero(), wanted.deadline - parts_.clock->now());
+  };
   std::exception_ptr failure;
   do {
     if (failure) std::this_thread::sleep_for(kRetryPause);
@@ -222,7 +235,8 @@ Link Connector::open_next(const Query& query, const std::string& strategy, const
     arrange(providers, wanted, query.preferred_host, parts_.loads);
     for (const auto& provider : providers) {
       try {
-        const Duration patience = providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
+        const Duration patience =
+            providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
         return open_link(*provider, strategy, patience);
       } catch (const Unavailable&) {
         failure = std::current_exception();

@@ -155,13 +155,13 @@ Link FailoverChannel::acquire(const Wanted& wanted) {
   }
 }
 
-// A main link that is lost or suspect is replaced by the new one; beside one that stands, the new one is
-// kept for the next call that needs it.
+// A main link that is lost or suspect is replaced by the new one; beside one that stands, the new
+// one is kept for the next call that needs it.
 void FailoverChannel::keep(const Link& link) {
   std::vector<Link> ended;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
-  const auto lost = std::stable_partition(others_.begin(), others_.end(),
-                                          [](const Link& other) { return other.channel->connected(); });
+  const auto lost = std::stable_partition(
+      others_.begin(), others_.end(), [](const Link& other) { return other.channel->connected(); });
   ended.assign(std::make_move_iterator(lost), std::make_move_iterator(others_.end()));
   others_.erase(lost, others_.end());
   if (main_.trusted()) {

@@ -13,14 +13,14 @@
 
 namespace skein {
 
-/// A connection that outlives its provider: `connect` is asked for a new link when the present one is
-/// found lost, or when its provider is suspect; a suspect provider has calls only where no other stands
-/// by. A call to an idempotent operation whose provider is lost or refuses it is made again at
-/// the next one, within its deadline. Any other that was on its way when its provider died ends as
-/// Disconnected; it is not repeated, since whether it ran is unknown.
+/// A connection that outlives its provider: `connect` is asked for a new link when the present one
+/// is found lost, or when its provider is suspect; a suspect provider has calls only where no other
+/// stands by. A call to an idempotent operation whose provider is lost or refuses it is made again
+/// at the next one, within its deadline. Any other that was on its way when its provider died ends
+/// as Disconnected; it is not repeated, since whether it ran is unknown.
 ///
-/// What that costs an idempotent call whose caller does not wait: one more object, and a copy of its in
-/// struct.
+/// What that costs an idempotent call whose caller does not wait: one more object, and a copy of
+/// its in struct.
 class FailoverChannel final : public Channel, public std::enable_shared_from_this<FailoverChannel> {
  public:
   /// Blocks until the deadline at most; throws Unavailable.
@@ -29,7 +29,8 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after = std::nullopt);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
-  void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) override;
+  void call(const OperationInfo& operation, const void* in, void* out,
+            const CallTime& time) override;
   Clock& clock() const noexcept override { return clock_; }
   Executor& continuations() const noexcept override { return continuations_; }
   std::string peer() const override;
@@ -49,7 +50,8 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
 
  private:
   std::shared_ptr<Channel> main_if_trusted() const;
-  void call_idempotent(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
+  void call_idempotent(const OperationInfo& operation, const void* in, void* out,
+                       const CallTime& time);
   void keep(const Link& link);
   std::vector<Link> close();
 

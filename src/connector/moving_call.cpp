@@ -41,9 +41,8 @@ void MovingCall::try_at(const Link& link) {
   std::shared_ptr<void> own;
   if (hedged_) own = {type.make(), type.destroy, std::pmr::polymorphic_allocator<>(&call_memory())};
   const auto attempt = make_shared_in_call_memory<Attempt>(call_, std::move(own));
-  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(), provider = link.provider] {
-    self->ended(*attempt, provider);
-  });
+  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(),
+                        provider = link.provider] { self->ended(*attempt, provider); });
   link.channel->start(attempt, in_.get());
   bool cancelled;
   {

@@ -17,7 +17,8 @@ class FailoverChannel;
 class Attempt final : public PendingCall {
  public:
   Attempt(std::shared_ptr<PendingCall> call, std::shared_ptr<void> own_out)
-      : PendingCall(call->operation(), own_out ? own_out.get() : call->out(), call->deadline(), false),
+      : PendingCall(call->operation(), own_out ? own_out.get() : call->out(), call->deadline(),
+                    false),
         call_(std::move(call)),
         own_out_(std::move(own_out)) {}
 
@@ -26,10 +27,10 @@ class Attempt final : public PendingCall {
   std::shared_ptr<void> own_out_;
 };
 
-/// A call to an idempotent operation that keeps a copy of its in struct: where a provider fails it moves
-/// to the next one, and where one is slow it is made at a second one, too, if the connection wants that.
-/// A failure arrives on whichever thread tells of it (a vendor's, the timer's); what connects and sends
-/// again is a task of the connection's continuations.
+/// A call to an idempotent operation that keeps a copy of its in struct: where a provider fails it
+/// moves to the next one, and where one is slow it is made at a second one, too, if the connection
+/// wants that. A failure arrives on whichever thread tells of it (a vendor's, the timer's); what
+/// connects and sends again is a task of the connection's continuations.
 class MovingCall final : public std::enable_shared_from_this<MovingCall> {
  public:
   static void start(const std::shared_ptr<FailoverChannel>& channel,
@@ -58,7 +59,7 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
   const std::shared_ptr<PendingCall> call_;
   const std::shared_ptr<void> in_;
   const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;   // guards what follows
   Retries retries_;
   Attempts attempts_{&call_memory()};
   TimerId deadline_timer_ = 0;

@@ -11,8 +11,8 @@ class Retries {
  public:
   explicit Retries(Instant deadline) { wanted_.deadline = deadline; }
 
-  /// Whether another provider may do what `provider` failed to do. Notes who failed: who refused is not
-  /// asked again; who was lost may be, once more, where nobody else stands by.
+  /// Whether another provider may do what `provider` failed to do. Notes who failed: who refused is
+  /// not asked again; who was lost may be, once more, where nobody else stands by.
   bool admit(const std::exception_ptr& error, const Guid& provider, Instant now);
 
   /// Who is to be asked next; before the first failure, anybody who comes.

@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kStep = 64;
 constexpr std::size_t kGreatest = 1024;
-#ifdef __SANITIZE_ADDRESS__  // it finds who uses a block after its end, unless the block is handed out again
+#ifdef __SANITIZE_ADDRESS__  // it finds who uses a block after its end, unless the block is handed
+                             // out again
 constexpr std::size_t kMostKept = 0;
 #else
 constexpr std::size_t kMostKept = 256;
@@ -70,7 +71,8 @@ class Recycler final : public std::pmr::memory_resource {
 }  // namespace
 
 std::pmr::memory_resource& call_memory() noexcept {
-  static auto& memory = *new Recycler;  // never destroyed: vendors' threads may free until the very end
+  static auto& memory =
+      *new Recycler;  // never destroyed: vendors' threads may free until the very end
   return memory;
 }
 

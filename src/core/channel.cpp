@@ -80,7 +80,8 @@ void PendingCall::abandon(std::exception_ptr error) {
   if (fail(std::move(error)) && canceller) canceller();
 }
 
-void Channel::call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) {
+void Channel::call(const OperationInfo& operation, const void* in, void* out,
+                   const CallTime& time) {
   const auto pending = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
   start(pending, in);
   pending->wait();

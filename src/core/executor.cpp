@@ -12,7 +12,8 @@
 namespace skein {
 namespace {
 
-// Executors nest when a task of one runs another's task inline, so the innermost alone is not enough.
+// Executors nest when a task of one runs another's task inline, so the innermost alone is not
+// enough.
 thread_local std::vector<const Executor*> entered;
 
 class Entered {
@@ -50,8 +51,8 @@ struct ThreadExecutor::State {
   bool stopping = false;
   bool finishing = false;  // finish() waits until nothing is left to do
 
-  // How many tasks run, and whether a task waits or the end is near: in one word, so that a task which runs
-  // inline takes no lock. kCalled changes under the lock alone.
+  // How many tasks run, and whether a task waits or the end is near: in one word, so that a task
+  // which runs inline takes no lock. kCalled changes under the lock alone.
   static constexpr std::size_t kCalled = 1;
   static constexpr std::size_t kOne = 2;
   std::atomic<std::size_t> state{0};
@@ -76,8 +77,8 @@ struct ThreadExecutor::State {
     return true;
   }
 
-  // Who waits for room, or for the end, has set kCalled before; after that all is done under the lock, since
-  // who waits for the end then takes everything away.
+  // Who waits for room, or for the end, has set kCalled before; after that all is done under the
+  // lock, since who waits for the end then takes everything away.
   void end_inline() {
     std::size_t seen = state.load(std::memory_order_relaxed);
     while (!(seen & kCalled)) {
@@ -141,7 +142,8 @@ ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_
 ThreadExecutor::~ThreadExecutor() { stop(); }
 
 void ThreadExecutor::request_stop() {
-  std::pmr::deque<Action> dropped{&call_memory()};  // destroyed outside the lock: it may own what posts here
+  std::pmr::deque<Action> dropped{
+      &call_memory()};  // destroyed outside the lock: it may own what posts here
   std::lock_guard lock(state_->mutex);
   state_->stopping = true;
   dropped.swap(state_->tasks);
@@ -200,7 +202,8 @@ bool ThreadExecutor::enqueue(Action& task, std::size_t capacity) {
     if (state_->stopping || state_->tasks.size() >= capacity) return false;
     state_->tasks.push_back(std::move(task));
     state_->note_change();
-    if (state_->running() == state_->concurrency) return true;  // whoever ends next looks at the queue
+    if (state_->running() == state_->concurrency)
+      return true;  // whoever ends next looks at the queue
   }
   state_->changed.notify_one();
   return true;

@@ -76,9 +76,7 @@ std::string joined(const std::vector<std::string_view>& parts, std::string_view 
 
 }  // namespace
 
-std::string canonical_interface_name(std::string_view name) {
-  return joined(parts_of(name), "/");
-}
+std::string canonical_interface_name(std::string_view name) { return joined(parts_of(name), "/"); }
 
 bool is_interface_name(std::string_view name) noexcept { return maybe_parts(name).has_value(); }
 

@@ -34,7 +34,8 @@ void LatencyHistogram::record(Duration duration) noexcept {
   buckets_[bucket_of(nanoseconds)].fetch_add(1, kRelaxed);
   sum_.fetch_add(nanoseconds, kRelaxed);
   std::uint64_t greatest = greatest_.load(kRelaxed);
-  while (nanoseconds > greatest && !greatest_.compare_exchange_weak(greatest, nanoseconds, kRelaxed)) {
+  while (nanoseconds > greatest &&
+         !greatest_.compare_exchange_weak(greatest, nanoseconds, kRelaxed)) {
   }
 }
 

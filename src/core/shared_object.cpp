@@ -52,21 +52,24 @@ SharedObject::SharedObject(const std::string& name, const std::string& remedy) :
   if (handle_) return;
   const char* reason = dlerror();
   const bool found = file_.find('/') != std::string::npos;
-  throw Unavailable(found ? file_ + " cannot be loaded: " + (reason ? reason : "no reason given") + "; " + remedy
-                          : "no " + file_ + " in " + looked_in + "nor where the loader looks; " + remedy +
-                                ", or name its directory in SKEIN_MODULE_PATH");
+  throw Unavailable(found ? file_ + " cannot be loaded: " + (reason ? reason : "no reason given") +
+                                "; " + remedy
+                          : "no " + file_ + " in " + looked_in + "nor where the loader looks; " +
+                                remedy + ", or name its directory in SKEIN_MODULE_PATH");
 }
 
 void* SharedObject::find(const char* symbol) const {
   if (void* found = dlsym(handle_, symbol)) return found;
-  throw InvalidArgument(file_ + " exports no " + symbol + ": it was not made for Skein, or for another version");
+  throw InvalidArgument(file_ + " exports no " + symbol +
+                        ": it was not made for Skein, or for another version");
 }
 
 void SharedObject::check_abi(const char* symbol) const {
   const std::uint32_t abi = function<std::uint32_t()>(symbol)();
   if (abi == SKEIN_ABI) return;
-  throw InvalidArgument(file_ + " was built for Skein's ABI " + std::to_string(abi) + ", this is ABI " +
-                        std::to_string(SKEIN_ABI) + "; build both from one version");
+  throw InvalidArgument(file_ + " was built for Skein's ABI " + std::to_string(abi) +
+                        ", this is ABI " + std::to_string(SKEIN_ABI) +
+                        "; build both from one version");
 }
 
 }  // namespace skein

@@ -35,10 +35,12 @@ void apply_scheduling(const ThreadSettings& settings, const std::string& owner) 
   sched_param parameters{};
   parameters.sched_priority = settings.priority;
   const bool fifo = settings.scheduling == Scheduling::Fifo;
-  const int error = pthread_setschedparam(pthread_self(), fifo ? SCHED_FIFO : SCHED_RR, &parameters);
+  const int error =
+      pthread_setschedparam(pthread_self(), fifo ? SCHED_FIFO : SCHED_RR, &parameters);
   if (error == 0) return;
-  warn(owner, std::string(fifo ? "SCHED_FIFO" : "SCHED_RR") + " with priority " +
-                  std::to_string(settings.priority) + " was refused",
+  warn(owner,
+       std::string(fifo ? "SCHED_FIFO" : "SCHED_RR") + " with priority " +
+           std::to_string(settings.priority) + " was refused",
        error, "give the process CAP_SYS_NICE or raise its RLIMIT_RTPRIO; it runs without");
 }
 
@@ -83,7 +85,8 @@ void check(const ThreadSettings& settings, const std::string& owner) {
            "priority " + std::to_string(priority) + " is not between 1 and 99");
     demand(settings.nice == 0, owner, "nice is for normal scheduling; give a priority instead");
   } else {
-    demand(priority == 0, owner, "a priority is for fifo and round-robin scheduling; give nice instead");
+    demand(priority == 0, owner,
+           "a priority is for fifo and round-robin scheduling; give nice instead");
     demand(settings.nice >= kLeastNice && settings.nice <= kGreatestNice, owner,
            "nice " + std::to_string(settings.nice) + " is not between -20 and 19");
   }

@@ -13,9 +13,9 @@
 
 namespace skein::dds {
 
-/// First in, first out, with at most `depth` items of each key: one more replaces the key's oldest. And at
-/// most `capacity` in all, where that is not 0: one more replaces the oldest of all. Without a depth it
-/// costs no more than a deque.
+/// First in, first out, with at most `depth` items of each key: one more replaces the key's oldest.
+/// And at most `capacity` in all, where that is not 0: one more replaces the oldest of all. Without
+/// a depth it costs no more than a deque.
 template <class Item>
 class KeyedQueue {
  public:

@@ -95,14 +95,16 @@ void check_options(const ParticipantOptions& options) {
 
 void refuse_shared_memory(const ParticipantOptions& options, const std::string& vendor) {
   if (!options.network.shared_memory) return;
-  throw InvalidArgument(vendor + " has no shared memory here; leave it off, or use the vendor 'fastdds'");
+  throw InvalidArgument(vendor +
+                        " has no shared memory here; leave it off, or use the vendor 'fastdds'");
 }
 
 std::vector<std::string> interface_addresses(const Network& network) {
   if (network.interfaces.empty()) return {kLoopbackAddress};
   const auto host = interfaces_of_this_host();
   std::vector<std::string> addresses;
-  for (const std::string& wanted : network.interfaces) addresses.push_back(address_of(wanted, host));
+  for (const std::string& wanted : network.interfaces)
+    addresses.push_back(address_of(wanted, host));
   return addresses;
 }
 
@@ -137,7 +139,9 @@ void check_qos(const Topic& topic, const Qos& qos) {
     throw InvalidArgument("topic '" + topic.name + "': " + why);
   };
   if (!is_topic_name(topic.name)) {
-    refuse("a topic's name has letters, digits, '_' and '/', and does not begin with a digit or 'DCPS'");
+    refuse(
+        "a topic's name has letters, digits, '_' and '/', and does not begin with a digit or "
+        "'DCPS'");
   }
   if (topic.type_name.empty()) refuse("a topic needs a type's name");
   if (qos.history_depth && *qos.history_depth == 0) refuse("a history depth of 0 keeps nothing");

@@ -31,15 +31,18 @@ void ComponentRegistry::add_mission(const std::string& component, Mission missio
   missions_[component] = std::move(mission);
 }
 
-const ComponentRegistry::BodyFactory* ComponentRegistry::find_body(const std::string& component) const {
+const ComponentRegistry::BodyFactory* ComponentRegistry::find_body(
+    const std::string& component) const {
   return find_in(bodies_, component);
 }
 
-const ComponentRegistry::CspFactory* ComponentRegistry::find_csp(const std::string& component) const {
+const ComponentRegistry::CspFactory* ComponentRegistry::find_csp(
+    const std::string& component) const {
   return find_in(csps_, component);
 }
 
-const ComponentRegistry::Mission* ComponentRegistry::find_mission(const std::string& component) const {
+const ComponentRegistry::Mission* ComponentRegistry::find_mission(
+    const std::string& component) const {
   return find_in(missions_, component);
 }
 

@@ -4,10 +4,10 @@
 #include <mutex>
 #include <optional>
 
-#include "skein/discovery.idl.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/entity/statistics_topic.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/rpc/dds_server.hpp"
@@ -28,7 +28,8 @@ ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider
   description.service = interface.name;
   for (const InterfaceInfo* base : interface.bases) description.bases.emplace_back(base->name);
   for (const OperationInfo& operation : interface.operations) {
-    description.operations.push_back({std::string(operation.name), operation.hash, operation.signature});
+    description.operations.push_back(
+        {std::string(operation.name), operation.hash, operation.signature});
   }
   for (const ServiceAttribute& attribute : options.attributes) {
     description.attributes.push_back({attribute.name, attribute.value});
@@ -181,7 +182,8 @@ Guid Entity::provide_csp(const std::string& name, const std::string& owner,
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
   const InterfaceInfo& interface = servant->interface_info();
-  auto executor = std::make_unique<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
+  auto executor =
+      std::make_unique<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
   provided->executor = std::move(executor);
@@ -205,10 +207,12 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   if (owner != this->id()) {
     provided->server = std::make_unique<rpc::DdsServer>(
         *state_->participant, state_->control, state_->process->clock(), provided->service,
-        rpc::DdsServer::Options{.foreign_clients = owner.empty(), .on_load = state_->loads.notifier()});
+        rpc::DdsServer::Options{.foreign_clients = owner.empty(),
+                                .on_load = state_->loads.notifier()});
   }
   if (owner.empty()) {
-    provided->load = state_->loads.tell(id, [&server = *provided->server] { return server.counters().active; });
+    provided->load =
+        state_->loads.tell(id, [&server = *provided->server] { return server.counters().active; });
   }
   state_->process->directory()->add(provided->service);
   ServiceDescription description = describe(interface, id, options);
@@ -220,7 +224,9 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   return id;
 }
 
-std::vector<introspection::ServiceStatistics> Entity::statistics() const { return state_->statistics(); }
+std::vector<introspection::ServiceStatistics> Entity::statistics() const {
+  return state_->statistics();
+}
 
 void Entity::withdraw(const Guid& provider) {
   std::unique_ptr<Provided> provided;

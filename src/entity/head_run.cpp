@@ -92,8 +92,9 @@ bool Head::Run::look_again() {
   const auto& options = task_.options();
   auto joined = state_.candidates(interface_, options.only, options.features);
   std::erase_if(joined, [&](const Candidate& candidate) {
-    return std::any_of(record_.candidates.begin(), record_.candidates.end(),
-                       [&](const Candidate& known) { return known.provider == candidate.provider; });
+    return std::any_of(
+        record_.candidates.begin(), record_.candidates.end(),
+        [&](const Candidate& known) { return known.provider == candidate.provider; });
   });
   if (joined.empty()) return false;
   ++round_;

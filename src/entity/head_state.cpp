@@ -90,8 +90,8 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
   auto query = parts.broker.query(std::string(interface.name));
   query.client = &interface;
   throw NoCandidate(only.empty() ? parts.broker.explain(query)
-                                 : "the planner or other CSP '" + only + "' does not stand by for " +
-                                       std::string(interface.name));
+                                 : "the planner or other CSP '" + only +
+                                       "' does not stand by for " + std::string(interface.name));
 }
 
 Situation Head::State::situation(const InterfaceInfo& interface, const Features& features,

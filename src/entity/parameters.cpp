@@ -12,9 +12,9 @@ ParameterValues ParameterResolver::resolve(const std::vector<ParameterValues>& s
   ParameterValues resolved;
   std::string missing;
   for (const Declared& parameter : declared_) {
-    const auto source =
-        std::find_if(sources.begin(), sources.end(),
-                     [&](const ParameterValues& values) { return values.contains(parameter.name); });
+    const auto source = std::find_if(
+        sources.begin(), sources.end(),
+        [&](const ParameterValues& values) { return values.contains(parameter.name); });
     if (source != sources.end()) {
       resolved[parameter.name] = source->at(parameter.name);
     } else if (parameter.required) {

@@ -13,13 +13,16 @@ using selection_text::in_ms;
 using selection_text::number;
 
 // A latency that is not declared is taken for none: such a candidate is never ruled out by time.
-Duration latency_of(const Candidate& candidate) { return candidate.latency.value_or(Duration::zero()); }
+Duration latency_of(const Candidate& candidate) {
+  return candidate.latency.value_or(Duration::zero());
+}
 
 class DeclaredSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "declared"; }
 
-  Selection select(const std::vector<Candidate>& candidates, const Situation& situation) const override {
+  Selection select(const std::vector<Candidate>& candidates,
+                   const Situation& situation) const override {
     const Duration remaining = situation.remaining;
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates) {
@@ -29,8 +32,8 @@ class DeclaredSelection final : public SelectionStrategy {
     if (!best) return fastest_anyway(candidates, remaining);
     const Duration reserve = reserve_beside(*best, candidates, remaining);
     std::string reason = best->name + " has the best declared quality (" + number(best->quality) +
-                         ") of those whose latency fits into " + in_ms(remaining) + " (its own: " +
-                         in_ms(latency_of(*best)) + ")";
+                         ") of those whose latency fits into " + in_ms(remaining) +
+                         " (its own: " + in_ms(latency_of(*best)) + ")";
     if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
     return {index_of(*best, candidates), remaining - reserve, std::move(reason), latency_of(*best)};
   }
@@ -41,7 +44,8 @@ class DeclaredSelection final : public SelectionStrategy {
     return latency_of(a) < latency_of(b);
   }
 
-  static std::size_t index_of(const Candidate& candidate, const std::vector<Candidate>& candidates) {
+  static std::size_t index_of(const Candidate& candidate,
+                              const std::vector<Candidate>& candidates) {
     return static_cast<std::size_t>(&candidate - candidates.data());
   }
 
@@ -71,10 +75,11 @@ class FixedOrderSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "fixed_order"; }
 
-  Selection select(const std::vector<Candidate>& candidates, const Situation& situation) const override {
+  Selection select(const std::vector<Candidate>& candidates,
+                   const Situation& situation) const override {
     return {0, situation.remaining / static_cast<Duration::rep>(candidates.size()),
-            candidates.front().name + " is the next in order; " + std::to_string(candidates.size() - 1) +
-                " others share the time that is left",
+            candidates.front().name + " is the next in order; " +
+                std::to_string(candidates.size() - 1) + " others share the time that is left",
             latency_of(candidates.front())};
   }
 };
@@ -112,8 +117,8 @@ std::shared_ptr<const SelectionStrategy> StrategyFactory::make(const std::string
                         "; there are: " + list);
 }
 
-CandidateIterator::CandidateIterator(const SelectionStrategy& strategy, std::vector<Candidate> candidates,
-                                     Situation situation)
+CandidateIterator::CandidateIterator(const SelectionStrategy& strategy,
+                                     std::vector<Candidate> candidates, Situation situation)
     : strategy_(strategy), situation_(std::move(situation)) {
   add(std::move(candidates));
 }

@@ -81,7 +81,8 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
     try {
       writer.write(message, key_hash(statistics));
     } catch (const Error& error) {
-      log(LogLevel::Warning, statistics.service, std::string("statistics were not sent: ") + error.what());
+      log(LogLevel::Warning, statistics.service,
+          std::string("statistics were not sent: ") + error.what());
     }
   }
 };
@@ -93,7 +94,8 @@ StatisticsTopic::StatisticsTopic(dds::Participant& participant, Clock& clock, Ex
   listener.on_matched = [state = std::weak_ptr(state_)](const Guid&, bool matched) {
     if (const auto self = state.lock()) self->on_reader(matched);
   };
-  std::shared_ptr<dds::Writer> writer = participant.create_writer(kTopic, qos(), std::move(listener));
+  std::shared_ptr<dds::Writer> writer =
+      participant.create_writer(kTopic, qos(), std::move(listener));
   std::lock_guard lock(state_->mutex);
   state_->writer = std::move(writer);
   state_->begin();
@@ -126,14 +128,16 @@ struct StatisticsReader::State {
     try {
       idl::type_support<ServiceStatistics>().decode(&statistics, sample.cdr, 4);
     } catch (const std::exception& error) {
-      log(LogLevel::Warning, kTopic.name, std::string("dropped a malformed sample: ") + error.what());
+      log(LogLevel::Warning, kTopic.name,
+          std::string("dropped a malformed sample: ") + error.what());
       return;
     }
     latest[{statistics.provider}] = std::move(statistics);
   }
 };
 
-StatisticsReader::StatisticsReader(dds::Participant& participant) : state_(std::make_unique<State>()) {
+StatisticsReader::StatisticsReader(dds::Participant& participant)
+    : state_(std::make_unique<State>()) {
   dds::ReaderListener listener;
   listener.on_data = [&state = *state_](dds::Reader& reader) {
     reader.take([&state](const dds::Sample& sample) { state.on_sample(sample); });

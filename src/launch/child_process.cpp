@@ -44,9 +44,7 @@ Pipe make_pipe() {
 }
 
 // Debian 12's <sys/pidfd.h> cannot be used from C++: it declares its functions without C linkage.
-int open_process(pid_t process) {
-  return static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
-}
+int open_process(pid_t process) { return static_cast<int>(::syscall(SYS_pidfd_open, process, 0)); }
 
 void make_non_blocking(const Descriptor& descriptor) {
   ::fcntl(descriptor.get(), F_SETFL, ::fcntl(descriptor.get(), F_GETFL) | O_NONBLOCK);

@@ -40,7 +40,8 @@ sigset_t ending_signals() {
 
 // `owner` is a peer or one of its CSPs.
 template <class Profile>
-EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer, const Profile& owner) {
+EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
+                         const Profile& owner) {
   EntityOptions options;
   options.name = peer.name;
   options.system = peer.system;

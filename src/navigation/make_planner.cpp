@@ -14,10 +14,13 @@ struct Maker {
 };
 
 constexpr Maker kMakers[] = {
-    {"AStar", make_a_star},     {"CappedAStar", make_capped_a_star},
+    {"AStar", make_a_star},
+    {"CappedAStar", make_capped_a_star},
     {"RRTConnect", make_rrt_connect},
-    {"RRTstar", make_rrt_star}, {"InformedRRTstar", make_informed_rrt_star},
-    {"BITstar", make_bit_star}, {"PRMstar", make_prm_star},
+    {"RRTstar", make_rrt_star},
+    {"InformedRRTstar", make_informed_rrt_star},
+    {"BITstar", make_bit_star},
+    {"PRMstar", make_prm_star},
     {"AITstar", make_ait_star},
 };
 

@@ -44,7 +44,8 @@ RiskMap::RiskMap(const Terrain& terrain, std::span<const AE_navigator::RadarSite
         static_cast<float>(terrain.height_m(point.north_m, point.east_m));
   }
   for (const auto& site : sites) {
-    add_site(site, mast_top(terrain, site.site, site.mast_height_m).altitude_m, ground, altitudes_m);
+    add_site(site, mast_top(terrain, site.site, site.mast_height_m).altitude_m, ground,
+             altitudes_m);
   }
 }
 

@@ -85,8 +85,9 @@ class Checker {
       for (const auto& attribute : item.attributes) {
         if (attribute.name != "isolated" || attribute.value != "true") continue;
         findings_.error(csp.where,
-                        "the CSP " + in_quotes(csp.name) + " works in its entity's process, but is " +
-                            "isolated (" + to_text(attribute.where) + ")",
+                        "the CSP " + in_quotes(csp.name) +
+                            " works in its entity's process, but is " + "isolated (" +
+                            to_text(attribute.where) + ")",
                         "write process=\"own\": what it may do to its process, it does alone");
       }
     }

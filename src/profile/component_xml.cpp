@@ -139,8 +139,9 @@ void write_parameters(pugi::xml_node implements, const char* group_name,
     auto node = group.append_child("parameter");
     node.append_attribute("name") = parameter.name.c_str();
     if (parameter.type.empty()) continue;
-    add_text_child(node, "type",
-                   maybe_value_type(parameter.type) ? parameter.type : repository_id(parameter.type));
+    add_text_child(
+        node, "type",
+        maybe_value_type(parameter.type) ? parameter.type : repository_id(parameter.type));
   }
 }
 

@@ -135,10 +135,30 @@ class MissionReader {
   }
 
   PeerProfile peer_of(const XmlElement& element, const Defaults& mission) {
-    element.allow({"name", "component", "vendor", "system", "host", "interface", "shared_memory", "plugin", "role",
-                   "required", "restart", "restart_delay", "max_restart_delay", "max_restarts",
-                   "restart_window", "ready_timeout", "stop_timeout", "threads", "scheduling", "priority",
-                   "nice", "cpus", "spin", "lock_memory"},
+    element.allow({"name",
+                   "component",
+                   "vendor",
+                   "system",
+                   "host",
+                   "interface",
+                   "shared_memory",
+                   "plugin",
+                   "role",
+                   "required",
+                   "restart",
+                   "restart_delay",
+                   "max_restart_delay",
+                   "max_restarts",
+                   "restart_window",
+                   "ready_timeout",
+                   "stop_timeout",
+                   "threads",
+                   "scheduling",
+                   "priority",
+                   "nice",
+                   "cpus",
+                   "spin",
+                   "lock_memory"},
                   {"csp", "parameter"});
     PeerProfile peer;
     peer.where = element.where();
@@ -176,9 +196,10 @@ class MissionReader {
 
   CspProfile csp_of(const XmlElement& element, const PeerProfile& peer) {
     element.allow(
-        {"name", "component", "process", "vendor", "shared_memory", "plugin", "required", "restart", "restart_delay",
-         "max_restart_delay", "max_restarts", "restart_window", "ready_timeout", "stop_timeout",
-         "scheduling", "priority", "nice", "cpus", "spin", "lock_memory"},
+        {"name",         "component",      "process",       "vendor",        "shared_memory",
+         "plugin",       "required",       "restart",       "restart_delay", "max_restart_delay",
+         "max_restarts", "restart_window", "ready_timeout", "stop_timeout",  "scheduling",
+         "priority",     "nice",           "cpus",          "spin",          "lock_memory"},
         {"parameter"});
     CspProfile csp;
     csp.where = element.where();

@@ -34,9 +34,9 @@ int read_number(const XmlElement& element, const char* name, int least, int grea
   if (result.ec == std::errc() && result.ptr == end && number >= least && number <= greatest) {
     return number;
   }
-  element.findings().error(text->where, std::string(name) + " is " + in_quotes(text->value),
-                           "write a number from " + std::to_string(least) + " to " +
-                               std::to_string(greatest));
+  element.findings().error(
+      text->where, std::string(name) + " is " + in_quotes(text->value),
+      "write a number from " + std::to_string(least) + " to " + std::to_string(greatest));
   return 0;
 }
 
@@ -51,7 +51,8 @@ bool add_range(std::string_view text, std::vector<unsigned>& cpus) {
     if (*result.ptr != '-') return false;
     result = std::from_chars(result.ptr + 1, end, last);
   }
-  if (result.ec != std::errc() || result.ptr != end || last < first || last > kLargestCpu) return false;
+  if (result.ec != std::errc() || result.ptr != end || last < first || last > kLargestCpu)
+    return false;
   for (unsigned cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
   return true;
 }
@@ -82,7 +83,8 @@ std::chrono::microseconds read_spin(const XmlElement& element) {
   try {
     const auto spin = parse_duration(text->value);
     if (spin <= kLongestSpin) return std::chrono::duration_cast<std::chrono::microseconds>(spin);
-    element.findings().error(text->where, "spin is " + in_quotes(text->value) + ", more than 100 ms",
+    element.findings().error(text->where,
+                             "spin is " + in_quotes(text->value) + ", more than 100 ms",
                              "write what a wake-up costs, as in \"50 us\"");
   } catch (const InvalidArgument& error) {
     element.findings().error(text->where, error.what());
@@ -94,7 +96,8 @@ std::chrono::microseconds read_spin(const XmlElement& element) {
 void demand_agreement(const XmlElement& element, Scheduling scheduling) {
   const bool real_time = scheduling != Scheduling::Normal;
   if (const auto nice = element.maybe_attribute("nice"); nice && real_time) {
-    element.findings().error(nice->where, "nice is for normal scheduling", "write priority instead");
+    element.findings().error(nice->where, "nice is for normal scheduling",
+                             "write priority instead");
   }
   const auto priority = element.maybe_attribute("priority");
   if (priority && !real_time) {

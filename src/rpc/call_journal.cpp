@@ -59,7 +59,8 @@ std::shared_ptr<CallJournal> CallJournal::open(dds::Participant& participant, Ex
   listener.on_matched = [weak = std::weak_ptr(journal)](const Guid&, bool matched) {
     if (const auto self = weak.lock()) self->on_reader(matched);
   };
-  std::shared_ptr<dds::Writer> writer = participant.create_writer(kTopic, qos(), std::move(listener));
+  std::shared_ptr<dds::Writer> writer =
+      participant.create_writer(kTopic, qos(), std::move(listener));
   std::lock_guard lock(journal->mutex_);
   journal->writer_ = std::move(writer);
   return journal;
@@ -86,9 +87,11 @@ void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t num
   using introspection::CallStep;
   if (!on()) return;
   if (error && !declared(error)) {
-    record(at_server ? CallStep::Refused : CallStep::Failed, client, number, service, operation, error);
+    record(at_server ? CallStep::Refused : CallStep::Failed, client, number, service, operation,
+           error);
   } else {
-    record(at_server ? CallStep::Replied : CallStep::Answered, client, number, service, operation, nullptr);
+    record(at_server ? CallStep::Replied : CallStep::Answered, client, number, service, operation,
+           nullptr);
   }
 }
 
@@ -152,7 +155,8 @@ CallJournalReader::CallJournalReader(dds::Participant& participant,
       try {
         idl::type_support<CallEvent>().decode(&event, sample.cdr, 4);
       } catch (const std::exception& error) {
-        log(LogLevel::Warning, kTopic.name, std::string("dropped a malformed sample: ") + error.what());
+        log(LogLevel::Warning, kTopic.name,
+            std::string("dropped a malformed sample: ") + error.what());
         return;
       }
       consumer(event);

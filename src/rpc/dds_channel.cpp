@@ -11,8 +11,8 @@
 namespace skein::rpc {
 namespace {
 
-// DDS tells no one that the other side has matched, so `open` is repeated until it is answered: soon at
-// first, since the other side is mostly about to match, then less often.
+// DDS tells no one that the other side has matched, so `open` is repeated until it is answered:
+// soon at first, since the other side is mostly about to match, then less often.
 constexpr std::chrono::milliseconds kFirstOpenInterval{1};
 constexpr std::chrono::milliseconds kLastOpenInterval{20};
 

@@ -52,7 +52,8 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
   return writer;
 }
 
-// Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any more.
+// Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any
+// more.
 TimerId DdsChannel::State::look_at(Instant deadline) {
   if (deadline >= timer_due) return 0;
   timer_due = deadline;
@@ -116,9 +117,9 @@ std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Kee
 void DdsChannel::State::expire(std::uint64_t number) {
   const auto call = remove(number);
   if (!call) return;
-  auto error = std::make_exception_ptr(
-      TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
-               " before its deadline; whether it ran is unknown"));
+  auto error = std::make_exception_ptr(TimedOut(options.peer + " did not answer " +
+                                                std::string(call->operation().name) +
+                                                " before its deadline; whether it ran is unknown"));
   if (!call->claim()) return;
   note_end(number, call->operation(), error);
   call->finish(std::move(error));

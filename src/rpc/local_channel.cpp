@@ -59,7 +59,8 @@ std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service,
       new LocalChannel(service, std::move(clock), std::move(continuations)));
   const auto target = service.lock();
   if (!target) throw Unavailable("the service has been withdrawn");
-  channel->peer_ = std::make_shared<std::string>(std::string(target->interface_info().name) + " in this process");
+  channel->peer_ = std::make_shared<std::string>(std::string(target->interface_info().name) +
+                                                 " in this process");
   channel->session_ = target->open({Guid{}, strategy});
   return channel;
 }
@@ -73,21 +74,24 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock
 std::shared_ptr<Service> LocalChannel::service() const {
   auto service = service_.lock();
   if (service && !closed_) return service;
-  throw Unavailable("no connection to " + *peer_ + ": it was " + (service ? "disconnected" : "withdrawn"));
+  throw Unavailable("no connection to " + *peer_ + ": it was " +
+                    (service ? "disconnected" : "withdrawn"));
 }
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   call->attempt([&] { enqueue(*service(), call, in); });
 }
 
-void LocalChannel::call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) {
+void LocalChannel::call(const OperationInfo& operation, const void* in, void* out,
+                        const CallTime& time) {
   const auto target = service();
   Invocation frame;
   frame.connection = id_;
   frame.begun = time.begin;
   frame.deadline = time.deadline;
   frame.outer = CallContext::current();
-  frame.session = std::shared_ptr<Session>(std::shared_ptr<void>(), session_.get());  // owned by this
+  frame.session =
+      std::shared_ptr<Session>(std::shared_ptr<void>(), session_.get());  // owned by this
   if (!target->try_call_inline(operation, in, out, frame)) Channel::call(operation, in, out, time);
 }
 
@@ -97,9 +101,9 @@ void LocalChannel::disconnect() {
 
 void LocalChannel::lose(const std::string& how) {
   for (const auto& call : close()) {
-    call->abandon(std::make_exception_ptr(Disconnected(
-        "the connection to " + *peer_ + " is gone (" + how + "); whether " +
-        std::string(call->operation().name) + " ran is unknown")));
+    call->abandon(std::make_exception_ptr(
+        Disconnected("the connection to " + *peer_ + " is gone (" + how + "); whether " +
+                     std::string(call->operation().name) + " ran is unknown")));
   }
 }
 
@@ -149,9 +153,8 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   if (operation.stream) connect_stream(*invocation, call, *clock_);
   call->set_canceller([invocation] { invocation->cancel(); });
   remember(call);
-  invocation->timer = clock_->call_at(call->deadline(), [invocation, peer = peer_] {
-    invocation->expire(*peer);
-  });
+  invocation->timer =
+      clock_->call_at(call->deadline(), [invocation, peer = peer_] { invocation->expire(*peer); });
   try {
     service.submit(invocation);
   } catch (...) {

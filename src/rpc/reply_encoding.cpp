@@ -40,7 +40,8 @@ void encode_outcome(Bytes& message, const RequestId& id, const OperationInfo& op
   } catch (const UserException& exception) {
     if (!declares(operation, exception.info())) {
       return encode_error(message, id, ErrorCode::Internal,
-                          std::string(operation.name) + " threw " + std::string(exception.info().name) +
+                          std::string(operation.name) + " threw " +
+                              std::string(exception.info().name) +
                               ", which its interface does not declare");
     }
     wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
@@ -65,7 +66,8 @@ void encode_item(Bytes& message, const RequestId& id, const OperationInfo& opera
 
 void encode_end(Bytes& message, const RequestId& id, const OperationInfo& operation,
                 std::uint64_t position) {
-  const std::unique_ptr<void, void (*)(void*)> nothing(operation.out->make(), operation.out->destroy);
+  const std::unique_ptr<void, void (*)(void*)> nothing(operation.out->make(),
+                                                       operation.out->destroy);
   encode_result(message, id, operation, nothing.get());
   wire::append_trailer(message, wire::ReplyTrailer{{}, {}, wire::StreamPart::End, position});
 }

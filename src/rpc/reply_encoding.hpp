@@ -9,8 +9,8 @@
 namespace skein::rpc {
 
 /// The reply of a call that ended with an Error.
-void encode_error(Bytes& message, const wire::RequestId& id, ErrorCode code, const std::string& text,
-                  std::uint32_t operation = 0);
+void encode_error(Bytes& message, const wire::RequestId& id, ErrorCode code,
+                  const std::string& text, std::uint32_t operation = 0);
 
 /// The reply of a call: its out struct, or what was thrown.
 void encode_outcome(Bytes& message, const wire::RequestId& id, const OperationInfo& operation,

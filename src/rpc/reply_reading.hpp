@@ -17,8 +17,8 @@ struct Reply {
   std::uint64_t position = 0;
 };
 
-/// Fills `out`, or tells what the operation ended with; throws where the bytes are neither. `peer` is for
-/// messages.
+/// Fills `out`, or tells what the operation ended with; throws where the bytes are neither. `peer`
+/// is for messages.
 Reply read_reply(const OperationInfo& operation, void* out, std::span<const std::byte> message,
                  const wire::ReplyHead& head, const std::string& peer);
 

@@ -74,7 +74,8 @@ void Service::note_begin(const OperationInfo& operation, const Invocation& frame
 void Service::note_end(const OperationInfo& operation, const Invocation& frame,
                        const std::exception_ptr& error) {
   if (!options_.journal) return;
-  options_.journal->note_end(true, frame.connection, frame.number, interface_info().name, operation, error);
+  options_.journal->note_end(true, frame.connection, frame.number, interface_info().name, operation,
+                             error);
 }
 
 void Service::answer(Invocation& invocation, const void* out, std::exception_ptr error) {
@@ -122,16 +123,18 @@ void Service::refuse_self_wait(const Invocation& invocation) const {
       static_cast<std::size_t>(std::count(named.begin(), named.end(), options_.strand)) +
       (invocation.outer ? invocation.outer->waits(options_.strand) : 0);
   if (blocked < std::max<std::size_t>(options_.threads, 1)) return;
-  throw Unavailable("the call to " + std::string(interface_info().name) + " would wait for itself (" +
-                    circle(invocation.outer ? invocation.outer->chain() : named) +
-                    "): every thread that could answer it is blocked in a call that led to this one; "
-                    "make the inner call asynchronous or give the service more threads");
+  throw Unavailable(
+      "the call to " + std::string(interface_info().name) + " would wait for itself (" +
+      circle(invocation.outer ? invocation.outer->chain() : named) +
+      "): every thread that could answer it is blocked in a call that led to this one; "
+      "make the inner call asynchronous or give the service more threads");
 }
 
 // What an implementation returns because it saw its deadline pass is no result.
 void Service::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
   if (frame.ended < frame.deadline) return;
-  throw TimedOut(std::string(interface_info().name) + " finished " + std::string(operation.name) + " too late");
+  throw TimedOut(std::string(interface_info().name) + " finished " + std::string(operation.name) +
+                 " too late");
 }
 
 // From where the chain first enters this service, back to it.
@@ -154,7 +157,8 @@ void Service::close() {
   while (const auto waiting = take_next()) withdraw(*waiting);
 }
 
-// Under the queue's lock an invocation is queued or refused: none comes after those that close() took.
+// Under the queue's lock an invocation is queued or refused: none comes after those that close()
+// took.
 std::shared_ptr<Invocation> Service::take_next() {
   std::lock_guard lock(queue_mutex_);
   return queue_.pop();
@@ -162,8 +166,9 @@ std::shared_ptr<Invocation> Service::take_next() {
 
 void Service::withdraw(Invocation& invocation) {
   OperationMeter::count(meter_.of(*invocation.operation).refused);
-  answer(invocation, nullptr, std::make_exception_ptr(Unavailable(
-                                  std::string(interface_info().name) + " is being withdrawn")));
+  answer(invocation, nullptr,
+         std::make_exception_ptr(
+             Unavailable(std::string(interface_info().name) + " is being withdrawn")));
 }
 
 void Service::stop(Invocation& invocation) const {
@@ -177,9 +182,10 @@ void Service::execute(Invocation& invocation) {
   if (closed_) return withdraw(invocation);
   if (invocation.cancelled || now >= invocation.deadline) {
     OperationMeter::count(meter.expired);
-    answer(invocation, nullptr, std::make_exception_ptr(TimedOut(
-                                    "the deadline passed before " +
-                                    std::string(interface_info().name) + " could begin; not executed")));
+    answer(invocation, nullptr,
+           std::make_exception_ptr(TimedOut("the deadline passed before " +
+                                            std::string(interface_info().name) +
+                                            " could begin; not executed")));
     return;
   }
   const TypeSupport& type = *invocation.operation->out;

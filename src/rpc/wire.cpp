@@ -7,10 +7,11 @@
 namespace skein::rpc::wire {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "trailers and headers are written as they lie");
+static_assert(std::endian::native == std::endian::little,
+              "trailers and headers are written as they lie");
 
 constexpr std::uint32_t kTrailerMagic = 0x314E4B53;  // "SKN1"
-constexpr std::size_t kOrigin = 4;                   // alignment counts from behind the encapsulation
+constexpr std::size_t kOrigin = 4;  // alignment counts from behind the encapsulation
 constexpr std::size_t kMaxChain = 64;
 constexpr std::chrono::hours kMaxRemaining{24 * 365};
 constexpr std::chrono::hours kMaxSent{24 * 365 * 100};  // so that differences can be computed
@@ -33,7 +34,8 @@ void align(Bytes& message) {
 }
 
 void begin(Bytes& message, const RequestId& id) {
-  constexpr std::byte kPlainCdrLittleEndian[4]{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  constexpr std::byte kPlainCdrLittleEndian[4]{std::byte{0}, std::byte{1}, std::byte{0},
+                                               std::byte{0}};
   message.clear();
   message.append(kPlainCdrLittleEndian);
   message.append(std::as_bytes(std::span(id.client.bytes)));
@@ -250,20 +252,28 @@ std::optional<ReplyTrailer> read_reply_trailer(std::span<const std::byte> messag
 
 RemoteException remote_exception_of(ErrorCode code) noexcept {
   switch (code) {
-    case ErrorCode::Unimplemented: return RemoteException::Unsupported;
-    case ErrorCode::InvalidArgument: return RemoteException::InvalidArgument;
-    case ErrorCode::Overloaded: return RemoteException::OutOfResources;
-    default: return RemoteException::UnknownException;
+    case ErrorCode::Unimplemented:
+      return RemoteException::Unsupported;
+    case ErrorCode::InvalidArgument:
+      return RemoteException::InvalidArgument;
+    case ErrorCode::Overloaded:
+      return RemoteException::OutOfResources;
+    default:
+      return RemoteException::UnknownException;
   }
 }
 
 ErrorCode error_code_of(RemoteException exception) noexcept {
   switch (exception) {
     case RemoteException::Unsupported:
-    case RemoteException::UnknownOperation: return ErrorCode::Unimplemented;
-    case RemoteException::InvalidArgument: return ErrorCode::InvalidArgument;
-    case RemoteException::OutOfResources: return ErrorCode::Overloaded;
-    default: return ErrorCode::Internal;
+    case RemoteException::UnknownOperation:
+      return ErrorCode::Unimplemented;
+    case RemoteException::InvalidArgument:
+      return ErrorCode::InvalidArgument;
+    case RemoteException::OutOfResources:
+      return ErrorCode::Overloaded;
+    default:
+      return ErrorCode::Internal;
   }
 }
 

@@ -16,12 +16,18 @@ struct Arguments : Onlooker {
 
 const char* word_of(introspection::CallStep step) {
   switch (step) {
-    case introspection::CallStep::Sent: return "sent";
-    case introspection::CallStep::Received: return "received";
-    case introspection::CallStep::Replied: return "replied";
-    case introspection::CallStep::Refused: return "refused";
-    case introspection::CallStep::Answered: return "answered";
-    case introspection::CallStep::Failed: break;
+    case introspection::CallStep::Sent:
+      return "sent";
+    case introspection::CallStep::Received:
+      return "received";
+    case introspection::CallStep::Replied:
+      return "replied";
+    case introspection::CallStep::Refused:
+      return "refused";
+    case introspection::CallStep::Answered:
+      return "answered";
+    case introspection::CallStep::Failed:
+      break;
   }
   return "failed";
 }
@@ -34,10 +40,10 @@ void print(const introspection::CallEvent& event) {
   char time[16];
   std::strftime(time, sizeof time, "%H:%M:%S", &local);
   std::printf("%s.%06u %-8s %s %s.%s #%s:%llu%s%s\n", time,
-              static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step), event.entity.c_str(),
-              event.service.c_str(), event.operation.c_str(), Guid{event.client}.hex().c_str(),
-              static_cast<unsigned long long>(event.number), event.error.empty() ? "" : "  ",
-              event.error.c_str());
+              static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step),
+              event.entity.c_str(), event.service.c_str(), event.operation.c_str(),
+              Guid{event.client}.hex().c_str(), static_cast<unsigned long long>(event.number),
+              event.error.empty() ? "" : "  ", event.error.c_str());
   if (event.dropped > 0) {
     std::printf("  (%s has dropped %llu events)\n", event.entity.c_str(),
                 static_cast<unsigned long long>(event.dropped));
@@ -49,7 +55,8 @@ void watch(const Arguments& arguments) {
   Entity entity(arguments.entity_options("calls"));
   const rpc::CallJournalReader reader(entity.participant(), print);
   do {
-    std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
   } while (arguments.seconds <= 0);
 }
 
@@ -59,7 +66,8 @@ void add_calls(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("calls", "Show what happens to each call on a domain, live");
   auto arguments = std::make_shared<Arguments>();
   arguments->add_options(*command);
-  command->add_option("--for", arguments->seconds, "Seconds to watch; until interrupted by default");
+  command->add_option("--for", arguments->seconds,
+                      "Seconds to watch; until interrupted by default");
   command->callback([arguments, &result] {
     watch(*arguments);
     result = 0;

@@ -1,8 +1,9 @@
+#include "skein/profile/check.hpp"
+
 #include <cstdio>
 
 #include "commands.hpp"
 #include "skein/launch/supervisor.hpp"
-#include "skein/profile/check.hpp"
 
 namespace skein::command {
 

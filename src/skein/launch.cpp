@@ -22,8 +22,9 @@ struct Arguments {
 
 void add_common(CLI::App& command, Arguments& arguments) {
   command.add_option("PROFILE", arguments.profile, "Mission profile (XML)")->required();
-  command.add_option("--set", arguments.settings,
-                     "A parameter's value for this run: PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE");
+  command.add_option(
+      "--set", arguments.settings,
+      "A parameter's value for this run: PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE");
 }
 
 profile::MissionProfile read(const Arguments& arguments) {
@@ -48,8 +49,8 @@ void write(std::FILE* stream, const std::string& line) {
   std::fflush(stream);
 }
 
-/// Lines and events as people want to read them: the mission's own text as it is, other peers' lines
-/// with their names, and of the events those that are out of order.
+/// Lines and events as people want to read them: the mission's own text as it is, other peers'
+/// lines with their names, and of the events those that are out of order.
 class Narrator {
  public:
   Narrator(const launch::LaunchPlan& plan, bool verbose) : verbose_(verbose) {
@@ -66,7 +67,8 @@ class Narrator {
   void tell(const launch::ChildEvent& event) {
     if (event.state == launch::ChildState::Waiting) restarted_.insert(event.child);
     if (verbose_ || !in_order(event)) {
-      write(stderr, "* " + (event.child.empty() ? "mission" : event.child) + ": " + event.text + "\n");
+      write(stderr,
+            "* " + (event.child.empty() ? "mission" : event.child) + ": " + event.text + "\n");
     }
   }
 
@@ -76,10 +78,13 @@ class Narrator {
     if (event.child.empty()) return true;
     switch (event.state) {
       case ChildState::Starting:
-      case ChildState::Ready: return !restarted_.contains(event.child);
+      case ChildState::Ready:
+        return !restarted_.contains(event.child);
       case ChildState::Ended:
-      case ChildState::Terminated: return true;
-      default: return false;
+      case ChildState::Terminated:
+        return true;
+      default:
+        return false;
     }
   }
 
@@ -120,7 +125,8 @@ void add_launch(CLI::App& app, int& result) {
   auto arguments = std::make_shared<Arguments>();
   add_common(*command, *arguments);
   command->add_flag("--dry-run", arguments->dry_run, "Only say what would run");
-  command->add_flag("--verbose", arguments->verbose, "Show the start, readiness and end of each process");
+  command->add_flag("--verbose", arguments->verbose,
+                    "Show the start, readiness and end of each process");
   command->callback([arguments, &result] { result = launch(*arguments); });
 }
 
@@ -128,7 +134,8 @@ void add_peer(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("peer", "Run one process of a mission");
   auto arguments = std::make_shared<Arguments>();
   add_common(*command, *arguments);
-  command->add_option("PROCESS", arguments->process, "A peer, or PEER/CSP for a CSP's own process")->required();
+  command->add_option("PROCESS", arguments->process, "A peer, or PEER/CSP for a CSP's own process")
+      ->required();
   command->callback([arguments, &result] {
     ComponentRegistry registry;
     result = launch::run_process(read(*arguments), arguments->process, registry);

@@ -5,8 +5,8 @@
 #include "commands.hpp"
 #include "onlooker.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/introspection.idl.hpp"
 #include "skein/entity/statistics_topic.hpp"
+#include "skein/introspection.idl.hpp"
 
 namespace skein::command {
 namespace {
@@ -26,16 +26,18 @@ void print_latency(const char* what, const introspection::Latency& latency) {
 }
 
 void print(const introspection::ServiceStatistics& service) {
-  std::printf("%-40s %s/%s  waiting %u  running %u\n", service.service.c_str(), service.system.c_str(),
-              service.entity.c_str(), service.waiting, service.running);
+  std::printf("%-40s %s/%s  waiting %u  running %u\n", service.service.c_str(),
+              service.system.c_str(), service.entity.c_str(), service.waiting, service.running);
   for (const auto& operation : service.operations) {
-    std::printf("    %s: received %llu, answered %llu, raised %llu, failed %llu, refused %llu, expired %llu\n",
-                operation.name.c_str(), static_cast<unsigned long long>(operation.received),
-                static_cast<unsigned long long>(operation.answered),
-                static_cast<unsigned long long>(operation.raised),
-                static_cast<unsigned long long>(operation.failed),
-                static_cast<unsigned long long>(operation.refused),
-                static_cast<unsigned long long>(operation.expired));
+    std::printf(
+        "    %s: received %llu, answered %llu, raised %llu, failed %llu, refused %llu, expired "
+        "%llu\n",
+        operation.name.c_str(), static_cast<unsigned long long>(operation.received),
+        static_cast<unsigned long long>(operation.answered),
+        static_cast<unsigned long long>(operation.raised),
+        static_cast<unsigned long long>(operation.failed),
+        static_cast<unsigned long long>(operation.refused),
+        static_cast<unsigned long long>(operation.expired));
     print_latency("waited", operation.waited);
     print_latency("ran", operation.ran);
   }

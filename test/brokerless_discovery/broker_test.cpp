@@ -30,7 +30,9 @@ struct Peer {
       : participant(world.network.vendor()->create_participant({})),
         broker(*participant, world.clock, control, watch, {system, entity, "loopback", 1000ms}) {}
 
-  bool finds(const std::string& name) const { return !broker.find_service(broker.query(name)).empty(); }
+  bool finds(const std::string& name) const {
+    return !broker.find_service(broker.query(name)).empty();
+  }
 
   ManualExecutor control;
   ProcessWatch watch;
@@ -58,12 +60,14 @@ TEST_CASE("a late joiner receives every description that stands", "[R16]") {
   CHECK(late.finds("A/IOther"));
 }
 
-TEST_CASE("a peer knows its own services at once, and forgets them when they are withdrawn", "[R10]") {
+TEST_CASE("a peer knows its own services at once, and forgets them when they are withdrawn",
+          "[R10]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   {
-    const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+    const auto registration =
+        navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
     CHECK(navigator.finds("A/INavigator"));
     CHECK(ground.finds("A/INavigator"));
   }
@@ -75,7 +79,8 @@ TEST_CASE("a description carries host, process, pid and vendor of its peer") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
   const auto found = ground.broker.find_service(ground.broker.query("navigator")).at(0);
   CHECK(found->host == ProcessWatch::host());
   CHECK(found->process == navigator.watch.address());
@@ -98,11 +103,13 @@ TEST_CASE("a managed description does not reach strangers", "[R6]") {
   CHECK(namesake.broker.all().empty());
 }
 
-TEST_CASE("a provider that is stopped is suspect after its lease and comes back by itself", "[R11][R12][R17]") {
+TEST_CASE("a provider that is stopped is suspect after its lease and comes back by itself",
+          "[R11][R12][R17]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
 
   world.network.pause(navigator.participant->guid());
   pass(world, {&ground}, 1500ms);
@@ -117,7 +124,8 @@ TEST_CASE("descriptions come back after a partition", "[R13][R17]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
 
   world.network.separate(navigator.participant->guid(), ground.participant->guid());
   pass(world, {&navigator, &ground}, 30s);
@@ -133,9 +141,11 @@ TEST_CASE("a peer that vanishes takes its descriptions with it", "[R13]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
   std::vector<Change> changes;
-  const auto observation = ground.broker.observe([&](const Change& change) { changes.push_back(change); });
+  const auto observation =
+      ground.broker.observe([&](const Change& change) { changes.push_back(change); });
 
   world.network.kill(navigator.participant->guid());
   pass(world, {&ground}, 5s);
@@ -165,7 +175,8 @@ TEST_CASE("observers hear of what comes and goes until they stop listening") {
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   std::vector<Change::Kind> kinds;
-  auto observation = ground.broker.observe([&](const Change& change) { kinds.push_back(change.kind); });
+  auto observation =
+      ground.broker.observe([&](const Change& change) { kinds.push_back(change.kind); });
   auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
   registration.withdraw();
   ground.control.run_all();
@@ -185,29 +196,34 @@ TEST_CASE("waiting for a service ends when it appears") {
   std::thread waiting([&] {
     found = ground.broker.await_service(ground.broker.query("navigator"), world.clock.now() + 1h);
   });
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
   waiting.join();
   CHECK(found.size() == 1);
 }
 
-TEST_CASE("waiting for a service that does not appear ends at the deadline with the reason", "[R9]") {
+TEST_CASE("waiting for a service that does not appear ends at the deadline with the reason",
+          "[R9]") {
   World world;
   Peer ground(world, "ground");
-  CHECK_THROWS_WITH(ground.broker.await_service(ground.broker.query("navigator"), world.clock.now()),
-                    Catch::Contains("nothing of that name"));
+  CHECK_THROWS_WITH(
+      ground.broker.await_service(ground.broker.query("navigator"), world.clock.now()),
+      Catch::Contains("nothing of that name"));
 }
 
 TEST_CASE("a malformed description is dropped and the others stand", "[R4]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
-  const auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  const auto registration =
+      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
   dds::Qos qos;
   qos.transient_local = true;
   qos.history_depth = 1;
   qos.liveliness_lease = 1000ms;
   const auto stranger = world.network.vendor()->create_participant({});
-  const auto writer = stranger->create_writer({"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+  const auto writer = stranger->create_writer(
+      {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
   const std::uint8_t truncated[] = {0, 1, 0, 0, 1, 2, 3};
   writer->write(std::as_bytes(std::span(truncated)), guid(9));
   CHECK(ground.broker.all().size() == 1);

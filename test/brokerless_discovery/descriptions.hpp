@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "skein/discovery.idl.hpp"
 #include "skein/core/guid.hpp"
+#include "skein/discovery.idl.hpp"
 
 namespace skein::test {
 

@@ -48,7 +48,8 @@ TEST_CASE("a description is found by its interface, its bases and its entity", "
 TEST_CASE("all spellings of an interface's name are one", "[R2]") {
   Table table;
   table.on_description(description(1, "IDL:A/INavigator:1.0", "navigator"), kWriter);
-  for (const char* spelling : {"IDL:A/INavigator", "A/INavigator", "A::INavigator", "IDL:A/INavigator:1.0"}) {
+  for (const char* spelling :
+       {"IDL:A/INavigator", "A/INavigator", "A::INavigator", "IDL:A/INavigator:1.0"}) {
     CAPTURE(spelling);
     CHECK(entities(table, query(spelling)) == Names{"navigator"});
   }
@@ -71,8 +72,10 @@ TEST_CASE("an interface's last part is enough where it is unambiguous", "[R3]") 
 
 TEST_CASE("a later description of the same provider replaces the earlier one", "[R4]") {
   Table table;
-  CHECK(table.on_description(description(1, "A/I", "old"), kWriter).at(0).kind == Change::Kind::Added);
-  CHECK(table.on_description(description(1, "A/I", "new"), kWriter).at(0).kind == Change::Kind::Updated);
+  CHECK(table.on_description(description(1, "A/I", "old"), kWriter).at(0).kind ==
+        Change::Kind::Added);
+  CHECK(table.on_description(description(1, "A/I", "new"), kWriter).at(0).kind ==
+        Change::Kind::Updated);
   CHECK(entities(table, query("A/I")) == Names{"new"});
   CHECK(table.find(query("old")).empty());
   CHECK(table.on_description(description(1, "A/I", "new"), kWriter).empty());
@@ -104,18 +107,21 @@ TEST_CASE("a managed service is found by its owner and by nobody else", "[R6]") 
   CHECK(entities(table, owner) == Names{"AStar"});
 }
 
-TEST_CASE("a stranger is told whose a managed interface is even without its description", "[R6][R9]") {
+TEST_CASE("a stranger is told whose a managed interface is even without its description",
+          "[R6][R9]") {
   Table table;
   auto navigator = description(1, "A/INavigator", "navigator");
   navigator.subcomponents = {"IDL:A/IPlanner"};
   table.on_description(navigator, kWriter);
-  CHECK_THAT(table.explain(query("A/IPlanner")),
-             Catch::Contains("managed interface of navigator") && Catch::Contains("only that entity"));
+  CHECK_THAT(
+      table.explain(query("A/IPlanner")),
+      Catch::Contains("managed interface of navigator") && Catch::Contains("only that entity"));
   CHECK_THAT(table.explain(query("IPlanner")), Catch::Contains("managed interface of navigator"));
 }
 
 TEST_CASE("a provider that lacks one of the client's operations is not offered", "[R7]") {
-  const OperationInfo wanted[] = {{"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
+  const OperationInfo wanted[] = {
+      {"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
   const InterfaceInfo client{"A/IPlanner", {}, wanted, ""};
   Query asked = query("A/IPlanner");
   asked.client = &client;
@@ -188,7 +194,8 @@ TEST_CASE("a suspect provider that is heard of again is offered again", "[R12]")
     CHECK(table.on_writer_alive(kWriter, true).at(0).kind == Change::Kind::Trusted);
   }
   SECTION("it describes itself again") {
-    CHECK(table.on_description(description(1, "A/I", "one"), kWriter).at(0).kind == Change::Kind::Trusted);
+    CHECK(table.on_description(description(1, "A/I", "one"), kWriter).at(0).kind ==
+          Change::Kind::Trusted);
   }
   CHECK(entities(table, query("A/I")) == Names{"one"});
 }
@@ -248,7 +255,8 @@ TEST_CASE("a provider is offered only if its attributes meet all constraints", "
   CHECK(with({{"kind", Relation::Equal, "tree"}}) == Names{"fast"});
   CHECK(with({{"kind", Relation::NotEqual, "tree"}}) == Names{"slow"});
   CHECK(with({{"reach", Relation::AtMost, "1 min"}}) == Names{"fast"});
-  CHECK(with({{"latency", Relation::AtMost, "2000"}, {"quality", Relation::AtLeast, "0.9"}}) == Names{"slow"});
+  CHECK(with({{"latency", Relation::AtMost, "2000"}, {"quality", Relation::AtLeast, "0.9"}}) ==
+        Names{"slow"});
 }
 
 TEST_CASE("numbers do not compare with lengths of time, nor words by order", "[R18]") {
@@ -277,10 +285,12 @@ TEST_CASE("for each provider that was passed over the reason is given", "[R9][R1
   table.on_writer_alive(kOtherWriter, false);
   Query asked = query("A/I");
   asked.constraints = {{"latency", Relation::AtMost, "300"}};
-  CHECK_THAT(table.explain(asked),
-             Catch::Contains("plain (uav-1) does not suit: it declares no latency, which must be at most 300") &&
-                 Catch::Contains("slow (uav-1) does not suit: its latency is 1000, not at most 300") &&
-                 Catch::Contains("silent (uav-1) has not been heard of"));
+  CHECK_THAT(
+      table.explain(asked),
+      Catch::Contains(
+          "plain (uav-1) does not suit: it declares no latency, which must be at most 300") &&
+          Catch::Contains("slow (uav-1) does not suit: its latency is 1000, not at most 300") &&
+          Catch::Contains("silent (uav-1) has not been heard of"));
 }
 
 TEST_CASE("providers on the preferred host come first, others follow", "[R19]") {
@@ -300,7 +310,8 @@ TEST_CASE("providers on the preferred host come first, others follow", "[R19]") 
 
 namespace {
 
-/// Descriptions and queries by chance, out of few words, so that they often have something in common.
+/// Descriptions and queries by chance, out of few words, so that they often have something in
+/// common.
 class Lottery {
  public:
   discovery::ServiceDescription draw_description(std::uint8_t number) {
@@ -331,7 +342,8 @@ class Lottery {
  private:
   std::string draw(std::vector<std::string> from) { return from[chance(from.size())]; }
   std::string draw_value() {
-    return draw({"1", "1.0", "2", "3", "-0", "0", "inf", "nan", "1 s", "1000 ms", "2 min", "grid", "tree", ""});
+    return draw({"1", "1.0", "2", "3", "-0", "0", "inf", "nan", "1 s", "1000 ms", "2 min", "grid",
+                 "tree", ""});
   }
 
   std::minstd_rand random_{7};
@@ -355,8 +367,9 @@ TEST_CASE("constraints find what a look at each description would find", "[R5][R
       return (asked.system && *asked.system != provider->system) ||
              (!provider->owner.empty() && provider->owner != asked.asker) ||
              (!asked.provider.is_nil() && asked.provider.bytes != provider->provider) ||
-             !std::all_of(asked.constraints.begin(), asked.constraints.end(),
-                          [&](const Constraint& constraint) { return meets(*provider, constraint); });
+             !std::all_of(
+                 asked.constraints.begin(), asked.constraints.end(),
+                 [&](const Constraint& constraint) { return meets(*provider, constraint); });
     });
     std::stable_sort(expected.begin(), expected.end(),
                      [](const auto& a, const auto& b) { return a->entity < b->entity; });
@@ -364,7 +377,8 @@ TEST_CASE("constraints find what a look at each description would find", "[R5][R
   }
 }
 
-TEST_CASE("what is known in another system alone is not taken for the short name of something else", "[R3][R5]") {
+TEST_CASE("what is known in another system alone is not taken for the short name of something else",
+          "[R3][R5]") {
   Table table;
   auto far = description(1, "B/IOther", "IPlanner");
   far.system = "uav-2";

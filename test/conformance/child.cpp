@@ -1,13 +1,13 @@
 #include "child.hpp"
 
 #include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace skein::dds::conformance {
 

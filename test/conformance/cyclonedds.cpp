@@ -1,3 +1,4 @@
 #include "wire.hpp"
 
-const skein::dds::conformance::Pairing skein::dds::conformance::kPairing{"cyclonedds", "cyclonedds"};
+const skein::dds::conformance::Pairing skein::dds::conformance::kPairing{"cyclonedds",
+                                                                         "cyclonedds"};

@@ -1,5 +1,5 @@
-// The other process of the suite: a participant with one endpoint, which obeys the lines that it reads
-// and ends with its standard input.
+// The other process of the suite: a participant with one endpoint, which obeys the lines that it
+// reads and ends with its standard input.
 #include <cstdio>
 #include <iostream>
 
@@ -32,7 +32,8 @@ int write_on_demand(Participant& participant) {
 int count_on_demand(Participant& participant) {
   Inbox inbox(participant, keyless(), keep_all());
   say("reader " + inbox.reader().guid().hex());
-  for (std::string line; std::getline(std::cin, line);) say("count " + std::to_string(inbox.count()));
+  for (std::string line; std::getline(std::cin, line);)
+    say("count " + std::to_string(inbox.count()));
   return 0;
 }
 

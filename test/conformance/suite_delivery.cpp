@@ -16,9 +16,28 @@ TEST_CASE("samples of every size arrive whole, byte for byte and in order") {
   Inbox inbox(*wire.reading, keyless(), keep_all());
   REQUIRE(connected(outbox, inbox));
   // Bodies of 0 to 8 bytes and around: what RTPS pads must come off again.
-  const std::vector<std::size_t> sizes{4,    5,    6,     7,     8,     9,     10,      11,      12,
-                                       68,   1027, 1028,  16385, 63000, 65000, 65533,   65536,   70001,
-                                       1u << 18, (1u << 20) + 4, (1u << 20) + 3, (4u << 20) + 1};
+  const std::vector<std::size_t> sizes{4,
+                                       5,
+                                       6,
+                                       7,
+                                       8,
+                                       9,
+                                       10,
+                                       11,
+                                       12,
+                                       68,
+                                       1027,
+                                       1028,
+                                       16385,
+                                       63000,
+                                       65000,
+                                       65533,
+                                       65536,
+                                       70001,
+                                       1u << 18,
+                                       (1u << 20) + 4,
+                                       (1u << 20) + 3,
+                                       (4u << 20) + 1};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     outbox.writer().write(make_sample(sizes[i], static_cast<std::uint32_t>(i)));
     INFO("size " << sizes[i]);
@@ -93,7 +112,8 @@ TEST_CASE("best-effort samples that arrive are whole, and none comes twice") {
   for (std::size_t i = 1; i < values.size(); ++i) CHECK(values[i - 1] < values[i]);
 }
 
-TEST_CASE("a best-effort reader hears a reliable writer, but a reliable reader no best-effort one") {
+TEST_CASE(
+    "a best-effort reader hears a reliable writer, but a reliable reader no best-effort one") {
   Wire wire;
   Qos best_effort;
   best_effort.reliable = false;
@@ -150,7 +170,8 @@ TEST_CASE("take hands over at most as many samples as asked for, oldest first") 
   const auto keep = [&](const Sample& sample) {
     values.push_back(to_number({sample.cdr.begin(), sample.cdr.end()}));
   };
-  REQUIRE(eventually([&] { return reader->take(keep, 2 - values.size()) > 0 && values.size() == 2; }));
+  REQUIRE(
+      eventually([&] { return reader->take(keep, 2 - values.size()) > 0 && values.size() == 2; }));
   CHECK(values == std::vector<std::uint32_t>{0, 1});
   REQUIRE(eventually([&] {
     reader->take(keep);

@@ -70,8 +70,8 @@ TEST_CASE("no listener runs after its reader or writer is destroyed") {
     };
     listener.on_matched = [note](const Guid&, bool) { note(); };
     auto reader = wire.reading->create_reader(keyless(), keep_all(), listener);
-    auto writer = wire.reading->create_writer(
-        keyless(), keep_all(), {[note](const Guid&, bool) { note(); }});
+    auto writer =
+        wire.reading->create_writer(keyless(), keep_all(), {[note](const Guid&, bool) { note(); }});
     REQUIRE(eventually([&] { return *seen > 3; }));
     writer.reset();
     reader.reset();
@@ -96,8 +96,8 @@ TEST_CASE("participants come and go while others talk") {
   Stream stream(*wire.writing, keyless());
   Inbox inbox(*wire.reading, keyless(), keep_all());
   for (int round = 0; round < 4; ++round) {
-    const auto guest = make_participant(round % 2 == 0 ? kPairing.reading : kPairing.writing,
-                                        wire.domain);
+    const auto guest =
+        make_participant(round % 2 == 0 ? kPairing.reading : kPairing.writing, wire.domain);
     Inbox guest_inbox(*guest, keyless(), keep_all());
     REQUIRE(eventually([&] { return guest_inbox.count() > 2; }));
   }
@@ -116,7 +116,8 @@ TEST_CASE("endpoints are made and destroyed by several threads at once") {
         Outbox outbox(*wire.writing, topic, keep_all());
         Inbox inbox(*wire.reading, topic, keep_all());
         if (!matched(outbox, inbox)) return;
-        // Cyclone DDS reports a match a moment before it delivers: a first sample can come too early.
+        // Cyclone DDS reports a match a moment before it delivers: a first sample can come too
+        // early.
         const auto write_and_look = [&] {
           outbox.writer().write(make_number(1));
           return inbox.count() > 0;

@@ -134,9 +134,9 @@ TEST_CASE("topics of one name and different types do not match") {
 TEST_CASE("a topic name that is in use with another type is refused") {
   Wire wire;
   const auto writer = wire.writing->create_writer({"taken", "test::One", false}, keep_all());
-  CHECK_THROWS_WITH(wire.writing->create_reader({"taken", "test::Other", false}, keep_all()),
-                    Catch::Contains("taken") && Catch::Contains("test::One") &&
-                        Catch::Contains("test::Other"));
+  CHECK_THROWS_WITH(
+      wire.writing->create_reader({"taken", "test::Other", false}, keep_all()),
+      Catch::Contains("taken") && Catch::Contains("test::One") && Catch::Contains("test::Other"));
   CHECK_THROWS_AS(wire.writing->create_writer({"taken", "test::One", true}, keep_all()),
                   InvalidArgument);
 }

@@ -219,8 +219,10 @@ TEST_CASE("a hostile environment changes nothing") {
       "CYCLONEDDS_URI=<CycloneDDS><Domain><General><NetworkInterfaceAddress>192.0.2.1"
       "</NetworkInterfaceAddress><AllowMulticast>true</AllowMulticast></General><Discovery><Peers>"
       "<Peer Address=\"192.0.2.9\"/></Peers><ExternalDomainId>99</ExternalDomainId></Discovery>"
-      "<Tracing><Verbosity>finest</Verbosity><OutputFile>" + at + "/trace.log</OutputFile></Tracing>"
-      "</Domain></CycloneDDS>",
+      "<Tracing><Verbosity>finest</Verbosity><OutputFile>" +
+          at +
+          "/trace.log</OutputFile></Tracing>"
+          "</Domain></CycloneDDS>",
       "FASTRTPS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
       "FASTDDS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
       "FASTDDS_ENVIRONMENT_FILE=" + at + "/environment.json",

@@ -26,7 +26,9 @@ struct Peer {
   Peer(LoopbackNetwork& network, std::chrono::milliseconds lease = 1000ms) {
     ParticipantOptions options;
     options.lease = lease;
-    options.on_participant = [this](const Guid&, bool present) { events.push_back(present ? '+' : '-'); };
+    options.on_participant = [this](const Guid&, bool present) {
+      events.push_back(present ? '+' : '-');
+    };
     participant = network.vendor()->create_participant(options);
   }
   std::string events;
@@ -38,7 +40,9 @@ struct Pair {
     writer = one.participant->create_writer(kTopic, qos);
     ReaderListener listener;
     listener.on_matched = [this](const Guid&, bool matched) { events += matched ? "+" : "-"; };
-    listener.on_liveliness = [this](const Guid&, bool alive) { events += alive ? "alive " : "lost "; };
+    listener.on_liveliness = [this](const Guid&, bool alive) {
+      events += alive ? "alive " : "lost ";
+    };
     listener.on_deadline_missed = [this](const KeyHash&) { events += "missed "; };
     reader = two.participant->create_reader(kTopic, qos, listener);
   }

@@ -144,9 +144,8 @@ bool connected(Outbox& outbox, Inbox& inbox) {
     outbox.writer().write(make_number(++last));
     return inbox.count() > 0;
   });
-  const bool all = heard && test::eventually([&] {
-    return to_number(inbox.received().back().cdr) == last;
-  });
+  const bool all =
+      heard && test::eventually([&] { return to_number(inbox.received().back().cdr) == last; });
   inbox.forget_samples();
   return all;
 }

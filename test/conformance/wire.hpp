@@ -31,8 +31,9 @@ struct Wire {
   std::unique_ptr<Participant> reading;
 };
 
-std::unique_ptr<Participant> make_participant(const std::string& vendor, std::uint32_t domain,
-                                              std::chrono::milliseconds lease = std::chrono::seconds(10));
+std::unique_ptr<Participant> make_participant(
+    const std::string& vendor, std::uint32_t domain,
+    std::chrono::milliseconds lease = std::chrono::seconds(10));
 
 struct Received {
   std::vector<std::byte> cdr;

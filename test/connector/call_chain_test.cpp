@@ -19,7 +19,9 @@ ChildProcess start_relay(const dds::Vendor& vendor, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a chain of calls through other processes that comes back to a blocked service is refused there") {
+TEST_CASE(
+    "a chain of calls through other processes that comes back to a blocked service is refused "
+    "there") {
   const auto& vendors = Pairing::get();
   auto alpha = start_relay(*vendors.server, "alpha");
   auto beta = start_relay(*vendors.client, "beta");
@@ -29,9 +31,11 @@ TEST_CASE("a chain of calls through other processes that comes back to a blocked
 
   CHECK(relay.pass_on({"beta", "gamma"}) == "alpha beta gamma");
   CHECK_THROWS_AS(relay.pass_on({"beta", "gamma", "alpha"}), Unavailable);
-  CHECK_THROWS_WITH(relay.pass_on({"beta", "gamma", "alpha"}),
-                    Catch::Contains("wait for itself (test::Relay of alpha (uav-1) -> test::Relay of beta (uav-1) "
-                                    "-> test::Relay of gamma (uav-1) -> the first again)"));
+  CHECK_THROWS_WITH(
+      relay.pass_on({"beta", "gamma", "alpha"}),
+      Catch::Contains(
+          "wait for itself (test::Relay of alpha (uav-1) -> test::Relay of beta (uav-1) "
+          "-> test::Relay of gamma (uav-1) -> the first again)"));
   CHECK_THROWS_WITH(relay.pass_on({"beta", "gamma", "beta"}),
                     Catch::Contains("(test::Relay of beta (uav-1) -> test::Relay of gamma (uav-1) "
                                     "-> the first again)"));

@@ -38,7 +38,8 @@ class Heard {
     for (const CallEvent& event : events_) {
       if (event.operation == operation && event.number == number) call.push_back(event);
     }
-    std::sort(call.begin(), call.end(), [](const auto& left, const auto& right) { return left.time < right.time; });
+    std::sort(call.begin(), call.end(),
+              [](const auto& left, const auto& right) { return left.time < right.time; });
     Steps steps;
     for (const CallEvent& event : call) steps.push_back(event.step);
     return steps;
@@ -87,7 +88,8 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
     return steps == wanted;
   }));
   for (const CallEvent& event : heard.all()) {
-    const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered || event.step == CallStep::Failed;
+    const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered ||
+                           event.step == CallStep::Failed;
     CHECK(event.entity == (at_client ? "uav-1/client" : "uav-1/server"));
     CHECK(event.service == "test::LouderEcho");
     CHECK(event.dropped == 0);

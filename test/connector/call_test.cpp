@@ -145,7 +145,9 @@ TEST_CASE("dropping an asynchronous call cancels it at the server") {
   CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
 }
 
-TEST_CASE("dropping, cancelling, timing out and disconnecting each reach the running call, on every lane") {
+TEST_CASE(
+    "dropping, cancelling, timing out and disconnecting each reach the running call, on every "
+    "lane") {
   const auto server = make_server();
   const auto service = std::make_shared<EchoService>();
   server->provide<LouderEcho>(service);
@@ -187,7 +189,8 @@ TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
   CHECK(pair.echo->async_echo("later").get() == "later");
 
   std::atomic<bool> continued = false;
-  pair.echo->async_echo("then").then([&](Call<std::string> call) { continued = call.get() == "then"; });
+  pair.echo->async_echo("then").then(
+      [&](Call<std::string> call) { continued = call.get() == "then"; });
   CHECK(eventually([&] { return continued.load(); }));
 
   auto cancelled = pair.echo->within(60s).async_wait(60'000);
@@ -201,7 +204,8 @@ TEST_CASE("oneway calls are executed in order without an answer") {
   CHECK(eventually([&] { return pair.echo->noted() == 20; }));
 }
 
-TEST_CASE("calls beyond a service's queue are refused as Overloaded, and none of them is executed") {
+TEST_CASE(
+    "calls beyond a service's queue are refused as Overloaded, and none of them is executed") {
   ServiceOptions options;
   options.queue = 4;  // half of it for one client
   Pair pair(options);
@@ -209,14 +213,18 @@ TEST_CASE("calls beyond a service's queue are refused as Overloaded, and none of
   REQUIRE(eventually([&] { return pair.service->inside == 1; }));
   std::vector<Call<std::string>> calls;
   for (int i = 0; i < 6; ++i) calls.push_back(pair.echo->within(30s).async_echo("x"));
-  REQUIRE(eventually([&] { return calls[2].ready() && calls[3].ready() && calls[4].ready() && calls[5].ready(); }));
+  REQUIRE(eventually([&] {
+    return calls[2].ready() && calls[3].ready() && calls[4].ready() && calls[5].ready();
+  }));
   for (int i = 2; i < 6; ++i) CHECK_THROWS_AS(calls[i].get(), Overloaded);
   running.cancel();
   for (int i = 0; i < 2; ++i) CHECK(calls[i].get() == "x");
   CHECK(pair.service->calls == 3);
 }
 
-TEST_CASE("a client with one call does not wait behind another's thousands, and each of these is answered") {
+TEST_CASE(
+    "a client with one call does not wait behind another's thousands, and each of these is "
+    "answered") {
   struct Gated : EchoService {
     std::string echo(const std::string& text) override {
       std::unique_lock lock(mutex);
@@ -272,7 +280,8 @@ TEST_CASE("a client with one call does not wait behind another's thousands, and 
   CHECK(executed + refused == 2000);
   CHECK(executed == 32);  // half of the queue
   std::lock_guard lock(service->mutex);
-  CHECK(std::find(service->order.begin(), service->order.end(), "polite") <= service->order.begin() + 2);
+  CHECK(std::find(service->order.begin(), service->order.end(), "polite") <=
+        service->order.begin() + 2);
 }
 
 TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not sent") {
@@ -281,14 +290,15 @@ TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not s
   rpc::DdsChannel::Options options;
   options.peer = "server";
   options.calls_in_flight = 2;
-  Echo::Proxy echo(rpc::DdsChannel::open(pair.client->participant(), control,
-                                         std::make_shared<ThreadExecutor>("continue"),
-                                         std::make_shared<SystemClock>(),
-                                         {std::string(LouderEcho::interface_info().name), pair.id}, options));
+  Echo::Proxy echo(rpc::DdsChannel::open(
+      pair.client->participant(), control, std::make_shared<ThreadExecutor>("continue"),
+      std::make_shared<SystemClock>(), {std::string(LouderEcho::interface_info().name), pair.id},
+      options));
   auto first = echo.within(60s).async_wait(60'000);
   auto second = echo.within(60s).async_wait(60'000);
   CHECK_THROWS_AS(echo.echo("third"), Overloaded);
-  CHECK_THROWS_WITH(echo.echo("third"), Catch::Contains("2 calls to server") && Catch::Contains("was not sent"));
+  CHECK_THROWS_WITH(echo.echo("third"),
+                    Catch::Contains("2 calls to server") && Catch::Contains("was not sent"));
   first.cancel();
   second.cancel();
   CHECK(echo.within(30s).echo("fourth") == "fourth");
@@ -299,11 +309,14 @@ TEST_CASE("a service whose threads can never run as told is not provided, and th
   Pair pair;
   ServiceOptions options;
   options.scheduling.cpus = {4000};
-  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(pair.service, options), Catch::Contains("no CPU 4000"));
+  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(pair.service, options),
+                    Catch::Contains("no CPU 4000"));
   CHECK(pair.echo->echo("still here") == "still here");
 }
 
-TEST_CASE("connecting by interface, entity and base finds the provider; what is not there gives the reason") {
+TEST_CASE(
+    "connecting by interface, entity and base finds the provider; what is not there gives the "
+    "reason") {
   Pair pair;
   CHECK(pair.client->connect<LouderEcho>().shout("hey") == "HEY");
   CHECK(pair.client->connect<Echo>({.name = "server"}).echo("x") == "x");
@@ -315,16 +328,23 @@ TEST_CASE("connecting by interface, entity and base finds the provider; what is 
                     Catch::Contains("system 'uav-9'"));
 }
 
-TEST_CASE("connecting with constraints finds a provider that declares so; otherwise each one's reason is given") {
+TEST_CASE(
+    "connecting with constraints finds a provider that declares so; otherwise each one's reason is "
+    "given") {
   ServiceOptions options;
   options.attributes = {{"latency", "500"}};
   Pair pair(options);
-  CHECK(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "500"}},
-                                    .preferred_host = ConnectOptions::kOwnHost})
+  CHECK(pair.client
+            ->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "500"}},
+                             .preferred_host = ConnectOptions::kOwnHost})
             .echo("x") == "x");
-  CHECK_THROWS_WITH(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "300"}}, .timeout = 50ms}),
-                    Catch::Contains("server (uav-1) does not suit: its latency is 500, not at most 300"));
-  CHECK_THROWS_AS(pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "soon"}}}), InvalidArgument);
+  CHECK_THROWS_WITH(
+      pair.client->connect<Echo>(
+          {.constraints = {{"latency", Relation::AtMost, "300"}}, .timeout = 50ms}),
+      Catch::Contains("server (uav-1) does not suit: its latency is 500, not at most 300"));
+  CHECK_THROWS_AS(
+      pair.client->connect<Echo>({.constraints = {{"latency", Relation::AtMost, "soon"}}}),
+      InvalidArgument);
 }
 
 TEST_CASE("a client with another version of the interface is told which operation differs") {
@@ -335,8 +355,9 @@ TEST_CASE("a client with another version of the interface is told which operatio
 
 TEST_CASE("a session with an unknown selection strategy is refused with the known ones") {
   Pair pair;
-  CHECK_THROWS_WITH(pair.client->connect<Echo>({.strategy = "declard", .timeout = 5s}),
-                    Catch::Contains("unknown selection strategy") && Catch::Contains("did you mean 'declared'"));
+  CHECK_THROWS_WITH(
+      pair.client->connect<Echo>({.strategy = "declard", .timeout = 5s}),
+      Catch::Contains("unknown selection strategy") && Catch::Contains("did you mean 'declared'"));
   CHECK(pair.client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
 }
 
@@ -353,7 +374,8 @@ TEST_CASE("a service reference can be returned, passed on and connected to") {
   const auto server = make_server();
   const auto introducer = std::make_shared<Introducer>(*server);
   const auto other = make_entity("other", Pairing::get().client, "uav-2");
-  introducer->introduced = other->reference<Echo>(other->provide<LouderEcho>(std::make_shared<EchoService>()));
+  introducer->introduced =
+      other->reference<Echo>(other->provide<LouderEcho>(std::make_shared<EchoService>()));
   server->provide<::test::Introducer>(introducer);
   const auto client = make_client();
   auto proxy = client->connect<::test::Introducer>();

@@ -33,7 +33,8 @@ std::vector<std::uint8_t> EchoService::echo_octets(const std::vector<std::uint8_
   return content;
 }
 
-std::int32_t EchoService::divide(std::int32_t dividend, std::int32_t divisor, std::int32_t& remainder) {
+std::int32_t EchoService::divide(std::int32_t dividend, std::int32_t divisor,
+                                 std::int32_t& remainder) {
   const Inside inside(*this);
   if (divisor == 0) throw ::test::DivisionByZero(dividend);
   remainder = dividend % divisor;
@@ -89,7 +90,8 @@ std::string EchoService::who(std::uint32_t time_ms) {
   return name_;
 }
 
-void EchoService::count_up(std::int32_t count, std::int32_t fail_at, StreamSink<std::int32_t>& sink) {
+void EchoService::count_up(std::int32_t count, std::int32_t fail_at,
+                           StreamSink<std::int32_t>& sink) {
   const Inside inside(*this);
   try {
     for (std::int32_t i = 0; i < count; ++i) {
@@ -113,7 +115,8 @@ void EchoService::burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>
 
 std::string EchoService::shout(const std::string& text) {
   std::string loud = text;
-  std::transform(loud.begin(), loud.end(), loud.begin(), [](unsigned char c) { return std::toupper(c); });
+  std::transform(loud.begin(), loud.end(), loud.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
   return loud;
 }
 

@@ -14,7 +14,8 @@ class EchoService : public ::test::LouderEcho {
 
   std::string echo(const std::string& text) override;
   std::vector<std::uint8_t> echo_octets(const std::vector<std::uint8_t>& content) override;
-  std::int32_t divide(std::int32_t dividend, std::int32_t divisor, std::int32_t& remainder) override;
+  std::int32_t divide(std::int32_t dividend, std::int32_t divisor,
+                      std::int32_t& remainder) override;
   bool wait(std::uint32_t time_ms) override;
   void fail(const std::string& how) override;
   void note(const std::string& text) override;

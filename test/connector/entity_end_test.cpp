@@ -37,7 +37,8 @@ struct Neighbours {
 
 }  // namespace
 
-TEST_CASE("an entity that ends ends its calls and streams as Disconnected, and its proxies say why") {
+TEST_CASE(
+    "an entity that ends ends its calls and streams as Disconnected, and its proxies say why") {
   Neighbours neighbours(GENERATE(true, false));
   auto echo = neighbours.client->connect<Echo>().within(10min);
   auto call = echo.async_wait(kLong);
@@ -53,7 +54,12 @@ TEST_CASE("an entity that ends ends its calls and streams as Disconnected, and i
   CHECK(told);
   REQUIRE(call.ready());
   CHECK_THROWS_AS(call.get(), Disconnected);
-  CHECK_THROWS_AS([&] { while (numbers.next()) {} }(), Disconnected);
+  CHECK_THROWS_AS(
+      [&] {
+        while (numbers.next()) {
+        }
+      }(),
+      Disconnected);
   CHECK_THROWS_AS(echo.echo("x"), Unavailable);
   CHECK_THROWS_AS(echo.async_echo("x").get(), Unavailable);
   CHECK_FALSE(echo.channel()->connected());

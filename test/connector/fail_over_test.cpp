@@ -117,8 +117,9 @@ TEST_CASE("an idempotent call on its way when its provider leaves is answered by
   CHECK(trio.second_service->calls == 1);
 }
 
-TEST_CASE("an idempotent call that is refused as Overloaded is answered by the next provider, and the "
-          "connection stays") {
+TEST_CASE(
+    "an idempotent call that is refused as Overloaded is answered by the next provider, and the "
+    "connection stays") {
   Trio<RefusingEcho> trio;
   SECTION("its caller waits") { CHECK(trio.echo->who(0) == "second"); }
   SECTION("its caller does not wait") { CHECK(trio.echo->async_who(0).get() == "second"); }

@@ -12,22 +12,23 @@ using namespace std::chrono_literals;
 namespace {
 
 struct NumberCall final : PendingCall {
-  NumberCall(const OperationInfo& operation, Instant deadline) : PendingCall(operation, &value, deadline, false) {}
+  NumberCall(const OperationInfo& operation, Instant deadline)
+      : PendingCall(operation, &value, deadline, false) {}
   int value = 0;
 };
 
 /// Providers 1, 2, ... that are connected to in this order, with invented time.
 struct World {
   explicit World(int count, std::optional<Duration> hedge_after = std::nullopt) {
-    for (int i = 0; i < count; ++i) providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
-    channel = std::make_shared<FailoverChannel>(link_to(1),
-                                                [this](const Wanted& wanted) { return connect(wanted); },
-                                                hedge_after);
+    for (int i = 0; i < count; ++i)
+      providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
+    channel = std::make_shared<FailoverChannel>(
+        link_to(1), [this](const Wanted& wanted) { return connect(wanted); }, hedge_after);
   }
 
   Link link_to(int number) {
-    return {guid(static_cast<std::uint8_t>(number)), providers[static_cast<std::size_t>(number - 1)],
-            provider(number).suspect};
+    return {guid(static_cast<std::uint8_t>(number)),
+            providers[static_cast<std::size_t>(number - 1)], provider(number).suspect};
   }
 
   Link connect(const Wanted& wanted) {
@@ -37,7 +38,8 @@ struct World {
     for (const bool last : {false, true}) {
       for (std::size_t i = 0; i < providers.size(); ++i) {
         const Guid id = guid(static_cast<std::uint8_t>(i + 1));
-        if (found(wanted.excluded, id) || found(wanted.last, id) != last || !providers[i]->stands) continue;
+        if (found(wanted.excluded, id) || found(wanted.last, id) != last || !providers[i]->stands)
+          continue;
         if (*providers[i]->suspect) continue;
         return link_to(static_cast<int>(i + 1));
       }
@@ -66,8 +68,9 @@ const OperationInfo kOther = number_operation(false);
 
 }  // namespace
 
-TEST_CASE("an idempotent call moves with its arguments, and the thread that told of the failure connects "
-          "to nobody") {
+TEST_CASE(
+    "an idempotent call moves with its arguments, and the thread that told of the failure connects "
+    "to nobody") {
   World world(2);
   const auto call = world.call(kIdempotent);
   world.provider(1).lose();
@@ -178,8 +181,10 @@ TEST_CASE("with nobody else to ask calls go to a suspect provider", "[R20]") {
   CHECK(world.provider(1).calls.size() == 1);
 }
 
-TEST_CASE("a hedged call without an answer in time is made at a second provider; the first answer counts, "
-          "and the other call is cancelled") {
+TEST_CASE(
+    "a hedged call without an answer in time is made at a second provider; the first answer "
+    "counts, "
+    "and the other call is cancelled") {
   World world(3, 50ms);
   const auto call = world.call(kIdempotent);
   world.clock.advance(49ms);
@@ -222,8 +227,10 @@ TEST_CASE("only idempotent calls are hedged") {
   CHECK(world.provider(2).calls.empty());
 }
 
-TEST_CASE("while one provider has a hedged call it does not matter that the other is lost; when both are, "
-          "it moves on") {
+TEST_CASE(
+    "while one provider has a hedged call it does not matter that the other is lost; when both "
+    "are, "
+    "it moves on") {
   World world(3, 50ms);
   const auto call = world.call(kIdempotent);
   world.clock.advance(50ms);

@@ -14,7 +14,10 @@ inline const TypeSupport& number_type() {
       [] { return static_cast<void*>(new int{}); },
       [](void* value) noexcept { delete static_cast<int*>(value); },
       [](void* to, const void* from) { *static_cast<int*>(to) = *static_cast<const int*>(from); },
-      nullptr, nullptr, nullptr, nullptr};
+      nullptr,
+      nullptr,
+      nullptr,
+      nullptr};
   return type;
 }
 
@@ -30,7 +33,8 @@ inline OperationInfo number_operation(bool idempotent) {
 struct FakeChannel final : Channel {
   FakeChannel(Clock& own_clock, Executor& executor) : clock_(own_clock), continuations_(executor) {}
   ~FakeChannel() override {
-    for (const auto& call : calls) call->fail(std::make_exception_ptr(Cancelled("the connection was closed")));
+    for (const auto& call : calls)
+      call->fail(std::make_exception_ptr(Cancelled("the connection was closed")));
   }
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override {

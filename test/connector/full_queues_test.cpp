@@ -69,8 +69,8 @@ TEST_CASE("each refusal reaches its caller, however full the server's control qu
   channel_options.peer = "server";
   Echo::Proxy echo(rpc::DdsChannel::open(
       client->participant(), client_control, std::make_shared<ThreadExecutor>("continue"),
-      std::make_shared<SystemClock>(),
-      {std::string(service->interface_info().name), service->id()}, channel_options));
+      std::make_shared<SystemClock>(), {std::string(service->interface_info().name), service->id()},
+      channel_options));
 
   auto running = echo.within(10min).async_wait(600'000);
   REQUIRE(eventually([&] { return echo_service->inside == 1; }));

@@ -12,8 +12,8 @@
 
 namespace skein::test {
 
-/// The two vendors that a run pairs, from SKEIN_PAIRING, `server:client`. Ends the program as skipped
-/// where one of them is not installed.
+/// The two vendors that a run pairs, from SKEIN_PAIRING, `server:client`. Ends the program as
+/// skipped where one of them is not installed.
 struct Pairing {
   std::shared_ptr<dds::Vendor> server;
   std::shared_ptr<dds::Vendor> client;
@@ -37,9 +37,11 @@ struct Pairing {
   }
 };
 
-inline std::unique_ptr<Entity> make_entity(const std::string& name, std::shared_ptr<dds::Vendor> vendor,
+inline std::unique_ptr<Entity> make_entity(const std::string& name,
+                                           std::shared_ptr<dds::Vendor> vendor,
                                            const std::string& system = "uav-1",
-                                           std::shared_ptr<Process> process = nullptr, HeadOptions head = {}) {
+                                           std::shared_ptr<Process> process = nullptr,
+                                           HeadOptions head = {}) {
   EntityOptions options;
   options.name = name;
   options.system = system;

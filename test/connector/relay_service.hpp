@@ -13,8 +13,10 @@ class RelayService : public ::test::Relay {
   std::string pass_on(const std::vector<std::string>& path) override {
     const std::string& own = entity_.options().name;
     if (path.empty()) return own;
-    auto next = entity_.connect<::test::Relay>({.name = path.front(), .timeout = std::chrono::seconds(20)});
-    return own + " " + next.within(std::chrono::seconds(30)).pass_on({path.begin() + 1, path.end()});
+    auto next =
+        entity_.connect<::test::Relay>({.name = path.front(), .timeout = std::chrono::seconds(20)});
+    return own + " " +
+           next.within(std::chrono::seconds(30)).pass_on({path.begin() + 1, path.end()});
   }
 
  private:

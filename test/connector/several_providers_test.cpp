@@ -15,7 +15,8 @@ namespace {
 
 /// Answers after its own time, whatever it is asked, and not before another one is busy.
 struct PacedEcho : EchoService {
-  PacedEcho(std::string name, std::uint32_t time_ms) : EchoService(std::move(name)), time_ms_(time_ms) {}
+  PacedEcho(std::string name, std::uint32_t time_ms)
+      : EchoService(std::move(name)), time_ms_(time_ms) {}
   std::string who(std::uint32_t) override {
     if (other_) eventually([&] { return other_->calls > 0; });
     return EchoService::who(time_ms_);
@@ -29,18 +30,20 @@ struct PacedEcho : EchoService {
 
 constexpr std::uint32_t kForEver = 600'000;
 
-/// Providers by name, and the time that each takes. Where the first one never answers, the others do so
-/// only once it has begun.
+/// Providers by name, and the time that each takes. Where the first one never answers, the others
+/// do so only once it has begun.
 struct Crowd {
   explicit Crowd(const std::vector<std::pair<std::string, std::uint32_t>>& members) {
     for (const auto& [name, time_ms] : members) {
       servers.push_back(make_server(name));
       services.push_back(std::make_shared<PacedEcho>(name, time_ms));
-      if (time_ms != kForEver && members.front().second == kForEver) services.back()->wait_for(services.front());
+      if (time_ms != kForEver && members.front().second == kForEver)
+        services.back()->wait_for(services.front());
       servers.back()->provide<LouderEcho>(services.back());
     }
     REQUIRE(eventually([&] {
-      return client->broker().find_service(client->broker().query("test::Echo")).size() == members.size();
+      return client->broker().find_service(client->broker().query("test::Echo")).size() ==
+             members.size();
     }));
   }
 
@@ -67,7 +70,8 @@ TEST_CASE("a call to all gathers their answers in the order in which they come")
   }
 }
 
-TEST_CASE("a call to all waits no longer than for enough results, and the other calls are cancelled") {
+TEST_CASE(
+    "a call to all waits no longer than for enough results, and the other calls are cancelled") {
   Crowd crowd({{"a", kForEver}, {"b", 0}, {"c", 0}});
   auto all = crowd.client->connect_all<Echo>();
   const auto answers = gather(all, 2, who);
@@ -76,10 +80,12 @@ TEST_CASE("a call to all waits no longer than for enough results, and the other 
   CHECK(eventually([&] { return crowd.services[0]->saw_cancellation.load(); }));
 }
 
-TEST_CASE("who does not answer by the deadline, or fails, stands among the answers with his error") {
+TEST_CASE(
+    "who does not answer by the deadline, or fails, stands among the answers with his error") {
   Crowd crowd({{"a", kForEver}, {"b", 0}});
   auto all = crowd.client->connect_all<Echo>();
-  const auto late = gather(all, 2, [](Echo::Proxy& echo) { return echo.within(500ms).async_who(0); });
+  const auto late =
+      gather(all, 2, [](Echo::Proxy& echo) { return echo.within(500ms).async_who(0); });
   REQUIRE(late.size() == 2);
   CHECK(late[0].result == std::string("b"));
   CHECK_FALSE(late[1].result);
@@ -88,7 +94,8 @@ TEST_CASE("who does not answer by the deadline, or fails, stands among the answe
   REQUIRE(eventually([&] { return crowd.services[0]->inside == 0; }));
   const auto failed = gather(all, 1, [](Echo::Proxy& echo) { return echo.async_divide(1, 0); });
   REQUIRE(failed.size() == 2);
-  for (const auto& answer : failed) CHECK_THROWS_AS(std::rethrow_exception(answer.error), DivisionByZero);
+  for (const auto& answer : failed)
+    CHECK_THROWS_AS(std::rethrow_exception(answer.error), DivisionByZero);
 }
 
 TEST_CASE("an operation without a result can be gathered, too") {
@@ -104,8 +111,9 @@ TEST_CASE("connecting to all with nobody there says why") {
   CHECK_THROWS_AS(client->connect_all<Echo>({.timeout = 50ms}), Unavailable);
 }
 
-TEST_CASE("a hedged call to a slow provider is answered by the second one, and the slow one hears that "
-          "nobody waits") {
+TEST_CASE(
+    "a hedged call to a slow provider is answered by the second one, and the slow one hears that "
+    "nobody waits") {
   Crowd crowd({{"a", kForEver}, {"b", 0}});
   auto echo = crowd.client->connect<Echo>({.hedge_after = 20ms});
   SECTION("its caller waits") { CHECK(echo.within(10min).who(0) == "b"); }

@@ -16,7 +16,8 @@ using ::test::LouderEcho;
 
 namespace {
 
-OperationStatistics of(const std::vector<ServiceStatistics>& services, const std::string& operation) {
+OperationStatistics of(const std::vector<ServiceStatistics>& services,
+                       const std::string& operation) {
   for (const auto& service : services) {
     for (const auto& statistics : service.operations) {
       if (statistics.name == operation) return statistics;
@@ -81,7 +82,8 @@ TEST_CASE("a call on the caller's own thread is counted, and did not wait") {
   CHECK(of(server->statistics(), "echo").waited.count == 0);
 }
 
-TEST_CASE("statistics of all entities reach whoever reads their topic, and tell of later calls too") {
+TEST_CASE(
+    "statistics of all entities reach whoever reads their topic, and tell of later calls too") {
   const auto server = make_server();
   server->provide<LouderEcho>(std::make_shared<EchoService>());
   const auto client = make_client();

@@ -62,7 +62,9 @@ TEST_CASE("a full queue refuses tasks and keeps what it has") {
   CHECK(eventually([&] { return ran == 2; }));
 }
 
-TEST_CASE("what must not be lost is queued beyond the limit, and runs here once the executor has stopped") {
+TEST_CASE(
+    "what must not be lost is queued beyond the limit, and runs here once the executor has "
+    "stopped") {
   ThreadExecutor executor("test", 1, 1);
   std::atomic<int> ran = 0;
   Gate gate(executor);

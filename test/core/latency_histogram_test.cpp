@@ -14,8 +14,10 @@ TEST_CASE("a histogram without entries has a summary of zeros") {
   CHECK(summary.greatest == 0ns);
 }
 
-TEST_CASE("one duration is every percentile, at most an eighth too high and never above the greatest") {
-  const auto duration = GENERATE(0ns, 1ns, 15ns, 16ns, 17ns, 255ns, 256ns, 1'000ns, 999'999ns, 60'000'000'000ns);
+TEST_CASE(
+    "one duration is every percentile, at most an eighth too high and never above the greatest") {
+  const auto duration =
+      GENERATE(0ns, 1ns, 15ns, 16ns, 17ns, 255ns, 256ns, 1'000ns, 999'999ns, 60'000'000'000ns);
   LatencyHistogram histogram;
   histogram.record(duration);
   const LatencySummary summary = histogram.summary();

@@ -24,7 +24,8 @@ TEST_CASE("of many who end a call exactly one succeeds") {
     std::atomic<int> winners = 0;
     std::vector<std::thread> threads;
     for (int i = 0; i < 4; ++i) {
-      threads.emplace_back([&] { winners += call->fail(std::make_exception_ptr(TimedOut("late"))); });
+      threads.emplace_back(
+          [&] { winners += call->fail(std::make_exception_ptr(TimedOut("late"))); });
     }
     call->wait();
     for (std::thread& thread : threads) thread.join();

@@ -44,7 +44,8 @@ TEST_CASE("bytes keep their content while they grow") {
   }
   REQUIRE(bytes.size() == 1000);
   bool same = true;
-  for (int i = 0; i < 1000; ++i) same = same && bytes.data()[i] == std::byte{static_cast<unsigned char>(i)};
+  for (int i = 0; i < 1000; ++i)
+    same = same && bytes.data()[i] == std::byte{static_cast<unsigned char>(i)};
   CHECK(same);
   Bytes moved = std::move(bytes);
   CHECK(moved.size() == 1000);

@@ -7,7 +7,9 @@ using namespace skein::test;
 using namespace std::chrono_literals;
 using Lines = std::vector<std::string>;
 
-TEST_CASE("a CSP that joins while the system runs is selected from then on, and no more once it has left") {
+TEST_CASE(
+    "a CSP that joins while the system runs is selected from then on, and no more once it has "
+    "left") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
   Office office;
   office.add("old", Place::Inside, answer_as("old"), declared("10", "0.5"));

@@ -11,7 +11,8 @@ using Lines = std::vector<std::string>;
 namespace {
 
 ScriptedWorker::Script refuse(bool final_word) {
-  return [final_word](const std::string&) -> std::string { throw NoAnswer("not today", final_word); };
+  return
+      [final_word](const std::string&) -> std::string { throw NoAnswer("not today", final_word); };
 }
 
 ScriptedWorker::Script crash() {
@@ -92,11 +93,13 @@ TEST_CASE("where every result is rejected the task fails with what was wrong wit
   office.add("first", Place::Outside, answer_as("wrong first"), declared("20", "0.9"));
   office.add("second", Place::Inside, answer_as("wrong second"), declared("10", "0.5"));
   CHECK_THROWS_AS(office.perform(Office::task(), 10s), Internal);
-  CHECK_THROWS_WITH(office.perform(Office::task(), 10s), Catch::Contains("it is wrong second did it"));
+  CHECK_THROWS_WITH(office.perform(Office::task(), 10s),
+                    Catch::Contains("it is wrong second did it"));
   CHECK(office.attempts() == Lines{"first rejected", "second rejected"});
 }
 
-TEST_CASE("where every CSP fails the task ends with the last one's error, and the record tells of all") {
+TEST_CASE(
+    "where every CSP fails the task ends with the last one's error, and the record tells of all") {
   Office office;
   office.add("first", Place::Outside, crash(), declared("20", "0.9"));
   office.add("second", Place::Inside, refuse(false), declared("10", "0.5"));

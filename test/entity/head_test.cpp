@@ -124,8 +124,10 @@ TEST_CASE("a client changes its strategy by disconnecting and connecting again")
   office.add("b", Place::Inside, answer_as("b"), declared("10", "0.9"));
   office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(office.owner->head()));
   const auto client = make_client();
-  const std::string first = office.owner->broker().find_service(
-      office.owner->broker().query("crew/Worker")).front()->entity;
+  const std::string first = office.owner->broker()
+                                .find_service(office.owner->broker().query("crew/Worker"))
+                                .front()
+                                ->entity;
   for (const std::string strategy : {"declared", "fixed_order", "learned"}) {
     auto desk = client->connect<crew::Desk>({.strategy = strategy});
     CHECK(desk.ask("it") == (strategy == "fixed_order" ? first : "b") + " did it");

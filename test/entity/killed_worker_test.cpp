@@ -13,7 +13,8 @@ using Lines = std::vector<std::string>;
 TEST_CASE("a CSP that is killed while it works is followed by the next best") {
   Office office;
   office.add("survivor", Place::Inside, answer_as("survivor"), declared("10", "0.5"));
-  ChildProcess victim(WORKER_PROCESS, {.arguments = {Pairing::get().client->name(), "victim", office.owner->id()}});
+  ChildProcess victim(WORKER_PROCESS,
+                      {.arguments = {Pairing::get().client->name(), "victim", office.owner->id()}});
   victim.expect("ready");
   REQUIRE(eventually([&] { return office.stands_by("victim"); }));
 

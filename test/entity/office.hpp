@@ -36,7 +36,8 @@ class Office {
       : owner(make_entity("office", Pairing::get().server, "uav-1", nullptr, std::move(head))) {}
 
   /// Adds a CSP and waits until the Head could select it.
-  std::shared_ptr<ScriptedWorker> add(const std::string& name, Place place, ScriptedWorker::Script script,
+  std::shared_ptr<ScriptedWorker> add(const std::string& name, Place place,
+                                      ScriptedWorker::Script script,
                                       const ServiceOptions& options) {
     auto worker = std::make_shared<ScriptedWorker>(std::move(script));
     Entity* host = owner.get();
@@ -45,7 +46,8 @@ class Office {
       host = outside.back().get();
     }
     ids[name] = {host, host->provide_csp<crew::Worker>(name, owner->id(), worker, options)};
-    if (!eventually([&] { return stands_by(name); })) throw std::runtime_error(name + " was never seen");
+    if (!eventually([&] { return stands_by(name); }))
+      throw std::runtime_error(name + " was never seen");
     return worker;
   }
 
@@ -61,13 +63,16 @@ class Office {
     return false;
   }
 
-  /// A task that hands `text` to the CSP, accepts what begins with a name, and never blocks on a CSP
-  /// in the process.
+  /// A task that hands `text` to the CSP, accepts what begins with a name, and never blocks on a
+  /// CSP in the process.
   static WorkTask task(const std::string& text = "it") {
     WorkTask task;
-    task.run = [text](crew::Worker::Proxy& worker, Duration) { return worker.async_work(text).get(); };
+    task.run = [text](crew::Worker::Proxy& worker, Duration) {
+      return worker.async_work(text).get();
+    };
     task.evaluate = [](const std::string& result) {
-      return result.starts_with("wrong") ? std::optional<std::string>("it is " + result) : std::nullopt;
+      return result.starts_with("wrong") ? std::optional<std::string>("it is " + result)
+                                         : std::nullopt;
     };
     task.settles = [](const UserException& exception, const Candidate&) {
       const auto* no_answer = dynamic_cast<const crew::NoAnswer*>(&exception);
@@ -76,12 +81,15 @@ class Office {
     return task;
   }
 
-  std::string perform(const WorkTask& task, Duration limit) { return owner->head().perform(task, &record, limit); }
+  std::string perform(const WorkTask& task, Duration limit) {
+    return owner->head().perform(task, &record, limit);
+  }
 
   /// `NAME outcome` of each attempt, in order.
   std::vector<std::string> attempts() const {
     std::vector<std::string> lines;
-    for (const Attempt& attempt : record.attempts) lines.push_back(attempt.csp + " " + to_string(attempt.outcome));
+    for (const Attempt& attempt : record.attempts)
+      lines.push_back(attempt.csp + " " + to_string(attempt.outcome));
     return lines;
   }
 

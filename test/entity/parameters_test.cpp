@@ -1,13 +1,15 @@
+#include "skein/entity/parameters.hpp"
+
 #include <catch2/catch.hpp>
 
 #include "skein/core/error.hpp"
-#include "skein/entity/parameters.hpp"
 
 using namespace skein;
 
 namespace {
 
-const ParameterResolver kResolver("INavigator", {{"Planner", false}, {"Time limit", true}, {"Aircraft", true}});
+const ParameterResolver kResolver("INavigator",
+                                  {{"Planner", false}, {"Time limit", true}, {"Aircraft", true}});
 
 }  // namespace
 
@@ -16,17 +18,20 @@ TEST_CASE("a parameter's value comes from the caller, then the profile, then the
   const ParameterValues profile{{"Planner", "RRTstar"}, {"Time limit", "2 s"}};
   const ParameterValues dependencies{{"Time limit", "9 s"}, {"Aircraft", "60 m/s"}};
   const ParameterValues resolved = kResolver.resolve({caller, profile, dependencies});
-  CHECK(resolved == ParameterValues{{"Planner", "AStar"}, {"Time limit", "2 s"}, {"Aircraft", "60 m/s"}});
+  CHECK(resolved ==
+        ParameterValues{{"Planner", "AStar"}, {"Time limit", "2 s"}, {"Aircraft", "60 m/s"}});
 }
 
 TEST_CASE("an optional parameter may stay without a value") {
-  CHECK_FALSE(kResolver.resolve({{}, {{"Time limit", "1"}, {"Aircraft", "x"}}}).contains("Planner"));
+  CHECK_FALSE(
+      kResolver.resolve({{}, {{"Time limit", "1"}, {"Aircraft", "x"}}}).contains("Planner"));
 }
 
 TEST_CASE("every required parameter without a value is named, with what to do") {
   CHECK_THROWS_AS(kResolver.resolve({{}, {}}), InvalidArgument);
-  CHECK_THROWS_WITH(kResolver.resolve({{}, {}}), Catch::Contains("INavigator") && Catch::Contains("'Time limit'") &&
-                                                     Catch::Contains("'Aircraft'") && Catch::Contains("profile"));
+  CHECK_THROWS_WITH(kResolver.resolve({{}, {}}),
+                    Catch::Contains("INavigator") && Catch::Contains("'Time limit'") &&
+                        Catch::Contains("'Aircraft'") && Catch::Contains("profile"));
 }
 
 TEST_CASE("a caller's parameter that is not declared is refused with the nearest one") {

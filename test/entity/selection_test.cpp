@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "skein/entity/selection.hpp"
+
+#include <catch2/catch.hpp>
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -15,13 +15,18 @@ Candidate candidate(std::string name, std::optional<Duration> latency, double qu
   return candidate;
 }
 
-const std::vector<Candidate> kThree{candidate("thorough", 1500ms, 0.95), candidate("quick", 20ms, 0.5),
+const std::vector<Candidate> kThree{candidate("thorough", 1500ms, 0.95),
+                                    candidate("quick", 20ms, 0.5),
                                     candidate("middling", 300ms, 0.9)};
 
-Selection declared(Duration remaining) { return make_declared_selection()->select(kThree, {.remaining = remaining}); }
+Selection declared(Duration remaining) {
+  return make_declared_selection()->select(kThree, {.remaining = remaining});
+}
 
 std::string chosen(const std::vector<Candidate>& candidates, Duration remaining) {
-  return candidates[make_declared_selection()->select(candidates, {.remaining = remaining}).candidate].name;
+  return candidates
+      [make_declared_selection()->select(candidates, {.remaining = remaining}).candidate]
+          .name;
 }
 
 }  // namespace
@@ -49,13 +54,13 @@ TEST_CASE("equal quality is decided by latency") {
 }
 
 TEST_CASE("a candidate that declares no latency is not ruled out by time") {
-  CHECK(chosen({candidate("silent", std::nullopt, 0.9), candidate("fast", 10ms, 0.5)}, 20ms) == "silent");
+  CHECK(chosen({candidate("silent", std::nullopt, 0.9), candidate("fast", 10ms, 0.5)}, 20ms) ==
+        "silent");
 }
 
 TEST_CASE("the reason of a selection names the candidate, its quality and the time") {
-  CHECK_THAT(declared(2s).reason,
-             Catch::Contains("thorough") && Catch::Contains("0.95") && Catch::Contains("2000 ms") &&
-                 Catch::Contains("1500 ms"));
+  CHECK_THAT(declared(2s).reason, Catch::Contains("thorough") && Catch::Contains("0.95") &&
+                                      Catch::Contains("2000 ms") && Catch::Contains("1500 ms"));
 }
 
 TEST_CASE("the fixed order takes the first and shares the time evenly") {

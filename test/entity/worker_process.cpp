@@ -1,5 +1,5 @@
-// A CSP in a process of its own, to be killed: worker_process VENDOR NAME OWNER. It says `ready`, then
-// `inside` when it has begun to work, and never ends by itself.
+// A CSP in a process of its own, to be killed: worker_process VENDOR NAME OWNER. It says `ready`,
+// then `inside` when it has begun to work, and never ends by itself.
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -29,12 +29,13 @@ int main(int, char** argv) {
   Entity entity(std::move(options));
   ServiceOptions declared;
   declared.attributes = {{"latency", "20"}, {"quality", "0.9"}};
-  entity.provide_csp<crew::Worker>(argv[2], argv[3],
-                                     std::make_shared<skein::test::ScriptedWorker>([](const std::string&) -> std::string {
-                                       say("inside");
-                                       for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
-                                     }),
-                                     declared);
+  entity.provide_csp<crew::Worker>(
+      argv[2], argv[3],
+      std::make_shared<skein::test::ScriptedWorker>([](const std::string&) -> std::string {
+        say("inside");
+        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+      }),
+      declared);
   say("ready");
   for (std::string line; std::getline(std::cin, line);) {
   }

@@ -49,11 +49,14 @@ constexpr const char* kProfiles = R"(<?xml version="1.0" encoding="UTF-8"?>
 </profiles>)";
 
 constexpr const char* kUri =
-    "CYCLONEDDS_URI=<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"skein0\" "
-    "multicast=\"true\"/></Interfaces><AllowMulticast>true</AllowMulticast></General><Discovery><Peers>"
+    "CYCLONEDDS_URI=<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface "
+    "name=\"skein0\" "
+    "multicast=\"true\"/></Interfaces><AllowMulticast>true</AllowMulticast></"
+    "General><Discovery><Peers>"
     "<Peer Address=\"10.77.0.2\"/></Peers></Discovery></Domain></CycloneDDS>";
 
-/// A host with a network beside its loopback device, over which everything would go that asks for a way.
+/// A host with a network beside its loopback device, over which everything would go that asks for a
+/// way.
 struct Host {
   Host() { space.run("ip route add default via 10.77.0.2"); }
   NetworkSpace space;
@@ -81,15 +84,17 @@ std::size_t packets_beyond_loopback(const std::vector<std::string>& environment,
     CHECK(server.finish() == 0);
   }
   const auto packets = tap.stop();
-  return static_cast<std::size_t>(
-      std::ranges::count_if(packets, [](const Packet& packet) { return !packet.stays_on_loopback(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      packets, [](const Packet& packet) { return !packet.stays_on_loopback(); }));
 }
 
 }  // namespace
 
 TEST_CASE("an environment that names other hosts moves no packet off loopback") {
   const TemporaryFile profiles("profiles.xml", kProfiles);
-  const TemporaryFile more("environment.json", R"({"environment_variables": {"ROS_DISCOVERY_SERVER": "10.77.0.2:11811"}})");
+  const TemporaryFile more(
+      "environment.json",
+      R"({"environment_variables": {"ROS_DISCOVERY_SERVER": "10.77.0.2:11811"}})");
   CHECK(packets_beyond_loopback({kUri, "FASTRTPS_DEFAULT_PROFILES_FILE=" + profiles.path(),
                                  "FASTDDS_DEFAULT_PROFILES_FILE=" + profiles.path(),
                                  "ROS_DISCOVERY_SERVER=10.77.0.2:11811",

@@ -53,8 +53,8 @@ class FaultStage {
   void bury_clients(ChildProcess& clients, bool killed);
 
   /// All tables know all living providers, and each client's calls succeed; then nothing is left
-  /// behind: no pending call at a client, no active one at a provider, a session for each client and
-  /// no more.
+  /// behind: no pending call at a client, no active one at a provider, a session for each client
+  /// and no more.
   void check_healed();
   /// What must be true again after every fault: check_healed(), and no thread that was not there in
   /// connect(). At last the journal is held to check_calls().

@@ -58,15 +58,17 @@ TEST_CASE("no first call between fresh processes is lost, and each is executed e
   std::vector<int> times;
   for (std::uint64_t i = 0; i < pairs; ++i) {
     const Start start{(random() & 1) != 0, std::chrono::milliseconds(random() % 250)};
-    INFO("SKEIN_SEED=" << seed << ", pair " << i << ": " << (start.server_first ? "server" : "client")
-                       << " first, the other " << start.offset.count() << " ms later");
+    INFO("SKEIN_SEED=" << seed << ", pair " << i << ": "
+                       << (start.server_first ? "server" : "client") << " first, the other "
+                       << start.offset.count() << " ms later");
     times.push_back(run_pair(start));
   }
   std::sort(times.begin(), times.end());
   REQUIRE(times.size() == pairs);
-  std::printf("%s server, %s client: %zu of %zu first calls answered; start to first reply %d ms in the "
-              "middle, %d ms at most; SKEIN_SEED=%llu\n",
-              Pairing::get().server->name().c_str(), Pairing::get().client->name().c_str(), times.size(),
-              static_cast<std::size_t>(pairs), times[times.size() / 2], times.back(),
-              static_cast<unsigned long long>(seed));
+  std::printf(
+      "%s server, %s client: %zu of %zu first calls answered; start to first reply %d ms in the "
+      "middle, %d ms at most; SKEIN_SEED=%llu\n",
+      Pairing::get().server->name().c_str(), Pairing::get().client->name().c_str(), times.size(),
+      static_cast<std::size_t>(pairs), times[times.size() / 2], times.back(),
+      static_cast<unsigned long long>(seed));
 }

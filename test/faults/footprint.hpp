@@ -26,8 +26,8 @@ Footprint footprint_of(ChildProcess& process);
 /// Prints one line.
 void check_flat(const std::string& who, const std::vector<Footprint>& rounds);
 
-/// What comes and goes without a leak: a large message that the vendor keeps until the next one, and what
-/// the allocator does not give back.
+/// What comes and goes without a leak: a large message that the vendor keeps until the next one,
+/// and what the allocator does not give back.
 inline constexpr std::size_t kHeapSlackKib = 1024;
 inline constexpr std::size_t kResidentSlackKib = 8 * 1024;
 

@@ -20,8 +20,8 @@ struct Idle {
 // RTPS 9.3.1.2: the kind of an application's writer without a key, in the last octet of its GUID.
 constexpr std::uint8_t kKeylessWriter = 0x03;
 
-/// DATA and DATA_FRAG submessages of calls to these ports. Calls travel on topics without a key; services'
-/// descriptions and loads, which go to everybody, on topics with one.
+/// DATA and DATA_FRAG submessages of calls to these ports. Calls travel on topics without a key;
+/// services' descriptions and loads, which go to everybody, on topics with one.
 std::size_t data_to(const Idle& idle, const std::vector<Packet>& packets) {
   std::size_t count = 0;
   for (const Packet& packet : packets) {
@@ -33,8 +33,8 @@ std::size_t data_to(const Idle& idle, const std::vector<Packet>& packets) {
   return count;
 }
 
-/// A busy pair of the two vendors, and beside it idle providers and idle clients on both vendors. Made in
-/// the network namespace of the calling thread.
+/// A busy pair of the two vendors, and beside it idle providers and idle clients on both vendors.
+/// Made in the network namespace of the calling thread.
 struct Neighbours {
   Neighbours() : vendors{Pairing::get().server, Pairing::get().client} {
     busy_server.emplace(start("busy_server", *vendors[0]));
@@ -85,13 +85,16 @@ struct Neighbours {
 
 }  // namespace
 
-TEST_CASE("an idle client receives nothing of others' replies, an idle provider nothing of others' requests") {
+TEST_CASE(
+    "an idle client receives nothing of others' replies, an idle provider nothing of others' "
+    "requests") {
   const NetworkSpace space;
   const Inside inside(space);
   Neighbours neighbours;
   const Idle busy{"busy client", udp_ports_of(neighbours.busy_client->pid())};
   std::vector<Idle> all = Neighbours::ports(neighbours.idle_clients, "idle client");
-  for (const Idle& server : Neighbours::ports(neighbours.idle_servers, "idle provider")) all.push_back(server);
+  for (const Idle& server : Neighbours::ports(neighbours.idle_servers, "idle provider"))
+    all.push_back(server);
 
   WireTap tap;
   neighbours.work();
@@ -124,8 +127,9 @@ TEST_CASE("the capture sees what does go to those who were idle") {
       skein::rpc::DdsAddress{"test/LouderEcho", {}}.request_topic(), qos);
   CHECK(eventually([&] {
     requests->write(echo_request(requests->guid()));
-    return std::ranges::all_of(neighbours.idle_servers,
-                               [](ChildProcess& server) { return server.ask("calls") != "calls 0"; });
+    return std::ranges::all_of(neighbours.idle_servers, [](ChildProcess& server) {
+      return server.ask("calls") != "calls 0";
+    });
   }));
   const auto packets = tap.stop();
   for (const Idle& client : clients) CHECK(data_to(client, packets) > 0);

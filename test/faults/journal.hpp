@@ -15,9 +15,8 @@ struct CallRecord {
   /// Its caller had been told its end, and then something stood in the way; it was executed after
   /// that.
   bool executed_after_end = false;
-  std::string
-      outcome;  ///< "Ok", "Wrong" (another's result), an error's code, or "Killed" with its caller;
-                ///< empty until it ends.
+  std::string outcome;  ///< "Ok", "Wrong" (another's result), an error's code, or "Killed" with its
+                        ///< caller; empty until it ends.
   std::int64_t overdue_us = 0;  ///< From its deadline to its end; negative where it ended earlier.
 };
 

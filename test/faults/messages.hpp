@@ -30,7 +30,6 @@ Bytes echo_request(const Guid& client);
 /// A call of an operation that no service has.
 Bytes unknown_operation(const Guid& client);
 
-
 /// A reply to `echo` that is none.
 struct BadReply {
   std::string name;

@@ -17,7 +17,8 @@ namespace {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() : path_(fs::temp_directory_path() / ("skein_modules_" + std::to_string(getpid()))) {
+  TemporaryFolder()
+      : path_(fs::temp_directory_path() / ("skein_modules_" + std::to_string(getpid()))) {
     fs::create_directory(path_);
   }
   ~TemporaryFolder() {
@@ -55,32 +56,38 @@ std::string complaint(const std::vector<std::string>& environment) {
 
 }  // namespace
 
-TEST_CASE("a vendor's module that is not there is named, with the places looked in and the remedy") {
+TEST_CASE(
+    "a vendor's module that is not there is named, with the places looked in and the remedy") {
   const TemporaryFolder folder;
   copy_library(folder.path());
   CHECK_THAT(complaint({"LD_LIBRARY_PATH=" + folder.path().string()}),
-             Contains("Unavailable") && Contains("libskein_fastdds.so") && Contains(folder.path().string()) &&
-                 Contains("package libfastrtps2.9") && Contains("SKEIN_MODULE_PATH"));
+             Contains("Unavailable") && Contains("libskein_fastdds.so") &&
+                 Contains(folder.path().string()) && Contains("package libfastrtps2.9") &&
+                 Contains("SKEIN_MODULE_PATH"));
 }
 
 TEST_CASE("a file that is no module is named with the loader's reason") {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "libskein_fastdds.so") << "no library";
   CHECK_THAT(complaint({"SKEIN_MODULE_PATH=" + folder.path().string()}),
-             Contains("Unavailable") && Contains((folder.path() / "libskein_fastdds.so").string()) &&
+             Contains("Unavailable") &&
+                 Contains((folder.path() / "libskein_fastdds.so").string()) &&
                  Contains("cannot be loaded") && Contains("install"));
 }
 
 TEST_CASE("a module of another version is refused with both versions") {
-  CHECK_THAT(complaint({std::string("SKEIN_MODULE_PATH=") + SKEIN_WRONG_MODULES}),
-             Contains("Unavailable") && Contains("ABI 9999") && Contains("build both from one version"));
+  CHECK_THAT(
+      complaint({std::string("SKEIN_MODULE_PATH=") + SKEIN_WRONG_MODULES}),
+      Contains("Unavailable") && Contains("ABI 9999") && Contains("build both from one version"));
 }
 
-TEST_CASE("a plugin that is not there, is none, or is of another version is named with the remedy") {
+TEST_CASE(
+    "a plugin that is not there, is none, or is of another version is named with the remedy") {
   ComponentRegistry registry;
   CHECK_THROWS_AS(registry.load_plugin("skein_nowhere"), Unavailable);
-  CHECK_THROWS_WITH(registry.load_plugin("skein_nowhere"),
-                    Contains("libskein_nowhere.so") && Contains("install the plugin 'skein_nowhere'"));
+  CHECK_THROWS_WITH(
+      registry.load_plugin("skein_nowhere"),
+      Contains("libskein_nowhere.so") && Contains("install the plugin 'skein_nowhere'"));
   const std::string folder = SKEIN_WRONG_MODULES;
   CHECK_THROWS_WITH(registry.load_plugin(folder + "/libskein_wrong_plugin.so"),
                     Contains("ABI 9999") && Contains("build both from one version"));

@@ -12,8 +12,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Two hosts at the ends of one cable, a peer on each: `left` on the server's vendor, `right` on the
-/// client's. Each provides the echo service.
+/// Two hosts at the ends of one cable, a peer on each: `left` on the server's vendor, `right` on
+/// the client's. Each provides the echo service.
 struct TwoHosts {
   TwoHosts() {
     left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2"));

@@ -1,5 +1,5 @@
-// The other process of these tests: an entity that obeys the lines it reads and answers each with one
-// line. It ends with its standard input. Arguments are `name=value`; commands stand in main().
+// The other process of these tests: an entity that obeys the lines it reads and answers each with
+// one line. It ends with its standard input. Arguments are `name=value`; commands stand in main().
 #include <iostream>
 #include <sstream>
 
@@ -43,8 +43,8 @@ class Peer {
   }
 
   std::string since_start() const {
-    return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock::now() - start_)
-                              .count());
+    return std::to_string(
+        std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock::now() - start_).count());
   }
 
   std::string provide() { return "provided " + entity_.provide<LouderEcho>(service_).hex(); }
@@ -74,7 +74,8 @@ class Peer {
     std::string text;
     rest >> size >> text;
     std::vector<std::uint8_t> content(size);
-    for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<std::uint8_t>(text[i % text.size()]);
+    for (std::size_t i = 0; i < size; ++i)
+      content[i] = static_cast<std::uint8_t>(text[i % text.size()]);
     return echo_->within(20s).echo_octets(content) == content ? "echoed " + since_start()
                                                               : "error the echo is another one";
   }

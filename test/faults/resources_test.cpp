@@ -1,7 +1,8 @@
 #include <arpa/inet.h>
-#include <catch2/catch.hpp>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include <catch2/catch.hpp>
 
 #include "../connector/echo_service.hpp"
 #include "processes.hpp"
@@ -79,6 +80,7 @@ TEST_CASE("an interface that the host does not have is refused with those that i
     options.name = "lost";
     options.vendor = vendor;
     options.network.interfaces = {"loo"};
-    CHECK_THROWS_WITH(Entity(options), Catch::Contains("'loo'") && Catch::Contains("did you mean 'lo'"));
+    CHECK_THROWS_WITH(Entity(options),
+                      Catch::Contains("'loo'") && Catch::Contains("did you mean 'lo'"));
   }
 }

@@ -49,7 +49,8 @@ class Soak {
       stage_.run_for_calls(500);
       stage_.stop();
       stage_.check_healed();
-      for (auto& [who, observed] : observed_) observed.rounds.push_back(footprint_of(*observed.peer));
+      for (auto& [who, observed] : observed_)
+        observed.rounds.push_back(footprint_of(*observed.peer));
     }
   }
 

@@ -15,7 +15,8 @@ AE_navigator::Route straight_line(const AE_navigator::Problem& problem) {
   const auto& b = problem.goal;
   AE_navigator::Route route;
   route.waypoints = {a, b};
-  route.length_m = std::hypot(b.north_m - a.north_m, b.east_m - a.east_m, b.altitude_m - a.altitude_m);
+  route.length_m =
+      std::hypot(b.north_m - a.north_m, b.east_m - a.east_m, b.altitude_m - a.altitude_m);
   route.lowest_height_above_ground_m = problem.minimum_height_above_ground_m;
   route.radar_exposure = 0;
   route.planner = "ShortCut";
@@ -24,8 +25,11 @@ AE_navigator::Route straight_line(const AE_navigator::Problem& problem) {
 
 class ShortCut final : public AE_navigator::IPlanner {
  public:
-  AE_navigator::Route plan(const AE_navigator::Problem& task) override { return straight_line(task); }
-  void improve(const AE_navigator::Problem& task, skein::StreamSink<AE_navigator::Route>& sink) override {
+  AE_navigator::Route plan(const AE_navigator::Problem& task) override {
+    return straight_line(task);
+  }
+  void improve(const AE_navigator::Problem& task,
+               skein::StreamSink<AE_navigator::Route>& sink) override {
     sink.push(plan(task));
   }
 };
@@ -50,7 +54,8 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::make_shared<ShortCut>());
   });
   registry.add_body("Navigator", [](skein::Entity&, const skein::ParameterValues&) {
-    return skein::ComponentRegistry::Body{
-        std::make_shared<AE_navigatorI::INavigator::Skeleton>(std::make_shared<CarelessNavigator>()), 2};
+    return skein::ComponentRegistry::Body{std::make_shared<AE_navigatorI::INavigator::Skeleton>(
+                                              std::make_shared<CarelessNavigator>()),
+                                          2};
   });
 }

@@ -28,7 +28,8 @@ std::string with_single_blanks(const std::string& text) {
 
 }  // namespace
 
-MissionRun::MissionRun(const std::filesystem::path& profile, const std::vector<std::string>& arguments)
+MissionRun::MissionRun(const std::filesystem::path& profile,
+                       const std::vector<std::string>& arguments)
     : folder_(make_folder()) {
   std::string command = "cd " + quoted(folder_) + " && exec timeout 120 " + quoted(SKEIN_COMMAND) +
                         " launch " + quoted(profile);
@@ -37,7 +38,8 @@ MissionRun::MissionRun(const std::filesystem::path& profile, const std::vector<s
   if (!pipe) throw std::runtime_error("the mission could not be started: " + command);
   std::string output;
   std::array<char, 4096> part;
-  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe)) output.append(part.data(), size);
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe))
+    output.append(part.data(), size);
   const int status = pclose(pipe);
   exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   output_ = with_single_blanks(output);

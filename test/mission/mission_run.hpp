@@ -11,7 +11,8 @@ class MissionRun {
  public:
   /// Runs the mission to its end; `arguments` follow the profile. A run that lasts longer than two
   /// minutes is ended, and shows as exit code 124.
-  explicit MissionRun(const std::filesystem::path& profile, const std::vector<std::string>& arguments = {});
+  explicit MissionRun(const std::filesystem::path& profile,
+                      const std::vector<std::string>& arguments = {});
   ~MissionRun();
   MissionRun(const MissionRun&) = delete;
   MissionRun& operator=(const MissionRun&) = delete;

@@ -25,8 +25,10 @@ std::vector<std::string> references_out_of(const pugi::xml_node& picture) {
       for (const auto& attribute : node.attributes()) {
         const std::string name = attribute.name(), value = attribute.value();
         const bool refers = name == "href" || name == "xlink:href" || name == "src";
-        if (refers && !value.starts_with("#") && !value.starts_with("data:")) found.push_back(value);
-        if (value.find("url(") != std::string::npos && value.find("url(#") == std::string::npos) found.push_back(value);
+        if (refers && !value.starts_with("#") && !value.starts_with("data:"))
+          found.push_back(value);
+        if (value.find("url(") != std::string::npos && value.find("url(#") == std::string::npos)
+          found.push_back(value);
       }
       return true;
     }
@@ -42,11 +44,16 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
   const MissionRun& run = flown();
   INFO(run.output());
   CHECK(run.exit_code() == 0);
-  CHECK_THAT(run.output(), Contains("3 routes, all valid; the unreachable goal was refused as such"));
+  CHECK_THAT(run.output(),
+             Contains("3 routes, all valid; the unreachable goal was refused as such"));
 
   SECTION("with time to think the best planner answers, in a hurry the quick one") {
-    CHECK_THAT(run.output(), Contains("RRTstar has the best declared quality (0.95) of those whose latency fits"));
-    CHECK_THAT(run.output(), Contains("RRTConnect has the best declared quality (0.5) of those whose latency fits"));
+    CHECK_THAT(
+        run.output(),
+        Contains("RRTstar has the best declared quality (0.95) of those whose latency fits"));
+    CHECK_THAT(
+        run.output(),
+        Contains("RRTConnect has the best declared quality (0.5) of those whose latency fits"));
   }
   SECTION("when the planner is killed the next best answers, and the launcher brings it back") {
     CHECK_THAT(run.output(), Contains("kill RRTstar (process "));
@@ -56,7 +63,9 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
     CHECK_THAT(run.output(), Contains("back RRTstar was started again"));
   }
   SECTION("the goal that cannot be reached is refused with the zones that enclose it") {
-    CHECK_THAT(run.output(), Contains("refused proved: there is no route: the goal is enclosed by the no-fly zones"));
+    CHECK_THAT(
+        run.output(),
+        Contains("refused proved: there is no route: the goal is enclosed by the no-fly zones"));
   }
   SECTION("the picture is well-formed and refers to nothing outside of itself") {
     pugi::xml_document picture;
@@ -67,18 +76,21 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
     CHECK(references_out_of(picture) == std::vector<std::string>{});
     std::ifstream text(run.file("route.svg"));
     const std::string content{std::istreambuf_iterator<char>(text), {}};
-    for (const char* label : {"2 s to think: RRTstar", "50 ms to think: RRTConnect", "planner killed: AStar"}) {
+    for (const char* label :
+         {"2 s to think: RRTstar", "50 ms to think: RRTConnect", "planner killed: AStar"}) {
       CHECK_THAT(content, Contains(label));
     }
   }
 }
 
-TEST_CASE("a planner that lies about a cut corner is found out, and the next best answers in its place") {
+TEST_CASE(
+    "a planner that lies about a cut corner is found out, and the next best answers in its place") {
   const MissionRun run(kTestProfiles / "lying_planner.xml");
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(), Contains("1. ShortCut has the best declared quality (0.99)"));
-  CHECK_THAT(run.output(), Contains("rejected after") && Contains("it enters the no-fly zone 'City'"));
+  CHECK_THAT(run.output(),
+             Contains("rejected after") && Contains("it enters the no-fly zone 'City'"));
   CHECK_THAT(run.output(), Contains("2. RRTstar has the best declared quality (0.95)"));
 }
 

@@ -43,7 +43,8 @@ struct Flight {
     request.problem.time_limit_ms = 60'000;
     planner->route = make_planner("AStar", terrains)->plan(request.problem);
     navigator->provide<INavigator>(
-        std::make_shared<Navigator>(*navigator, ParameterValues{}, terrains), {.threads = Navigator::kThreads});
+        std::make_shared<Navigator>(*navigator, ParameterValues{}, terrains),
+        {.threads = Navigator::kThreads});
   }
 
   Route ask() { return client->connect<INavigator>().within(60s).request_route(request); }
@@ -57,7 +58,9 @@ struct Flight {
 
 }  // namespace
 
-TEST_CASE("a caller may bring a planner of its own, as a reference: it is asked, and its route is judged") {
+TEST_CASE(
+    "a caller may bring a planner of its own, as a reference: it is asked, and its route is "
+    "judged") {
   Flight flight;
   flight.navigator->provide<IFlightController>(flying_at("60"));
   const Guid own = flight.client->provide<IPlanner>(flight.planner);

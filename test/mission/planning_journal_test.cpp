@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "../../src/navigation/components/planning_journal.hpp"
+
+#include <catch2/catch.hpp>
 
 using namespace skein;
 using namespace skein::navigation;
@@ -16,8 +16,8 @@ Candidate candidate(const std::string& name, Duration latency, double quality) {
   return candidate;
 }
 
-Attempt attempt(const std::string& csp, const std::string& reason, Duration took, Attempt::Outcome outcome,
-                const std::string& text) {
+Attempt attempt(const std::string& csp, const std::string& reason, Duration took,
+                Attempt::Outcome outcome, const std::string& text) {
   Attempt attempt;
   attempt.csp = csp;
   attempt.reason = reason;
@@ -30,8 +30,9 @@ Attempt attempt(const std::string& csp, const std::string& reason, Duration took
 DecisionRecord record() {
   DecisionRecord record;
   record.candidates = {candidate("RRTstar", 1500ms, 0.95), candidate("AStar", 300ms, 0.9)};
-  record.attempts = {attempt("RRTstar", "it is the best", 200ms, Attempt::Outcome::Disconnected, "it died"),
-                     attempt("AStar", "it is the next best", 100ms, Attempt::Outcome::Accepted, "")};
+  record.attempts = {
+      attempt("RRTstar", "it is the best", 200ms, Attempt::Outcome::Disconnected, "it died"),
+      attempt("AStar", "it is the next best", 100ms, Attempt::Outcome::Accepted, "")};
   record.took = 301ms;
   return record;
 }
@@ -45,7 +46,8 @@ TEST_CASE("a request's report tells who stood by, who was tried, why and what ca
   const auto report = journal.report("one");
   CHECK(report.tried == std::vector<std::string>{"RRTstar", "AStar"});
   CHECK(report.reason ==
-        "it is the best; disconnected after 200 ms: it died\nit is the next best; accepted after 100 ms");
+        "it is the best; disconnected after 200 ms: it died\nit is the next best; accepted after "
+        "100 ms");
   CHECK(report.elapsed_ms == Approx(301));
   REQUIRE(report.candidates.size() == 2);
   CHECK(report.candidates[0].predicted_latency_ms == Approx(1500));

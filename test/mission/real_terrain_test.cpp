@@ -17,12 +17,15 @@ std::filesystem::path tile() {
 
 }  // namespace
 
-TEST_CASE("the mission flies over an SRTM tile that is given by a relative path", "[.][real_terrain]") {
-  const auto from_mission_folder = std::filesystem::relative(tile(), std::filesystem::temp_directory_path() / "any");
+TEST_CASE("the mission flies over an SRTM tile that is given by a relative path",
+          "[.][real_terrain]") {
+  const auto from_mission_folder =
+      std::filesystem::relative(tile(), std::filesystem::temp_directory_path() / "any");
   const MissionRun run(std::filesystem::path(PROFILES) / "route_planning.xml",
                        {"--set", "ground_station.Terrain=" + from_mission_folder.string()});
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(), Contains("Route planning over N53E027.hgt"));
-  CHECK_THAT(run.output(), Contains("3 routes, all valid; the unreachable goal was refused as such"));
+  CHECK_THAT(run.output(),
+             Contains("3 routes, all valid; the unreachable goal was refused as such"));
 }

@@ -1,8 +1,8 @@
+#include "../../src/navigation/components/route_judge.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-
-#include "../../src/navigation/components/route_judge.hpp"
 
 using namespace skein::navigation;
 using AE_navigator::Problem;
@@ -30,7 +30,9 @@ Route route() {
   return route;
 }
 
-std::string flaw(const Route& route) { return judge_route(kPlain, problem(), route).value_or("none"); }
+std::string flaw(const Route& route) {
+  return judge_route(kPlain, problem(), route).value_or("none");
+}
 
 }  // namespace
 

@@ -140,11 +140,14 @@ TEST_CASE("Shared memory is the peer's word, and holds for its CSPs on the same 
 
 TEST_CASE("Shared memory of a vendor that has none is found, with its place and the remedy") {
   ProfileFolder folder;
-  const auto text = folder.check(R"(<peer name="n" component="n.xml" vendor="cyclonedds" shared_memory="true">
+  const auto text =
+      folder.check(R"(<peer name="n" component="n.xml" vendor="cyclonedds" shared_memory="true">
     <csp component="p.xml" vendor="loopback" shared_memory="true"/></peer>)");
-  CHECK_THAT(text, Catch::Contains("m.xml:2:") && Catch::Contains("\"cyclonedds\" has no shared memory") &&
+  CHECK_THAT(text, Catch::Contains("m.xml:2:") &&
+                       Catch::Contains("\"cyclonedds\" has no shared memory") &&
                        Catch::Contains("vendor=\"fastdds\""));
-  CHECK_THAT(text, Catch::Contains("m.xml:3:") && Catch::Contains("\"loopback\" has no shared memory"));
+  CHECK_THAT(text,
+             Catch::Contains("m.xml:3:") && Catch::Contains("\"loopback\" has no shared memory"));
 }
 
 TEST_CASE("A profile's words that are unknown are answered with the nearest known ones") {

@@ -42,9 +42,9 @@ struct Office {
   explicit Office(std::size_t queue) {
     rpc::Service::Options options;
     options.queue = queue;
-    service = std::make_shared<rpc::Service>(
-        std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()), executor,
-        clock, options);
+    service = std::make_shared<rpc::Service>(std::make_shared<::test::LouderEcho::Skeleton>(
+                                                 std::make_shared<skein::test::EchoService>()),
+                                             executor, clock, options);
   }
 
   /// False where it was refused as Overloaded.
@@ -139,11 +139,13 @@ TEST_CASE("a call that all threads of a service wait for is refused with the cir
   options.id = client('s');
   options.threads = 2;
   options.name_of = [](const Guid& strand) {
-    return strand == client('s') ? "Echo of server" : strand == client('m') ? "Relay of middle" : "";
+    return strand == client('s')   ? "Echo of server"
+           : strand == client('m') ? "Relay of middle"
+                                   : "";
   };
   const auto service = std::make_shared<rpc::Service>(
-      std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()), executor, clock,
-      options);
+      std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()),
+      executor, clock, options);
   const Guid s = client('s');
   const Guid m = client('m');
   const Guid stranger = client('x');
@@ -155,6 +157,6 @@ TEST_CASE("a call that all threads of a service wait for is refused with the cir
   CHECK_NOTHROW(refuse({s}));
   CHECK_NOTHROW(refuse({m, s, m}));
   CHECK_THROWS_WITH(refuse({m, s, m, stranger, s}),
-                    Catch::Contains("(Echo of server -> Relay of middle -> service " + stranger.hex() +
-                                    " -> Echo of server -> the first again)"));
+                    Catch::Contains("(Echo of server -> Relay of middle -> service " +
+                                    stranger.hex() + " -> Echo of server -> the first again)"));
 }

@@ -19,7 +19,9 @@ struct Path {
     here.advance(time);
     senders_clock += time + drift;
   }
-  Duration excess_of(Duration waited) { return delay.excess(senders_clock - waited - 3ms, here.now()); }
+  Duration excess_of(Duration waited) {
+    return delay.excess(senders_clock - waited - 3ms, here.now());
+  }
 };
 
 }  // namespace
@@ -39,7 +41,9 @@ TEST_CASE("what a message waited beyond the least time that one took is its exce
   CHECK(path.excess_of(200ms) == 199ms);
 }
 
-TEST_CASE("what arrives at once after a stop is compared with what came before it, however long that was") {
+TEST_CASE(
+    "what arrives at once after a stop is compared with what came before it, however long that "
+    "was") {
   const Duration stop = GENERATE(as<Duration>{}, 1s, 10s, 30s);
   Path path;
   path.excess_of(0ms);

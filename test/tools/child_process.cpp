@@ -97,7 +97,8 @@ std::string ChildProcess::read(Clock::duration patience) {
       heard_ += line + "\n";
       return line;
     }
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd waited{out_, POLLIN, 0};
     if (left <= 0 || poll(&waited, 1, static_cast<int>(left)) <= 0) {
       throw std::runtime_error(program_ + " says nothing more; it said:\n" + heard_);

@@ -10,9 +10,9 @@
 
 namespace skein::test {
 
-/// A program beside the test's own in a process of its own, spoken with by lines. It never outlives the
-/// test: the kernel kills it with the thread that started it, and an alarm ends it in any case. Not
-/// thread-safe.
+/// A program beside the test's own in a process of its own, spoken with by lines. It never outlives
+/// the test: the kernel kills it with the thread that started it, and an alarm ends it in any case.
+/// Not thread-safe.
 class ChildProcess {
  public:
   struct Options {
@@ -35,19 +35,21 @@ class ChildProcess {
 
   void send(const std::string& line);
 
-  /// Waits for the next line. Throws std::runtime_error that says what the child wrote before, where
-  /// none comes in time.
+  /// Waits for the next line. Throws std::runtime_error that says what the child wrote before,
+  /// where none comes in time.
   std::string read(std::chrono::steady_clock::duration patience = kPatience);
 
   /// The line that answers `command`.
-  std::string ask(const std::string& command, std::chrono::steady_clock::duration patience = kPatience) {
+  std::string ask(const std::string& command,
+                  std::chrono::steady_clock::duration patience = kPatience) {
     send(command);
     return read(patience);
   }
 
-  /// Waits for a line that starts with the word `first`; returns the rest. Throws as read() does, and
-  /// for any other line.
-  std::string expect(const std::string& first, std::chrono::steady_clock::duration patience = kPatience);
+  /// Waits for a line that starts with the word `first`; returns the rest. Throws as read() does,
+  /// and for any other line.
+  std::string expect(const std::string& first,
+                     std::chrono::steady_clock::duration patience = kPatience);
 
   /// After SIGSTOP it has stopped when this returns.
   void signal(int number);

@@ -4,8 +4,8 @@
 
 namespace skein::test {
 
-/// A network namespace that the test made: its loopback device is up, and it goes when nobody uses it
-/// any more.
+/// A network namespace that the test made: its loopback device is up, and it goes when nobody uses
+/// it any more.
 class NetworkSpace {
  public:
   /// Ends the program as skipped where the test may not make one. The calling thread is in the

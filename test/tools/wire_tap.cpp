@@ -86,10 +86,11 @@ void WireTap::run() {
     sockaddr_ll from{};
     socklen_t length = sizeof from;
     ssize_t size;
-    while ((size = recvfrom(socket_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from),
-                            &length)) >= 0) {
+    while ((size = recvfrom(socket_, buffer.data(), buffer.size(), 0,
+                            reinterpret_cast<sockaddr*>(&from), &length)) >= 0) {
       // What stays on the machine is seen leaving and arriving: only the former counts.
-      const bool counts = from.sll_pkttype == PACKET_OUTGOING && ntohs(from.sll_protocol) == ETH_P_IP;
+      const bool counts =
+          from.sll_pkttype == PACKET_OUTGOING && ntohs(from.sll_protocol) == ETH_P_IP;
       if (counts && size >= static_cast<ssize_t>(kIpHeader)) {
         packets_.push_back(parse(buffer, static_cast<std::size_t>(size)));
       }
@@ -152,7 +153,8 @@ std::set<std::uint16_t> udp_ports_of(pid_t process) {
     for (int i = 0; i < 7; ++i) fields >> skipped;
     fields >> inode;
     if (sockets.contains(inode)) {
-      ports.insert(static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
+      ports.insert(
+          static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
     }
   }
   return ports;

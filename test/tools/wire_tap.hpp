@@ -1,11 +1,12 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
-#include <sys/types.h>
 #include <thread>
 #include <vector>
 
@@ -13,7 +14,8 @@
 
 namespace skein::test {
 
-/// One IPv4 packet as it left a device. Addresses and ports are in host order; ports are 0 unless UDP.
+/// One IPv4 packet as it left a device. Addresses and ports are in host order; ports are 0 unless
+/// UDP.
 struct Packet {
   std::uint32_t source = 0;
   std::uint32_t destination = 0;
@@ -28,7 +30,8 @@ struct Packet {
   }
 };
 
-/// Writes down every IPv4 packet that leaves any device of the network namespace in which it is made.
+/// Writes down every IPv4 packet that leaves any device of the network namespace in which it is
+/// made.
 class WireTap {
  public:
   /// Ends the program as skipped where packets may not be captured.

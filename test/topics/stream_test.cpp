@@ -94,9 +94,8 @@ TEST_CASE("a subscriber that does not return from its callback holds up nobody e
   TopicQos qos;
   qos.max_waiting = 8;
   std::atomic<bool> go_on = false;
-  const auto stuck = stuck_shore->subscription<Rudder>("rudder", qos, [&](const Rudder&) {
-    go_on.wait(false);
-  });
+  const auto stuck =
+      stuck_shore->subscription<Rudder>("rudder", qos, [&](const Rudder&) { go_on.wait(false); });
   Heard<Rudder> heard;
   const auto watch = shore->subscription<Rudder>("rudder", {}, heard.callback());
   auto rudder = ship->publisher<Rudder>("rudder");

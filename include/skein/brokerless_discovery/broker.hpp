@@ -56,8 +56,8 @@ class Broker {
 
   const Options& options() const noexcept;
 
-  /// Registers a service of this process with everybody (or, with an `owner`, with that entity). Fills
-  /// host, process, pid and vendor, and system where empty.
+  /// Registers a service of this process with everybody (or, with an `owner`, with that entity).
+  /// Fills host, process, pid and vendor, and system where empty.
   Registration add_service(ServiceDescription description);
 
   /// A query as this entity asks it: own system, own managed services.
@@ -66,8 +66,8 @@ class Broker {
   /// The providers that match, possibly none. Throws InvalidArgument for an ambiguous name.
   Table::Found find_service(const Query& query) const;
 
-  /// As find_service, but waits until there is one. Throws Unavailable with the reason when `deadline`
-  /// passes, and after end_waits(). Not from a listener.
+  /// As find_service, but waits until there is one. Throws Unavailable with the reason when
+  /// `deadline` passes, and after end_waits(). Not from a listener.
   Table::Found await_service(const Query& query, Instant deadline) const;
 
   /// Ends what waits in await_service(), now and from now on: the entity is about to end.

@@ -14,10 +14,10 @@ enum class Relation { Equal, NotEqual, AtMost, AtLeast };
 
 /// What a provider's declared attribute must be: `{"latency", Relation::AtMost, "300"}`.
 ///
-/// Numbers compare as numbers: plain ones, which count in the dictionary's unit of the attribute, or
-/// lengths of time with one of the units ns, us, ms, s, min, h; one kind does not compare with the
-/// other. Everything else compares as text, and has no order. A provider that does not declare the
-/// attribute does not meet the constraint.
+/// Numbers compare as numbers: plain ones, which count in the dictionary's unit of the attribute,
+/// or lengths of time with one of the units ns, us, ms, s, min, h; one kind does not compare with
+/// the other. Everything else compares as text, and has no order. A provider that does not declare
+/// the attribute does not meet the constraint.
 struct Constraint {
   std::string attribute;
   Relation relation = Relation::Equal;
@@ -41,7 +41,8 @@ bool meets(const discovery::ServiceDescription& provider, const Constraint& cons
 std::string shortfall(const discovery::ServiceDescription& provider, const Constraint& constraint);
 
 /// The declared value, or null.
-const std::string* find_attribute(const discovery::ServiceDescription& provider, std::string_view name);
+const std::string* find_attribute(const discovery::ServiceDescription& provider,
+                                  std::string_view name);
 
 /// The declared value as a plain number; nothing where it is none.
 std::optional<double> number_attribute(const discovery::ServiceDescription& provider,

@@ -30,17 +30,17 @@ struct ConnectOptions {
   std::optional<std::string> system{};
   /// Only this provider, as a service reference names it; nil means any.
   Guid provider{};
-  /// What the provider must declare: `{{"latency", Relation::AtMost, "300"}}`. Where no provider meets
-  /// all, connect() says for each why it was passed over.
+  /// What the provider must declare: `{{"latency", Relation::AtMost, "300"}}`. Where no provider
+  /// meets all, connect() says for each why it was passed over.
   std::vector<Constraint> constraints{};
   /// Providers on this host come first, others only where it has none: kOwnHost, or what a
   /// ServiceDescription calls its host.
   std::string preferred_host{};
   /// The Head's selection strategy for this session; empty means the provider's default.
   std::string strategy{};
-  /// A call to an idempotent operation that has no answer after so long is made at a second provider,
-  /// too, where one stands by; the first answer is taken, the other call cancelled. Nothing: never. Each
-  /// such call then copies its in struct and its result.
+  /// A call to an idempotent operation that has no answer after so long is made at a second
+  /// provider, too, where one stands by; the first answer is taken, the other call cancelled.
+  /// Nothing: never. Each such call then copies its in struct and its result.
   std::optional<Duration> hedge_after{};
   /// For finding a provider and opening the connection.
   Duration timeout = std::chrono::seconds(5);
@@ -52,9 +52,10 @@ struct ConnectOptions {
   static constexpr const char* kOwnHost = ".";
 };
 
-/// The paper's connector: turns `connect(name)` into a typed proxy. Looks the name up in the Broker's
-/// local table, chooses the lane (same process or DDS), opens the session and, when a provider dies,
-/// connects to the next one. Thread-safe; connect() blocks and must not be called from a listener.
+/// The paper's connector: turns `connect(name)` into a typed proxy. Looks the name up in the
+/// Broker's local table, chooses the lane (same process or DDS), opens the session and, when a
+/// provider dies, connects to the next one. Thread-safe; connect() blocks and must not be called
+/// from a listener.
 class Connector {
  public:
   struct Parts {
@@ -65,33 +66,38 @@ class Connector {
     Executor& control;
     std::shared_ptr<Executor> continuations;
     std::shared_ptr<Clock> clock;
-    std::chrono::microseconds spin{0};  ///< See EntityOptions.
+    std::chrono::microseconds spin{0};            ///< See EntityOptions.
     std::shared_ptr<rpc::CallJournal> journal{};  ///< May be null.
   };
 
   /// The parts stand until close() has returned.
   explicit Connector(const Parts& parts);
 
-  /// Ends every connection that was made, by whichever copy of the connector, though others still hold
-  /// proxies, calls and streams: what is pending ends as Disconnected, what comes later as Unavailable.
+  /// Ends every connection that was made, by whichever copy of the connector, though others still
+  /// hold proxies, calls and streams: what is pending ends as Disconnected, what comes later as
+  /// Unavailable.
   void close();
 
-  /// A proxy of the wanted interface, ready for calls. Throws Unavailable with the reason where there is
-  /// no provider in time, InvalidArgument for an ambiguous name, what the Head throws to refuse.
+  /// A proxy of the wanted interface, ready for calls. Throws Unavailable with the reason where
+  /// there is no provider in time, InvalidArgument for an ambiguous name, what the Head throws to
+  /// refuse.
   template <class Interface>
   typename Interface::Proxy connect(const ConnectOptions& options = {}) {
     return typename Interface::Proxy(open(Interface::interface_info(), options));
   }
 
-  /// The same for a service reference that came as a parameter or a result: exactly that provider, in
-  /// whichever system. Throws InvalidArgument for a nil reference.
+  /// The same for a service reference that came as a parameter or a result: exactly that provider,
+  /// in whichever system. Throws InvalidArgument for a nil reference.
   template <class Interface>
-  typename Interface::Proxy connect(const Reference<Interface>& reference, ConnectOptions options = {}) {
-    return typename Interface::Proxy(open(Interface::interface_info(), to(reference, std::move(options))));
+  typename Interface::Proxy connect(const Reference<Interface>& reference,
+                                    ConnectOptions options = {}) {
+    return typename Interface::Proxy(
+        open(Interface::interface_info(), to(reference, std::move(options))));
   }
 
-  /// A proxy for each provider that matches now, in the Broker's order, for gather(). Each stays with its
-  /// provider; one that does not answer is left out. Throws as connect() does where none is left.
+  /// A proxy for each provider that matches now, in the Broker's order, for gather(). Each stays
+  /// with its provider; one that does not answer is left out. Throws as connect() does where none
+  /// is left.
   template <class Interface>
   std::vector<Connected<Interface>> connect_all(const ConnectOptions& options = {}) {
     std::vector<Connected<Interface>> all;
@@ -103,9 +109,10 @@ class Connector {
   }
 
   /// The connection without its type: each call goes to the provider connected now; a lost one is
-  /// replaced by the next at the next call. A call to an operation that IDL declares idempotent, and whose
-  /// provider is lost (Disconnected) or refuses it (Unavailable, Overloaded), is made again at the next
-  /// provider that stands by, within its deadline; without one it ends as it would have ended.
+  /// replaced by the next at the next call. A call to an operation that IDL declares idempotent,
+  /// and whose provider is lost (Disconnected) or refuses it (Unavailable, Overloaded), is made
+  /// again at the next provider that stands by, within its deadline; without one it ends as it
+  /// would have ended.
   std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
 
   /// One connection to exactly this provider, without replacement.
@@ -123,9 +130,10 @@ class Connector {
   static ConnectOptions to(const ServiceReference& reference, ConnectOptions options);
   std::shared_ptr<Channel> open_foreign(const InterfaceInfo& interface,
                                         const ConnectOptions& options) const;
-  brokerless_discovery::Query query(const InterfaceInfo& interface, const ConnectOptions& options) const;
-  Link open_link(const brokerless_discovery::ServiceDescription& provider, const std::string& strategy,
-                 Duration timeout) const;
+  brokerless_discovery::Query query(const InterfaceInfo& interface,
+                                    const ConnectOptions& options) const;
+  Link open_link(const brokerless_discovery::ServiceDescription& provider,
+                 const std::string& strategy, Duration timeout) const;
   Link open_next(const brokerless_discovery::Query& query, const std::string& strategy,
                  const Wanted& wanted) const;
 

@@ -77,9 +77,10 @@ auto outcome_of(Call<Result>& call, std::exception_ptr& error) {
 }  // namespace detail
 
 /// Calls all providers at once, and waits for `enough` results, or until each has answered or its
-/// deadline has passed: `gather(planners, 2, [&](auto& planner) { return planner.async_plan(problem); })`.
-/// Returns who answered what, errors included, in order of arrival; errors do not count as results.
-/// The calls that are left over are cancelled. Blocks; needs no thread of the entity.
+/// deadline has passed: `gather(planners, 2, [&](auto& planner) { return
+/// planner.async_plan(problem); })`. Returns who answered what, errors included, in order of
+/// arrival; errors do not count as results. The calls that are left over are cancelled. Blocks;
+/// needs no thread of the entity.
 template <class Interface, class Start>
 auto gather(std::vector<Connected<Interface>>& providers, std::size_t enough, Start start) {
   using ItsCall = std::invoke_result_t<Start&, typename Interface::Proxy&>;

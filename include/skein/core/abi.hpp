@@ -2,8 +2,9 @@
 
 #include <cstdint>
 
-/// The number of libskein's binary interface. It grows whenever a class or function that modules and
-/// plugins use changes its layout or its meaning; a module built against another number is refused.
+/// The number of libskein's binary interface. It grows whenever a class or function that modules
+/// and plugins use changes its layout or its meaning; a module built against another number is
+/// refused.
 #define SKEIN_ABI 3
 
 namespace skein {

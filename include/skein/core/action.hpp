@@ -8,16 +8,16 @@
 
 namespace skein {
 
-/// Something to be run, as a std::function<void()>, but move-only, and in place where it has up to 48
-/// octets: handing a call over takes nothing from the heap.
+/// Something to be run, as a std::function<void()>, but move-only, and in place where it has up to
+/// 48 octets: handing a call over takes nothing from the heap.
 class Action {
  public:
   Action() = default;
   Action(std::nullptr_t) {}
 
   template <class Run>
-    requires(!std::is_same_v<std::decay_t<Run>, Action> && std::is_invocable_v<std::decay_t<Run>&>)
-  Action(Run&& run) {
+  requires(!std::is_same_v<std::decay_t<Run>, Action> && std::is_invocable_v<std::decay_t<Run>&>)
+      Action(Run&& run) {
     using Held = std::decay_t<Run>;
     if constexpr (fits<Held>()) {
       new (room_) Held(std::forward<Run>(run));
@@ -70,9 +70,10 @@ class Action {
                                  [](void* room) noexcept { held<Held>(room).~Held(); }};
 
   template <class Held>
-  static constexpr Kind kOnHeap{[](void* room) { (*held<Held*>(room))(); },
-                                [](void* to, void* from) noexcept { new (to) Held*(held<Held*>(from)); },
-                                [](void* room) noexcept { delete held<Held*>(room); }};
+  static constexpr Kind kOnHeap{
+      [](void* room) { (*held<Held*>(room))(); },
+      [](void* to, void* from) noexcept { new (to) Held*(held<Held*>(from)); },
+      [](void* room) noexcept { delete held<Held*>(room); }};
 
   void take(Action& other) noexcept {
     kind_ = std::exchange(other.kind_, nullptr);

@@ -40,7 +40,8 @@ class Call {
 
   bool ready() const { return pending_->finished(); }
 
-  /// Waits for the end (the deadline at the latest); returns the result or throws what ended the call.
+  /// Waits for the end (the deadline at the latest); returns the result or throws what ended the
+  /// call.
   Result get() {
     const auto pending = std::move(pending_);
     pending->wait();
@@ -50,20 +51,22 @@ class Call {
   /// Tells the server that nobody waits any more; a later get() throws Cancelled.
   void cancel() { pending_->cancel(); }
 
-  /// Runs `action` once the call is finished, on the thread that finishes it, which may be a vendor's: it
-  /// must neither block nor run user code. One action at most, and no then() or co_await beside it.
+  /// Runs `action` once the call is finished, on the thread that finishes it, which may be a
+  /// vendor's: it must neither block nor run user code. One action at most, and no then() or
+  /// co_await beside it.
   void notify(Action action) { pending_->on_finished(std::move(action)); }
 
-  /// cancel() for others, who may ask for it at any time and on any thread; without effect once the call
-  /// has ended.
+  /// cancel() for others, who may ask for it at any time and on any thread; without effect once the
+  /// call has ended.
   std::function<void()> canceller() const {
     return [weak = std::weak_ptr(pending_)] {
       if (const auto pending = weak.lock()) pending->cancel();
     };
   }
 
-  /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor; once
-  /// the entity has ended, on the thread that notices. It runs in any case, and so does what co_awaits.
+  /// Runs `continuation(Call<Result>)` with this call, then finished, on the connection's executor;
+  /// once the entity has ended, on the thread that notices. It runs in any case, and so does what
+  /// co_awaits.
   template <class Continuation>
   void then(Continuation continuation) && {
     auto pending = pending_;
@@ -72,7 +75,8 @@ class Call {
       continuation(std::move(*shared));
     };
     Executor& executor = shared->channel_->continuations();
-    pending->on_finished([&executor, run = std::move(run)]() mutable { executor.post_or_run(std::move(run)); });
+    pending->on_finished(
+        [&executor, run = std::move(run)]() mutable { executor.post_or_run(std::move(run)); });
   }
 
   auto operator co_await() && {
@@ -81,7 +85,8 @@ class Call {
       bool await_ready() const { return call.ready(); }
       void await_suspend(std::coroutine_handle<> waiting) {
         Executor& executor = call.channel_->continuations();
-        call.pending_->on_finished([&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
+        call.pending_->on_finished(
+            [&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
       }
       Result await_resume() { return call.get(); }
     };

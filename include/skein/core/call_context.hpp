@@ -11,20 +11,20 @@
 
 namespace skein {
 
-/// What a Head keeps for one connected client, from `open` to `disconnect`. Only the floor that made
-/// it knows what is inside.
+/// What a Head keeps for one connected client, from `open` to `disconnect`. Only the floor that
+/// made it knows what is inside.
 class Session {
  public:
   virtual ~Session() = default;
 };
 
 /// The call that the current thread is executing: who asked, until when an answer is of use, and
-/// through whom the request came. An implementation reads it by CallContext::current(); calls that it
-/// makes in turn inherit the deadline and the chain by themselves.
+/// through whom the request came. An implementation reads it by CallContext::current(); calls that
+/// it makes in turn inherit the deadline and the chain by themselves.
 class CallContext {
  public:
-  /// Who waits for the call's answer: `outer`, the call on whose thread it runs, and who waits for that, or
-  /// else those whom the request named; and the service itself, by its `strand`.
+  /// Who waits for the call's answer: `outer`, the call on whose thread it runs, and who waits for
+  /// that, or else those whom the request named; and the service itself, by its `strand`.
   struct Waiting {
     const CallContext* outer = nullptr;
     std::span<const Guid> named{};
@@ -32,8 +32,8 @@ class CallContext {
   };
 
   /// What the arguments point to outlives the context.
-  CallContext(const Clock& clock, Instant deadline, Guid caller, const Waiting& waiting, Session* session,
-              const std::atomic<bool>* cancelled)
+  CallContext(const Clock& clock, Instant deadline, Guid caller, const Waiting& waiting,
+              Session* session, const std::atomic<bool>* cancelled)
       : clock_(clock),
         deadline_(deadline),
         caller_(caller),

@@ -14,8 +14,8 @@
 
 namespace skein {
 
-/// One call on its way: finished exactly once, by a reply or by an error, whichever claims it first.
-/// Shared by the caller and the lane that carries it.
+/// One call on its way: finished exactly once, by a reply or by an error, whichever claims it
+/// first. Shared by the caller and the lane that carries it.
 class PendingCall : public std::enable_shared_from_this<PendingCall> {
  public:
   /// `out` is the operation's out struct; it lives until this is finished.
@@ -46,8 +46,8 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   /// Set by the lane: how long wait() looks for the end before it sleeps.
   void set_spin(std::chrono::microseconds budget) noexcept { spin_ = budget; }
 
-  /// The error that ended the call, handed over (not copied: an exception shared by two threads would
-  /// be released by whichever lets go last); null after a success. Only once finished.
+  /// The error that ended the call, handed over (not copied: an exception shared by two threads
+  /// would be released by whichever lets go last); null after a success. Only once finished.
   std::exception_ptr take_error();
 
   /// Runs `action`; what it throws ends the call.
@@ -62,8 +62,9 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
     if (error) fail(std::move(error));
   }
 
-  /// Runs `action` once the call is finished, at once where it is already; on the thread that finishes
-  /// it, which may be a vendor's: it must neither block nor run user code. One action at most.
+  /// Runs `action` once the call is finished, at once where it is already; on the thread that
+  /// finishes it, which may be a vendor's: it must neither block nor run user code. One action at
+  /// most.
   void on_finished(Action action);
 
   /// Set by the lane: what tells the server that nobody waits any more.
@@ -96,19 +97,21 @@ struct CallTime {
   Instant deadline;
 };
 
-/// How a proxy hands over a request and gets its reply: within the process as typed pointers, or over
-/// a network as bytes. Thread-safe.
+/// How a proxy hands over a request and gets its reply: within the process as typed pointers, or
+/// over a network as bytes. Thread-safe.
 class Channel {
  public:
   virtual ~Channel() = default;
 
-  /// Sends the request whose in struct is `in`, which need live only until this returns. Never throws:
-  /// whatever fails finishes `call`. A oneway call is finished when the request is handed over.
+  /// Sends the request whose in struct is `in`, which need live only until this returns. Never
+  /// throws: whatever fails finishes `call`. A oneway call is finished when the request is handed
+  /// over.
   virtual void start(const std::shared_ptr<PendingCall>& call, const void* in) = 0;
 
-  /// The blocking call: fills `out`, the operation's out struct, or throws what ended the call. What a lane
-  /// does not do on the calling thread it does by start(). Not for streams.
-  virtual void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
+  /// The blocking call: fills `out`, the operation's out struct, or throws what ended the call.
+  /// What a lane does not do on the calling thread it does by start(). Not for streams.
+  virtual void call(const OperationInfo& operation, const void* in, void* out,
+                    const CallTime& time);
 
   virtual Clock& clock() const noexcept = 0;
 
@@ -121,11 +124,12 @@ class Channel {
   /// Whether calls can be made: neither disconnected nor has the provider been lost.
   virtual bool connected() const = 0;
 
-  /// Ends the connection: pending calls end as Cancelled, later ones as Unavailable. Twice is no error.
+  /// Ends the connection: pending calls end as Cancelled, later ones as Unavailable. Twice is no
+  /// error.
   virtual void disconnect() = 0;
 
-  /// Notes that one of the connection's ends is gone: pending calls end as Disconnected, later ones as
-  /// Unavailable.
+  /// Notes that one of the connection's ends is gone: pending calls end as Disconnected, later ones
+  /// as Unavailable.
   virtual void lose(const std::string& how) = 0;
 };
 

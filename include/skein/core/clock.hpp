@@ -24,8 +24,8 @@ class Clock {
   virtual ~Clock() = default;
   virtual Instant now() const = 0;
 
-  /// Runs `action` once at `when` (at once where that has passed) on the clock's own thread; it must
-  /// not block. Never 0.
+  /// Runs `action` once at `when` (at once where that has passed) on the clock's own thread; it
+  /// must not block. Never 0.
   virtual TimerId call_at(Instant when, Action action) = 0;
 
   /// Forgets a timer. After it has returned the action is not running and will not run, unless

@@ -9,12 +9,12 @@ namespace skein {
 
 /// Classes of failure, by what the caller can do next. The numbers travel on the wire.
 enum class ErrorCode : std::uint32_t {
-  Unavailable = 1,      ///< Nothing was sent: no provider. Try later or elsewhere.
-  Overloaded = 2,       ///< Refused before execution: a queue is full. Back off, then try again.
-  Disconnected = 3,     ///< The provider died or left; whether the call ran is unknown.
-  TimedOut = 4,         ///< The deadline passed; whether the call ran is unknown.
-  Cancelled = 5,        ///< The caller gave up; whether the call ran is unknown.
-  Unimplemented = 6,    ///< The provider does not know the operation, or knows another version of it.
+  Unavailable = 1,    ///< Nothing was sent: no provider. Try later or elsewhere.
+  Overloaded = 2,     ///< Refused before execution: a queue is full. Back off, then try again.
+  Disconnected = 3,   ///< The provider died or left; whether the call ran is unknown.
+  TimedOut = 4,       ///< The deadline passed; whether the call ran is unknown.
+  Cancelled = 5,      ///< The caller gave up; whether the call ran is unknown.
+  Unimplemented = 6,  ///< The provider does not know the operation, or knows another version of it.
   InvalidArgument = 7,  ///< The input is wrong; the same input will fail again.
   Internal = 8,         ///< The provider failed in a way that its interface does not declare.
 };

@@ -23,9 +23,9 @@ class Executor {
   /// stopped. Callable from any thread; never blocks.
   virtual bool post(Action task) = 0;
 
-  /// Takes the task over even where the queue is full; where the executor has stopped, runs it at once on
-  /// the calling thread. For what must not be lost and is bounded elsewhere: the continuation of a call,
-  /// which was admitted when it began.
+  /// Takes the task over even where the queue is full; where the executor has stopped, runs it at
+  /// once on the calling thread. For what must not be lost and is bounded elsewhere: the
+  /// continuation of a call, which was admitted when it began.
   virtual void post_or_run(Action task) = 0;
 
   /// Runs the task on the calling thread where that keeps the executor's promise about concurrency
@@ -36,12 +36,12 @@ class Executor {
   virtual bool runs_here() const noexcept = 0;
 };
 
-/// A fixed number of named threads and one bounded queue, first in, first out. With one thread it is
-/// a strand: no two tasks at once, inline ones included.
+/// A fixed number of named threads and one bounded queue, first in, first out. With one thread it
+/// is a strand: no two tasks at once, inline ones included.
 class ThreadExecutor final : public Executor {
  public:
-  /// `name` shows in the debugger (15 characters at most are kept). Throws InvalidArgument for settings
-  /// that can never work; see ThreadSettings.
+  /// `name` shows in the debugger (15 characters at most are kept). Throws InvalidArgument for
+  /// settings that can never work; see ThreadSettings.
   explicit ThreadExecutor(std::string name, std::size_t threads = 1, std::size_t capacity = 4096,
                           const ThreadSettings& settings = {});
   /// Runs no task that has not begun; waits for those that have.
@@ -59,8 +59,8 @@ class ThreadExecutor final : public Executor {
   /// As stop(), but first runs what has been posted, and what that posts.
   void finish();
 
-  /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left to
-  /// itself for the rest of the process's life. False where that was so.
+  /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left
+  /// to itself for the rest of the process's life. False where that was so.
   bool stop_or_abandon(std::chrono::milliseconds patience);
 
  private:

@@ -5,8 +5,8 @@
 
 namespace skein {
 
-/// The one spelling of an interface's name that Skein compares, stores and sends, which is also that of
-/// InterfaceInfo::name: `AE_navigator/IPlanner`.
+/// The one spelling of an interface's name that Skein compares, stores and sends, which is also
+/// that of InterfaceInfo::name: `AE_navigator/IPlanner`.
 ///
 /// `IDL:AE_navigator/IPlanner`, `IDL:AE_navigator/IPlanner:1.0`, `AE_navigator/IPlanner`,
 /// `AE_navigator::IPlanner` and `::AE_navigator::IPlanner` are the same interface, and so are these

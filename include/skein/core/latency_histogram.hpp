@@ -19,8 +19,8 @@ struct LatencySummary {
 };
 
 /// Counts durations from nanoseconds to 18 minutes (longer ones as such) in buckets of logarithmic
-/// size with eight linear steps each: 2.5 kB, whatever happens. Recording takes no lock and may be done
-/// by several threads; a summary read meanwhile may miss what is being recorded.
+/// size with eight linear steps each: 2.5 kB, whatever happens. Recording takes no lock and may be
+/// done by several threads; a summary read meanwhile may miss what is being recorded.
 class LatencyHistogram {
  public:
   void record(Duration duration) noexcept;

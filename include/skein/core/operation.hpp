@@ -11,15 +11,15 @@
 
 namespace skein {
 
-/// What the library must know of one C++ type to carry it without its definition: how to make, copy,
-/// write and read it. Generated code provides one for each IDL type that travels.
+/// What the library must know of one C++ type to carry it without its definition: how to make,
+/// copy, write and read it. Generated code provides one for each IDL type that travels.
 struct TypeSupport {
   std::string_view name;  ///< Scoped IDL name, `AE_navigator::Problem`.
   void* (*make)();
   void (*destroy)(void* value) noexcept;
   void (*assign)(void* to, const void* from);
-  /// Appends PLAIN_CDR little-endian to `message`, whose first 4 bytes are the encapsulation header;
-  /// alignment counts from byte 4.
+  /// Appends PLAIN_CDR little-endian to `message`, whose first 4 bytes are the encapsulation
+  /// header; alignment counts from byte 4.
   void (*encode)(const void* value, Bytes& message);
   /// Reads the value that starts at `offset` of `message` and returns where it ends.
   /// Throws idl::MalformedSample where the bytes do not hold such a value.
@@ -49,7 +49,7 @@ class UserException : public std::exception {
 /// One operation of an interface. Attributes are operations named `_get_x` and `_set_x`.
 struct OperationInfo {
   std::string_view name;
-  std::uint32_t hash;       ///< Discriminator of call and return unions: DDS-RPC's hash of the name.
+  std::uint32_t hash;  ///< Discriminator of call and return unions: DDS-RPC's hash of the name.
   std::uint64_t signature;  ///< Changes when any parameter, result or exception type changes.
   bool oneway;              ///< No reply; a success says only that the request was handed over.
   bool idempotent;          ///< Declared by `#pragma idempotent`: may be executed twice.
@@ -62,9 +62,9 @@ struct OperationInfo {
 
 /// One IDL interface.
 struct InterfaceInfo {
-  std::string_view name;                         ///< Canonical: `AE_navigator/IPlanner`.
-  std::span<const InterfaceInfo* const> bases;   ///< Direct and indirect, nearest first.
-  std::span<const OperationInfo> operations;     ///< Own and inherited.
+  std::string_view name;                        ///< Canonical: `AE_navigator/IPlanner`.
+  std::span<const InterfaceInfo* const> bases;  ///< Direct and indirect, nearest first.
+  std::span<const OperationInfo> operations;    ///< Own and inherited.
   std::string_view documentation;
 
   /// The operation with that hash, or nullptr.
@@ -76,13 +76,15 @@ struct InterfaceInfo {
   }
 };
 
-/// What an implementation looks like to those who carry calls to it. Generated skeletons implement it.
+/// What an implementation looks like to those who carry calls to it. Generated skeletons implement
+/// it.
 class Servant {
  public:
   virtual ~Servant() = default;
   virtual const InterfaceInfo& interface_info() const noexcept = 0;
   /// Runs `operation` on `in` (its in struct) and fills `out` (its out struct; for a stream, the
-  /// StreamWriter that takes its out structs). Throws what the implementation throws. Whether several threads may be inside at once is the executor's affair.
+  /// StreamWriter that takes its out structs). Throws what the implementation throws. Whether
+  /// several threads may be inside at once is the executor's affair.
   virtual void dispatch(const OperationInfo& operation, const void* in, void* out) = 0;
 };
 

@@ -9,8 +9,9 @@ namespace skein {
 class SharedObject {
  public:
   /// `name` is `skein_fastdds` for `libskein_fastdds.so`, or a path. Looks in the directories that
-  /// SKEIN_MODULE_PATH lists, in libskein's own and its `skein/`, then where the loader looks. Throws
-  /// Unavailable with the places looked in, or with the loader's reason followed by `remedy`.
+  /// SKEIN_MODULE_PATH lists, in libskein's own and its `skein/`, then where the loader looks.
+  /// Throws Unavailable with the places looked in, or with the loader's reason followed by
+  /// `remedy`.
   SharedObject(const std::string& name, const std::string& remedy);
 
   /// Throws InvalidArgument where the object exports no such symbol.

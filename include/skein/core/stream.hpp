@@ -41,12 +41,12 @@ class PendingStream final : public PendingCall {
   /// Whether next() would return at once.
   bool ready() const;
 
-  /// Waits for the next result. Results that have arrived come before what ended the stream, which is
-  /// thrown once; then, and after a regular end, null.
+  /// Waits for the next result. Results that have arrived come before what ended the stream, which
+  /// is thrown once; then, and after a regular end, null.
   Item next();
 
-  /// Runs `action` once next() would not block, at once where that is so; where not, on the thread that
-  /// delivers: it must neither block nor run user code. One action at a time.
+  /// Runs `action` once next() would not block, at once where that is so; where not, on the thread
+  /// that delivers: it must neither block nor run user code. One action at a time.
   void on_ready(std::function<void()> action);
 
   /// Cancels the call, unless it has ended, and forgets what was not taken.
@@ -66,10 +66,12 @@ class PendingStream final : public PendingCall {
   std::function<void(std::uint32_t)> granter_;
 };
 
-/// The results of an operation that `#pragma stream` declares, as they come. Move-only; dropping it cancels
-/// the operation. One thread at a time. The deadline of the call is that of the whole stream.
+/// The results of an operation that `#pragma stream` declares, as they come. Move-only; dropping it
+/// cancels the operation. One thread at a time. The deadline of the call is that of the whole
+/// stream.
 ///
-/// Whoever takes slowly slows the provider down: it may be PendingStream::kWindow results ahead, then waits.
+/// Whoever takes slowly slows the provider down: it may be PendingStream::kWindow results ahead,
+/// then waits.
 template <class T>
 class Stream {
  public:
@@ -87,23 +89,24 @@ class Stream {
     if (pending_) pending_->drop();
   }
 
-  /// Waits for the next result; nothing at the end of the stream. Throws what ended it otherwise: an
-  /// exception that the interface declares, or an Error (TimedOut at the deadline).
+  /// Waits for the next result; nothing at the end of the stream. Throws what ended it otherwise:
+  /// an exception that the interface declares, or an Error (TimedOut at the deadline).
   std::optional<T> next() {
     const auto item = pending_->next();
     if (!item) return std::nullopt;
     return take_(item.get());
   }
 
-  /// `co_await stream.next_async()` is next() without a thread that waits: the coroutine goes on, on the
-  /// connection's executor. The stream must stay where it is meanwhile.
+  /// `co_await stream.next_async()` is next() without a thread that waits: the coroutine goes on,
+  /// on the connection's executor. The stream must stay where it is meanwhile.
   auto next_async() {
     struct Awaiter {
       Stream& stream;
       bool await_ready() const { return stream.pending_->ready(); }
       void await_suspend(std::coroutine_handle<> waiting) {
         Executor& executor = stream.channel_->continuations();
-        stream.pending_->on_ready([&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
+        stream.pending_->on_ready(
+            [&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
       }
       std::optional<T> await_resume() { return stream.next(); }
     };
@@ -113,8 +116,8 @@ class Stream {
   /// Whether next() would return at once.
   bool ready() const { return pending_->ready(); }
 
-  /// Runs `action` once that is so, on the thread that delivers, which may be a vendor's: it must neither
-  /// block nor run user code. One action at a time, and no next_async() beside it.
+  /// Runs `action` once that is so, on the thread that delivers, which may be a vendor's: it must
+  /// neither block nor run user code. One action at a time, and no next_async() beside it.
   void notify(std::function<void()> action) { pending_->on_ready(std::move(action)); }
 
   /// Tells the provider that nobody waits any more; a later next() throws Cancelled.

@@ -15,24 +15,25 @@ struct ThreadSettings {
   };
 
   Scheduling scheduling = Scheduling::Normal;
-  int priority = 0;           ///< With Fifo and RoundRobin: 1 (least) to 99.
-  int nice = 0;               ///< With Normal: -20 (most favoured) to 19.
+  int priority = 0;              ///< With Fifo and RoundRobin: 1 (least) to 99.
+  int nice = 0;                  ///< With Normal: -20 (most favoured) to 19.
   std::vector<unsigned> cpus{};  ///< Where it may run; empty: anywhere.
-  /// How long an idle thread looks for work before it sleeps: a wake-up saved for a processor spent.
+  /// How long an idle thread looks for work before it sleeps: a wake-up saved for a processor
+  /// spent.
   std::chrono::microseconds spin{0};
 };
 
-/// Throws InvalidArgument, which names `owner`, for what can never work: a number out of its range, a
-/// priority without a real-time policy, a CPU that this machine does not have.
+/// Throws InvalidArgument, which names `owner`, for what can never work: a number out of its range,
+/// a priority without a real-time policy, a CPU that this machine does not have.
 void check(const ThreadSettings& settings, const std::string& owner);
 
-/// Makes the calling thread run so. What the system refuses is logged as a warning with its remedy, and
-/// the rest holds. `owner` is for messages.
+/// Makes the calling thread run so. What the system refuses is logged as a warning with its remedy,
+/// and the rest holds. `owner` is for messages.
 void apply(const ThreadSettings& settings, const std::string& owner);
 
-/// Keeps all memory of this process, present and future, out of the pager's hands; thread stacks are
-/// then resident at their full size. False, with a warning that names the remedy, where the system
-/// refuses or would let later allocations fail.
+/// Keeps all memory of this process, present and future, out of the pager's hands; thread stacks
+/// are then resident at their full size. False, with a warning that names the remedy, where the
+/// system refuses or would let later allocations fail.
 bool lock_memory();
 
 }  // namespace skein

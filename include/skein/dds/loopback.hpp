@@ -43,15 +43,16 @@ struct Fate {
   static Fate twice() { return {2, {}}; }
 };
 
-/// A complete DDS network inside the process, for tests and for systems of one process. It behaves as
-/// a real one does (matching, history, reliability, leases), and in ways that a real one can only be
-/// hoped to: it loses, delays and cuts on demand, and it repeats a run exactly.
+/// A complete DDS network inside the process, for tests and for systems of one process. It behaves
+/// as a real one does (matching, history, reliability, leases), and in ways that a real one can
+/// only be hoped to: it loses, delays and cuts on demand, and it repeats a run exactly.
 ///
-/// Time comes from the given clock alone, which must outlive the network and all that its vendor made.
-/// With a ManualClock there is no thread: samples are delivered and listeners run inside the call that
-/// causes them, delayed ones inside ManualClock::advance(). A listener's own calls into the network take
-/// effect at once, and the callbacks they cause run after it. When several threads use one network, a
-/// callback runs on whichever of them is at it; no two callbacks of a network run at once.
+/// Time comes from the given clock alone, which must outlive the network and all that its vendor
+/// made. With a ManualClock there is no thread: samples are delivered and listeners run inside the
+/// call that causes them, delayed ones inside ManualClock::advance(). A listener's own calls into
+/// the network take effect at once, and the callbacks they cause run after it. When several threads
+/// use one network, a callback runs on whichever of them is at it; no two callbacks of a network
+/// run at once.
 ///
 /// GUIDs count up from the network's first participant: the same program sees the same GUIDs.
 ///
@@ -66,15 +67,17 @@ class LoopbackNetwork {
   LoopbackNetwork(const LoopbackNetwork&) = delete;
   LoopbackNetwork& operator=(const LoopbackNetwork&) = delete;
 
-  /// The way in. Its participants keep the network alive. A write that finds no room waits for it with
-  /// a SystemClock; with any other clock it throws Overloaded at once, as nobody could make room.
+  /// The way in. Its participants keep the network alive. A write that finds no room waits for it
+  /// with a SystemClock; with any other clock it throws Overloaded at once, as nobody could make
+  /// room.
   std::shared_ptr<Vendor> vendor();
 
-  /// Asks `judge` about every transfer from now on; nothing means that all arrive. It is called with
-  /// the network locked: it must not call back into it.
+  /// Asks `judge` about every transfer from now on; nothing means that all arrive. It is called
+  /// with the network locked: it must not call back into it.
   ///
-  /// A reliable reader still gets everything, in order and once: what is lost is repeated, what comes
-  /// early is held back, what comes twice is dropped. A best-effort reader loses what comes late.
+  /// A reliable reader still gets everything, in order and once: what is lost is repeated, what
+  /// comes early is held back, what comes twice is dropped. A best-effort reader loses what comes
+  /// late.
   void judge_transfers(std::function<Fate(const Transfer&)> judge);
 
   /// Cuts a participant off from all others: each side finds the other's leases expired.
@@ -87,12 +90,13 @@ class LoopbackNetwork {
   /// where he was, with nothing lost to reliable readers.
   void heal();
 
-  /// Stops a participant as SIGSTOP does: the others' leases expire, its own do not; what is sent to
-  /// it waits.
+  /// Stops a participant as SIGSTOP does: the others' leases expire, its own do not; what is sent
+  /// to it waits.
   void pause(const Guid& participant);
   void resume(const Guid& participant);
 
-  /// Ends a participant as SIGKILL does: without a goodbye. Its objects stay usable, and reach nobody.
+  /// Ends a participant as SIGKILL does: without a goodbye. Its objects stay usable, and reach
+  /// nobody.
   void kill(const Guid& participant);
 
  private:

@@ -12,12 +12,13 @@
 
 #include "skein/core/guid.hpp"
 
-/// The port to DDS: participants, writers and readers of opaque CDR samples, with the QoS that Skein
-/// uses and no vendor's name. Each implementation passes the conformance suite in test/conformance.
+/// The port to DDS: participants, writers and readers of opaque CDR samples, with the QoS that
+/// Skein uses and no vendor's name. Each implementation passes the conformance suite in
+/// test/conformance.
 namespace skein::dds {
 
-/// An instance's identity: MD5 of the key's big-endian CDR, or that CDR itself, zero-padded, where it
-/// never exceeds 16 bytes (RTPS 9.6.4.8). All zero for keyless topics.
+/// An instance's identity: MD5 of the key's big-endian CDR, or that CDR itself, zero-padded, where
+/// it never exceeds 16 bytes (RTPS 9.6.4.8). All zero for keyless topics.
 using KeyHash = Guid;
 
 struct Topic {
@@ -33,33 +34,34 @@ struct Topic {
 struct Qos {
   /// A reliable reader matches reliable writers only.
   bool reliable = true;
-  /// Late joiners get the writer's history. A transient-local reader matches such writers only; whether
-  /// a volatile reader of one is sent its past is not promised.
+  /// Late joiners get the writer's history. A transient-local reader matches such writers only;
+  /// whether a volatile reader of one is sent its past is not promised.
   bool transient_local = false;
-  /// Samples kept per instance, disposals among them, by a writer and by a reader that does not take;
-  /// nothing means all.
+  /// Samples kept per instance, disposals among them, by a writer and by a reader that does not
+  /// take; nothing means all.
   std::optional<std::uint32_t> history_depth;
-  /// With "all": how many samples may wait for acknowledgment before a reliable writer blocks; 0 means
-  /// no limit on their number (Cyclone DDS still bounds their bytes, at 4 MiB). Readers have no limit:
-  /// a full one would stop a participant's reception, and its leases with it.
+  /// With "all": how many samples may wait for acknowledgment before a reliable writer blocks; 0
+  /// means no limit on their number (Cyclone DDS still bounds their bytes, at 4 MiB). Readers have
+  /// no limit: a full one would stop a participant's reception, and its leases with it.
   std::uint32_t max_samples = 0;
-  /// A reader's: how many samples may wait to be taken; one more takes the oldest one's place. 0: no limit.
+  /// A reader's: how many samples may wait to be taken; one more takes the oldest one's place. 0:
+  /// no limit.
   std::uint32_t max_waiting = 0;
   /// How long a write may wait for room before it throws Overloaded.
   std::chrono::milliseconds max_blocking{100};
-  /// Automatic liveliness: a writer not heard of for so long is reported as not alive. Nothing: never.
-  /// Give both sides the same: a reader's must not be shorter than a writer's.
+  /// Automatic liveliness: a writer not heard of for so long is reported as not alive. Nothing:
+  /// never. Give both sides the same: a reader's must not be shorter than a writer's.
   std::optional<std::chrono::milliseconds> liveliness_lease;
-  /// A sample of each instance, once begun and not disposed, is promised by a writer and expected by a
-  /// reader at least so often; each period without one is told on either side. Nothing: never. A
-  /// reader's must not be shorter than a writer's.
+  /// A sample of each instance, once begun and not disposed, is promised by a writer and expected
+  /// by a reader at least so often; each period without one is told on either side. Nothing: never.
+  /// A reader's must not be shorter than a writer's.
   std::optional<std::chrono::milliseconds> deadline;
-  /// A writer's: what is older than this, counted from the moment it was written, no reader is given.
-  /// Between hosts it is only as good as their clocks agree. Nothing: samples never expire.
+  /// A writer's: what is older than this, counted from the moment it was written, no reader is
+  /// given. Between hosts it is only as good as their clocks agree. Nothing: samples never expire.
   std::optional<std::chrono::milliseconds> lifespan;
-  /// Each instance is owned by the strongest living writer (of equals by the lesser GUID), and readers
-  /// are given its samples only. It passes on when that one is unmatched, silent for its lease, or
-  /// misses the reader's deadline. Both sides must agree.
+  /// Each instance is owned by the strongest living writer (of equals by the lesser GUID), and
+  /// readers are given its samples only. It passes on when that one is unmatched, silent for its
+  /// lease, or misses the reader's deadline. Both sides must agree.
   bool exclusive = false;
   /// A writer's, with `exclusive`; 0 or more.
   std::int32_t strength = 0;
@@ -87,13 +89,13 @@ struct Sample {
   Guid writer;
   SampleOwner* owner = nullptr;
 
-  /// Keeps `cdr` valid for as long as the result lives, without a copy: for those who hand a sample to
-  /// another thread. Once, and during the call only.
+  /// Keeps `cdr` valid for as long as the result lives, without a copy: for those who hand a sample
+  /// to another thread. Once, and during the call only.
   std::shared_ptr<const void> keep() const { return owner->keep(); }
 };
 
-/// Why a writer and a reader of one topic, type and partition do not match: what is offered is less than
-/// what is requested.
+/// Why a writer and a reader of one topic, type and partition do not match: what is offered is less
+/// than what is requested.
 struct Incompatibility {
   Guid peer;
   /// `reliability`, `durability`, `deadline`, `liveliness` or `ownership`.
@@ -108,19 +110,20 @@ struct Incompatibility {
 class Reader;
 
 /// Called on the vendor's threads; on_data also inside write(), where writer and reader are of one
-/// participant (Cyclone DDS) or on loopback: hold no lock there that it takes. Listeners must return
-/// soon, must not write, create or destroy entities. Taking samples is allowed. Calls of one listener
-/// function do not overlap. Matches and data come in no promised order.
+/// participant (Cyclone DDS) or on loopback: hold no lock there that it takes. Listeners must
+/// return soon, must not write, create or destroy entities. Taking samples is allowed. Calls of one
+/// listener function do not overlap. Matches and data come in no promised order.
 struct ReaderListener {
   /// There are new samples; take all: it is not called again for those that were left.
   std::function<void(Reader&)> on_data;
-  /// A writer was matched (true) or is gone (false). One that comes back after its lease had expired
-  /// may not know that it was gone: what it writes once may be lost, what it repeats arrives.
+  /// A writer was matched (true) or is gone (false). One that comes back after its lease had
+  /// expired may not know that it was gone: what it writes once may be lost, what it repeats
+  /// arrives.
   std::function<void(const Guid& writer, bool matched)> on_matched;
   /// A matched writer's lease expired (false) or it was heard of again (true).
   std::function<void(const Guid& writer, bool alive)> on_liveliness;
-  /// The key of a sample that came without its hash, as some foreign peers send them; nothing where it is
-  /// malformed. Without this function all such samples are malformed.
+  /// The key of a sample that came without its hash, as some foreign peers send them; nothing where
+  /// it is malformed. Without this function all such samples are malformed.
   std::function<std::optional<KeyHash>(std::span<const std::byte> cdr)> find_key{};
   /// No sample of the instance came for the reader's deadline; again after each further one.
   std::function<void(const KeyHash& key)> on_deadline_missed{};
@@ -141,16 +144,17 @@ class Writer {
  public:
   virtual ~Writer() = default;
 
-  /// Writes one sample; `cdr` starts with the encapsulation header, whose options must be zero. Throws
-  /// InvalidArgument where that is missing, Overloaded where there was no room within max_blocking,
-  /// Internal with the vendor's reason otherwise.
+  /// Writes one sample; `cdr` starts with the encapsulation header, whose options must be zero.
+  /// Throws InvalidArgument where that is missing, Overloaded where there was no room within
+  /// max_blocking, Internal with the vendor's reason otherwise.
   virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
 
   /// Tells the readers that the instance has ended, also those that never knew it; late joiners are
   /// told that or nothing. Keyed topics only. Without it an instance outlives its writer.
   virtual void dispose(const KeyHash& key) = 0;
 
-  /// Waits until every matched reliable reader has acknowledged everything, or `timeout`; false then.
+  /// Waits until every matched reliable reader has acknowledged everything, or `timeout`; false
+  /// then.
   virtual bool wait_for_acknowledgments(std::chrono::milliseconds timeout) = 0;
 
   virtual Guid guid() const = 0;
@@ -162,8 +166,9 @@ class Reader {
  public:
   virtual ~Reader() = default;
 
-  /// Hands at most `limit` waiting samples to `consumer`, oldest first, and forgets them; returns how
-  /// many. Samples that are no PLAIN_CDR little- or big-endian, or shorter than the header, are counted and dropped.
+  /// Hands at most `limit` waiting samples to `consumer`, oldest first, and forgets them; returns
+  /// how many. Samples that are no PLAIN_CDR little- or big-endian, or shorter than the header, are
+  /// counted and dropped.
   virtual std::size_t take(const std::function<void(const Sample&)>& consumer,
                            std::size_t limit = SIZE_MAX) = 0;
 
@@ -190,9 +195,9 @@ struct Network {
   std::vector<std::string> peers;
   /// Greatest number of participants on each host that unicast discovery looks for.
   std::uint32_t max_participants = 120;
-  /// Samples between two participants of this host that both want it go by the vendor's shared memory;
-  /// discovery, and all else, does not. Fast DDS alone has it: others throw InvalidArgument. Who is killed
-  /// leaves its segments in /dev/shm.
+  /// Samples between two participants of this host that both want it go by the vendor's shared
+  /// memory; discovery, and all else, does not. Fast DDS alone has it: others throw
+  /// InvalidArgument. Who is killed leaves its segments in /dev/shm.
   bool shared_memory = false;
 };
 
@@ -230,14 +235,14 @@ class Vendor {
   /// `fastdds`, `cyclonedds` or `loopback`.
   virtual std::string name() const = 0;
 
-  /// Throws InvalidArgument for a domain out of range or an unknown interface; Unavailable where the
-  /// ports are taken.
+  /// Throws InvalidArgument for a domain out of range or an unknown interface; Unavailable where
+  /// the ports are taken.
   virtual std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) = 0;
 };
 
-/// Loads the vendor's module (once; it is never unloaded). Throws InvalidArgument with the known names
-/// for an unknown one, Unavailable with the file looked for, the places and the package to install
-/// where the module or the vendor's library is missing or of another version.
+/// Loads the vendor's module (once; it is never unloaded). Throws InvalidArgument with the known
+/// names for an unknown one, Unavailable with the file looked for, the places and the package to
+/// install where the module or the vendor's library is missing or of another version.
 std::shared_ptr<Vendor> load_vendor(const std::string& name);
 
 }  // namespace skein::dds

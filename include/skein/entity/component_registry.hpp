@@ -41,9 +41,10 @@ class ComponentRegistry {
   /// All names, sorted.
   std::vector<std::string> names() const;
 
-  /// Loads a plugin (never unloaded) and lets it register. `name` is `skein_navigation_components` for
-  /// `libskein_navigation_components.so`, or a path. Throws Unavailable with the places looked in where
-  /// it cannot be loaded, InvalidArgument where it is no plugin or built for another version.
+  /// Loads a plugin (never unloaded) and lets it register. `name` is `skein_navigation_components`
+  /// for `libskein_navigation_components.so`, or a path. Throws Unavailable with the places looked
+  /// in where it cannot be loaded, InvalidArgument where it is no plugin or built for another
+  /// version.
   void load_plugin(const std::string& name);
 
  private:

@@ -46,10 +46,11 @@ struct DecisionRecord {
   std::string execution;
   Situation situation;  ///< As at the beginning.
   Duration available{};
-  std::vector<Candidate> candidates;  ///< As they stood by when they were looked for, round by round.
-  std::vector<Attempt> attempts;      ///< As they began.
-  std::string synthesis;              ///< How the result was made of several.
-  std::string failure;                ///< Why there was no result; empty where there was.
+  std::vector<Candidate>
+      candidates;                 ///< As they stood by when they were looked for, round by round.
+  std::vector<Attempt> attempts;  ///< As they began.
+  std::string synthesis;          ///< How the result was made of several.
+  std::string failure;            ///< Why there was no result; empty where there was.
   Duration took{};
   std::size_t stuck = 0;  ///< CSPs in this process that do not return.
 };

@@ -51,8 +51,9 @@ struct ServiceOptions {
   std::size_t threads = 1;
   /// How the system runs these threads.
   ThreadSettings scheduling{};
-  /// Requests that may wait for a thread, over all clients; others are refused as Overloaded. A client
-  /// alone may have half of them waiting, several share: there is always room for one more client.
+  /// Requests that may wait for a thread, over all clients; others are refused as Overloaded. A
+  /// client alone may have half of them waiting, several share: there is always room for one more
+  /// client.
   std::size_t queue = 2048;
   /// The component description as XML, for those who look the service up.
   std::string component{};
@@ -60,17 +61,18 @@ struct ServiceOptions {
   std::vector<std::string> subcomponents{};
 };
 
-/// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that implement its
-/// public services, and CSPs that implement its managed ones; it also publishes and subscribes. Members are
-/// thread-safe. Publishers and subscriptions must be done with before the entity is destroyed. Proxies, calls
-/// and streams may outlive it: they end with it (see ~Entity). What it was given to provide it releases.
+/// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that
+/// implement its public services, and CSPs that implement its managed ones; it also publishes and
+/// subscribes. Members are thread-safe. Publishers and subscriptions must be done with before the
+/// entity is destroyed. Proxies, calls and streams may outlive it: they end with it (see ~Entity).
+/// What it was given to provide it releases.
 class Entity {
  public:
   /// Joins the mission. Throws what the port throws, InvalidArgument for a name that is none.
   explicit Entity(EntityOptions options);
-  /// Ends its connections: calls and streams through them end as Disconnected, later calls as Unavailable.
-  /// Withdraws everything, ends what runs, runs the continuations that are due, leaves. Not from one of them,
-  /// nor from a call that it serves.
+  /// Ends its connections: calls and streams through them end as Disconnected, later calls as
+  /// Unavailable. Withdraws everything, ends what runs, runs the continuations that are due,
+  /// leaves. Not from one of them, nor from a call that it serves.
   ~Entity();
 
   const EntityOptions& options() const noexcept;
@@ -84,22 +86,22 @@ class Entity {
   }
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
-  /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. The owner may be this
-  /// entity: then the CSP is called without leaving the process. `name` is the CSP's own.
+  /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. The owner may be
+  /// this entity: then the CSP is called without leaving the process. `name` is the CSP's own.
   template <class Interface>
-  Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Interface> csp,
-                   const ServiceOptions& options = {}) {
+  Guid provide_csp(const std::string& name, const std::string& owner,
+                   std::shared_ptr<Interface> csp, const ServiceOptions& options = {}) {
     return provide_csp(name, owner, skeleton_of(std::move(csp)), options);
   }
-  Guid provide_csp(const std::string& name, const std::string& owner, std::shared_ptr<Servant> servant,
-                   const ServiceOptions& options);
+  Guid provide_csp(const std::string& name, const std::string& owner,
+                   std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
   /// Withdraws one service; calls that run end first. Unknown ones are no error.
   void withdraw(const Guid& provider);
 
-  /// What the services that this entity provides have done, CSPs included: counters and latencies of
-  /// each operation. "skein/introspection.idl.hpp" holds the type; `skein services --statistics` shows
-  /// those of all entities.
+  /// What the services that this entity provides have done, CSPs included: counters and latencies
+  /// of each operation. "skein/introspection.idl.hpp" holds the type; `skein services --statistics`
+  /// shows those of all entities.
   std::vector<introspection::ServiceStatistics> statistics() const;
 
   /// See Connector::connect.
@@ -109,7 +111,8 @@ class Entity {
   }
 
   template <class Interface>
-  typename Interface::Proxy connect(const Reference<Interface>& reference, const ConnectOptions& options = {}) {
+  typename Interface::Proxy connect(const Reference<Interface>& reference,
+                                    const ConnectOptions& options = {}) {
     return connector().connect(reference, options);
   }
 
@@ -122,7 +125,8 @@ class Entity {
   /// A reference to a service that this entity provides, to be passed to others.
   template <class Interface>
   Reference<Interface> reference(const Guid& provider) const {
-    return Reference<Interface>({std::string(Interface::interface_info().name), provider, options().name});
+    return Reference<Interface>(
+        {std::string(Interface::interface_info().name), provider, options().name});
   }
 
   /// Publishes on the topic `name` of the entity's own system, unless `qos` names others.
@@ -131,8 +135,8 @@ class Entity {
     return Publisher<T>(participant(), name, with_system(qos));
   }
 
-  /// Subscribes to it. The callback runs on one thread for all subscriptions of the entity, or on an
-  /// executor that `options` name; without a callback the user polls.
+  /// Subscribes to it. The callback runs on one thread for all subscriptions of the entity, or on
+  /// an executor that `options` name; without a callback the user polls.
   template <class T>
   Subscription<T> subscription(const std::string& name, const TopicQos& qos = {},
                                typename Subscription<T>::Callback callback = nullptr,

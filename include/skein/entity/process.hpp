@@ -8,8 +8,8 @@
 
 namespace skein {
 
-/// What the entities of one process share: time, the watch over other processes, and the services that
-/// are reached without leaving the process. Composition roots make one.
+/// What the entities of one process share: time, the watch over other processes, and the services
+/// that are reached without leaving the process. Composition roots make one.
 class Process {
  public:
   /// On the machine's clock.

@@ -32,8 +32,8 @@ struct Candidate {
   std::optional<Prediction> learned;
   CircuitBreaker::State breaker = CircuitBreaker::State::Closed;
   Duration quarantine{};  ///< Until it may be probed.
-  /// 0 for those that stood by when the request came, 1 for those that had joined when all of these had
-  /// failed, and so on.
+  /// 0 for those that stood by when the request came, 1 for those that had joined when all of these
+  /// had failed, and so on.
   std::uint32_t round = 0;
 };
 

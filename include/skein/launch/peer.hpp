@@ -8,15 +8,16 @@
 
 namespace skein::launch {
 
-/// How a peer joins its mission: vendor, domain, system, interface, shared memory, and how long its callers
-/// spin. Throws what dds::load_vendor throws.
-EntityOptions entity_options(const profile::MissionProfile& mission, const profile::PeerProfile& peer);
+/// How a peer joins its mission: vendor, domain, system, interface, shared memory, and how long its
+/// callers spin. Throws what dds::load_vendor throws.
+EntityOptions entity_options(const profile::MissionProfile& mission,
+                             const profile::PeerProfile& peer);
 
 /// Runs one process of a mission as its profile says, from the implementations in `registry` and in
 /// the plugins that the profile names: `navigator` for a peer with its in-process CSPs,
 /// `navigator/RRTstar` for a CSP with a process of its own. Joins the mission, provides what the
-/// component implements, waits for what it depends on, reports ready, and returns the exit code: the
-/// mission's for the peer that runs it, 0 when told to end by SIGTERM, SIGINT or SIGHUP.
+/// component implements, waits for what it depends on, reports ready, and returns the exit code:
+/// the mission's for the peer that runs it, 0 when told to end by SIGTERM, SIGINT or SIGHUP.
 ///
 /// Call it from main() before other threads exist: it blocks those signals for all that it starts.
 /// Throws InvalidArgument for a name that the profile or the registry does not have (with a

@@ -47,10 +47,11 @@ struct PlannerOptions {
 std::unique_ptr<AE_navigator::IPlanner> make_a_star(std::shared_ptr<TerrainProvider> terrains,
                                                     PlannerOptions options = {});
 
-/// The shortest route whose exposure is no more than `exposure_cap_m`, whatever the Problem's weight,
-/// as far as A* with some weight finds it (Lagrangian relaxation): shorter ones between two weights
-/// are missed. Without a cap or without radars it is the shortest route. Several times as slow as A*;
-/// brings each shorter route that it finds. Refuses, without a proof, where no route keeps the cap.
+/// The shortest route whose exposure is no more than `exposure_cap_m`, whatever the Problem's
+/// weight, as far as A* with some weight finds it (Lagrangian relaxation): shorter ones between two
+/// weights are missed. Without a cap or without radars it is the shortest route. Several times as
+/// slow as A*; brings each shorter route that it finds. Refuses, without a proof, where no route
+/// keeps the cap.
 std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
     std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
 
@@ -81,10 +82,10 @@ std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainPro
 std::unique_ptr<AE_navigator::IPlanner> make_ait_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options = {});
 
-/// A tree of the Dubins paths of OMPL 1.5.2: an old library behind the interface of today, and a real
-/// danger. Sooner or later an assertion in it aborts the process, so it is for processes of their own
-/// alone: its component says `isolated`, and a profile that has it work in its entity's process is
-/// refused. make_planner knows it as LegacyDubins; planner_names() leaves it out.
+/// A tree of the Dubins paths of OMPL 1.5.2: an old library behind the interface of today, and a
+/// real danger. Sooner or later an assertion in it aborts the process, so it is for processes of
+/// their own alone: its component says `isolated`, and a profile that has it work in its entity's
+/// process is refused. make_planner knows it as LegacyDubins; planner_names() leaves it out.
 std::unique_ptr<AE_navigator::IPlanner> make_legacy_dubins(
     std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
 

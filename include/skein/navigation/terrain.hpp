@@ -63,12 +63,13 @@ class Terrain {
 /// holds no data at all.
 Terrain read_hgt(const std::filesystem::path& file);
 
-/// Reads a DTED tile of level 0, 1 or 2 (MIL-PRF-89020B), which its headers describe; the file's name
-/// does not matter. Columns may be further apart than rows, as they are away from the equator.
+/// Reads a DTED tile of level 0, 1 or 2 (MIL-PRF-89020B), which its headers describe; the file's
+/// name does not matter. Columns may be further apart than rows, as they are away from the equator.
 ///
-/// Voids (-32767) are filled as those of an SRTM tile. Throws InvalidArgument, naming the file, where
-/// it cannot be read, a header is missing or says something that no such tile has, the checksum or
-/// the number of a column is wrong, or it has a height that no mountain on earth has or no data.
+/// Voids (-32767) are filled as those of an SRTM tile. Throws InvalidArgument, naming the file,
+/// where it cannot be read, a header is missing or says something that no such tile has, the
+/// checksum or the number of a column is wrong, or it has a height that no mountain on earth has or
+/// no data.
 Terrain read_dted(const std::filesystem::path& file);
 
 /// Invented mountains, the same for the same seed on every machine: 513 x 513 posts at 100 m,

@@ -7,7 +7,8 @@
 
 namespace skein::navigation {
 
-/// The highest post of every block of a terrain: tells quickly that a ray passes far above the ground.
+/// The highest post of every block of a terrain: tells quickly that a ray passes far above the
+/// ground.
 class TerrainCeilings {
  public:
   static constexpr int kPosts = 8;  ///< Posts along the side of a block.

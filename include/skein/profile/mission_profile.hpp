@@ -32,8 +32,9 @@ struct CspProfile {
   /// Null only where a profile with findings was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
   CspProcess process = CspProcess::InOwner;
-  std::string vendor;     ///< The peer's, unless the profile says otherwise.
-  bool shared_memory = false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
+  std::string vendor;  ///< The peer's, unless the profile says otherwise.
+  bool shared_memory =
+      false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
   std::string plugin;     ///< The peer's, unless the profile says otherwise.
   ProcessRules rules;     ///< Of a process of its own.
   ThreadRules threads;    ///< Of the thread that runs it.
@@ -51,14 +52,14 @@ struct PeerProfile {
   std::string component_file;  ///< As the profile names it, relative to the profile.
   /// Null only where a profile with findings was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
-  std::string vendor;         ///< `fastdds`, `cyclonedds` or `loopback`.
-  std::string system;         ///< The vehicle or station it belongs to.
-  std::string host;           ///< Empty for the host of the launcher.
-  std::string interface;      ///< Network interface; empty for this host alone (127.0.0.1).
+  std::string vendor;          ///< `fastdds`, `cyclonedds` or `loopback`.
+  std::string system;          ///< The vehicle or station it belongs to.
+  std::string host;            ///< Empty for the host of the launcher.
+  std::string interface;       ///< Network interface; empty for this host alone (127.0.0.1).
   bool shared_memory = false;  ///< Fast DDS's, between the processes of one host.
-  std::string plugin;         ///< Library with its providers; empty where main() registers them.
-  bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
-  bool required = true;       ///< Whether its loss ends the mission.
+  std::string plugin;          ///< Library with its providers; empty where main() registers them.
+  bool runs_mission = false;   ///< Its end is the mission's, its exit code too.
+  bool required = true;        ///< Whether its loss ends the mission.
   ProcessRules rules;
   ThreadRules threads;  ///< Of its public service.
   std::vector<CspProfile> csps;

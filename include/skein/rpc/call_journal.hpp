@@ -22,8 +22,9 @@ enum class CallStep : std::uint32_t;
 namespace skein::rpc {
 
 /// What happens to each call of an entity, on the topic `skein/calls`: best effort, and only while
-/// somebody reads it. Off, it costs the look at a flag. On, events wait in a bounded queue for `control`,
-/// which writes them; those for which there is no room are dropped and counted. Thread-safe.
+/// somebody reads it. Off, it costs the look at a flag. On, events wait in a bounded queue for
+/// `control`, which writes them; those for which there is no room are dropped and counted.
+/// Thread-safe.
 class CallJournal : public std::enable_shared_from_this<CallJournal> {
  public:
   static constexpr std::size_t kCapacity = 4096;
@@ -45,8 +46,8 @@ class CallJournal : public std::enable_shared_from_this<CallJournal> {
     if (on()) record(step, client, number, service, operation, error);
   }
 
-  /// The last step, by what the call ended with: Replied or Refused at the server, Answered or Failed at
-  /// the client.
+  /// The last step, by what the call ended with: Replied or Refused at the server, Answered or
+  /// Failed at the client.
   void note_end(bool at_server, const Guid& client, std::uint64_t number, std::string_view service,
                 const OperationInfo& operation, const std::exception_ptr& error);
 
@@ -69,8 +70,8 @@ class CallJournal : public std::enable_shared_from_this<CallJournal> {
   std::shared_ptr<dds::Writer> writer_;
 };
 
-/// Reads that topic, of all entities of the domain whatever their vendor. Its existence switches the
-/// journals on.
+/// Reads that topic, of all entities of the domain whatever their vendor. Its existence switches
+/// the journals on.
 class CallJournalReader {
  public:
   /// `participant` outlives the reader; `consumer` runs on a vendor's thread: it must return soon.

@@ -11,8 +11,9 @@
 
 namespace skein::rpc {
 
-/// The lane over DDS: one request writer into the provider's partition, one reply reader in a partition
-/// of its own. Replies are decoded on the vendor's thread straight into the caller's result.
+/// The lane over DDS: one request writer into the provider's partition, one reply reader in a
+/// partition of its own. Replies are decoded on the vendor's thread straight into the caller's
+/// result.
 class DdsChannel final : public Channel {
  public:
   struct Options {
@@ -24,8 +25,8 @@ class DdsChannel final : public Channel {
     /// Calls that may wait for their answers; beyond it a call is refused as Overloaded, unsent.
     std::size_t calls_in_flight = 4096;
     std::shared_ptr<CallJournal> journal;  ///< May be null.
-    /// Asked while opening: whether the provider still stands, as far as is known; what it throws ends
-    /// the attempt. Empty: it does.
+    /// Asked while opening: whether the provider still stands, as far as is known; what it throws
+    /// ends the attempt. Empty: it does.
     std::function<bool()> stands;
   };
 

@@ -13,8 +13,8 @@ struct DdsAddress {
   /// The interface's name in any spelling; the topics are `AE_navigator/IPlanner_Request` and
   /// `AE_navigator/IPlanner_Reply`.
   std::string service;
-  /// The partition of the provider's request reader; nil means the default partition, in which peers
-  /// that are not built with Skein live.
+  /// The partition of the provider's request reader; nil means the default partition, in which
+  /// peers that are not built with Skein live.
   Guid provider;
 
   dds::Topic request_topic() const;
@@ -22,10 +22,10 @@ struct DdsAddress {
   std::vector<std::string> partitions() const;
 };
 
-/// Offers a Service over DDS (DDS-RPC, basic mapping). Requests are taken and decoded on the vendor's
-/// thread, executed on the service's executor and answered from there; everything that creates
-/// endpoints or refuses requests happens on `control`. Each connected client has a reply writer in a
-/// partition of its own, so a client that stops reading holds up nobody else.
+/// Offers a Service over DDS (DDS-RPC, basic mapping). Requests are taken and decoded on the
+/// vendor's thread, executed on the service's executor and answered from there; everything that
+/// creates endpoints or refuses requests happens on `control`. Each connected client has a reply
+/// writer in a partition of its own, so a client that stops reading holds up nobody else.
 class DdsServer {
  public:
   struct Options {
@@ -33,19 +33,19 @@ class DdsServer {
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
-    /// Called when a request has come, or has been answered, on the thread that sees it: Counters::active has
-    /// changed. May be empty; must return soon.
+    /// Called when a request has come, or has been answered, on the thread that sees it:
+    /// Counters::active has changed. May be empty; must return soon.
     std::function<void()> on_load{};
   };
 
   /// What has happened since the start.
   struct Counters {
     std::uint64_t received = 0;
-    std::uint64_t malformed = 0;     ///< Dropped: no request at all, or in another client's name.
-    std::uint64_t refused = 0;       ///< Answered with an error before execution.
-    std::uint64_t unconnected = 0;   ///< Not executed: from a client that has no session (any more).
-    std::size_t clients = 0;         ///< Connected now, foreign ones not counted.
-    std::size_t active = 0;          ///< Requests that wait or run now.
+    std::uint64_t malformed = 0;    ///< Dropped: no request at all, or in another client's name.
+    std::uint64_t refused = 0;      ///< Answered with an error before execution.
+    std::uint64_t unconnected = 0;  ///< Not executed: from a client that has no session (any more).
+    std::size_t clients = 0;        ///< Connected now, foreign ones not counted.
+    std::size_t active = 0;         ///< Requests that wait or run now.
   };
 
   /// `participant`, `control` and `clock` outlive the server. Throws what the port throws.

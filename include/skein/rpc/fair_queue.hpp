@@ -10,11 +10,11 @@ namespace skein::rpc {
 
 struct Invocation;
 
-/// Invocations that wait for a thread: first in, first out within a connection, and the connections in
-/// turn, so that one with thousands waiting holds up another by one call. Bounded: a connection may
-/// have no more waiting than there is room left, so that even a full house has room for a newcomer
-/// (dynamic thresholds, Choudhury and Hahne 1998). A lone connection gets half of the capacity.
-/// Not thread-safe; each operation takes time in the number of connections that wait.
+/// Invocations that wait for a thread: first in, first out within a connection, and the connections
+/// in turn, so that one with thousands waiting holds up another by one call. Bounded: a connection
+/// may have no more waiting than there is room left, so that even a full house has room for a
+/// newcomer (dynamic thresholds, Choudhury and Hahne 1998). A lone connection gets half of the
+/// capacity. Not thread-safe; each operation takes time in the number of connections that wait.
 class FairQueue {
  public:
   explicit FairQueue(std::size_t capacity) : capacity_(capacity) {}

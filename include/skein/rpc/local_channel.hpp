@@ -16,12 +16,14 @@ namespace skein::rpc {
 class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
  public:
   /// Opens a session at the service; throws what the Head throws to refuse it.
-  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service,
+                                            std::shared_ptr<Clock> clock,
                                             std::shared_ptr<Executor> continuations,
                                             const std::string& strategy);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
-  void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time) override;
+  void call(const OperationInfo& operation, const void* in, void* out,
+            const CallTime& time) override;
   Clock& clock() const noexcept override { return *clock_; }
   Executor& continuations() const noexcept override { return *continuations_; }
   std::string peer() const override { return *peer_; }

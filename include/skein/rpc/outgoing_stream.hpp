@@ -14,9 +14,10 @@
 
 namespace skein::rpc {
 
-/// The provider's end of a stream: lets through as many results as the caller has granted. put() and
-/// finish() belong to the thread that executes the operation; grant() and stop() to any.
-class OutgoingStream final : public StreamWriter, public std::enable_shared_from_this<OutgoingStream> {
+/// The provider's end of a stream: lets through as many results as the caller has granted. put()
+/// and finish() belong to the thread that executes the operation; grant() and stop() to any.
+class OutgoingStream final : public StreamWriter,
+                             public std::enable_shared_from_this<OutgoingStream> {
  public:
   /// Sends one result, the `position`th from 0, to the caller; throws where that fails.
   using Send = std::function<void(const void* out, std::uint64_t position)>;

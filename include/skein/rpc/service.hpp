@@ -51,8 +51,8 @@ struct Invocation {
   std::atomic<bool> cancelled{false};
   /// Where the results go, where the operation is a stream.
   std::shared_ptr<OutgoingStream> stream;
-  /// Called once, on the executor's thread: the out struct, or what was thrown; neither at the end of a
-  /// stream.
+  /// Called once, on the executor's thread: the out struct, or what was thrown; neither at the end
+  /// of a stream.
   std::function<void(const void* out, std::exception_ptr error)> respond;
   std::shared_ptr<Invocation> next;  ///< The FairQueue's.
 
@@ -73,8 +73,8 @@ class Service : public std::enable_shared_from_this<Service> {
     Guid id = Guid::random();
     /// Identity of the threads: services that share one executor share it. Nil: the service's own.
     Guid strand;
-    /// How many calls the executor runs at once: a call is refused that would wait for itself, as all
-    /// these threads are blocked in calls that led to it.
+    /// How many calls the executor runs at once: a call is refused that would wait for itself, as
+    /// all these threads are blocked in calls that led to it.
     std::size_t threads = 1;
     /// Invocations that may wait in all; see FairQueue.
     std::size_t queue = 2048;
@@ -88,7 +88,8 @@ class Service : public std::enable_shared_from_this<Service> {
   };
 
   /// `executor` and `clock` outlive the service.
-  Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock, Options options);
+  Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock,
+          Options options);
 
   const InterfaceInfo& interface_info() const noexcept { return servant_->interface_info(); }
   const Guid& id() const noexcept { return options_.id; }
@@ -100,17 +101,18 @@ class Service : public std::enable_shared_from_this<Service> {
   std::shared_ptr<Session> open(const OpenRequest& request) const;
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
-  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait for
-  /// itself; respond() is not called then.
+  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
+  /// for itself; respond() is not called then.
   void submit(std::shared_ptr<Invocation> invocation);
 
   /// Runs the operation on the calling thread where the executor is idle; false otherwise.
-  /// The outcome is in `out` or thrown: TimedOut, too, where it came too late, and Unavailable as by
-  /// submit().
+  /// The outcome is in `out` or thrown: TimedOut, too, where it came too late, and Unavailable as
+  /// by submit().
   bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
                        Invocation& frame);
 
-  /// Throws Unavailable, which names the services of the circle, where the invocation would wait for itself.
+  /// Throws Unavailable, which names the services of the circle, where the invocation would wait
+  /// for itself.
   void refuse_self_wait(const Invocation& invocation) const;
 
   /// Whether an invocation is still inside the implementation although its deadline has passed.
@@ -119,7 +121,8 @@ class Service : public std::enable_shared_from_this<Service> {
   /// What it has done and does; entity and system are left empty.
   introspection::ServiceStatistics statistics() const;
 
-  /// Invocations that have not begun are refused, now and from now on; those that run are told to stop.
+  /// Invocations that have not begun are refused, now and from now on; those that run are told to
+  /// stop.
   void close();
 
  private:
@@ -129,7 +132,8 @@ class Service : public std::enable_shared_from_this<Service> {
   std::shared_ptr<Invocation> take_next();
   void withdraw(Invocation& invocation);
   void note_begin(const OperationInfo& operation, const Invocation& frame);
-  void note_end(const OperationInfo& operation, const Invocation& frame, const std::exception_ptr& error);
+  void note_end(const OperationInfo& operation, const Invocation& frame,
+                const std::exception_ptr& error);
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);
   void execute(Invocation& invocation);
   std::string circle(const std::vector<Guid>& chain) const;

@@ -14,8 +14,8 @@ struct OperationStatistics;
 
 namespace skein::rpc {
 
-/// What has become of the calls of one operation. Lock-free; idl/skein/introspection.idl explains the
-/// counters.
+/// What has become of the calls of one operation. Lock-free; idl/skein/introspection.idl explains
+/// the counters.
 struct OperationMeter {
   using Counter = std::atomic<std::uint64_t>;
   Counter received{0};

@@ -33,14 +33,16 @@ void copy_fragments(const nn_rdata* fragment, Blob* blob, std::size_t size) {
     if (fragment->maxp1 <= copied || fragment->maxp1 > size) continue;
     const unsigned char* payload =
         NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
-    std::memcpy(blob->bytes() + copied, payload + (copied - fragment->min), fragment->maxp1 - copied);
+    std::memcpy(blob->bytes() + copied, payload + (copied - fragment->min),
+                fragment->maxp1 - copied);
     copied = fragment->maxp1;
   }
 }
 
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                              const nn_rdata* fragments, std::size_t size) {
-  // A malformed sample passes here and is counted by the reader's queue: only that knows the reader.
+  // A malformed sample passes here and is counted by the reader's queue: only that knows the
+  // reader.
   Blob* blob = Blob::make(type, kind, size);
   copy_fragments(fragments, blob, size);
   if (kind == SDK_DATA && size >= kHeaderSize) {
@@ -208,9 +210,9 @@ void Blob::set_key(const KeyHash& key) noexcept {
 
 ddsi_sertype* make_blob_type(const Topic& topic) {
   auto* type = new ddsi_sertype{};
-  ddsi_sertype_init_flags(type, topic.type_name.c_str(), &kTypeOperations, &kBlobOperations,
-                          topic.keyed ? DDSI_SERTYPE_FLAG_REQUEST_KEYHASH
-                                      : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
+  ddsi_sertype_init_flags(
+      type, topic.type_name.c_str(), &kTypeOperations, &kBlobOperations,
+      topic.keyed ? DDSI_SERTYPE_FLAG_REQUEST_KEYHASH : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   return type;
 }

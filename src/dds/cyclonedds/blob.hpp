@@ -12,8 +12,9 @@
 
 namespace skein::dds::cyclonedds {
 
-/// An opaque sample in Cyclone's terms: bytes as they travel, and a key hash as the instance's whole
-/// identity. Cyclone counts references to it; the bytes follow the object in the same allocation.
+/// An opaque sample in Cyclone's terms: bytes as they travel, and a key hash as the instance's
+/// whole identity. Cyclone counts references to it; the bytes follow the object in the same
+/// allocation.
 struct Blob : ddsi_serdata {
   KeyHash key_hash;
   std::uint32_t size;    // as on the wire: what we write is a multiple of 4
@@ -44,8 +45,7 @@ class BlobReference {
   /// Takes over one that the caller owns.
   static BlobReference adopt(Blob* blob) noexcept { return BlobReference(blob, nullptr); }
   /// Adds one.
-  explicit BlobReference(Blob* blob) noexcept
-      : blob_(static_cast<Blob*>(ddsi_serdata_ref(blob))) {}
+  explicit BlobReference(Blob* blob) noexcept : blob_(static_cast<Blob*>(ddsi_serdata_ref(blob))) {}
   BlobReference(BlobReference&& other) noexcept : blob_(std::exchange(other.blob_, nullptr)) {}
   BlobReference& operator=(BlobReference&& other) noexcept {
     std::swap(blob_, other.blob_);
@@ -62,8 +62,8 @@ class BlobReference {
   Blob* blob_;
 };
 
-/// The only type of this back end: named as the topic says, without description, XCDR1. Ownership goes
-/// to Cyclone with dds_create_topic_sertype().
+/// The only type of this back end: named as the topic says, without description, XCDR1. Ownership
+/// goes to Cyclone with dds_create_topic_sertype().
 ddsi_sertype* make_blob_type(const Topic& topic);
 
 }  // namespace skein::dds::cyclonedds

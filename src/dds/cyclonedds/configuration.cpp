@@ -21,8 +21,7 @@ constexpr const char* kLargePackets =
     "<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>63000 B</FragmentSize>"
     "<MaxRexmitMessageSize>65000 B</MaxRexmitMessageSize>";
 
-std::string general(const ParticipantOptions& options,
-                    const std::vector<std::string>& addresses) {
+std::string general(const ParticipantOptions& options, const std::vector<std::string>& addresses) {
   const bool multicast = options.network.multicast_discovery;
   std::string interfaces;
   for (const std::string& address : addresses) {
@@ -52,13 +51,13 @@ std::string discovery(const ParticipantOptions& options,
 }
 
 /// GenerateKeyhash: Fast DDS cannot tell an instance's identity otherwise.
-/// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops a
-/// writer in the middle of a mebibyte.
-/// HeartbeatInterval: a lost last sample is noticed, and an acknowledgment asked for, after so long.
-/// The interval doubles up to `max`; a Fast DDS reader that found this writer anew begins to count its
-/// acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
-/// NackDelay: for so long what was asked for is not asked for again. A reader that has just found its writer
-/// asks before the writer listens: with 100 ms, the default, a first request waits as long in one start of three.
+/// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops
+/// a writer in the middle of a mebibyte. HeartbeatInterval: a lost last sample is noticed, and an
+/// acknowledgment asked for, after so long. The interval doubles up to `max`; a Fast DDS reader
+/// that found this writer anew begins to count its acknowledgments at 1, and Cyclone ignores each
+/// one until the count has passed the old one. NackDelay: for so long what was asked for is not
+/// asked for again. A reader that has just found its writer asks before the writer listens: with
+/// 100 ms, the default, a first request waits as long in one start of three.
 std::string internal() {
   return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
                                  element("Watermarks", element("WhcHigh", "4 MiB") +
@@ -71,9 +70,8 @@ std::string internal() {
 
 std::string configuration(const ParticipantOptions& options) {
   const auto addresses = interface_addresses(options.network);
-  return element("CycloneDDS",
-                 "<Domain Id=\"any\">" + general(options, addresses) +
-                     discovery(options, addresses) + internal() + "</Domain>");
+  return element("CycloneDDS", "<Domain Id=\"any\">" + general(options, addresses) +
+                                   discovery(options, addresses) + internal() + "</Domain>");
 }
 
 }  // namespace skein::dds::cyclonedds

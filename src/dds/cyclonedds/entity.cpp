@@ -37,8 +37,8 @@ QosSet::QosSet(const Qos& qos) : QosSet() {
   dds_qset_reliability(qos_, qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        DDS_MSECS(qos.max_blocking.count()));
   dds_qset_history(qos_, history, depth);
-  dds_qset_durability(qos_, qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL
-                                                : DDS_DURABILITY_VOLATILE);
+  dds_qset_durability(
+      qos_, qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   // What late joiners get is governed by this one, not by the writer's history.
   dds_qset_durability_service(qos_, 0, history, depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED);

@@ -33,8 +33,6 @@ ErrorCapture::~ErrorCapture() {
   captured = nullptr;
 }
 
-std::string ErrorCapture::text() const {
-  return captured->empty() ? "no reason given" : *captured;
-}
+std::string ErrorCapture::text() const { return captured->empty() ? "no reason given" : *captured; }
 
 }  // namespace skein::dds::cyclonedds

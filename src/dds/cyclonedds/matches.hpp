@@ -13,11 +13,11 @@
 
 namespace skein::dds::cyclonedds {
 
-/// Who is matched with one endpoint. Cyclone's listeners name peers by local handles, and once a peer
-/// has gone its handle tells nothing more: so each change is found by comparing whole lists.
+/// Who is matched with one endpoint. Cyclone's listeners name peers by local handles, and once a
+/// peer has gone its handle tells nothing more: so each change is found by comparing whole lists.
 ///
-/// Cyclone tells of a writer some 100 us before it delivers the writer's samples. What a volatile writer
-/// sends in that moment is lost: a session's opening is repeated for that reason.
+/// Cyclone tells of a writer some 100 us before it delivers the writer's samples. What a volatile
+/// writer sends in that moment is lost: a session's opening is repeated for that reason.
 class Matches {
  public:
   using Told = std::function<void(const Guid& peer, bool)>;
@@ -29,7 +29,8 @@ class Matches {
 
   Matches(List list, Identify identify, Told on_matched, Told on_liveliness = {});
 
-  /// Compares and tells. From listeners, and once after creation: whatever happened before is told then.
+  /// Compares and tells. From listeners, and once after creation: whatever happened before is told
+  /// then.
   void update();
 
   void liveliness_changed(dds_instance_handle_t peer, bool alive);

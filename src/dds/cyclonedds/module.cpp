@@ -21,7 +21,7 @@ class CycloneVendor final : public Vendor {
 std::uint32_t skein_module_abi() { return SKEIN_ABI; }
 
 std::shared_ptr<skein::dds::Vendor>* skein_module_vendor() {
-  static auto* vendor =
-      new std::shared_ptr<skein::dds::Vendor>(std::make_shared<skein::dds::cyclonedds::CycloneVendor>());
+  static auto* vendor = new std::shared_ptr<skein::dds::Vendor>(
+      std::make_shared<skein::dds::cyclonedds::CycloneVendor>());
   return vendor;
 }

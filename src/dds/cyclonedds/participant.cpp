@@ -36,8 +36,8 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
   domain_ = make_domain(options, id);
   const QosSet qos;
   if (!options.name.empty()) dds_qset_entity_name(qos.get(), options.name.c_str());
-  participant_ = Entity(check(dds_create_participant(id, qos.get(), nullptr),
-                              "a participant cannot be created"));
+  participant_ = Entity(
+      check(dds_create_participant(id, qos.get(), nullptr), "a participant cannot be created"));
   guid_ = participant_.guid().participant();
   if (options_.on_participant) watch_participants();
 }
@@ -54,8 +54,8 @@ void CycloneParticipant::watch_participants() {
   dds_lset_data_available(listener, [](dds_entity_t, void* self) {
     static_cast<CycloneParticipant*>(self)->take_presence();
   });
-  const dds_entity_t reader = dds_create_reader(participant_.handle(),
-                                                DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, listener);
+  const dds_entity_t reader = dds_create_reader(
+      participant_.handle(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, listener);
   dds_delete_listener(listener);
   watcher_ = Entity(check(reader, "participants cannot be watched"));
   watcher_handle_ = reader;
@@ -100,8 +100,8 @@ TopicHandle CycloneParticipant::acquire_topic(const Topic& topic) {
   return topics_.acquire(topic, [&] {
     const QosSet qos;
     ddsi_sertype* type = make_blob_type(topic);
-    const dds_entity_t entity = dds_create_topic_sertype(handle(), topic.name.c_str(), &type,
-                                                         qos.get(), nullptr, nullptr);
+    const dds_entity_t entity =
+        dds_create_topic_sertype(handle(), topic.name.c_str(), &type, qos.get(), nullptr, nullptr);
     check(entity, "topic '" + topic.name + "' cannot be created");
     return TopicHandle{entity, type};
   });

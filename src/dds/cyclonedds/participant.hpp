@@ -17,8 +17,8 @@ struct TopicHandle {
   const ddsi_sertype* type;
 };
 
-/// One participant in a Cyclone domain of its own, so that several in one process are as independent
-/// as in several. Its threads are Cyclone's; each domain has its own.
+/// One participant in a Cyclone domain of its own, so that several in one process are as
+/// independent as in several. Its threads are Cyclone's; each domain has its own.
 class CycloneParticipant final : public Participant {
  public:
   explicit CycloneParticipant(const ParticipantOptions& options);

@@ -50,20 +50,20 @@ Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
   dds_lset_data_available(listener, [](dds_entity_t, void* self) {
     static_cast<CycloneReader*>(self)->data_available();
   });
-  dds_lset_subscription_matched(
-      listener, [](dds_entity_t, dds_subscription_matched_status_t, void* self) {
-        static_cast<CycloneReader*>(self)->matches_.update();
-      });
+  dds_lset_subscription_matched(listener,
+                                [](dds_entity_t, dds_subscription_matched_status_t, void* self) {
+                                  static_cast<CycloneReader*>(self)->matches_.update();
+                                });
   dds_lset_requested_incompatible_qos(
       listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t status, void* self) {
         static_cast<CycloneReader*>(self)->mismatches_.mismatched(status.last_policy_id);
       });
-  dds_lset_liveliness_changed(
-      listener, [](dds_entity_t, dds_liveliness_changed_status_t status, void* self) {
-        static_cast<CycloneReader*>(self)->liveliness_changed(status);
-      });
-  const dds_entity_t reader = dds_create_reader_rhc(participant_.handle(), handle_.entity,
-                                                    qos.get(), listener, &queue_);
+  dds_lset_liveliness_changed(listener,
+                              [](dds_entity_t, dds_liveliness_changed_status_t status, void* self) {
+                                static_cast<CycloneReader*>(self)->liveliness_changed(status);
+                              });
+  const dds_entity_t reader =
+      dds_create_reader_rhc(participant_.handle(), handle_.entity, qos.get(), listener, &queue_);
   dds_delete_listener(listener);
   return Entity(check(reader, "topic '" + topic.name + "': a reader cannot be created"));
 }

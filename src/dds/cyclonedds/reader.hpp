@@ -37,7 +37,7 @@ class CycloneReader final : public Reader {
   Matches matches_;
   Mismatches mismatches_;
   std::atomic<bool> made_{false};
-  std::mutex data_;  // one on_data at a time
+  std::mutex data_;                             // one on_data at a time
   std::atomic<dds_entity_t> reader_handle_{0};  // 0 for listeners that come before it is made
   Guid guid_;
   Entity reader_;  // goes first: its listeners use the rest

@@ -21,7 +21,8 @@ SampleQueue* to_queue(ddsi_rhc* cache) {
   return static_cast<SampleQueue*>(reinterpret_cast<dds_rhc*>(cache));
 }
 
-/// The writer's lifespan, from what Cyclone makes of it: when a sample that arrives now would expire.
+/// The writer's lifespan, from what Cyclone makes of it: when a sample that arrives now would
+/// expire.
 std::optional<std::chrono::nanoseconds> lifespan_of(const ddsi_writer_info& writer) {
   if (writer.lifespan_exp.v == DDS_NEVER) return std::nullopt;
   return std::chrono::nanoseconds(writer.lifespan_exp.v) -
@@ -66,15 +67,19 @@ const dds_rhc_ops& SampleQueue::operations() {
 }
 
 SampleQueue::SampleQueue(const Qos& qos, const ReaderListener& listener)
-    : dds_rhc{}, find_key_(listener.find_key), queue_(qos.history_depth, qos.max_waiting), gate_(qos) {
+    : dds_rhc{},
+      find_key_(listener.find_key),
+      queue_(qos.history_depth, qos.max_waiting),
+      gate_(qos) {
   common.ops = &operations();
-  deadline_ = make_deadline_timer(qos, [this, missed = listener.on_deadline_missed](const KeyHash& key) {
-    {
-      std::lock_guard lock(mutex_);
-      gate_.release(key);
-    }
-    if (missed) missed(key);
-  });
+  deadline_ =
+      make_deadline_timer(qos, [this, missed = listener.on_deadline_missed](const KeyHash& key) {
+        {
+          std::lock_guard lock(mutex_);
+          gate_.release(key);
+        }
+        if (missed) missed(key);
+      });
 }
 
 bool SampleQueue::store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
@@ -95,8 +100,8 @@ bool SampleQueue::store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_se
   // A writer of the same participant hands over what it also sends.
   const bool as_sent = blob->outgoing && blob->length != blob->size;
   const bool stored =
-      self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob),
-                  *key, to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive},
+      self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob), *key,
+                  to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive},
                  *writer);
   if (stored) dds_reader_data_available_cb(self->reader_);
   return true;
@@ -142,7 +147,8 @@ void SampleQueue::let_go(const KeyHash& key, const Guid& writer) {
 std::optional<SampleQueue::Item> SampleQueue::pop() {
   std::lock_guard lock(mutex_);
   auto item = queue_.pop();
-  while (item && item->expiry != SampleGate::kNever && !gate_.fresh(item->expiry, wall_clock_time())) {
+  while (item && item->expiry != SampleGate::kNever &&
+         !gate_.fresh(item->expiry, wall_clock_time())) {
     item = queue_.pop();
   }
   return item;

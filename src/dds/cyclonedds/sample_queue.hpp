@@ -14,11 +14,12 @@
 
 namespace skein::dds::cyclonedds {
 
-/// What Cyclone calls a reader history cache, ours in place of its own: it knows the writer's GUID of
-/// each sample and tells a disposal from a writer that merely left, both of which Cyclone's own loses,
-/// and it hands samples over with one short lock.
+/// What Cyclone calls a reader history cache, ours in place of its own: it knows the writer's GUID
+/// of each sample and tells a disposal from a writer that merely left, both of which Cyclone's own
+/// loses, and it hands samples over with one short lock.
 ///
-/// It never refuses a sample: a refusal stalls Cyclone's receive thread, discovery and leases with it.
+/// It never refuses a sample: a refusal stalls Cyclone's receive thread, discovery and leases with
+/// it.
 class SampleQueue : public dds_rhc {
  public:
   SampleQueue(const Qos& qos, const ReaderListener& listener);

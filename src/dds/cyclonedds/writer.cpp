@@ -48,10 +48,10 @@ CycloneWriter::~CycloneWriter() {
 Entity CycloneWriter::make() {
   const QosSet qos(qos_);
   dds_listener_t* listener = dds_create_listener(this);
-  dds_lset_publication_matched(
-      listener, [](dds_entity_t, dds_publication_matched_status_t, void* self) {
-        static_cast<CycloneWriter*>(self)->matches_.update();
-      });
+  dds_lset_publication_matched(listener,
+                               [](dds_entity_t, dds_publication_matched_status_t, void* self) {
+                                 static_cast<CycloneWriter*>(self)->matches_.update();
+                               });
   dds_lset_offered_incompatible_qos(
       listener, [](dds_entity_t, dds_offered_incompatible_qos_status_t status, void* self) {
         static_cast<CycloneWriter*>(self)->mismatches_.mismatched(status.last_policy_id);
@@ -72,8 +72,8 @@ void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
 
 void CycloneWriter::dispose(const KeyHash& key) {
   require_keyed(topic_);
-  // The payload is the key, for peers that look there: a short key's hash is its big-endian CDR, and
-  // travels beside it too.
+  // The payload is the key, for peers that look there: a short key's hash is its big-endian CDR,
+  // and travels beside it too.
   Blob* blob = Blob::make(handle_.type, SDK_KEY, kHeaderSize + key.bytes.size());
   const std::byte header[kHeaderSize] = {std::byte{0}, std::byte{0}, std::byte{0}, std::byte{0}};
   std::memcpy(blob->bytes(), header, kHeaderSize);
@@ -85,8 +85,8 @@ void CycloneWriter::dispose(const KeyHash& key) {
   if (deadline_) deadline_->ended(key);
 }
 
-/// Cyclone itself bounds only the bytes that wait for acknowledgment, so every max_samples writes all
-/// that was written must have been acknowledged.
+/// Cyclone itself bounds only the bytes that wait for acknowledgment, so every max_samples writes
+/// all that was written must have been acknowledged.
 void CycloneWriter::wait_for_room() {
   if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
   if (written_.fetch_add(1) < qos_.max_samples) return;

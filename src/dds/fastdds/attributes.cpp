@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 namespace policies = eprosima::fastdds::dds;
 
 constexpr std::uint32_t kReceiveBuffer = 4u << 20;
-/// Also what Fast DDS takes for filled between two heartbeats, and it counts a sample's fragments again and
-/// again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the reader asks for what is
-/// on its way to him.
+/// Also what Fast DDS takes for filled between two heartbeats, and it counts a sample's fragments
+/// again and again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the
+/// reader asks for what is on its way to him.
 constexpr std::uint32_t kSendBuffer = 64u << 20;
 /// Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
 constexpr std::uint32_t kSharedMemory = 16u << 20;
@@ -49,8 +49,9 @@ template <class EndpointQos>
 void fill_common(EndpointQos& endpoint, const Qos& qos) {
   endpoint.m_reliability.kind = qos.reliable ? eprosima::fastrtps::RELIABLE_RELIABILITY_QOS
                                              : eprosima::fastrtps::BEST_EFFORT_RELIABILITY_QOS;
-  endpoint.m_durability.kind = qos.transient_local ? eprosima::fastrtps::TRANSIENT_LOCAL_DURABILITY_QOS
-                                                   : eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
+  endpoint.m_durability.kind = qos.transient_local
+                                   ? eprosima::fastrtps::TRANSIENT_LOCAL_DURABILITY_QOS
+                                   : eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
   for (const std::string& name : qos.partitions) endpoint.m_partition.push_back(name.c_str());
   if (qos.liveliness_lease) {
     endpoint.m_liveliness.lease_duration = duration(*qos.liveliness_lease);
@@ -87,16 +88,17 @@ void fill_endpoint(rtps::EndpointAttributes& endpoint, const Topic& topic, const
   endpoint.set_data_sharing_configuration(off);
 }
 
-// Here a port is a name in /dev/shm and no more. One that was a killed process's would be made anew, while
-// others would go on writing to the old one, in which nobody reads.
+// Here a port is a name in /dev/shm and no more. One that was a killed process's would be made
+// anew, while others would go on writing to the old one, in which nobody reads.
 std::uint32_t unused_port() {
   constexpr std::uint32_t kBeyondUdp = 1u << 16;
   std::random_device random;
   return kBeyondUdp + random() / 2;
 }
 
-// Beside UDP, and for samples alone: discovery, and with it the repairs and signs of life of `transport`, goes
-// by UDP. Fast DDS then speaks to who has such a locator, on this host, by nothing else.
+// Beside UDP, and for samples alone: discovery, and with it the repairs and signs of life of
+// `transport`, goes by UDP. Fast DDS then speaks to who has such a locator, on this host, by
+// nothing else.
 void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
   const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
   memory->segment_size(kSharedMemory);
@@ -131,16 +133,16 @@ rtps::RTPSParticipantAttributes participant_attributes(
   auto& builtin = attributes.builtin;
   auto& discovery = builtin.discovery_config;
   discovery.leaseDuration = duration(options.lease);
-  // An announcement may be lost: it is repeated before the lease is half over, and often enough for a
-  // peer that was not listening yet.
+  // An announcement may be lost: it is repeated before the lease is half over, and often enough for
+  // a peer that was not listening yet.
   discovery.leaseDuration_announcementperiod =
       duration(std::min<std::chrono::milliseconds>(kAnnouncementPeriod, options.lease * 2 / 5));
   discovery.initial_announcements = {5, duration(10ms)};
   builtin.avoid_builtin_multicast = true;
   builtin.mutation_tries = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;
 
-  // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over all
-  // domains of the process and soon listens where no peer looks.
+  // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over
+  // all domains of the process and soon listens where no peer looks.
   const std::uint32_t base = domain_port(options.domain);
   for (const std::string& address : interface_addresses(options.network)) {
     builtin.metatrafficUnicastLocatorList.push_back(locator(address, base + kDiscoveryOffset));
@@ -169,10 +171,12 @@ rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
   // Cyclone ignores a volatile writer until its first heartbeat.
   attributes.times.initialHeartbeatDelay = duration(0ms);
   attributes.times.nackResponseDelay = duration(0ms);
-  // A timer that each write starts. With 0, the default, it goes off at once: Fast DDS's timer thread wakes
-  // two or three times a write, in the caller's way. For so long a lost sample is not asked for again.
+  // A timer that each write starts. With 0, the default, it goes off at once: Fast DDS's timer
+  // thread wakes two or three times a write, in the caller's way. For so long a lost sample is not
+  // asked for again.
   attributes.times.nackSupressionDuration = duration(kNackSuppression);
-  attributes.mode = rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
+  attributes.mode =
+      rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
   if (qos.liveliness_lease) {
     attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
     attributes.liveliness_announcement_period = duration(*qos.liveliness_lease * 2 / 5);
@@ -184,7 +188,8 @@ rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos) {
   rtps::ReaderAttributes attributes;
   fill_endpoint(attributes.endpoint, topic, qos);
   attributes.times.initialAcknackDelay = duration(10ms);
-  // A Cyclone writer with a mebibyte unacknowledged stops until it is: 5 ms, the default, each time.
+  // A Cyclone writer with a mebibyte unacknowledged stops until it is: 5 ms, the default, each
+  // time.
   attributes.times.heartbeatResponseDelay = duration(0ms);
   return attributes;
 }
@@ -224,7 +229,8 @@ eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
 Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos) { return from_common(qos); }
 Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos) { return from_common(qos); }
 
-std::optional<std::chrono::nanoseconds> from_duration(const eprosima::fastrtps::Duration_t& duration) {
+std::optional<std::chrono::nanoseconds> from_duration(
+    const eprosima::fastrtps::Duration_t& duration) {
   if (duration == eprosima::fastrtps::c_TimeInfinite) return std::nullopt;
   return std::chrono::nanoseconds(duration.to_ns());
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <fastdds/rtps/attributes/HistoryAttributes.h>
-#include <fastdds/rtps/attributes/ReaderAttributes.h>
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
+#include <fastdds/rtps/attributes/ReaderAttributes.h>
 #include <fastdds/rtps/attributes/WriterAttributes.h>
 #include <fastrtps/attributes/TopicAttributes.h>
 #include <fastrtps/qos/ReaderQos.h>
@@ -13,11 +13,13 @@
 #include "skein/dds/port.hpp"
 #include "transport.hpp"
 
-/// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands there.
+/// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands
+/// there.
 namespace skein::dds::fastdds {
 
 rtps::RTPSParticipantAttributes participant_attributes(
-    const ParticipantOptions& options, const std::shared_ptr<StartupTransportDescriptor>& transport);
+    const ParticipantOptions& options,
+    const std::shared_ptr<StartupTransportDescriptor>& transport);
 
 /// UDP alone, on the network's interfaces alone.
 std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOptions& options);
@@ -37,6 +39,7 @@ Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos);
 Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos);
 
 /// Nothing where it is infinite.
-std::optional<std::chrono::nanoseconds> from_duration(const eprosima::fastrtps::Duration_t& duration);
+std::optional<std::chrono::nanoseconds> from_duration(
+    const eprosima::fastrtps::Duration_t& duration);
 
 }  // namespace skein::dds::fastdds

@@ -102,7 +102,9 @@ void EndpointEvents::alive(const Guid& peer, bool now) {
   tell(listener_.on_liveliness, peer, now);
 }
 
-void EndpointEvents::incompatible(const Incompatibility& why) { tell(listener_.on_incompatible, why); }
+void EndpointEvents::incompatible(const Incompatibility& why) {
+  tell(listener_.on_incompatible, why);
+}
 
 std::vector<Guid> EndpointEvents::peers() const {
   std::lock_guard lock(mutex_);

@@ -16,9 +16,9 @@
 
 namespace skein::dds::fastdds {
 
-/// The thread on which a participant tells of matches, liveliness and participants. Fast DDS reports
-/// them with its own locks held; a listener that waits for a lock whose holder creates an endpoint
-/// would then never end.
+/// The thread on which a participant tells of matches, liveliness and participants. Fast DDS
+/// reports them with its own locks held; a listener that waits for a lock whose holder creates an
+/// endpoint would then never end.
 class EventThread {
  public:
   /// `tick` is called on this thread too, as often as tick_every() says; never without it.

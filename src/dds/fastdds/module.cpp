@@ -8,8 +8,8 @@
 namespace skein::dds::fastdds {
 namespace {
 
-/// Within a process Fast DDS would call a reader's listener inside write(), past the transport and with
-/// both endpoints' locks held. Participants of one process are to be as independent as others.
+/// Within a process Fast DDS would call a reader's listener inside write(), past the transport and
+/// with both endpoints' locks held. Participants of one process are to be as independent as others.
 void deliver_by_transport_only() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;

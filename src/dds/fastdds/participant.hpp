@@ -20,9 +20,9 @@ namespace skein::dds::fastdds {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
-/// A participant on Fast DDS's RTPS layer. The DDS layer above it would add copies and locks for what
-/// this port does not have, and it is the one that reads files and environment: profiles, discovery
-/// servers, statistics. Here nothing does.
+/// A participant on Fast DDS's RTPS layer. The DDS layer above it would add copies and locks for
+/// what this port does not have, and it is the one that reads files and environment: profiles,
+/// discovery servers, statistics. Here nothing does.
 class FastParticipant final : public Participant, private rtps::RTPSParticipantListener {
  public:
   explicit FastParticipant(const ParticipantOptions& options);
@@ -37,7 +37,8 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   rtps::RTPSParticipant* rtps_participant() const noexcept { return participant_; }
   EventThread& events() noexcept { return events_; }
 
-  /// To be held while a reader is created or removed: Fast DDS forgets a local reader without a lock.
+  /// To be held while a reader is created or removed: Fast DDS forgets a local reader without a
+  /// lock.
   std::mutex& readers() noexcept { return readers_; }
 
   /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
@@ -50,8 +51,10 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
  private:
   void onParticipantDiscovery(rtps::RTPSParticipant* participant,
                               rtps::ParticipantDiscoveryInfo&& info) override;
-  void onWriterDiscovery(rtps::RTPSParticipant* participant, rtps::WriterDiscoveryInfo&& info) override;
-  void onReaderDiscovery(rtps::RTPSParticipant* participant, rtps::ReaderDiscoveryInfo&& info) override;
+  void onWriterDiscovery(rtps::RTPSParticipant* participant,
+                         rtps::WriterDiscoveryInfo&& info) override;
+  void onReaderDiscovery(rtps::RTPSParticipant* participant,
+                         rtps::ReaderDiscoveryInfo&& info) override;
   void check_liveliness();
 
   struct Watched {

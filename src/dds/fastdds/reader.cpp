@@ -40,8 +40,8 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());
-  reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes, payloads_,
-                                               &history_, this);
+  reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes,
+                                               payloads_, &history_, this);
   if (reader_ == nullptr) {
     participant_.release_topic(topic_.name);
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
@@ -51,11 +51,12 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   if (tells_incompatible_) {
     participant_.endpoints().watch({Side::Reader, topic.name, topic.type_name, qos}, events_);
   }
-  participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic), reader_qos(qos));
+  participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic),
+                                                  reader_qos(qos));
 }
 
 FastReader::~FastReader() {
-  reader_->setListener(nullptr);  // waits for on_data
+  reader_->setListener(nullptr);            // waits for on_data
   std::unique_ptr<DeadlineTimer> deadline;  // ended outside the lock: it waits for its listener
   {
     std::lock_guard lock(mutex_);
@@ -106,7 +107,8 @@ std::unique_ptr<DeadlineTimer> FastReader::deadline_timer(const Qos& qos,
 /// Called before the writer's first sample.
 void FastReader::on_writer_discovery(rtps::RTPSReader*,
                                      rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
-                                     const rtps::GUID_t& writer, const rtps::WriterProxyData* info) {
+                                     const rtps::GUID_t& writer,
+                                     const rtps::WriterProxyData* info) {
   const Guid guid = to_guid(writer);
   std::lock_guard lock(mutex_);
   if (reason == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
@@ -144,8 +146,9 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
     malformed_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  Item item{alive ? payloads_->take(change) : Bytes{}, alive ? InstanceState::Alive : InstanceState::Disposed,
-            *found, to_guid(change.writerGUID)};
+  Item item{alive ? payloads_->take(change) : Bytes{},
+            alive ? InstanceState::Alive : InstanceState::Disposed, *found,
+            to_guid(change.writerGUID)};
   const KeyHash key = item.key;
   {
     std::lock_guard lock(mutex_);
@@ -182,19 +185,22 @@ bool FastReader::admit(Item& item, SourceTime written) {
 std::optional<FastReader::Item> FastReader::pop() {
   std::lock_guard lock(mutex_);
   auto item = queue_.pop();
-  while (item && item->expiry != SampleGate::kNever && !gate_.fresh(item->expiry, wall_clock_time())) {
+  while (item && item->expiry != SampleGate::kNever &&
+         !gate_.fresh(item->expiry, wall_clock_time())) {
     item = queue_.pop();
   }
   return item;
 }
 
-std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer, std::size_t limit) {
+std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer,
+                             std::size_t limit) {
   std::size_t taken = 0;
   for (; taken < limit; ++taken) {
     std::optional<Item> item = pop();
     if (!item) break;
     std::span<const std::byte> cdr;
-    if (item->state == InstanceState::Alive) cdr = without_padding(item->cdr.data(), item->cdr.size());
+    if (item->state == InstanceState::Alive)
+      cdr = without_padding(item->cdr.data(), item->cdr.size());
     Owner owner(item->cdr);
     consumer({cdr, item->state, item->key, item->writer, &owner});
     payloads_->give_back(std::move(item->cdr));

@@ -45,7 +45,8 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   void onNewCacheChangeAdded(rtps::RTPSReader* reader,
                              const rtps::CacheChange_t* const change) override;
 
-  void on_writer_discovery(rtps::RTPSReader* reader, rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
+  void on_writer_discovery(rtps::RTPSReader* reader,
+                           rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
                            const rtps::GUID_t& writer, const rtps::WriterProxyData* info) override;
 
   EndpointListener endpoint_listener(dds::ReaderListener& listener);

@@ -14,14 +14,15 @@
 namespace skein::dds::fastdds {
 namespace {
 
-/// Sends the key hash beside the sample. Left to itself, Fast DDS sends it with disposals only, as its
-/// own readers compute it from the data.
+/// Sends the key hash beside the sample. Left to itself, Fast DDS sends it with disposals only, as
+/// its own readers compute it from the data.
 void attach_key(rtps::CacheChange_t& change, const KeyHash& key) {
   constexpr rtps::octet kKeyHashParameter[] = {0x70, 0x00, 0x10, 0x00};  // id and length
   constexpr std::uint32_t kSize = sizeof kKeyHashParameter + sizeof key.bytes;
   change.inline_qos.reserve(kSize);
   std::memcpy(change.inline_qos.data, kKeyHashParameter, sizeof kKeyHashParameter);
-  std::memcpy(change.inline_qos.data + sizeof kKeyHashParameter, key.bytes.data(), key.bytes.size());
+  std::memcpy(change.inline_qos.data + sizeof kKeyHashParameter, key.bytes.data(),
+              key.bytes.size());
   change.inline_qos.length = kSize;
 }
 
@@ -39,8 +40,8 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
       deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   participant_.acquire_topic(topic);
   auto attributes = writer_attributes(topic, qos);
-  writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes, &history_,
-                                               this);
+  writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes,
+                                               &history_, this);
   if (writer_ == nullptr) {
     participant_.release_topic(topic_.name);
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a writer");
@@ -49,12 +50,14 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
   if (qos.lifespan && qos.transient_local) {
     Qos every_lifespan;
     every_lifespan.deadline = qos.lifespan;
-    lifespan_ = make_deadline_timer(every_lifespan, [this](const KeyHash& key) { drop_expired(key); });
+    lifespan_ =
+        make_deadline_timer(every_lifespan, [this](const KeyHash& key) { drop_expired(key); });
   }
   if (listener.on_incompatible) {
     participant_.endpoints().watch({Side::Writer, topic.name, topic.type_name, qos}, events_);
   }
-  participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic), writer_qos(qos));
+  participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
+                                                  writer_qos(qos));
 }
 
 FastWriter::~FastWriter() {
@@ -110,12 +113,14 @@ void FastWriter::wait_for_room(Lock& lock) {
   if (room_.wait_for(lock, qos_.max_blocking, has_room)) return;
   throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +
                    std::to_string(qos_.max_blocking.count()) + " ms; " +
-                   std::to_string(qos_.max_samples) + " wait for a matched reader's acknowledgment");
+                   std::to_string(qos_.max_samples) +
+                   " wait for a matched reader's acknowledgment");
 }
 
-/// A volatile Cyclone reader begins behind the first heartbeat that it hears. Were that one sent amid
-/// the fragments of a sample, this sample would be lost; so a heartbeat goes ahead of each sample until
-/// all readers have acknowledged something. ("Liveliness": regardless of what is unacknowledged.)
+/// A volatile Cyclone reader begins behind the first heartbeat that it hears. Were that one sent
+/// amid the fragments of a sample, this sample would be lost; so a heartbeat goes ahead of each
+/// sample until all readers have acknowledged something. ("Liveliness": regardless of what is
+/// unacknowledged.)
 void FastWriter::announce_position() {
   if (!qos_.reliable || new_reader_at_ < 0) return;
   constexpr bool kFinal = false;
@@ -123,8 +128,8 @@ void FastWriter::announce_position() {
   static_cast<rtps::StatefulWriter*>(writer_)->send_periodic_heartbeat(kFinal, kLiveliness);
 }
 
-/// A heartbeat behind each mebibyte, between samples: their memory is free for the next ones at once, and
-/// Fast DDS has no reason to send one amid a sample's fragments.
+/// A heartbeat behind each mebibyte, between samples: their memory is free for the next ones at
+/// once, and Fast DDS has no reason to send one amid a sample's fragments.
 void FastWriter::ask_for_acknowledgment() {
   constexpr std::size_t kOften = 1 << 20;
   if (!qos_.reliable || unasked_bytes_ < kOften) return;
@@ -206,8 +211,9 @@ void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChang
 }
 
 bool FastWriter::wait_for_acknowledgments(std::chrono::milliseconds timeout) {
-  return writer_->wait_for_all_acked({static_cast<std::int32_t>(timeout.count() / 1000),
-                                      static_cast<std::uint32_t>(timeout.count() % 1000 * 1'000'000)});
+  return writer_->wait_for_all_acked(
+      {static_cast<std::int32_t>(timeout.count() / 1000),
+       static_cast<std::uint32_t>(timeout.count() % 1000 * 1'000'000)});
 }
 
 }  // namespace skein::dds::fastdds

@@ -13,8 +13,8 @@
 
 namespace skein::dds::fastdds {
 
-/// A writer on Fast DDS's RTPS layer, with the history that our QoS promises: its content is guarded
-/// by the RTPS writer's own mutex, under which Fast DDS also reports acknowledgments.
+/// A writer on Fast DDS's RTPS layer, with the history that our QoS promises: its content is
+/// guarded by the RTPS writer's own mutex, under which Fast DDS also reports acknowledgments.
 class FastWriter final : public Writer, private rtps::WriterListener {
  public:
   FastWriter(FastParticipant& participant, const Topic& topic, const Qos& qos,
@@ -58,7 +58,8 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   std::unordered_map<Guid, Changes> instances_;
   std::condition_variable_any room_;
   std::atomic<std::int64_t> last_sent_{0};
-  /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged by all.
+  /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged
+  /// by all.
   std::atomic<std::int64_t> new_reader_at_{-1};
   std::size_t unasked_bytes_ = 0;  // sent since readers were last asked for an acknowledgment
   rtps::RTPSWriter* writer_ = nullptr;

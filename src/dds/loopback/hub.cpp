@@ -11,8 +11,7 @@ void put_big_endian(std::uint32_t value, std::uint8_t* to) {
 
 }  // namespace
 
-Hub::Hub(Clock& clock)
-    : clock_(clock), may_wait_(dynamic_cast<SystemClock*>(&clock) != nullptr) {}
+Hub::Hub(Clock& clock) : clock_(clock), may_wait_(dynamic_cast<SystemClock*>(&clock) != nullptr) {}
 
 std::shared_ptr<ParticipantCore> Hub::join(const ParticipantOptions& options) {
   Lock lock(mutex_);

@@ -33,8 +33,8 @@ using MessagePtr = std::shared_ptr<const Message>;
 
 /// What one participant knows of another.
 struct View {
-  bool heard = false;  // its signs of life arrive
-  bool known = false;  // found, and its lease has not expired
+  bool heard = false;            // its signs of life arrive
+  bool known = false;            // found, and its lease has not expired
   std::uint64_t generation = 0;  // outdates the timers of earlier silences
 };
 
@@ -56,7 +56,7 @@ struct EndpointCore {
   bool closed = false;
   std::optional<DeadlineWatch> deadline;
   bool deadline_set = false;  // a timer will look for overdue instances
-  std::set<Guid> refused;  // whose incompatibility has been told
+  std::set<Guid> refused;     // whose incompatibility has been told
 
   virtual ~EndpointCore() = default;
   virtual void deadline_missed(const KeyHash& key) = 0;
@@ -110,7 +110,8 @@ struct Link {
   std::pmr::map<std::uint64_t, Unacknowledged> pending{&call_memory()};  // reliable only
 };
 
-/// The network's whole state behind one mutex. Listeners run outside it, from one queue, one at a time.
+/// The network's whole state behind one mutex. Listeners run outside it, from one queue, one at a
+/// time.
 class Hub : public std::enable_shared_from_this<Hub> {
  public:
   explicit Hub(Clock& clock);
@@ -145,7 +146,8 @@ class Hub : public std::enable_shared_from_this<Hub> {
   // Who hears and knows whom (presence.cpp).
   bool connected(const ParticipantCore& one, const ParticipantCore& other) const;
   void update_presence();
-  void hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed, View& view);
+  void hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed,
+            View& view);
   void lose_sound(ParticipantCore& observer, ParticipantCore& observed, View& view);
   void expire_participant(const Guid& observer, const Guid& observed, std::uint64_t generation);
   void expire_liveliness(const LinkId& id, std::uint64_t generation);

@@ -8,7 +8,8 @@ bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed
   return view != observer.views.end() && view->second.known;
 }
 
-void Hub::match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr<ReaderCore>& reader) {
+void Hub::match(const std::shared_ptr<WriterCore>& writer,
+                const std::shared_ptr<ReaderCore>& reader) {
   if (writer->topic != reader->topic || !share_partition(writer->qos, reader->qos)) return;
   if (find_incompatibility(writer->topic.name, {}, writer->qos, reader->qos)) {
     tell_incompatible(writer, reader);

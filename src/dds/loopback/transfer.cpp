@@ -26,8 +26,10 @@ void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHas
     watch_deadline(core->second, key, state);
   }
   if (writer.qos.transient_local) {
-    if (state == InstanceState::Disposed) writer.history.erase(key);
-    else writer.history.push(key, message);
+    if (state == InstanceState::Disposed)
+      writer.history.erase(key);
+    else
+      writer.history.push(key, message);
   }
   for (auto link = links_.lower_bound({writer.guid, Guid{}});
        link != links_.end() && link->first.first == writer.guid; ++link) {
@@ -90,8 +92,8 @@ void Hub::send(Link& link, const MessagePtr& message, std::uint32_t attempt) {
                          !link.writer->participant->paused && !link.reader->participant->paused;
   Fate fate = Fate::drop();
   if (reachable) {
-    fate = judge_ ? judge_({id.first, id.second, link.writer->topic.name, message->sequence, attempt,
-                            message->cdr.size(), message->state})
+    fate = judge_ ? judge_({id.first, id.second, link.writer->topic.name, message->sequence,
+                            attempt, message->cdr.size(), message->state})
                   : Fate::deliver();
   }
   if (const auto entry = link.pending.find(message->sequence); entry != link.pending.end()) {
@@ -150,9 +152,9 @@ void Hub::accept(const Link& link, const MessagePtr& message) {
     return;
   }
   const Qos& offered = link.writer->qos;
-  const auto expiry = reader.gate.admit(message->key, message->writer,
-                                        {offered.strength, offered.lifespan}, message->written,
-                                        source_time());
+  const auto expiry =
+      reader.gate.admit(message->key, message->writer, {offered.strength, offered.lifespan},
+                        message->written, source_time());
   if (!expiry) return;
   watch_deadline(link.reader, message->key, message->state);
   if (reader.queue.push(message->key, {message, *expiry})) ++reader.replaced;
@@ -171,12 +173,13 @@ void Hub::accept(const Link& link, const MessagePtr& message) {
 void Hub::repeat_later(Link& link) {
   if (link.repeating) return;
   link.repeating = true;
-  after(LoopbackNetwork::kRepeatAfter, [id = LinkId{link.writer->guid, link.reader->guid}](Hub& hub) {
-    const auto found = hub.links_.find(id);
-    if (found == hub.links_.end()) return;
-    found->second.repeating = false;
-    hub.repeat_lost(found->second);
-  });
+  after(LoopbackNetwork::kRepeatAfter,
+        [id = LinkId{link.writer->guid, link.reader->guid}](Hub& hub) {
+          const auto found = hub.links_.find(id);
+          if (found == hub.links_.end()) return;
+          found->second.repeating = false;
+          hub.repeat_lost(found->second);
+        });
 }
 
 void Hub::repeat_lost(Link& link) {

@@ -16,9 +16,9 @@ namespace skein::navigation {
 /// The navigator's Body. It plans nothing itself: it completes each request with what the aircraft
 /// can fly, lets its entity's Head find a planner for it, and judges what the planner returns.
 ///
-/// A request's variable parameters are `Planner` (only the CSP of that name) and `Time limit`; what the
-/// request leaves open comes from the mission profile. The flight limits are always those of the flight
-/// controller, whatever the request says. The caller's deadline bounds everything.
+/// A request's variable parameters are `Planner` (only the CSP of that name) and `Time limit`; what
+/// the request leaves open comes from the mission profile. The flight limits are always those of
+/// the flight controller, whatever the request says. The caller's deadline bounds everything.
 ///
 /// Up to kMostRequests are planned at once; more are refused as Overloaded, so that status() and
 /// report() always find a thread.

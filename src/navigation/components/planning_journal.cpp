@@ -17,7 +17,8 @@ double in_ms(Duration duration) {
 }
 
 PlannerCandidate candidate_of(const Candidate& candidate) {
-  return {candidate.name, in_ms(candidate.latency.value_or(Duration::zero())), candidate.quality, true};
+  return {candidate.name, in_ms(candidate.latency.value_or(Duration::zero())), candidate.quality,
+          true};
 }
 
 /// Why it was chosen and what came of it, in one line.

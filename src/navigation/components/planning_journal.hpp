@@ -17,10 +17,9 @@ class PlanningJournal {
  public:
   void begin(const std::string& request_id);
 
-  /// Turns the Head's record into the report of the request: its reason has one line for each planner
-  /// that was tried, or `failure`, what ended the request, where none was.
-  void end(const std::string& request_id, const DecisionRecord& record,
-           const std::string& failure);
+  /// Turns the Head's record into the report of the request: its reason has one line for each
+  /// planner that was tried, or `failure`, what ended the request, where none was.
+  void end(const std::string& request_id, const DecisionRecord& record, const std::string& failure);
 
   /// The request that began last of those at work; empty if there is none.
   std::string current() const;

@@ -1,4 +1,5 @@
-// What a process of a mission loads to be the navigator, the flight controller or one of the planners.
+// What a process of a mission loads to be the navigator, the flight controller or one of the
+// planners.
 
 #include "flight_controller.hpp"
 #include "navigator.hpp"

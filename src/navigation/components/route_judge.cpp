@@ -63,13 +63,13 @@ Flaw judge_edge(const Terrain& terrain, const Problem& problem, const std::vecto
   }
   const double highest_m = std::max(a.altitude_m, b.altitude_m);
   if (highest_m > problem.limits.maximum_altitude_m + kHeight_m) {
-    return fmt::format("it climbs to {:.0f} m; the aircraft flies no higher than {:.0f} m", highest_m,
-                       problem.limits.maximum_altitude_m);
+    return fmt::format("it climbs to {:.0f} m; the aircraft flies no higher than {:.0f} m",
+                       highest_m, problem.limits.maximum_altitude_m);
   }
   const double climb = climb_deg(a, b);
   if (climb <= problem.limits.maximum_climb_angle_deg + kAngle_deg) return std::nullopt;
-  return fmt::format("it climbs at {:.1f} degrees; the aircraft climbs at no more than {:.1f}", climb,
-                     problem.limits.maximum_climb_angle_deg);
+  return fmt::format("it climbs at {:.1f} degrees; the aircraft climbs at no more than {:.1f}",
+                     climb, problem.limits.maximum_climb_angle_deg);
 }
 
 }  // namespace

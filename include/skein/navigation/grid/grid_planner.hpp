@@ -42,7 +42,8 @@ class GridPlanner {
 
 /// - `astar`: A* with a binary heap; the yardstick for the others;
 /// - `canonical-astar`: A* that leaves out all but one of equally long paths, with a bucket queue;
-/// - `landmarks`: the same with distances from 32 cells, which are computed when it is made (a search
+/// - `landmarks`: the same with distances from 32 cells, which are computed when it is made (a
+/// search
 ///   of the whole map for each; 128 bytes a cell), for maps that are full of scattered
 ///   obstacles, where the others look at almost every cell; planes only;
 /// - `jps`: jump point search, 57 cells at a glance; planes only;
