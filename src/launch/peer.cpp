@@ -176,7 +176,9 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
 }  // namespace
 
 EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer) {
-  return options_of(mission, peer, peer);
+  EntityOptions options = options_of(mission, peer, peer);
+  options.head = peer.head;
+  return options;
 }
 
 int run_process(const MissionProfile& mission, const std::string& process,

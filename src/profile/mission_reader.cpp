@@ -3,10 +3,12 @@
 
 #include "component_cache.hpp"
 #include "dictionary_reader.hpp"
+#include "head_reader.hpp"
 #include "rules_reader.hpp"
 #include "skein/profile/mission_profile.hpp"
 #include "text_file.hpp"
 #include "thread_rules_reader.hpp"
+#include "value_readers.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -158,7 +160,15 @@ class MissionReader {
                    "nice",
                    "cpus",
                    "spin",
-                   "lock_memory"},
+                   "lock_memory",
+                   "strategy",
+                   "history",
+                   "decision_log",
+                   "exploration",
+                   "most_stuck",
+                   "quarantine_after",
+                   "first_quarantine",
+                   "longest_quarantine"},
                   {"csp", "parameter"});
     PeerProfile peer;
     peer.where = element.where();
@@ -179,6 +189,7 @@ class MissionReader {
     peer.required = read_boolean(element, "required", true);
     peer.rules = read_process_rules(element);
     peer.threads = read_thread_rules(element);
+    peer.head = read_head_options(element);
     peer.parameters = parameters_of(element);
     for (const auto& child : element.children("csp")) peer.csps.push_back(csp_of(child, peer));
     return peer;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "skein/profile/dictionary.hpp"
+#include "value_readers.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -15,19 +15,6 @@ constexpr std::array<const char*, 8> kNames{"restart",      "restart_delay",  "m
                                             "max_restarts", "restart_window", "ready_timeout",
                                             "stop_timeout", "lock_memory"};
 
-nanoseconds read_time(const XmlElement& element, const char* name, nanoseconds fallback) {
-  const auto text = element.maybe_attribute(name);
-  if (!text) return fallback;
-  try {
-    const auto time = parse_duration(text->value);
-    if (time > nanoseconds(0)) return time;
-    element.findings().error(text->where, std::string(name) + " is zero", "write a length of time");
-  } catch (const InvalidArgument& error) {
-    element.findings().error(text->where, error.what());
-  }
-  return fallback;
-}
-
 RestartPolicy read_policy(const XmlElement& element) {
   const auto word = element.maybe_attribute("restart");
   if (!word) return RestartPolicy::Never;
@@ -35,22 +22,6 @@ RestartPolicy read_policy(const XmlElement& element) {
   element.findings().error(word->where, in_quotes(word->value) + " is no restart policy",
                            remedy_for(word->value, {"never", "on-failure", "always"}));
   return RestartPolicy::Never;
-}
-
-int read_count(const XmlElement& element, const char* name, int fallback) {
-  const auto text = element.maybe_attribute(name);
-  if (!text) return fallback;
-  DictionaryEntry entry;
-  entry.name = name;
-  entry.type = ValueType::Integer;
-  entry.minimum = 1;
-  entry.maximum = 1000;
-  try {
-    return static_cast<int>(std::get<std::int64_t>(parse_value(entry, text->value)));
-  } catch (const InvalidArgument& error) {
-    element.findings().error(text->where, error.what(), "write a number from 1 to 1000");
-    return fallback;
-  }
 }
 
 /// A window that is over before the restarts fit into it would never let the launcher give up.
@@ -93,15 +64,6 @@ void refuse_process_rules(const XmlElement& element) {
                                "write process=\"own\", or set it at the <peer>");
     }
   }
-}
-
-bool read_boolean(const XmlElement& element, const char* name, bool fallback) {
-  const auto text = element.maybe_attribute(name);
-  if (!text) return fallback;
-  if (text->value == "true" || text->value == "false") return text->value == "true";
-  element.findings().error(text->where, std::string(name) + " is " + in_quotes(text->value),
-                           "write true or false");
-  return fallback;
 }
 
 }  // namespace skein::profile

@@ -12,7 +12,4 @@ ProcessRules read_process_rules(const XmlElement& element);
 /// Findings for these attributes where there is no process that they could rule.
 void refuse_process_rules(const XmlElement& element);
 
-/// `true` or `false`; `fallback` if the attribute is missing.
-bool read_boolean(const XmlElement& element, const char* name, bool fallback);
-
 }  // namespace skein::profile

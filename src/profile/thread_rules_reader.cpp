@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "rules_reader.hpp"
 #include "skein/profile/dictionary.hpp"
+#include "value_readers.hpp"
 #include "words.hpp"
 
 namespace skein::profile {

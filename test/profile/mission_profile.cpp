@@ -106,6 +106,60 @@ TEST_CASE("A CSP without a process cannot lock memory, and none has more than on
   CHECK_THAT(text, Catch::Contains("m.xml:4:") && Catch::Contains("<csp> has no \"threads\""));
 }
 
+TEST_CASE("How a Head decides is read for peers; without a word it is as the Head itself has it") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="n" component="n.xml" strategy="learned" history="h.json" decision_log="d.jsonl"
+           exploration="0.25" most_stuck="7" quarantine_after="2" first_quarantine="300 ms"
+           longest_quarantine="5"/>
+         <peer name="f" component="f.xml"/>)"));
+  const skein::HeadOptions& head = mission.peers.at(0).head;
+  CHECK(head.strategy == "learned");
+  CHECK(head.history == "h.json");
+  CHECK(head.log == "d.jsonl");
+  CHECK(head.exploration == 0.25);
+  CHECK(head.most_stuck == 7);
+  CHECK(head.breaker.faults == 2);
+  CHECK(head.breaker.first_quarantine == 300ms);
+  CHECK(head.breaker.longest_quarantine == 5s);
+  const skein::HeadOptions& silent = mission.peers.at(1).head;
+  const skein::HeadOptions standard;
+  CHECK(silent.strategy == standard.strategy);
+  CHECK(silent.history.empty());
+  CHECK(silent.log.empty());
+  CHECK(silent.exploration == standard.exploration);
+  CHECK(silent.most_stuck == standard.most_stuck);
+  CHECK(silent.breaker.faults == standard.breaker.faults);
+  CHECK(silent.breaker.longest_quarantine == standard.breaker.longest_quarantine);
+}
+
+TEST_CASE("A Head that cannot decide as the profile says is found, with its place") {
+  ProfileFolder folder;
+  const auto [attributes, finding] = GENERATE(table<std::string, std::string>({
+      {R"(strategy="lerned")",
+       "unknown selection strategy 'lerned' (did you mean 'learned'?); there are: declared"},
+      {R"(stratgy="learned")", R"(did you mean 'strategy'?)"},
+      {R"(history="")", "history"},
+      {R"(decision_log="")", "decision_log"},
+      {R"(exploration="1.5")", "write a number from 0 to 1"},
+      {R"(exploration="much")", "write a number from 0 to 1"},
+      {R"(most_stuck="0")", "write a number from 1 to 1000"},
+      {R"(quarantine_after="0")", "write a number from 1 to 1000"},
+      {R"(first_quarantine="0")", "first_quarantine is zero"},
+      {R"(first_quarantine="2 min")", "longest_quarantine is shorter than first_quarantine"},
+      {R"(longest_quarantine="soon")", "\"soon\" is no length of time"},
+  }));
+  const std::string peer = R"(<peer name="n" component="n.xml" )" + attributes + "/>";
+  CHECK_THAT(folder.check(peer), Catch::Contains("m.xml:2:") && Catch::Contains(finding));
+}
+
+TEST_CASE("A CSP has no Head") {
+  ProfileFolder folder;
+  CHECK_THAT(folder.check(R"(<peer name="n" component="n.xml">
+    <csp component="p.xml" strategy="learned"/></peer>)"),
+             Catch::Contains("m.xml:3:") && Catch::Contains("<csp> has no \"strategy\""));
+}
+
 TEST_CASE("What the mission says holds for every peer that does not say otherwise") {
   ProfileFolder folder;
   folder.write("m.xml", R"(<mission name="m" vendor="cyclonedds" system="uav" interface="lan0">

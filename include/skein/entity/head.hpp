@@ -1,12 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "skein/connector/connector.hpp"
 #include "skein/entity/decision.hpp"
+#include "skein/entity/head_options.hpp"
 #include "skein/entity/task_run.hpp"
 #include "skein/rpc/service.hpp"
 
@@ -22,23 +22,6 @@ class NoCandidate : public Unavailable {
 class NoneAccepted : public Internal {
  public:
   using Internal::Internal;
-};
-
-struct HeadOptions {
-  /// For requests whose session names no other.
-  std::string strategy = "declared";
-  /// A file that holds the history: read at the start, where it is there, and written at the end.
-  std::string history{};
-  /// A file to which each decision is added as a line of JSON.
-  std::string log{};
-  /// The share of decisions in which `learned` may try a CSP only to learn of it.
-  double exploration = 0.02;
-  CircuitBreaker::Rules breaker{};
-  /// So many CSPs in this process that do not return make the peer degraded.
-  std::size_t most_stuck = 3;
-  /// Told of a CSP in another process that did not answer in the time that it was given, on the
-  /// thread that performs: whoever launched it may end and restart it. Must return soon.
-  std::function<void(const Candidate&)> on_hang{};
 };
 
 /// The deciding half of an entity: which CSPs run a task, whether their results are good enough,

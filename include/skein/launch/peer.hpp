@@ -8,8 +8,8 @@
 
 namespace skein::launch {
 
-/// How a peer joins its mission: vendor, domain, system, interface, shared memory, and how long its
-/// callers spin. Throws what dds::load_vendor throws.
+/// How a peer joins its mission: vendor, domain, system, interface, shared memory, how long its
+/// callers spin, and how its Head decides. Throws what dds::load_vendor throws.
 EntityOptions entity_options(const profile::MissionProfile& mission,
                              const profile::PeerProfile& peer);
 

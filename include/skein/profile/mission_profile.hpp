@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skein/entity/head_options.hpp"
 #include "skein/profile/component_description.hpp"
 #include "skein/profile/dictionary.hpp"
 #include "skein/profile/restart_rules.hpp"
@@ -62,6 +63,7 @@ struct PeerProfile {
   bool required = true;        ///< Whether its loss ends the mission.
   ProcessRules rules;
   ThreadRules threads;  ///< Of its public service.
+  HeadOptions head;     ///< How it chooses among its CSPs.
   std::vector<CspProfile> csps;
   std::vector<Setting> parameters;
   SourcePosition where;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "skein/entity/circuit_breaker.hpp"
+#include "skein/entity/selection.hpp"
+
+namespace skein {
+
+/// How a Head decides. A mission profile sets all but the last.
+struct HeadOptions {
+  /// For requests whose session names no other.
+  std::string strategy = "declared";
+  /// A file that holds the history: read at the start, where it is there, and written at the end.
+  std::string history{};
+  /// A file to which each decision is added as a line of JSON.
+  std::string log{};
+  /// The share of decisions in which `learned` may try a CSP only to learn of it.
+  double exploration = 0.02;
+  CircuitBreaker::Rules breaker{};
+  /// So many CSPs in this process that do not return make the peer degraded.
+  std::size_t most_stuck = 3;
+  /// Told of a CSP in another process that did not answer in the time that it was given, on the
+  /// thread that performs: whoever launched it may end and restart it. Must return soon.
+  std::function<void(const Candidate&)> on_hang{};
+};
+
+}  // namespace skein

@@ -1,0 +1,50 @@
+#include "head_reader.hpp"
+
+#include "skein/core/error.hpp"
+#include "value_readers.hpp"
+
+namespace skein::profile {
+namespace {
+
+void read_strategy(const XmlElement& element, std::string& strategy) {
+  const auto text = element.maybe_attribute("strategy");
+  if (!text) return;
+  try {
+    strategy = StrategyFactory().make(text->value)->name();
+  } catch (const InvalidArgument& error) {
+    element.findings().error(text->where, error.what());
+  }
+}
+
+void read_file_name(const XmlElement& element, const char* name, std::string& file) {
+  if (element.maybe_attribute(name)) file = element.attribute(name).value;
+}
+
+CircuitBreaker::Rules read_breaker(const XmlElement& element) {
+  CircuitBreaker::Rules rules;
+  rules.faults = static_cast<unsigned>(
+      read_count(element, "quarantine_after", static_cast<int>(rules.faults)));
+  rules.first_quarantine = read_time(element, "first_quarantine", rules.first_quarantine);
+  rules.longest_quarantine = read_time(element, "longest_quarantine", rules.longest_quarantine);
+  if (rules.longest_quarantine < rules.first_quarantine) {
+    element.findings().error(element.where(), "longest_quarantine is shorter than first_quarantine",
+                             "make it longer, or first_quarantine shorter");
+  }
+  return rules;
+}
+
+}  // namespace
+
+HeadOptions read_head_options(const XmlElement& element) {
+  HeadOptions head;
+  read_strategy(element, head.strategy);
+  read_file_name(element, "history", head.history);
+  read_file_name(element, "decision_log", head.log);
+  head.exploration = read_share(element, "exploration", head.exploration);
+  head.most_stuck = static_cast<std::size_t>(
+      read_count(element, "most_stuck", static_cast<int>(head.most_stuck)));
+  head.breaker = read_breaker(element);
+  return head;
+}
+
+}  // namespace skein::profile
