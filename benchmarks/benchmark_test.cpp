@@ -336,6 +336,14 @@ TEST_CASE("no rival and no way to call is missing") {
   }
 }
 
+TEST_CASE("no kind of decision is missing") {
+  const json& results = QuickRun::get().results;
+  for (const char* where : {"1 CSP, declared", "4 CSPs, learned"}) {
+    CHECK(has(results, "Head and dispatch around a CSP in the process", "skein", {{"where", where}},
+              "limit 2 us"));
+  }
+}
+
 TEST_CASE("no kind of grid is missing, and those of the test data are skipped without it") {
   const json& results = QuickRun::get().results;
   const std::string mean = "a path on a grid, mean over a map";

@@ -25,6 +25,7 @@ struct Plan {
   CallPlan ways;
   RivalPlan rivals;
   CallPlan idle_clients;
+  HeadPlan head;
   FindPlan find;
   std::size_t cold_starts;
   JoinPlan joins;
@@ -43,6 +44,7 @@ Plan full_plan() {
           ways,
           {sizes, 15, 400, 320, 1000, 200, 3000},
           {{{64, 300}}, 60},
+          {300, 60},
           {200, 20},
           20,
           {50, 3},
@@ -60,6 +62,7 @@ Plan quick_plan() {
           {sizes, 1},
           {sizes, 1, 5, 32, 64, 5, 10},
           {{{64, 3}}, 1},
+          {20, 2},
           {3, 1},
           1,
           {4, 1},
@@ -101,6 +104,7 @@ const std::vector<Part> kParts{
      [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
     {"in_process",
      [](Configurations& all, const Plan& plan) { return compare_in_process(all, plan.rivals); }},
+    {"head", [](Configurations& all, const Plan& plan) { return compare_head(all, plan.head); }},
     {"idle_clients", [](Configurations& all,
                         const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
     {"find_service",

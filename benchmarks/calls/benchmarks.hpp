@@ -48,6 +48,13 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
 /// A call while 32 other clients of the same service do nothing, beside one without them.
 std::vector<Comparison> compare_idle_clients(Configurations& configurations, const CallPlan& plan);
 
+/// What a Head and its dispatch add to the call of a CSP that lives in its process.
+struct HeadPlan {
+  std::size_t tasks;
+  std::size_t rounds;
+};
+std::vector<Comparison> compare_head(Configurations& configurations, const HeadPlan& plan);
+
 struct FindPlan {
   std::size_t searches;
   std::size_t rounds;

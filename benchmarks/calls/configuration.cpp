@@ -127,6 +127,10 @@ Configuration Configurations::omniorb_in_process(const std::string& transport) {
           {folder_ + "/skein_bench_omniorb", "collocated", next_domain(), transport}};
 }
 
+Configuration Configurations::skein_head() {
+  return {"skein", {}, {folder_ + "/skein_bench", "peer", "--role", "head"}};
+}
+
 Configuration Configurations::skein_finder() {
   return {"skein", {}, {folder_ + "/skein_bench", "peer", "--role", "finder"}};
 }

@@ -55,6 +55,8 @@ class Configurations {
   Configuration skein_in_process();
   /// `transport` is `shortcut` for a POA whose calls within the process pass by the ORB.
   Configuration omniorb_in_process(const std::string& transport);
+  /// A Head and its CSPs in one process; knows what calls/head_peer.hpp says.
+  Configuration skein_head();
   /// Clients that know `bind COUNT` and `find COUNT`: of a Broker's table, and of omniORB's name
   /// server.
   Configuration skein_finder();

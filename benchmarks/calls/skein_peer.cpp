@@ -5,13 +5,14 @@
 #include <random>
 #include <thread>
 
+#include "calls/alone.hpp"
+#include "calls/head_peer.hpp"
 #include "calls/skein_neighbour.hpp"
 #include "calls/survivor.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
 #include "skein/brokerless_discovery/broker.hpp"
-#include "skein/dds/loopback.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity/entity.hpp"
 
@@ -107,20 +108,6 @@ void call(const SkeinPeer& peer) {
                   {"told", [&](const std::string&) { return held.told(); }}};
   run_client(client);
 }
-
-/// An entity that needs no vendor, because it speaks to nobody outside its process.
-struct Alone {
-  SystemClock clock{};
-  dds::LoopbackNetwork network{clock};
-  std::optional<Entity> entity{};
-
-  Alone() {
-    EntityOptions options;
-    options.name = "alone";
-    options.vendor = network.vendor();
-    entity.emplace(options);
-  }
-};
 
 /// Both ends in one process: the lane without DDS.
 void call_in_process() {
@@ -228,6 +215,7 @@ int run_skein_peer(const SkeinPeer& peer) {
     if (peer.survives) return survive(peer);
     if (peer.role == "server") return serve(peer);
     if (peer.role == "finder") return find_services();
+    if (peer.role == "head") return perform_tasks();
     if (peer.role == "neighbour") return be_neighbour(peer);
     if (peer.role == "bystander") return be_bystander(peer);
     peer.role == "local" ? call_in_process() : call(peer);
