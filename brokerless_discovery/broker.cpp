@@ -12,7 +12,7 @@
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/idl/codec.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -42,12 +42,6 @@ void check_name(const std::string& what, const std::string& name) {
   if (!name.empty() && std::all_of(name.begin(), name.end(), allowed)) return;
   throw InvalidArgument("'" + name + "' is no name for " + what +
                         ": use letters, digits, '_', '-' and '.'");
-}
-
-Bytes encode(const ServiceDescription& description) {
-  Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
-  idl::type_support<ServiceDescription>().encode(&description, message);
-  return message;
 }
 
 }  // namespace
@@ -102,8 +96,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
       return apply([&](Table& table) { return table.on_withdrawn(sample.key); });
     }
     try {
-      ServiceDescription description;
-      idl::type_support<ServiceDescription>().decode(&description, sample.cdr, 4);
+      auto description = idl::decode_message<ServiceDescription>(sample.cdr);
       watch_process(description);
       apply([&](Table& table) {
         return table.on_description(std::move(description), sample.writer);
@@ -204,7 +197,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
     const Guid provider{description.provider};
     std::lock_guard lock(writing);
     Own& mine = own[provider];
-    mine.message = encode(description);
+    mine.message = idl::encode_message(description);
     mine.description = std::move(description);
     write(mine);
   }

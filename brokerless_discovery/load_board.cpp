@@ -8,7 +8,7 @@
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/idl/codec.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -78,8 +78,7 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
       return;
     }
     try {
-      ServiceLoad load;
-      idl::type_support<ServiceLoad>().decode(&load, sample.cdr, 4);
+      const auto load = idl::decode_message<ServiceLoad>(sample.cdr);
       loads[{load.provider}] = {load.requests, sample.writer};
     } catch (const std::exception&) {
       // Who tells what cannot be read is taken for idle.
@@ -114,11 +113,9 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
 
   void write(const Guid& provider, std::size_t load) {
     const ServiceLoad sample{provider.bytes, static_cast<std::uint32_t>(load)};
-    Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
-    idl::type_support<ServiceLoad>().encode(&sample, message);
     try {
       if (!writer) writer = participant.create_writer(kTopic, load_qos());
-      writer->write(message, provider);
+      writer->write(idl::encode_message(sample), provider);
     } catch (const Error& error) {
       log(LogLevel::Warning, "broker", std::string("a load was not told: ") + error.what());
     }

@@ -5,7 +5,7 @@
 
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::introspection {
@@ -37,10 +37,8 @@ struct DecisionTopic::State {
       target = writer;
     }
     if (!target) return;
-    Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
-    idl::type_support<Decision>().encode(&decision, message);
     try {
-      target->write(message);
+      target->write(idl::encode_message(decision));
     } catch (const Error& error) {
       log(LogLevel::Warning, kTopic.name, std::string("a decision was not sent: ") + error.what());
     }
@@ -80,7 +78,7 @@ DecisionReader::DecisionReader(dds::Participant& participant,
       if (sample.state != dds::InstanceState::Alive) return;
       Decision decision;
       try {
-        idl::type_support<Decision>().decode(&decision, sample.cdr, 4);
+        decision = idl::decode_message<Decision>(sample.cdr);
       } catch (const std::exception& error) {
         log(LogLevel::Warning, kTopic.name,
             std::string("dropped a malformed sample: ") + error.what());

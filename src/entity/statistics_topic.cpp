@@ -7,7 +7,7 @@
 
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::introspection {
@@ -76,10 +76,8 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
   }
 
   static void write(dds::Writer& writer, const ServiceStatistics& statistics) {
-    Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
-    idl::type_support<ServiceStatistics>().encode(&statistics, message);
     try {
-      writer.write(message, key_hash(statistics));
+      writer.write(idl::encode_message(statistics), key_hash(statistics));
     } catch (const Error& error) {
       log(LogLevel::Warning, statistics.service,
           std::string("statistics were not sent: ") + error.what());
@@ -126,7 +124,7 @@ struct StatisticsReader::State {
     }
     ServiceStatistics statistics;
     try {
-      idl::type_support<ServiceStatistics>().decode(&statistics, sample.cdr, 4);
+      statistics = idl::decode_message<ServiceStatistics>(sample.cdr);
     } catch (const std::exception& error) {
       log(LogLevel::Warning, kTopic.name,
           std::string("dropped a malformed sample: ") + error.what());

@@ -5,7 +5,7 @@
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/log.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {
@@ -135,10 +135,8 @@ void CallJournal::write_all() {
   if (!writer) return;
   for (CallEvent& event : events) {
     event.dropped = dropped;
-    Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
-    idl::type_support<CallEvent>().encode(&event, message);
     try {
-      writer->write(message);
+      writer->write(idl::encode_message(event));
     } catch (const Error& error) {
       log(LogLevel::Warning, kTopic.name, std::string("an event was not sent: ") + error.what());
     }
@@ -153,7 +151,7 @@ CallJournalReader::CallJournalReader(dds::Participant& participant,
       if (sample.state != dds::InstanceState::Alive) return;
       CallEvent event;
       try {
-        idl::type_support<CallEvent>().decode(&event, sample.cdr, 4);
+        event = idl::decode_message<CallEvent>(sample.cdr);
       } catch (const std::exception& error) {
         log(LogLevel::Warning, kTopic.name,
             std::string("dropped a malformed sample: ") + error.what());
