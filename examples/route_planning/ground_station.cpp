@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "ad_manager.idl.hpp"
 #include "flight_controller.idl.hpp"
 #include "mission_text.hpp"
 #include "skein/core/error.hpp"
@@ -52,6 +53,16 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
+AE_navigator::GroundPoint on_ground(const AE_navigator::Position& position) {
+  return {position.north_m, position.east_m};
+}
+
+void use(const AE_adManagerI::ThreatPicture& picture, Problem& problem) {
+  problem.radar_sites = picture.radar_sites;
+  problem.missile_sites = picture.missile_sites;
+  problem.threat_epoch = picture.epoch;
+}
+
 double seconds(skein::Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
@@ -69,9 +80,11 @@ GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& value
 
 bool GroundStation::fly() {
   introduce();
-  for (const auto step : {&GroundStation::brief_planners, &GroundStation::ask_with_time,
-                          &GroundStation::ask_in_a_hurry, &GroundStation::ask_and_kill_the_planner,
-                          &GroundStation::ask_for_the_unreachable, &GroundStation::draw}) {
+  for (const auto step :
+       {&GroundStation::brief_planners, &GroundStation::ask_with_time,
+        &GroundStation::ask_for_what_was_shown, &GroundStation::ask_in_a_hurry,
+        &GroundStation::ask_and_kill_the_planner, &GroundStation::ask_with_an_old_picture,
+        &GroundStation::ask_for_the_unreachable, &GroundStation::draw}) {
     try {
       (this->*step)();
     } catch (const skein::Error& error) {
@@ -102,7 +115,7 @@ void GroundStation::brief_planners() {
   const skein::Instant begin = entity_.clock().now();
   std::string names;
   for (const std::string& planner : planners_) {
-    navigator_.brief(planner, skein::navigation::demo_problem(*terrain_));
+    navigator_.train(planner, skein::navigation::demo_problem(*terrain_));
     names += (names.empty() ? "" : ", ") + planner;
   }
   if (names.empty()) return;
@@ -111,19 +124,30 @@ void GroundStation::brief_planners() {
 }
 
 void GroundStation::ask_with_time() {
-  print_heading("1  Two seconds to think");
+  print_heading("1  Two seconds to think; planners are selected by what they declare");
+  navigator_.select_by("declared");
   const Question question{"crossing", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
-  accept("2 s to think", question, show(question, navigator_.ask(question)));
+  accept("2 s, by declaration", question, show(question, navigator_.ask(question)));
+}
+
+void GroundStation::ask_for_what_was_shown() {
+  print_heading("2  The same question; planners are selected by what they have shown");
+  navigator_.select_by("learned");
+  const Question question{"crossing again", flyable(skein::navigation::demo_problem(*terrain_)),
+                          2s};
+  accept("2 s, by experience", question, show(question, navigator_.ask(question)));
 }
 
 void GroundStation::ask_in_a_hurry() {
-  print_heading("2  50 milliseconds to think");
-  const Question question{"hurry", flyable(skein::navigation::demo_problem(*terrain_)), 50ms, 5};
-  accept("50 ms to think", question, show(question, navigator_.ask(question)));
+  print_heading("3  50 milliseconds to think");
+  const Question question{"hurry", flyable(skein::navigation::demo_problem(*terrain_)), 50ms, 10};
+  accept("50 ms", question, show(question, navigator_.ask(question)));
 }
 
+// The one that declares most thinks for long enough to be found at work.
 void GroundStation::ask_and_kill_the_planner() {
-  print_heading("3  Two seconds to think, and the planner is killed");
+  print_heading("4  Two seconds to think, and the planner is killed");
+  navigator_.select_by("declared");
   const Question question{"loss", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
   Kill kill;
   const Answer answer = navigator_.ask_and_kill(question, kill);
@@ -139,8 +163,37 @@ void GroundStation::ask_and_kill_the_planner() {
                           kill.planner, seconds(entity_.clock().now() - kill.at)));
 }
 
+// A radar at the goal is off the air again, and missiles stand where the last route led: the
+// question knows the one and not the other, the AD manager both.
+void GroundStation::ask_with_an_old_picture() {
+  print_heading("5  A cap on exposure, and threats that are not up to date");
+  if (routes_.empty()) return fail("there is no route yet on which missiles could stand");
+  navigator_.select_by("learned");
+  auto ad_manager = entity_.connect<AE_adManagerI::IAdManager>({.timeout = 20s}).within(20s);
+  Question question{"old picture", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
+  Problem& problem = question.problem;
+  const AE_navigator::Route& before = routes_.back().route;
+  const std::string& name = problem.terrain;
+  use(ad_manager.radar_found(name, {"Echo", on_ground(problem.goal), 20, 5000, 1}), problem);
+  problem.exposure_cap_m = 3 * before.radar_exposure + 10'000;
+  problem.kill_weight_m = 100'000;
+  ad_manager.radar_silent(name, "Echo");
+  const auto middle = before.waypoints[before.waypoints.size() / 2];
+  const auto now = ad_manager.missiles_found(name, {"Sierra", on_ground(middle), 20, 4000, 0.02});
+  print_field("threats",
+              fmt::format("the question holds picture {}, with a radar at the goal; by picture {} "
+                          "it is off the air, and missiles stand on the last route",
+                          problem.threat_epoch, now.epoch));
+  print_field("cap", fmt::format("{:.1f} km of exposure", problem.exposure_cap_m / 1000));
+  const Answer answer = show(question, navigator_.ask(question));
+  use(now, problem);
+  accept("fresh picture", question, answer);
+  if (answer.route && answer.route->threat_epoch != now.epoch)
+    fail("the route was planned with old threats");
+}
+
 void GroundStation::ask_for_the_unreachable() {
-  print_heading("4  A goal that cannot be reached");
+  print_heading("6  A goal that cannot be reached");
   const Question question{"unreachable",
                           flyable(skein::navigation::unreachable_demo_problem(*terrain_)), 5s};
   const Answer answer = show(question, navigator_.ask(question));
@@ -154,7 +207,7 @@ Answer GroundStation::show(const Question& question, Answer answer) {
   if (answer.route) {
     print_route(*answer.route);
   } else {
-    print_field("refused", (answer.proven ? "proved: " : "without proof: ") + answer.refusal);
+    print_refusal(answer);
   }
   print_time(answer, question.time_to_think);
   return answer;

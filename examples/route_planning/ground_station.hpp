@@ -15,7 +15,8 @@
 namespace route_planning {
 
 /// Asks a navigator for routes across a terrain, past radar sites and no-fly zones: with time to
-/// think, in a hurry, with the planner killed while it plans, and to a goal that cannot be reached.
+/// think, by what planners declare and by what they have shown; in a hurry; with the planner killed
+/// while it plans; with threats that are out of date; and to a goal that cannot be reached.
 /// Believes none of the answers before the route checker has seen them.
 ///
 /// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the
@@ -34,8 +35,10 @@ class GroundStation {
   void introduce();
   void brief_planners();
   void ask_with_time();
+  void ask_for_what_was_shown();
   void ask_in_a_hurry();
   void ask_and_kill_the_planner();
+  void ask_with_an_old_picture();
   void ask_for_the_unreachable();
   void draw();
   bool conclude();

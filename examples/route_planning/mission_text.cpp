@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 
@@ -23,11 +24,21 @@ void print_line(const std::string& line) {
 
 std::string role_of(const AE_navigatorI::PlannerCandidate& planner, const Answer& answer) {
   if (!planner.available) return "not there";
-  const auto& tried = answer.report.tried;
-  const auto found = std::find(tried.begin(), tried.end(), planner.planner);
-  if (found == tried.end()) return "stood by";
-  const bool answered = answer.route && found + 1 == tried.end();
-  return answered ? "chosen, gave the route" : "chosen, gave no route";
+  std::string role;
+  for (const auto& attempt : answer.report.attempts) {
+    if (attempt.planner == planner.planner) role = attempt.outcome;
+  }
+  if (!role.empty()) return role;
+  return planner.quarantined ? "in quarantine" : "stood by";
+}
+
+/// As wide as the columns under "measured".
+std::string measured(const AE_navigatorI::PlannerCandidate& planner) {
+  if (planner.runs == 0) return fmt::format("   {:<36}", "has not run before");
+  if (planner.q95_ms == 0) return fmt::format("   no answer in {:<3} {:<20}", planner.runs, "runs");
+  return fmt::format("{:>5.0f}{:>7.0f} ms{:>8.2f}{:>6}{:>8.0f} %", planner.median_ms,
+                     planner.q95_ms, planner.measured_quality, planner.runs,
+                     100 * planner.accepted);
 }
 
 }  // namespace
@@ -56,33 +67,52 @@ void print_field(std::string_view label, std::string_view text) {
 
 void print_planners(const Answer& answer) {
   auto planners = answer.report.candidates;
-  std::stable_sort(planners.begin(), planners.end(),
-                   [](const auto& a, const auto& b) { return a.quality > b.quality; });
-  bool first = true;
+  std::stable_sort(planners.begin(), planners.end(), [](const auto& a, const auto& b) {
+    return a.declared_quality > b.declared_quality;
+  });
+  print_line(
+      fmt::format("  {:<22}{:>17}   {:>31}", "planners", "declared", "measured on like requests"));
+  print_line(fmt::format("{:24}{:>9}{:>8}   {:>5}{:>7}{:>11}{:>6}{:>10}   {}", "", "latency",
+                         "quality", "p50", "p95", "quality", "runs", "accepted", "here"));
   for (const auto& planner : planners) {
-    print_line(fmt::format("  {:<10}{:<12}{:>6.0f} ms   quality {:<6.2f}  {}",
-                           first ? "planners" : "", planner.planner, planner.predicted_latency_ms,
-                           planner.quality, role_of(planner, answer)));
-    first = false;
+    print_line(fmt::format("{:12}{:<12}{:>6.0f} ms{:>8.2f}   {}   {}", "", planner.planner,
+                           planner.declared_ms, planner.declared_quality, measured(planner),
+                           role_of(planner, answer)));
   }
 }
 
 void print_decision(const Answer& answer) {
-  std::istringstream lines(answer.report.reason);
-  std::size_t number = 0;
-  for (std::string line; std::getline(lines, line); ++number) {
-    const auto& tried = answer.report.tried;
-    const std::string count = tried.size() > 1 ? fmt::format("{}. ", number + 1) : "";
-    print_field(number == 0 ? "why" : "", count + line);
+  const auto& attempts = answer.report.attempts;
+  if (attempts.empty()) return print_field("why", answer.report.failure);
+  std::uint32_t epoch = attempts.front().threat_epoch;
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    const auto& attempt = attempts[i];
+    if (attempt.threat_epoch != epoch) {
+      epoch = attempt.threat_epoch;
+      print_field("anew", fmt::format("with threat picture {}, from the AD manager", epoch));
+    }
+    print_field(i == 0 ? "why" : "", fmt::format("{}. {}", i + 1, attempt.reason));
+    std::string outcome = fmt::format("{} after {:.0f} ms", attempt.outcome, attempt.took_ms);
+    if (!attempt.check.empty()) outcome += fmt::format(" by the check '{}'", attempt.check);
+    if (!attempt.text.empty()) outcome += ": " + attempt.text;
+    print_field("", "   => " + outcome);
   }
 }
 
+void print_refusal(const Answer& answer) {
+  std::string text = answer.proven ? "there is no route, with a proof" : "no route was found";
+  if (answer.report.attempts.empty()) text += ": " + answer.refusal;
+  print_field("refused", text);
+}
+
 void print_route(const AE_navigator::Route& route) {
-  print_field("route",
-              fmt::format("{:.2f} km by {}, lowest {:.0f} m above ground, radar exposure "
-                          "{:.2f} km, {} waypoints",
-                          route.length_m / 1000, route.planner, route.lowest_height_above_ground_m,
-                          route.radar_exposure / 1000, route.waypoints.size()));
+  std::string text = fmt::format(
+      "{:.2f} km by {}, lowest {:.0f} m above ground, radar exposure {:.2f} km, {} waypoints",
+      route.length_m / 1000, route.planner, route.lowest_height_above_ground_m,
+      route.radar_exposure / 1000, route.waypoints.size());
+  if (route.expected_kills > 0)
+    text += fmt::format(", survived with {:.1f} %", 100 * std::exp(-route.expected_kills));
+  print_field("route", text);
 }
 
 void print_time(const Answer& answer, skein::Duration allowed) {

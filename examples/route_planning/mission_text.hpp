@@ -17,11 +17,15 @@ void print_heading(std::string_view title);
 /// A label and its text, which is wrapped and indented behind the label.
 void print_field(std::string_view label, std::string_view text);
 
-/// Which planners stood by, what they promise, and which of them were tried.
+/// Which planners stood by, what their descriptions declare beside what they have shown on like
+/// requests, and what came of those that were tried.
 void print_planners(const Answer& answer);
 
-/// One numbered line for each planner that was tried: why, and what came of it.
+/// For each planner that was tried: why it was, and what came of it.
 void print_decision(const Answer& answer);
+
+/// That there is no route, and whether that is proved; where no planner was tried, why.
+void print_refusal(const Answer& answer);
 
 void print_route(const AE_navigator::Route& route);
 

@@ -21,6 +21,9 @@ using AE_navigatorI::PlanningStatus;
 using skein::Instant;
 
 constexpr auto kPatience = 20s;
+// A quick planner runs so often that what it took to load the terrain is forgotten.
+constexpr int kPractice = 12;
+constexpr auto kQuick = 100ms;
 // A planner that is to be killed is to be at work, not just done.
 constexpr auto kLeftToPlan = 200ms;
 
@@ -48,20 +51,39 @@ Answer answer_of(skein::Clock& clock, Ask ask) {
 NavigatorLink::NavigatorLink(skein::Entity& entity)
     : entity_(entity), navigator_(entity.connect<INavigator>({.timeout = kPatience})) {}
 
+void NavigatorLink::select_by(const std::string& strategy) {
+  navigator_ = entity_.connect<INavigator>({.strategy = strategy, .timeout = kPatience});
+}
+
 void NavigatorLink::brief(const std::string& planner, AE_navigator::Problem problem) {
   problem.time_limit_ms = 2000;
   const Instant deadline = entity_.clock().now() + kPatience;
-  for (;;) {
-    try {
-      navigator_.within(kPatience).request_route({"briefing " + planner, problem, planner});
-      return;
-    } catch (const AE_navigator::NoRoute&) {
-      return;  // It answered, which is all that counts here.
-    } catch (const skein::Unavailable&) {
-      if (entity_.clock().now() >= deadline) throw;
-    }
+  while (!practise(planner, problem)) {
+    if (entity_.clock().now() >= deadline)
+      throw skein::Unavailable(fmt::format("{} does not stand by at the navigator", planner));
     std::this_thread::sleep_for(20ms);
   }
+}
+
+void NavigatorLink::train(const std::string& planner, AE_navigator::Problem problem) {
+  brief(planner, problem);
+  problem.time_limit_ms = 400;
+  for (int i = 0; i < kPractice; ++i) {
+    const Instant begin = entity_.clock().now();
+    practise(planner, problem);
+    if (entity_.clock().now() - begin > kQuick) break;
+  }
+}
+
+bool NavigatorLink::practise(const std::string& planner, const AE_navigator::Problem& problem) {
+  try {
+    navigator_.within(kPatience).request_route({"briefing " + planner, problem, planner});
+  } catch (const AE_navigator::NoRoute&) {
+    // It answered, which is all that counts here.
+  } catch (const skein::Unavailable&) {
+    return false;
+  }
+  return true;
 }
 
 Answer NavigatorLink::ask(const Question& question) {

@@ -42,9 +42,17 @@ class NavigatorLink {
   /// Waits for the navigator. Throws Unavailable, with the reason, where it does not appear.
   explicit NavigatorLink(skein::Entity& entity);
 
+  /// Leaves the session with the navigator's Head and opens one that selects planners by that
+  /// strategy.
+  void select_by(const std::string& strategy);
+
   /// Has that planner plan once without a hurry, so that it knows the terrain. Waits until the
   /// planner stands by; throws Unavailable where it does not in 20 s.
   void brief(const std::string& planner, AE_navigator::Problem problem);
+
+  /// Briefs it, and has it plan once more, a quick one often, so that the navigator knows what it
+  /// takes where it knows the terrain.
+  void train(const std::string& planner, AE_navigator::Problem problem);
 
   /// Asks for a route. Throws what the navigator throws apart from its refusals.
   Answer ask(const Question& question);
@@ -56,6 +64,8 @@ class NavigatorLink {
 
  private:
   Answer ask_once(const Question& question);
+  /// Has it plan once; false where it does not stand by.
+  bool practise(const std::string& planner, const AE_navigator::Problem& problem);
   /// Waits for a planner that is at work for some time.
   AE_navigatorI::PlanningStatus await_planner(skein::Instant deadline);
   void require_killable(const AE_navigatorI::PlanningStatus& status);

@@ -6,13 +6,14 @@ namespace {
 
 using selection_text::in_ms;
 using selection_text::number;
+using selection_text::percent;
 
 std::string learned_text(const Prediction& learned) {
   std::string text = "has shown over " + std::to_string(learned.samples) + " like runs";
   if (learned.median) text += " " + in_ms(*learned.median);
   if (learned.q95) text += ", " + in_ms(*learned.q95) + " at 95 %";
   if (learned.quality) text += ", quality " + number(*learned.quality);
-  return text + ", " + number(100 * learned.reliability) + " % accepted";
+  return text + ", " + percent(learned.reliability) + " accepted";
 }
 
 std::string line_of(const Candidate& candidate) {

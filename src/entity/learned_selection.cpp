@@ -8,6 +8,7 @@ namespace {
 
 using selection_text::in_ms;
 using selection_text::number;
+using selection_text::percent;
 
 // Utilities this near to each other are taken for equal: they rest on few samples.
 constexpr double kEqual = 0.95;
@@ -103,17 +104,18 @@ class Choice {
     return {best, situation_.remaining - reserve, std::move(reason), outlooks_[best].safe};
   }
 
+  static std::string runs_text(std::size_t count) {
+    return count == 1 ? "like run " : std::to_string(count) + " like runs ";
+  }
+
   std::string outlook_text(std::size_t index) const {
     const Candidate& candidate = candidates_[index];
-    std::string text =
-        candidate.learned
-            ? "by its last " + std::to_string(candidate.learned->samples) + " like runs "
-            : "by its description (it has not run before) ";
+    std::string text = candidate.learned ? "by its last " + runs_text(candidate.learned->samples)
+                                         : "by its description (it has not run before) ";
     text += "a 95 % latency of " + in_ms(outlooks_[index].safe) + ", quality " +
             number(candidate.learned ? candidate.learned->quality.value_or(candidate.quality)
                                      : candidate.quality);
-    if (candidate.learned)
-      text += " and " + number(100 * candidate.learned->reliability) + " % accepted";
+    if (candidate.learned) text += " and " + percent(candidate.learned->reliability) + " accepted";
     return text;
   }
 

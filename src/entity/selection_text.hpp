@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "skein/core/clock.hpp"
@@ -7,12 +8,16 @@
 /// How reasons are put in words.
 namespace skein::selection_text {
 
+/// With three decimals at most.
 inline std::string number(double value) {
   std::string text = std::to_string(value);
+  text.erase(text.size() - 3);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
 }
+
+inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 /// Whole milliseconds; below ten with a tenth.
 inline std::string in_ms(Duration duration) {

@@ -24,7 +24,7 @@ class CappedSearch {
   CappedSearch(std::shared_ptr<TerrainProvider> terrains, const PlannerOptions& options,
                const Problem& problem, Report report)
       : planner_(make_a_star(std::move(terrains), options)),
-        options_(options),
+        cap_m_(cap_of(options, problem)),
         report_(std::move(report)),
         problem_(problem),
         budget_(options, problem.time_limit_ms),
@@ -68,7 +68,7 @@ class CappedSearch {
     }
     Route route = timed_plan(problem);
     route.planner = "CappedAStar";
-    if (route.radar_exposure > options_.exposure_cap_m) {
+    if (route.radar_exposure > cap_m_) {
       least_exposure_m_ = std::min(least_exposure_m_, route.radar_exposure);
       return false;
     }
@@ -105,12 +105,17 @@ class CappedSearch {
   [[noreturn]] void refuse() const {
     throw NoRoute(fmt::format("the least exposed route that was found has an exposure of {:.0f} m; "
                               "the cap is {:.0f} m",
-                              least_exposure_m_, options_.exposure_cap_m),
+                              least_exposure_m_, cap_m_),
                   false);
   }
 
+  static double cap_of(const PlannerOptions& options, const Problem& problem) {
+    return problem.exposure_cap_m > 0 ? std::min(problem.exposure_cap_m, options.exposure_cap_m)
+                                      : options.exposure_cap_m;
+  }
+
   std::unique_ptr<AE_navigator::IPlanner> planner_;
-  const PlannerOptions& options_;
+  const double cap_m_;
   Report report_;
   const Problem& problem_;
   PlanningBudget budget_;

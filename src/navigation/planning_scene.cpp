@@ -54,7 +54,12 @@ PlanningScene::PlanningScene(TerrainProvider& terrains, const AE_navigator::Prob
 }
 
 const RiskMap& PlanningScene::risk() const {
-  if (!risk_) risk_.emplace(*terrain_, problem_.radar_sites, grid(), surface_.altitudes_m());
+  if (!risk_) {
+    risk_.emplace(*terrain_, grid(), surface_.altitudes_m());
+    if (problem_.exposure_weight > 0) risk_->add(problem_.radar_sites, problem_.exposure_weight);
+    if (problem_.kill_weight_m > 0)
+      risk_->add(problem_.missile_sites, problem_.kill_weight_m / problem_.limits.speed_m_s);
+  }
   return *risk_;
 }
 
@@ -82,10 +87,14 @@ bool PlanningScene::free(const GroundPoint& a, const GroundPoint& b, Berth berth
   return !zone_across(a, b, berth);
 }
 
+bool PlanningScene::fears_threats() const {
+  return (problem_.exposure_weight > 0 && !problem_.radar_sites.empty()) ||
+         (problem_.kill_weight_m > 0 && !problem_.missile_sites.empty());
+}
+
 double PlanningScene::cost(const GroundPoint& a, const GroundPoint& b) const {
   const double length = distance_m(a, b);
-  if (problem_.exposure_weight == 0 || problem_.radar_sites.empty()) return length;
-  return length + problem_.exposure_weight * risk().along(a, b);
+  return fears_threats() ? length + risk().along(a, b) : length;
 }
 
 }  // namespace skein::navigation

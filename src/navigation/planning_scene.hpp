@@ -35,7 +35,11 @@ class PlanningScene {
     return keep_outs_[berth == Berth::ForTurns];
   }
 
-  /// Made at first use; a planner that does not care about radars never pays for it.
+  /// Whether threats cost anything.
+  bool fears_threats() const;
+
+  /// What threats cost in metres of detour per metre flown. Made at first use; a planner that does
+  /// not care about threats never pays for it.
   const RiskMap& risk() const;
 
   /// The zone that a leg along the flight surface would enter, or nullptr.
@@ -48,7 +52,7 @@ class PlanningScene {
   /// Whether the straight leg stays on open surface and clear of the zones.
   bool free(const GroundPoint& a, const GroundPoint& b, Berth berth) const;
 
-  /// Length plus weighted exposure of a leg along the flight surface.
+  /// Length of a leg along the flight surface plus what threats cost on it.
   double cost(const GroundPoint& a, const GroundPoint& b) const;
 
  private:

@@ -49,6 +49,10 @@ void require_valid_limits(const AE_navigator::Problem& problem) {
           problem.minimum_height_above_ground_m);
   require(std::isfinite(problem.exposure_weight) && problem.exposure_weight >= 0,
           "the exposure weight is {}; it must be 0 or more", problem.exposure_weight);
+  require(std::isfinite(problem.kill_weight_m) && problem.kill_weight_m >= 0,
+          "the weight of an expected kill is {} m; it must be 0 or more", problem.kill_weight_m);
+  require(std::isfinite(problem.exposure_cap_m) && problem.exposure_cap_m >= 0,
+          "the exposure cap is {} m; it must be 0 (no cap) or more", problem.exposure_cap_m);
 }
 
 void require_valid_zone(const AE_navigator::NoFlyZone& zone) {
@@ -80,6 +84,17 @@ void require_valid_site(const AE_navigator::RadarSite& site, const Terrain& terr
           "radar site '{}' stands off the terrain '{}'", site.name, terrain.name());
   require(site.mast_height_m > 0 && site.range_m > 0 && site.strength >= 0,
           "radar site '{}' needs a mast and a range greater than 0 and a strength of 0 or more",
+          site.name);
+}
+
+void require_valid_site(const AE_navigator::MissileSite& site, const Terrain& terrain) {
+  require(finite({site.site.north_m, site.site.east_m, site.mast_height_m, site.range_m,
+                  site.kills_per_second}),
+          "missile site '{}' has a number that is not finite", site.name);
+  require(terrain.contains(site.site.north_m, site.site.east_m),
+          "missile site '{}' stands off the terrain '{}'", site.name, terrain.name());
+  require(site.mast_height_m > 0 && site.range_m > 0 && site.kills_per_second >= 0,
+          "missile site '{}' needs a mast and a range greater than 0 and a rate of 0 or more",
           site.name);
 }
 
@@ -116,6 +131,9 @@ void require_valid(const AE_navigator::Problem& problem, const Terrain& terrain)
           problem.radar_sites.size(), kMostSites);
   for (const auto& zone : problem.no_fly_zones) require_valid_zone(zone);
   for (const auto& site : problem.radar_sites) require_valid_site(site, terrain);
+  require(problem.missile_sites.size() <= kMostSites, "there are {} missile sites; {} are the most",
+          problem.missile_sites.size(), kMostSites);
+  for (const auto& site : problem.missile_sites) require_valid_site(site, terrain);
   require_valid_end("start", problem.start, problem, terrain);
   require_valid_end("goal", problem.goal, problem, terrain);
 }

@@ -33,27 +33,40 @@ bool visit_ring(const PlanningGrid& grid, int middle_row, int middle_column, int
 
 }  // namespace
 
-RiskMap::RiskMap(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites,
-                 const PlanningGrid& grid, const std::vector<float>& altitudes_m)
-    : grid_(grid), rates_(static_cast<std::size_t>(grid.size()), 0) {
-  if (sites.empty()) return;
-  std::vector<float> ground(rates_.size());
-  for (int node = 0; node < grid.size(); ++node) {
-    const GroundPoint point = grid.point(node);
-    ground[static_cast<std::size_t>(node)] =
-        static_cast<float>(terrain.height_m(point.north_m, point.east_m));
-  }
+RiskMap::RiskMap(const Terrain& terrain, const PlanningGrid& grid,
+                 const std::vector<float>& altitudes_m)
+    : terrain_(terrain),
+      altitudes_m_(altitudes_m),
+      grid_(grid),
+      rates_(static_cast<std::size_t>(grid.size()), 0) {}
+
+void RiskMap::add(std::span<const AE_navigator::RadarSite> sites, double weight) {
   for (const auto& site : sites) {
-    add_site(site, mast_top(terrain, site.site, site.mast_height_m).altitude_m, ground,
-             altitudes_m);
+    add_site(site.site, site.mast_height_m, [&](double slant_m) {
+      return weight * exposure_rate(site.range_m, site.strength, slant_m);
+    });
   }
 }
 
-void RiskMap::add_site(const AE_navigator::RadarSite& site, double antenna_altitude_m,
-                       const std::vector<float>& ground_m, const std::vector<float>& altitudes_m) {
-  const int middle_row = static_cast<int>(std::lround(site.site.north_m / grid_.north_spacing_m()));
-  const int middle_column =
-      static_cast<int>(std::lround(site.site.east_m / grid_.east_spacing_m()));
+void RiskMap::add(std::span<const AE_navigator::MissileSite> sites, double weight) {
+  for (const auto& site : sites) {
+    add_site(site.site, site.mast_height_m, [&](double slant_m) {
+      return slant_m < site.range_m ? weight * site.kills_per_second : 0;
+    });
+  }
+}
+
+template <class Rate>
+void RiskMap::add_site(const GroundPoint& site, double mast_height_m, const Rate& rate_at) {
+  if (ground_m_.empty()) {
+    for (int node = 0; node < grid_.size(); ++node) {
+      const GroundPoint point = grid_.point(node);
+      ground_m_.push_back(static_cast<float>(terrain_.height_m(point.north_m, point.east_m)));
+    }
+  }
+  const double antenna_altitude_m = mast_top(terrain_, site, mast_height_m).altitude_m;
+  const int middle_row = static_cast<int>(std::lround(site.north_m / grid_.north_spacing_m()));
+  const int middle_column = static_cast<int>(std::lround(site.east_m / grid_.east_spacing_m()));
   constexpr float kNothing = std::numeric_limits<float>::lowest();
   std::vector<float> horizon(rates_.size(), kNothing);  // Steepest slope up to and at the node.
 
@@ -84,15 +97,14 @@ void RiskMap::add_site(const AE_navigator::RadarSite& site, double antenna_altit
     const auto node =
         static_cast<std::size_t>(grid_.node(middle_row + rows, middle_column + columns));
     const GroundPoint point = grid_.point(static_cast<int>(node));
-    const double distance = std::max(1.0, distance_m(point, site.site));
+    const double distance = std::max(1.0, distance_m(point, site));
     const double base = antenna_altitude_m + earth_drop_m(distance);
     const float before = horizon_before(rows, columns, ring);
-    const double above = altitudes_m[node] - base;
+    const double above = altitudes_m_[node] - base;
     if (above / distance >= before) {
-      rates_[node] += static_cast<float>(
-          exposure_rate(site.range_m, site.strength, std::hypot(distance, above)));
+      rates_[node] += static_cast<float>(rate_at(std::hypot(distance, above)));
     }
-    horizon[node] = std::max(before, static_cast<float>((ground_m[node] - base) / distance));
+    horizon[node] = std::max(before, static_cast<float>((ground_m_[node] - base) / distance));
   };
   // The antenna's own node is its foot, which hides nothing.
   visit(0, 0, 0);

@@ -9,13 +9,19 @@
 
 namespace skein::navigation {
 
-/// The exposure rate at a given altitude over every node of a grid: fast enough for a search, which
-/// asks a million times, where RadarExposure is exact. Terrain masking is computed once per site,
-/// ring by ring outwards, each node taking the horizon of the ring before it.
+/// What threats cost per metre flown at a given altitude over every node of a grid: fast enough for
+/// a search, which asks a million times, where RadarExposure and MissileThreat are exact. Terrain
+/// masking is computed once per site, ring by ring outwards, each node taking the horizon of the
+/// ring before it.
 class RiskMap {
  public:
-  RiskMap(const Terrain& terrain, std::span<const AE_navigator::RadarSite> sites,
-          const PlanningGrid& grid, const std::vector<float>& altitudes_m);
+  /// Without a threat. Terrain and altitudes must outlive it.
+  RiskMap(const Terrain& terrain, const PlanningGrid& grid, const std::vector<float>& altitudes_m);
+
+  /// Adds the sites' exposure rates, `weight` times.
+  void add(std::span<const AE_navigator::RadarSite> sites, double weight);
+  /// Adds the sites' kills per second, `weight` times.
+  void add(std::span<const AE_navigator::MissileSite> sites, double weight);
 
   double rate(int node) const { return rates_[static_cast<std::size_t>(node)]; }
   double rate(const GroundPoint& point) const { return grid_.interpolate(rates_, point); }
@@ -24,10 +30,13 @@ class RiskMap {
   double along(const GroundPoint& a, const GroundPoint& b) const;
 
  private:
-  void add_site(const AE_navigator::RadarSite& site, double antenna_altitude_m,
-                const std::vector<float>& ground_m, const std::vector<float>& altitudes_m);
+  template <class Rate>
+  void add_site(const GroundPoint& site, double mast_height_m, const Rate& rate_at);
 
+  const Terrain& terrain_;
+  const std::vector<float>& altitudes_m_;
   PlanningGrid grid_;
+  std::vector<float> ground_m_;
   std::vector<float> rates_;
 };
 

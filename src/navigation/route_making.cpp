@@ -10,6 +10,7 @@
 #include "problem_rules.hpp"
 #include "skein/navigation/ground_clearance.hpp"
 #include "skein/navigation/radar_exposure.hpp"
+#include "skein/navigation/threat_models.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -75,6 +76,9 @@ AE_navigator::Route make_route(const PlanningScene& scene, const GroundPath& pat
   }
   const RadarExposure exposure(scene.terrain(), scene.problem().radar_sites);
   route.radar_exposure = exposure.along(route.waypoints);
+  const MissileThreat missiles(scene.terrain(), scene.problem().missile_sites);
+  route.expected_kills = missiles.expected_kills(route.waypoints, scene.problem().limits.speed_m_s);
+  route.threat_epoch = scene.problem().threat_epoch;
   return route;
 }
 

@@ -22,7 +22,7 @@ SurfaceGraph::SurfaceGraph(const PlanningScene& scene, Berth berth)
     : scene_(scene),
       berth_(berth),
       near_zone_(static_cast<std::size_t>(scene.grid().size()), 0),
-      risky_(scene.problem().exposure_weight > 0 && !scene.problem().radar_sites.empty()) {
+      risky_(scene.fears_threats()) {
   const int kMoves[][2] = {{1, 0}, {1, 1}, {2, 1}, {3, 1}, {3, 2}};
   for (const auto& [far, near] : kMoves) {
     for (int mirror = 0; mirror < 8; ++mirror) {
@@ -84,8 +84,7 @@ double SurfaceGraph::cost(const GroundPoint& from, int to, double rate_from) con
   const double length = distance_m(from, end);
   if (!risky_) return length;
   const double rate_between = scene_.risk().rate(between(from, end, 0.5));
-  const double exposure = (rate_from + 4 * rate_between + rate(to)) * length / 6;
-  return length + scene_.problem().exposure_weight * exposure;
+  return length + (rate_from + 4 * rate_between + rate(to)) * length / 6;
 }
 
 int SurfaceGraph::follow(int node, const Move& move) const {

@@ -22,7 +22,7 @@ class SurfaceGraph {
   int node_count() const { return scene_.grid().size() + 2; }
   GroundPoint point(int node) const;
 
-  /// The straight distance: exposure is never negative.
+  /// The straight distance: what threats cost is never negative.
   double lower_bound(int node) const {
     return distance_m(point(node), on_map(scene_.problem().goal));
   }

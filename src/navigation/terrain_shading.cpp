@@ -56,7 +56,8 @@ Image shade(const Terrain& terrain, const AE_navigator::Problem& problem, int wi
     altitudes.push_back(static_cast<float>(terrain.height_m(point.north_m, point.east_m) +
                                            problem.minimum_height_above_ground_m));
   }
-  const RiskMap risk(terrain, problem.radar_sites, grid, altitudes);
+  RiskMap risk(terrain, grid, altitudes);
+  risk.add(problem.radar_sites, 1);
 
   Image image(width, height);
   for (int y = 0; y < height; ++y) {

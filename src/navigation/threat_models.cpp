@@ -60,9 +60,10 @@ double cumulative_detection(std::span<const double> probabilities) {
   return 1 - missed;
 }
 
-MissileThreat::MissileThreat(const Terrain& terrain, std::span<const LaunchSite> sites)
+MissileThreat::MissileThreat(const Terrain& terrain,
+                             std::span<const AE_navigator::MissileSite> sites)
     : mask_(terrain) {
-  for (const LaunchSite& site : sites) {
+  for (const auto& site : sites) {
     launchers_.push_back(
         {mast_top(terrain, site.site, site.mast_height_m), site.range_m, site.kills_per_second});
   }

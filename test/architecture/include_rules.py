@@ -35,6 +35,7 @@ GENERATED = {
     "skein/introspection.idl.hpp": "rpc",
     "navigator.idl.hpp": "navigation",
     "flight_controller.idl.hpp": "navigation",
+    "ad_manager.idl.hpp": "navigation",
 }
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from

@@ -26,11 +26,11 @@ TEST_CASE("Every peer and every CSP with a process of its own becomes one child"
   const auto plan = make_launch_plan(mission, argv_of);
   CHECK(names_of(plan) == std::vector<std::string>{"navigator", "navigator/RRTConnect",
                                                    "navigator/RRTstar", "flight_controller",
-                                                   "ground_station"});
+                                                   "ad_manager", "ground_station"});
   CHECK(plan.children[1].argv.back() == "navigator/RRTConnect");
   CHECK_FALSE(plan.children[1].required);
   CHECK(plan.children[0].required);
-  CHECK(plan.children[4].runs_mission);
+  CHECK(plan.children[5].runs_mission);
   CHECK(plan.elsewhere.empty());
 }
 

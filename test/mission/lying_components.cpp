@@ -41,7 +41,7 @@ class CarelessNavigator final : public AE_navigatorI::INavigator {
   }
   AE_navigatorI::PlanningStatus status() override { return {}; }
   AE_navigatorI::PlanningReport report(const std::string& request_id) override {
-    return {request_id, {}, {}, "trust me", 0};
+    return {request_id, "none", {}, {}, "trust me", 0};
   }
 };
 

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <fstream>
 #include <pugixml.hpp>
 
@@ -6,6 +7,7 @@
 
 using namespace skein::test;
 using Catch::Contains;
+using Catch::Matches;
 
 namespace {
 
@@ -45,15 +47,18 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(),
-             Contains("3 routes, all valid; the unreachable goal was refused as such"));
+             Contains("5 routes, all valid; the unreachable goal was refused as such"));
 
-  SECTION("with time to think the best planner answers, in a hurry the quick one") {
+  SECTION(
+      "by what they declare the best planner answers, though the quicker one has shown as much") {
     CHECK_THAT(
         run.output(),
         Contains("RRTstar has the best declared quality (0.95) of those whose latency fits"));
-    CHECK_THAT(
-        run.output(),
-        Contains("RRTConnect has the best declared quality (0.5) of those whose latency fits"));
+  }
+  SECTION("what planners declare stands beside what they have shown") {
+    CHECK_THAT(run.output(), Contains("latency quality p50 p95 quality runs accepted here"));
+    CHECK_THAT(run.output(), Matches(".* AStar 300 ms 0\\.90 [0-9]+ [0-9]+ ms 0\\.[0-9]+ .*"));
+    CHECK_THAT(run.output(), Matches(".*[A-Za-z]+ has by its last [0-9]+ like runs .*"));
   }
   SECTION("when the planner is killed the next best answers, and the launcher brings it back") {
     CHECK_THAT(run.output(), Contains("kill RRTstar (process "));
@@ -62,10 +67,20 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
     CHECK_THAT(run.output(), Contains("2. AStar has the best declared quality (0.9)"));
     CHECK_THAT(run.output(), Contains("back RRTstar was started again"));
   }
+  SECTION("where no route keeps the cap, planning begins anew with the AD manager's threats") {
+    CHECK_THAT(run.output(), Contains("by the check 'exposure cap': its exposure is"));
+    CHECK_THAT(run.output(), Contains("anew with threat picture 4, from the AD manager"));
+  }
   SECTION("the goal that cannot be reached is refused with the zones that enclose it") {
-    CHECK_THAT(
-        run.output(),
-        Contains("refused proved: there is no route: the goal is enclosed by the no-fly zones"));
+    CHECK_THAT(run.output(),
+               Contains("there is no route: the goal is enclosed by the no-fly zones"));
+    CHECK_THAT(run.output(), Contains("refused there is no route, with a proof"));
+  }
+  SECTION("how it was decided is kept: as a history, and as a log that comes out the same again") {
+    CHECK(std::filesystem::file_size(run.file("navigator_history.json")) > 0);
+    const std::string replay = "'" SKEIN_COMMAND "' decisions --replay --log '" +
+                               run.file("decisions.jsonl").string() + "' > /dev/null";
+    CHECK(std::system(replay.c_str()) == 0);
   }
   SECTION("the picture is well-formed and refers to nothing outside of itself") {
     pugi::xml_document picture;
@@ -77,7 +92,7 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
     std::ifstream text(run.file("route.svg"));
     const std::string content{std::istreambuf_iterator<char>(text), {}};
     for (const char* label :
-         {"2 s to think: RRTstar", "50 ms to think: RRTConnect", "planner killed: AStar"}) {
+         {"2 s, by declaration: RRTstar", "50 ms: ", "planner killed: AStar", "fresh picture: "}) {
       CHECK_THAT(content, Contains(label));
     }
   }
@@ -99,7 +114,8 @@ TEST_CASE("a navigator that passes on a route through a no-fly zone fails the mi
   INFO(run.output());
   CHECK(run.exit_code() == 1);
   CHECK_THAT(run.output(), Contains("check INVALID (no-fly zone)"));
-  CHECK_THAT(run.output(), Contains("failed the route checker refuses the route (2 s to think)"));
+  CHECK_THAT(run.output(),
+             Contains("failed the route checker refuses the route (2 s, by declaration)"));
   CHECK_THAT(run.output(), Contains("a route to the unreachable goal was returned"));
 }
 

@@ -23,11 +23,33 @@ namespace {
 struct OneRoute : IPlanner {
   Route plan(const Problem& task) override {
     asked.push_back(task);
+    route.threat_epoch = task.threat_epoch;
     return route;
   }
   void improve(const Problem& task, StreamSink<Route>& sink) override { sink.push(plan(task)); }
   Route route;
   std::vector<Problem> asked;
+};
+
+/// Knows that all radars are off the air, and that this is the fifth picture.
+struct AllClear : AE_adManagerI::IAdManager {
+  AE_adManagerI::ThreatPicture threat_picture(const std::string& terrain) override {
+    ++asked;
+    return {terrain, 5, {}, {}};
+  }
+  AE_adManagerI::ThreatPicture radar_found(const std::string& terrain,
+                                           const AE_navigator::RadarSite&) override {
+    return threat_picture(terrain);
+  }
+  AE_adManagerI::ThreatPicture radar_silent(const std::string& terrain,
+                                            const std::string&) override {
+    return threat_picture(terrain);
+  }
+  AE_adManagerI::ThreatPicture missiles_found(const std::string& terrain,
+                                              const AE_navigator::MissileSite&) override {
+    return threat_picture(terrain);
+  }
+  std::atomic<int> asked = 0;
 };
 
 /// A flight controller of a given speed.
@@ -110,6 +132,58 @@ TEST_CASE("the flight limits come from the next flight controller when the first
   flight.ask();
   REQUIRE(flight.planner->asked.size() == 2);
   CHECK(flight.planner->asked[1].limits.speed_m_s == 55);
+}
+
+TEST_CASE(
+    "where no route keeps the exposure cap, the AD manager is asked once, and it is planned anew "
+    "with its threats") {
+  Flight flight;
+  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
+  const auto manager = make_entity("ad_manager", Pairing::get().client);
+  const auto all_clear = std::make_shared<AllClear>();
+  manager->provide<AE_adManagerI::IAdManager>(all_clear);
+  flight.request.problem.exposure_cap_m = 10;
+  flight.request.problem.threat_epoch = 3;
+
+  CHECK(flight.ask().threat_epoch == 5);
+  CHECK(all_clear->asked == 1);
+  REQUIRE(flight.planner->asked.size() == 2);
+  CHECK(flight.planner->asked[0].radar_sites.size() == 4);
+  CHECK(flight.planner->asked[1].radar_sites.empty());
+  const auto report = flight.client->connect<INavigator>().report("one");
+  REQUIRE(report.attempts.size() == 2);
+  CHECK(report.attempts[0].check == "exposure cap");
+  CHECK(report.attempts[0].threat_epoch == 3);
+  CHECK(report.attempts[1].outcome == "accepted");
+  CHECK(report.attempts[1].threat_epoch == 5);
+
+  SECTION("what it learned serves the next request, and nobody is asked again") {
+    CHECK(flight.ask().threat_epoch == 5);
+    CHECK(flight.planner->asked.size() == 3);
+    CHECK(all_clear->asked == 1);
+  }
+  SECTION("threats of the caller's own are left as they are") {
+    flight.request.problem.threat_epoch = 0;
+    CHECK_THROWS_AS(flight.ask(), AE_navigator::NoRoute);
+    CHECK(flight.planner->asked.back().radar_sites.size() == 4);
+    CHECK(all_clear->asked == 1);
+  }
+}
+
+TEST_CASE("where no AD manager answers, the refusal names the cap") {
+  Flight flight;
+  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
+  flight.request.problem.exposure_cap_m = 10;
+  flight.request.problem.threat_epoch = 3;
+  try {
+    flight.ask();
+    FAIL("a route over the cap was passed on");
+  } catch (const AE_navigator::NoRoute& refusal) {
+    CHECK_THAT(refusal.reason, Catch::Contains("the cap is 0.0 km"));
+  }
+  CHECK(flight.planner->asked.size() == 1);
 }
 
 TEST_CASE("the best route so far is taken when a planner's time is up") {

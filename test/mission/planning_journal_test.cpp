@@ -42,44 +42,78 @@ DecisionRecord record() {
 TEST_CASE("a request's report tells who stood by, who was tried, why and what came of it") {
   PlanningJournal journal;
   journal.begin("one");
-  journal.end("one", record(), "");
+  journal.end("one", {{0, record()}}, "");
   const auto report = journal.report("one");
-  CHECK(report.tried == std::vector<std::string>{"RRTstar", "AStar"});
-  CHECK(report.reason ==
-        "it is the best; disconnected after 200 ms: it died\nit is the next best; accepted after "
-        "100 ms");
+  REQUIRE(report.attempts.size() == 2);
+  CHECK(report.attempts[0].planner == "RRTstar");
+  CHECK(report.attempts[0].reason == "it is the best");
+  CHECK(report.attempts[0].outcome == "disconnected");
+  CHECK(report.attempts[0].text == "it died");
+  CHECK(report.attempts[0].took_ms == Approx(200));
+  CHECK(report.attempts[1].planner == "AStar");
+  CHECK(report.attempts[1].outcome == "accepted");
   CHECK(report.elapsed_ms == Approx(301));
   REQUIRE(report.candidates.size() == 2);
-  CHECK(report.candidates[0].predicted_latency_ms == Approx(1500));
+  CHECK(report.candidates[0].declared_ms == Approx(1500));
+  CHECK(report.candidates[0].runs == 0);
   CHECK(report.candidates[0].available);
+}
+
+TEST_CASE("what a planner has shown is reported beside what it declares") {
+  DecisionRecord shown = record();
+  shown.candidates[1].learned = Prediction{7, 120ms, 250ms, 0.8, 0.875, 0};
+  shown.candidates[1].breaker = CircuitBreaker::State::Open;
+  PlanningJournal journal;
+  journal.begin("one");
+  journal.end("one", {{0, shown}}, "");
+  const auto planner = journal.report("one").candidates.at(1);
+  CHECK(planner.declared_ms == Approx(300));
+  CHECK(planner.runs == 7);
+  CHECK(planner.median_ms == Approx(120));
+  CHECK(planner.q95_ms == Approx(250));
+  CHECK(planner.measured_quality == Approx(0.8));
+  CHECK(planner.accepted == Approx(0.875));
+  CHECK(planner.quarantined);
+}
+
+TEST_CASE("a request that was planned twice is one report, each attempt with its threats") {
+  PlanningJournal journal;
+  journal.begin("one");
+  journal.end("one", {{3, record()}, {4, record()}}, "");
+  const auto report = journal.report("one");
+  REQUIRE(report.attempts.size() == 4);
+  CHECK(report.attempts[1].threat_epoch == 3);
+  CHECK(report.attempts[2].threat_epoch == 4);
+  CHECK(report.candidates.size() == 2);
+  CHECK(report.elapsed_ms == Approx(602));
 }
 
 TEST_CASE("a planner that stood by once and is gone is reported as not available") {
   PlanningJournal journal;
   journal.begin("one");
-  journal.end("one", record(), "");
+  journal.end("one", {{0, record()}}, "");
   DecisionRecord later = record();
   later.candidates.erase(later.candidates.begin());
   journal.begin("two");
-  journal.end("two", later, "");
+  journal.end("two", {{0, later}}, "");
   const auto report = journal.report("two");
   REQUIRE(report.candidates.size() == 2);
   CHECK(report.candidates[1].planner == "RRTstar");
   CHECK_FALSE(report.candidates[1].available);
 }
 
-TEST_CASE("the report of a request that no planner was tried for gives the error as its reason") {
+TEST_CASE("the report of a request that no planner was tried for gives the error") {
   PlanningJournal journal;
   journal.begin("one");
   journal.end("one", {}, "no planner stands by");
-  CHECK(journal.report("one").reason == "no planner stands by");
+  CHECK(journal.report("one").failure == "no planner stands by");
 }
 
 TEST_CASE("the last 64 reports are kept, an unknown request is refused by its name") {
   PlanningJournal journal;
   for (int i = 0; i < 65; ++i) {
     journal.begin(std::to_string(i));
-    journal.end(std::to_string(i), record(), "");
+    journal.end(std::to_string(i), {{0, record()}}, "");
   }
   CHECK(journal.report("1").request_id == "1");
   CHECK(journal.report("64").request_id == "64");
@@ -93,7 +127,7 @@ TEST_CASE("the request at work is the one that began last of those that have not
   journal.begin("one");
   journal.begin("two");
   CHECK(journal.current() == "two");
-  journal.end("two", record(), "");
+  journal.end("two", {{0, record()}}, "");
   CHECK(journal.current() == "one");
   CHECK(journal.at_work() == 1);
 }

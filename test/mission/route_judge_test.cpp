@@ -30,8 +30,9 @@ Route route() {
   return route;
 }
 
-std::string flaw(const Route& route) {
-  return judge_route(kPlain, problem(), route).value_or("none");
+std::string flaw(const Route& route, const Problem& task = problem(), std::uint32_t epoch = 0) {
+  const auto rejection = judgement(kPlain, task, [&] { return epoch; })(route);
+  return rejection ? rejection->check + ": " + rejection->reason : "none";
 }
 
 }  // namespace
@@ -80,4 +81,42 @@ TEST_CASE("a route with one flaw is stopped, and the flaw and its place are name
     bad.waypoints[1] = {-10, 5000, 320};
     CHECK_THAT(flaw(bad), Contains("leaves the terrain"));
   }
+  SECTION("a turn that does not fit") {
+    bad.waypoints = {{1000, 1000, 300}, {1500, 1000, 310}, {1500, 5000, 320}, {9000, 9000, 300}};
+    CHECK_THAT(flaw(bad),
+               Contains("turn radius: between waypoints 0 and 1 it has 500 m for turns"));
+  }
+}
+
+TEST_CASE("a route over the cap is stopped by the exposure that it has, not by what it claims") {
+  Problem watched = problem();
+  watched.radar_sites = {{"Alpha", {5000, 8000}, 20, 3000, 1}};
+  watched.exposure_cap_m = 1e6;
+  CHECK(flaw(route(), watched) == "none");
+  watched.exposure_cap_m = 10;
+  CHECK_THAT(flaw(route(), watched), Contains("exposure cap: its exposure is"));
+  watched.radar_sites.clear();
+  CHECK(flaw(route(), watched) == "none");
+}
+
+TEST_CASE("a route that was planned with threats of an old epoch is stopped") {
+  Problem task = problem();
+  task.threat_epoch = 2;
+  Route planned = route();
+  planned.threat_epoch = 2;
+  CHECK(flaw(planned, task, 2) == "none");
+  CHECK_THAT(flaw(planned, task, 3),
+             Contains("threat epoch: it was planned with threat picture 2"));
+  task.threat_epoch = 0;
+  CHECK(flaw(planned, task, 3) == "none");
+}
+
+TEST_CASE("what is no fault of the planner is not held against it, what is its fault is") {
+  Problem task = problem();
+  task.threat_epoch = 2;
+  const auto judge = judgement(kPlain, task, [] { return 3u; });
+  CHECK_FALSE(judge(route())->fault);
+  Route low = route();
+  low.waypoints[1].altitude_m = 210;
+  CHECK(judge(low)->fault);
 }

@@ -161,6 +161,16 @@ TEST_CASE("Without threats or without a cap the route under a cap is the shortes
   CHECK(plan(crossing, 0).waypoints == shortest.waypoints);
 }
 
+TEST_CASE("The cap of the problem and that of the planner both hold") {
+  FlatCrossing crossing = two_radars();
+  const Route capped = plan(crossing, 8000);
+  crossing.problem.exposure_cap_m = 8000;
+  CHECK(plan(crossing, INFINITY).waypoints == capped.waypoints);
+  CHECK(plan(crossing, 60000).waypoints == capped.waypoints);
+  crossing.problem.exposure_cap_m = 60000;
+  CHECK(plan(crossing, 8000).waypoints == capped.waypoints);
+}
+
 TEST_CASE("A cap that no route keeps is refused with the least exposure that was found") {
   const FlatCrossing crossing = two_radars();
   try {

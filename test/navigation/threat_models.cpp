@@ -12,7 +12,7 @@ using AE_navigator::Position;
 
 namespace {
 
-const LaunchSite kSite{{10000, 10000}, 10, 5000, 0.02};
+const AE_navigator::MissileSite kSite{"S", {10000, 10000}, 10, 5000, 0.02};
 
 Terrain flat() {
   return make_terrain(201, 100, [](double, double) { return 0.0; });
@@ -68,8 +68,8 @@ TEST_CASE("Who flies past a missile site survives by the time that he is within 
 
 TEST_CASE("Two missile sites must both be survived") {
   const Terrain terrain = flat();
-  const LaunchSite other{{12000, 6000}, 10, 3000, 0.01};
-  const LaunchSite both[] = {kSite, other};
+  const AE_navigator::MissileSite other{"T", {12000, 6000}, 10, 3000, 0.01};
+  const AE_navigator::MissileSite both[] = {kSite, other};
   const Position route[] = {{11000, 2000, 500}, {13000, 18000, 700}};
   CHECK(MissileThreat(terrain, both).survival(route, 80) ==
         Approx(MissileThreat(terrain, std::span(&kSite, 1)).survival(route, 80) *

@@ -30,7 +30,7 @@ struct PlannerOptions {
   /// Distance between the points of the planning grid; 0 takes 1/256 of the terrain's longer side,
   /// but never less than the distance between its posts.
   double grid_spacing_m = 0;
-  /// The most exposure that CappedAStar's routes may have, in metres.
+  /// The most exposure that CappedAStar's routes may have, in metres, whatever the Problem allows.
   double exposure_cap_m = std::numeric_limits<double>::infinity();
 };
 
@@ -41,17 +41,17 @@ struct PlannerOptions {
 // stopped. It never returns a route that is only nearly right. Routes stay near the lowest altitude
 // that ground, climb limit, start and goal allow. One planner may serve several threads at once.
 
-/// Cheapest path by A* on a grid, exposure included, drawn taut. The slowest to a first
+/// Cheapest path by A* on a grid, what threats cost included, drawn taut. The slowest to a first
 /// answer, near the optimum, and the only one that proves that there is none: an unreachable
 /// goal is refused with the zones or mountains that enclose it.
 std::unique_ptr<AE_navigator::IPlanner> make_a_star(std::shared_ptr<TerrainProvider> terrains,
                                                     PlannerOptions options = {});
 
-/// The shortest route whose exposure is no more than `exposure_cap_m`, whatever the Problem's
-/// weight, as far as A* with some weight finds it (Lagrangian relaxation): shorter ones between two
-/// weights are missed. Without a cap or without radars it is the shortest route. Several times as
-/// slow as A*; brings each shorter route that it finds. Refuses, without a proof, where no route
-/// keeps the cap.
+/// The shortest route whose exposure is no more than `exposure_cap_m`, the Problem's and the
+/// option's, whatever the Problem's weight, as far as A* with some weight finds it (Lagrangian
+/// relaxation): shorter ones between two weights are missed. Without a cap or without radars it is
+/// the shortest route. Several times as slow as A*; brings each shorter route that it finds.
+/// Refuses, without a proof, where no route keeps the cap.
 std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
     std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
 

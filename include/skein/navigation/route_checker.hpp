@@ -23,7 +23,8 @@ enum class RouteRule {
   Turn,          ///< The turns fit between each other.
   Length,        ///< The claimed length is right.
   LowestHeight,  ///< The claimed lowest height above ground is right.
-  Exposure,      ///< The claimed exposure is right.
+  Exposure,      ///< The claimed exposure is right, and within the cap.
+  Missiles,      ///< The claimed number of expected kills is right.
 };
 
 std::string_view to_string(RouteRule rule) noexcept;
@@ -42,6 +43,8 @@ struct RouteTolerances {
   double exposure_share =
       0.05;  ///< Of the exposure found here: shadow edges are found by sampling.
   double exposure_m = 50;
+  double kills_share = 0.05;  ///< Of the expected kills found here, likewise.
+  double kills = 0.02;
 };
 
 /// Checks a route against the problem that it should solve and the ground; empty means that it is

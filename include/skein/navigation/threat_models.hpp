@@ -21,14 +21,6 @@ double signal_to_noise(double at_reference, double reference_m, double distance_
 /// The probability that at least one of several independent looks detects: 1 - product(1 - P_k).
 double cumulative_detection(std::span<const double> probabilities);
 
-/// Where missiles reach, as a sphere around their launcher.
-struct LaunchSite {
-  AE_navigator::GroundPoint site;
-  double mast_height_m = 0;     ///< Of the tracking radar above the ground; greater than 0.
-  double range_m = 0;           ///< Greater than 0.
-  double kills_per_second = 0;  ///< While the aircraft is within range and in sight; 0 or more.
-};
-
 /// The chance to survive missile sites. The hazard at a point is the sum of the rates of the sites
 /// that have it within range and in sight (over an earth of 4/3 its radius, terrain hides); the
 /// probability of surviving a flight is exp(-integral of the hazard over time).
@@ -36,7 +28,7 @@ struct LaunchSite {
 /// Const members may be called from any thread. The terrain must outlive it.
 class MissileThreat {
  public:
-  MissileThreat(const Terrain& terrain, std::span<const LaunchSite> sites);
+  MissileThreat(const Terrain& terrain, std::span<const AE_navigator::MissileSite> sites);
 
   /// Kills per second.
   double hazard(const AE_navigator::Position& point) const;

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <optional>
 
+#include "planning_value.hpp"
 #include "route_judge.hpp"
+#include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
 #include "values.hpp"
 
@@ -25,6 +27,7 @@ constexpr milliseconds kLongestRequest{600'000};
 // Of a planner's time, for the way there and back and for judging its route.
 constexpr milliseconds kJudgingReserve{10};
 constexpr milliseconds kFlightControllerPatience{500};
+constexpr milliseconds kAdManagerPatience{500};
 
 ParameterValues values_of(const AE_navigatorI::RouteRequest& request) {
   ParameterValues values;
@@ -49,6 +52,18 @@ bool settles(const UserException& exception, const Candidate& planner, Refusals&
   if (!no_route) return true;
   refusals[planner.name] = no_route->reason;
   return no_route->proven;
+}
+
+/// Whether another picture of the threats would change nothing.
+bool settled(const std::exception& failure) {
+  const auto* no_route = dynamic_cast<const NoRoute*>(&failure);
+  return no_route ? no_route->proven : dynamic_cast<const UserException*>(&failure) != nullptr;
+}
+
+/// What the caller of the current call waits for at most.
+Duration in_call(Duration limit) {
+  const CallContext* const call = CallContext::current();
+  return call ? std::min(limit, call->remaining()) : limit;
 }
 
 /// The last of a planner's routes, which is its best: also where its time is up before its end.
@@ -87,7 +102,8 @@ Navigator::Navigator(Entity& entity, ParameterValues profile,
     : entity_(entity),
       profile_(std::move(profile)),
       parameters_("INavigator", {{"Planner"}, {"Time limit"}}),
-      terrains_(std::move(terrains)) {}
+      terrains_(std::move(terrains)),
+      threats_(entity) {}
 
 Route Navigator::request_route(const AE_navigatorI::RouteRequest& request) {
   if (journal_.at_work() >= kMostRequests) {
@@ -95,38 +111,68 @@ Route Navigator::request_route(const AE_navigatorI::RouteRequest& request) {
         "the navigator plans {} routes already; ask again when one is done", kMostRequests));
   }
   journal_.begin(request.request_id);
-  DecisionRecord record;
+  std::vector<Planning> plannings;
   try {
-    Route route = decide(request, record);
-    journal_.end(request.request_id, record, {});
+    Route route = decide(request, plannings);
+    journal_.end(request.request_id, plannings, {});
     return route;
   } catch (const std::exception& error) {
-    journal_.end(request.request_id, record, error.what());
+    journal_.end(request.request_id, plannings, error.what());
     throw;
   }
 }
 
-Route Navigator::decide(const AE_navigatorI::RouteRequest& request, DecisionRecord& record) {
+Route Navigator::decide(const AE_navigatorI::RouteRequest& request,
+                        std::vector<Planning>& plannings) {
   const ParameterValues parameters = parameters_.resolve({values_of(request), profile_});
   Problem problem = request.problem;
   problem.limits = flight_limits();
-  const Duration limit = duration_of(parameters, "Time limit").value_or(kLongestRequest);
+  const Duration limit = in_call(duration_of(parameters, "Time limit").value_or(kLongestRequest));
+  const Instant end = entity_.clock().now() + limit;
+  const std::string id = request.request_id;
+  const auto planner = parameters.find("Planner");
+  const std::string only = planner == parameters.end() ? "" : planner->second;
   try {
-    if (!request.own_planner.is_nil()) return ask(request.own_planner, problem, limit, record);
-    return plan(problem, parameters, limit, record);
+    if (!request.own_planner.is_nil())
+      return ask(request.own_planner, problem, limit, plannings.emplace_back().record);
+    threats_.renew(problem);
+    const bool fits_perhaps_never = problem.threat_epoch > 0 && problem.exposure_cap_m > 0;
+    // What a picture that is too old may cost leaves as much for the fresh one.
+    try {
+      return plan({id, problem, only, fits_perhaps_never ? limit / 2 : limit}, plannings);
+    } catch (const std::exception& failure) {
+      if (settled(failure) || !renew_threats(problem, end)) throw;
+    }
+    return plan({id, problem, only, end - entity_.clock().now()}, plannings);
   } catch (const UserException&) {
     throw;
   } catch (const Error&) {
     // A planner's crash or silence is not the navigator's: the caller may well ask again.
-    if (record.attempts.empty()) throw;
-    throw_no_usable_route(record);
+    if (plannings.empty() || plannings.back().record.attempts.empty()) throw;
+    throw_no_usable_route(plannings.back().record);
   }
 }
 
-Route Navigator::plan(const Problem& problem, const ParameterValues& parameters, Duration limit,
-                      DecisionRecord& record) {
+// What the Head knows of its world may be old: a later picture may be here already, or with the AD
+// manager.
+bool Navigator::renew_threats(Problem& problem, Instant end) {
+  if (threats_.renew(problem)) return true;
+  if (problem.threat_epoch == 0 || problem.exposure_cap_m == 0) return false;
+  const Duration left = end - entity_.clock().now();
+  if (left <= Duration::zero()) return false;
+  threats_.ask(problem.terrain, std::min(left / 2, Duration(kAdManagerPatience)));
+  return threats_.renew(problem);
+}
+
+Route Navigator::plan(const Question& question, std::vector<Planning>& plannings) {
+  const Problem& problem = question.problem;
   const auto terrain = terrains_->load(problem.terrain);
+  Planning& planning = plannings.emplace_back();
+  planning.threat_epoch = problem.threat_epoch;
   Task<IPlanner, Route> task;
+  task.request = question.id;
+  task.only = question.only;
+  task.features = features_of(problem, question.limit);
   // A stream, so that the best route so far is there when the time is up, and that a planner in
   // this process that hangs holds up its own thread and not this.
   task.run = [&](IPlanner::Proxy& csp, Duration budget) {
@@ -134,20 +180,18 @@ Route Navigator::plan(const Problem& problem, const ParameterValues& parameters,
     timed.time_limit_ms = planning_time_ms(budget);
     return best_of(csp.improve(timed));
   };
-  task.evaluate = [&](const Route& route) { return judge_route(*terrain, problem, route); };
+  task.evaluate = judgement(*terrain, problem, [&] { return threats_.epoch(problem.terrain); });
+  task.quality = [&](const Route& route) { return quality_of(problem, route); };
   Refusals refusals;
   task.settles = [&](const UserException& exception, const Candidate& planner) {
     return settles(exception, planner, refusals);
   };
-  if (const auto planner = parameters.find("Planner"); planner != parameters.end()) {
-    task.only = planner->second;
-  }
   try {
-    Route route = entity_.head().perform(task, &record, limit);
-    use_own_words(record, refusals);
+    Route route = entity_.head().perform(task, &planning.record, question.limit);
+    use_own_words(planning.record, refusals);
     return route;
   } catch (...) {
-    use_own_words(record, refusals);
+    use_own_words(planning.record, refusals);
     throw;
   }
 }
@@ -167,12 +211,12 @@ Route Navigator::ask(const Reference<IPlanner>& planner, const Problem& problem,
   };
   const auto terrain = terrains_->load(problem.terrain);
   Problem timed = problem;
-  const CallContext* const call = CallContext::current();
-  const Duration budget = call ? std::min(limit, call->remaining()) : limit;
-  timed.time_limit_ms = planning_time_ms(budget);
-  Route route = entity_.connect(planner, {.timeout = budget}).within(budget).plan(timed);
-  if (const auto flaw = judge_route(*terrain, problem, route)) {
-    note(Attempt::Outcome::Rejected, *flaw);
+  timed.time_limit_ms = planning_time_ms(limit);
+  Route route = entity_.connect(planner, {.timeout = limit}).within(limit).plan(timed);
+  const auto judge = judgement(*terrain, problem, [&] { return threats_.epoch(problem.terrain); });
+  if (const auto rejection = judge(route)) {
+    attempt.check = rejection->check;
+    note(Attempt::Outcome::Rejected, rejection->reason);
     throw_no_usable_route(record);
   }
   note(Attempt::Outcome::Accepted, "");

@@ -10,6 +10,7 @@
 #include "skein/entity/entity.hpp"
 #include "skein/entity/parameters.hpp"
 #include "skein/navigation/terrain_provider.hpp"
+#include "threat_watch.hpp"
 
 namespace skein::navigation {
 
@@ -19,6 +20,10 @@ namespace skein::navigation {
 /// A request's variable parameters are `Planner` (only the CSP of that name) and `Time limit`; what
 /// the request leaves open comes from the mission profile. The flight limits are always those of
 /// the flight controller, whatever the request says. The caller's deadline bounds everything.
+///
+/// Threats with an epoch are renewed: where a later picture is known it takes their place, and
+/// where no route is found under an exposure cap, in the first half of the time, the AD manager is
+/// asked for a fresh one; if there is, planning begins anew in the time that is left.
 ///
 /// Up to kMostRequests are planned at once; more are refused as Overloaded, so that status() and
 /// report() always find a thread.
@@ -37,9 +42,17 @@ class Navigator final : public AE_navigatorI::INavigator {
   AE_navigatorI::PlanningReport report(const std::string& request_id) override;
 
  private:
-  AE_navigator::Route decide(const AE_navigatorI::RouteRequest& request, DecisionRecord& record);
-  AE_navigator::Route plan(const AE_navigator::Problem& problem, const ParameterValues& parameters,
-                           Duration limit, DecisionRecord& record);
+  struct Question {
+    const std::string& id;
+    const AE_navigator::Problem& problem;
+    const std::string& only;
+    Duration limit;
+  };
+
+  AE_navigator::Route decide(const AE_navigatorI::RouteRequest& request,
+                             std::vector<Planning>& plannings);
+  AE_navigator::Route plan(const Question& question, std::vector<Planning>& plannings);
+  bool renew_threats(AE_navigator::Problem& problem, Instant end);
   AE_navigator::Route ask(const skein::Reference<AE_navigator::IPlanner>& planner,
                           const AE_navigator::Problem& problem, Duration limit,
                           DecisionRecord& record);
@@ -49,6 +62,7 @@ class Navigator final : public AE_navigatorI::INavigator {
   const ParameterValues profile_;
   const ParameterResolver parameters_;
   const std::shared_ptr<TerrainProvider> terrains_;
+  ThreatWatch threats_;
   PlanningJournal journal_;
   std::mutex mutex_;
   std::optional<AE_flightControllerI::IFlightController::Proxy> flight_controller_;

@@ -17,31 +17,38 @@ double in_ms(Duration duration) {
 }
 
 PlannerCandidate candidate_of(const Candidate& candidate) {
-  return {candidate.name, in_ms(candidate.latency.value_or(Duration::zero())), candidate.quality,
-          true};
+  PlannerCandidate planner;
+  planner.planner = candidate.name;
+  planner.available = true;
+  planner.quarantined = candidate.breaker == CircuitBreaker::State::Open;
+  planner.declared_ms = in_ms(candidate.latency.value_or(Duration::zero()));
+  planner.declared_quality = candidate.quality;
+  if (const auto& learned = candidate.learned) {
+    planner.runs = static_cast<std::uint32_t>(learned->samples);
+    planner.median_ms = in_ms(learned->median.value_or(Duration::zero()));
+    planner.q95_ms = in_ms(learned->q95.value_or(Duration::zero()));
+    planner.measured_quality = learned->quality.value_or(0);
+    planner.accepted = learned->reliability;
+  }
+  return planner;
 }
 
-/// Why it was chosen and what came of it, in one line.
-std::string line_of(const Attempt& attempt) {
-  std::string line = fmt::format("{}; {} after {:.0f} ms", attempt.reason,
-                                 to_string(attempt.outcome), in_ms(attempt.took));
-  if (!attempt.text.empty()) line += ": " + attempt.text;
-  return line;
-}
-
-PlanningReport report_of(const std::string& request_id, const DecisionRecord& record,
+PlanningReport report_of(const std::string& request_id, const std::vector<Planning>& plannings,
                          const std::string& failure) {
   PlanningReport report;
   report.request_id = request_id;
-  report.elapsed_ms = in_ms(record.took);
-  for (const Candidate& candidate : record.candidates) {
-    report.candidates.push_back(candidate_of(candidate));
+  for (const auto& [epoch, record] : plannings) {
+    report.strategy = record.strategy;
+    report.elapsed_ms += in_ms(record.took);
+    report.candidates.clear();
+    for (const Candidate& candidate : record.candidates)
+      report.candidates.push_back(candidate_of(candidate));
+    for (const Attempt& attempt : record.attempts) {
+      report.attempts.push_back({attempt.csp, epoch, attempt.reason, to_string(attempt.outcome),
+                                 attempt.check, attempt.text, in_ms(attempt.took)});
+    }
   }
-  for (const Attempt& attempt : record.attempts) {
-    report.tried.push_back(attempt.csp);
-    report.reason += (report.reason.empty() ? "" : "\n") + line_of(attempt);
-  }
-  if (record.attempts.empty()) report.reason = failure;
+  if (report.attempts.empty()) report.failure = failure;
   return report;
 }
 
@@ -52,9 +59,9 @@ void PlanningJournal::begin(const std::string& request_id) {
   at_work_.push_back(request_id);
 }
 
-void PlanningJournal::end(const std::string& request_id, const DecisionRecord& record,
+void PlanningJournal::end(const std::string& request_id, const std::vector<Planning>& plannings,
                           const std::string& failure) {
-  PlanningReport report = report_of(request_id, record, failure);
+  PlanningReport report = report_of(request_id, plannings, failure);
   const std::lock_guard lock(mutex_);
   for (const PlannerCandidate& candidate : report.candidates) known_[candidate.planner] = candidate;
   add_absent(report);

@@ -5,11 +5,18 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "navigator.idl.hpp"
 #include "skein/entity/head.hpp"
 
 namespace skein::navigation {
+
+/// One of the decisions on a request, and the threats that it rested on.
+struct Planning {
+  std::uint32_t threat_epoch = 0;
+  DecisionRecord record;
+};
 
 /// What the navigator remembers of its requests: those that it works on, and how the last 64 were
 /// decided. Thread-safe.
@@ -17,9 +24,10 @@ class PlanningJournal {
  public:
   void begin(const std::string& request_id);
 
-  /// Turns the Head's record into the report of the request: its reason has one line for each
-  /// planner that was tried, or `failure`, what ended the request, where none was.
-  void end(const std::string& request_id, const DecisionRecord& record, const std::string& failure);
+  /// Makes the report of the request from the Head's records, one for each time that it planned.
+  /// `failure` is what ended the request.
+  void end(const std::string& request_id, const std::vector<Planning>& plannings,
+           const std::string& failure);
 
   /// The request that began last of those at work; empty if there is none.
   std::string current() const;

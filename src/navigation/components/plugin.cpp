@@ -1,6 +1,7 @@
-// What a process of a mission loads to be the navigator, the flight controller or one of the
-// planners.
+// What a process of a mission loads to be the navigator, the flight controller, the AD manager or
+// one of the planners.
 
+#include "ad_manager.hpp"
 #include "flight_controller.hpp"
 #include "navigator.hpp"
 #include "planner_csp.hpp"
@@ -21,6 +22,11 @@ extern "C" void skein_register_components(ComponentRegistry& registry) {
     auto body = std::make_shared<navigation::FlightController>(values);
     return ComponentRegistry::Body{
         std::make_shared<AE_flightControllerI::IFlightController::Skeleton>(std::move(body))};
+  });
+  registry.add_body("AdManager", [terrains](skein::Entity&, const ParameterValues&) {
+    auto body = std::make_shared<navigation::AdManager>(terrains);
+    return ComponentRegistry::Body{
+        std::make_shared<AE_adManagerI::IAdManager::Skeleton>(std::move(body))};
   });
   registry.add_body("Navigator", [terrains](skein::Entity& entity, const ParameterValues& values) {
     auto body = std::make_shared<navigation::Navigator>(entity, values, terrains);

@@ -1,21 +1,25 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
+#include <functional>
 
 #include "navigator.idl.hpp"
+#include "skein/entity/evaluation.hpp"
 #include "skein/navigation/terrain.hpp"
 
 namespace skein::navigation {
 
-/// The navigator's judgement of a route that a CSP hands in: nothing if it may be passed on, else
-/// what is wrong with it. It looks at what would cost the aircraft: every number is finite, the
-/// route leads from the start to the goal over the terrain, and every edge keeps clear of the zones
-/// and the ground and within the altitude and climb that the aircraft can fly. Some milliseconds at
-/// most, so that it fits into the shortest request; turns and the claimed exposure are left to the
-/// route checker.
-std::optional<std::string> judge_route(const Terrain& terrain, const AE_navigator::Problem& problem,
-                                       const AE_navigator::Route& route);
+/// The navigator's judgement of a route that a CSP hands in, check by check: `finite` numbers,
+/// `start and goal`, `terrain`, `no-fly zone`, `height above ground`, `altitude`, `climb`, `turn
+/// radius`, `exposure cap` and `threat epoch`. Zones are the exact ones of the problem, around all
+/// of which the route must stay; the exposure is computed here, where there is a cap, not taken
+/// from the route. A planner whose routes miss the cap or the epoch works as it should: neither is
+/// held against it. Some milliseconds at most, so that it fits into the shortest request; what else
+/// the route claims is left to the route checker.
+///
+/// `epoch` tells the newest threat epoch that is known, when a route is judged; a problem whose own
+/// epoch is 0 is not asked for it. Terrain and problem must outlive the result.
+Evaluation<AE_navigator::Route> judgement(const Terrain& terrain,
+                                          const AE_navigator::Problem& problem,
+                                          std::function<std::uint32_t()> epoch);
 
 }  // namespace skein::navigation

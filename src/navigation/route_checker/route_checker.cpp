@@ -39,6 +39,12 @@ bool finite(const AE_navigator::RadarSite& site) {
          std::isfinite(site.strength);
 }
 
+bool finite(const AE_navigator::MissileSite& site) {
+  return std::isfinite(site.site.north_m) && std::isfinite(site.site.east_m) &&
+         std::isfinite(site.mast_height_m) && std::isfinite(site.range_m) &&
+         std::isfinite(site.kills_per_second);
+}
+
 double map_length(const Position& a, const Position& b) {
   return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
 }
@@ -100,6 +106,11 @@ class Check {
         report(RouteRule::Finite, "radar site '{}' of the problem is not finite", site.name);
       }
     }
+    for (const auto& site : problem_.missile_sites) {
+      if (!finite(site)) {
+        report(RouteRule::Finite, "missile site '{}' of the problem is not finite", site.name);
+      }
+    }
     if (!std::isfinite(route_.length_m)) {
       report(RouteRule::Finite, "the claimed length is {}", route_.length_m);
     }
@@ -109,6 +120,10 @@ class Check {
     }
     if (!std::isfinite(route_.radar_exposure)) {
       report(RouteRule::Finite, "the claimed exposure is {}", route_.radar_exposure);
+    }
+    if (!std::isfinite(route_.expected_kills)) {
+      report(RouteRule::Finite, "the claimed number of expected kills is {}",
+             route_.expected_kills);
     }
   }
 
@@ -256,6 +271,11 @@ class Check {
              "the claimed lowest height above ground is {:.1f} m; it is {:.1f} m",
              route_.lowest_height_above_ground_m, lowest_m_);
     }
+    check_exposure();
+    check_missiles();
+  }
+
+  void check_exposure() {
     double exposure = 0;
     for (std::size_t i = 1; i < points_.size(); ++i) {
       for (const auto& site : problem_.radar_sites) {
@@ -266,6 +286,26 @@ class Check {
     if (!(std::abs(exposure - route_.radar_exposure) <= tolerance)) {
       report(RouteRule::Exposure, "the claimed exposure is {:.0f} m; it is {:.0f} m",
              route_.radar_exposure, exposure);
+    }
+    if (problem_.exposure_cap_m > 0 && !(exposure <= problem_.exposure_cap_m + tolerance)) {
+      report(RouteRule::Exposure, "the exposure is {:.0f} m; the cap is {:.0f} m", exposure,
+             problem_.exposure_cap_m);
+    }
+  }
+
+  void check_missiles() {
+    double kills = 0;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      for (const auto& site : problem_.missile_sites) {
+        const double metres =
+            route_checker::metres_in_danger(ground_, site, points_[i - 1], points_[i]);
+        kills += site.kills_per_second * metres / problem_.limits.speed_m_s;
+      }
+    }
+    const double tolerance = tolerances_.kills + tolerances_.kills_share * kills;
+    if (!(std::abs(kills - route_.expected_kills) <= tolerance)) {
+      report(RouteRule::Missiles, "the claimed number of expected kills is {:.3f}; it is {:.3f}",
+             route_.expected_kills, kills);
     }
   }
 
@@ -309,7 +349,9 @@ std::string_view to_string(RouteRule rule) noexcept {
     case RouteRule::LowestHeight:
       return "claimed lowest height";
     case RouteRule::Exposure:
-      return "claimed exposure";
+      return "exposure";
+    case RouteRule::Missiles:
+      return "claimed expected kills";
   }
   return "unknown rule";
 }

@@ -22,4 +22,8 @@ double entry_into(const AE_navigator::NoFlyZone& zone, const AE_navigator::Posit
 double exposure(const HeightGrid& ground, const AE_navigator::RadarSite& site,
                 const AE_navigator::Position& a, const AE_navigator::Position& b);
 
+/// Metres of the edge that are within the site's range and in its sight.
+double metres_in_danger(const HeightGrid& ground, const AE_navigator::MissileSite& site,
+                        const AE_navigator::Position& a, const AE_navigator::Position& b);
+
 }  // namespace skein::navigation::route_checker
