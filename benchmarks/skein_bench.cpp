@@ -9,6 +9,7 @@
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
+#include "decisions/compare_decisions.hpp"
 #include "grids/compare_grids.hpp"
 #include "harness/goals.hpp"
 #include "harness/private_network.hpp"
@@ -34,6 +35,8 @@ struct Plan {
   std::size_t kills_across_hosts;
   FaultPlan faults;
   GridPlan grids;
+  DecisionPlan decisions;
+  std::filesystem::path output{};
 };
 
 Plan full_plan() {
@@ -52,7 +55,8 @@ Plan full_plan() {
           15,
           5,
           {2, 5, 2, std::chrono::seconds(5)},
-          {300, 1}};
+          {300, 1},
+          {1}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
@@ -70,7 +74,8 @@ Plan quick_plan() {
           1,
           1,
           {1, 2, 1, std::chrono::milliseconds(1500)},
-          {3, 100}};
+          {3, 100},
+          {150}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -127,6 +132,8 @@ const std::vector<Part> kParts{
        return faults;
      }},
     {"grids", [](Configurations&, const Plan& plan) { return compare_grids(plan.grids); }},
+    {"decisions", [](Configurations&,
+                     const Plan& plan) { return compare_decisions(plan.decisions, plan.output); }},
 };
 
 std::vector<std::string> names_of_parts() {
@@ -152,7 +159,8 @@ bool run(const std::string& output, bool quick, const std::vector<std::string>& 
   RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
   facts.remarks.push_back(enter_private_network());
   std::filesystem::create_directories(output);
-  const Plan plan = quick ? quick_plan() : full_plan();
+  Plan plan = quick ? quick_plan() : full_plan();
+  plan.output = output;
   Configurations configurations(std::filesystem::read_symlink("/proc/self/exe").parent_path());
   std::vector<Comparison> comparisons;
   for (const Part& part : kParts) {

@@ -32,6 +32,11 @@ bool is_mean_on_grids(const Comparison& comparison, bool in_space) {
          (is_space || (parameters.at("width") >= 256 && parameters.at("height") >= 256));
 }
 
+/// Of those with experience: the other strategies stand beside them.
+bool is_about_decisions(const Comparison& comparison, const char* claim) {
+  return comparison.claim.starts_with(claim) && comparison.subject == "skein learned";
+}
+
 /// How far beyond its limits a measured comparison is: over 1 it misses them.
 double strain(const Comparison& comparison) {
   const double p50 = comparison.ratio_p50() / *comparison.goal_p50;
@@ -117,6 +122,19 @@ const std::vector<Goal>& goals() {
        0.2,
        {},
        [](const Comparison& c) { return is_mean_on_grids(c, true); }},
+      {"After learning, selection closes 0.8 of the gap between the single best and the virtual "
+       "best",
+       0.2,
+       {},
+       [](const Comparison& c) {
+         return is_about_decisions(c, "PAR10") && c.parameters.at("where") == "held-out";
+       }},
+      {"Every result that the Head accepts is valid by an independent judge",
+       1.0,
+       {},
+       [](const Comparison& c) { return is_about_decisions(c, "results"); }},
+      {"The answer is there 5 ms after the deadline, whoever hangs", 1.0, 1.0,
+       [](const Comparison& c) { return is_about_decisions(c, "deadline to the answer"); }},
   };
   return kGoals;
 }

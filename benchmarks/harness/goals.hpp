@@ -17,6 +17,7 @@ inline constexpr double kToldOnOneHostUs = 20'000;
 inline constexpr double kToldBeyondLeaseUs = 50'000;
 inline constexpr double kOverdueUs = 50'000;
 inline constexpr double kHealedUs = 2'000'000;
+inline constexpr double kLateAnswerUs = 5'000;
 
 /// One goal, and the comparisons that it speaks of.
 struct Goal {

@@ -43,6 +43,7 @@ TerrainProvider::TerrainProvider(std::vector<std::filesystem::path> folders)
 
 std::shared_ptr<const Terrain> TerrainProvider::load(const std::string& name) {
   const std::lock_guard lock(mutex_);
+  if (const auto own = added_.find(name); own != added_.end()) return own->second;
   const auto known = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const auto& terrain) { return terrain->name() == name; });
   if (known != kept_.end()) {
@@ -52,6 +53,12 @@ std::shared_ptr<const Terrain> TerrainProvider::load(const std::string& name) {
   kept_.push_front(read(name));
   if (kept_.size() > kKept) kept_.pop_back();
   return kept_.front();
+}
+
+void TerrainProvider::add(std::shared_ptr<const Terrain> terrain) {
+  const std::lock_guard lock(mutex_);
+  const std::string name = terrain->name();
+  added_[name] = std::move(terrain);
 }
 
 std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) const {

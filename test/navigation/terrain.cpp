@@ -64,6 +64,14 @@ TEST_CASE("A provider reads each terrain once, whoever asks first") {
   for (const auto& terrain : got) CHECK(terrain == got[0]);
 }
 
+TEST_CASE("A provider gives a terrain of the caller's own by its name") {
+  TerrainProvider provider;
+  const auto own =
+      std::make_shared<const Terrain>(make_terrain(3, 100, [](double, double) { return 7; }));
+  provider.add(own);
+  CHECK(provider.load("made") == own);
+}
+
 TEST_CASE("A provider names what it was asked for and where it looked") {
   TerrainProvider provider({"/nowhere/tiles"});
   CHECK_THROWS_WITH(provider.load("synthetic:seven"), Catch::Contains("'synthetic:seven'"));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -24,12 +25,16 @@ class TerrainProvider {
   /// and what read_hgt or read_dted throws.
   std::shared_ptr<const Terrain> load(const std::string& name);
 
+  /// Has load() give a terrain of the caller's own by its name, whatever else that name may mean.
+  void add(std::shared_ptr<const Terrain> terrain);
+
  private:
   std::shared_ptr<const Terrain> read(const std::string& name) const;
 
   std::vector<std::filesystem::path> folders_;
   std::mutex mutex_;
   std::list<std::shared_ptr<const Terrain>> kept_;
+  std::map<std::string, std::shared_ptr<const Terrain>> added_;
 };
 
 }  // namespace skein::navigation

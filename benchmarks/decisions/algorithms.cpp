@@ -1,0 +1,216 @@
+#include "decisions/algorithms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "decisions/worlds.hpp"
+#include "skein/core/call_context.hpp"
+#include "skein/navigation/grid/grid_planner.hpp"
+#include "skein/navigation/planners.hpp"
+#include "skein/navigation/radar_exposure.hpp"
+
+namespace skein::benchmarks {
+namespace {
+
+using AE_navigator::NoRoute;
+using AE_navigator::Problem;
+using AE_navigator::Route;
+using navigation::TerrainProvider;
+using navigation::grid::Cell;
+using navigation::grid::GridMap;
+using std::chrono::steady_clock;
+
+/// The cells that a zone's box touches are blocked: zones here are boxes of whole cells.
+std::shared_ptr<const GridMap> cells_of(const Problem& problem,
+                                        const navigation::Terrain& terrain) {
+  auto map = std::make_shared<GridMap>(terrain.columns() - 1, terrain.rows() - 1);
+  for (const auto& zone : problem.no_fly_zones) {
+    const auto [south, north] =
+        std::ranges::minmax(zone.outline, {}, [](const auto& corner) { return corner.north_m; });
+    const auto [west, east] =
+        std::ranges::minmax(zone.outline, {}, [](const auto& corner) { return corner.east_m; });
+    const auto cell = [](double metres) { return static_cast<int>(std::lround(metres / kCellM)); };
+    for (int y = cell(south.north_m); y < cell(north.north_m); ++y) {
+      for (int x = cell(west.east_m); x < cell(east.east_m); ++x) map->block({x, y});
+    }
+  }
+  return map;
+}
+
+Cell cell_at(const AE_navigator::Position& position) {
+  return {static_cast<int>(position.east_m / kCellM), static_cast<int>(position.north_m / kCellM)};
+}
+
+/// A planner on grids, over flat land.
+class GridFinder final : public finding::IFinder {
+ public:
+  GridFinder(std::string planner, std::shared_ptr<TerrainProvider> terrains)
+      : planner_(std::move(planner)), terrains_(std::move(terrains)) {}
+
+  Route find(const finding::Task& task) override {
+    const Problem& problem = task.problem;
+    const auto terrain = terrains_->load(problem.terrain);
+    const auto planner = navigation::grid::make_grid_planner(planner_, cells_of(problem, *terrain));
+    const auto path = planner->plan(cell_at(problem.start), cell_at(problem.goal));
+    if (!path) throw NoRoute("there is no way from cell to cell", false);
+    Route route;
+    route.planner = planner_;
+    for (const Cell& cell : path->corners) route.waypoints.push_back(middle_of(cell));
+    route.length_m = path->length * kCellM;
+    route.lowest_height_above_ground_m = problem.start.altitude_m - terrain->highest_m();
+    route.radar_exposure =
+        navigation::RadarExposure(*terrain, problem.radar_sites).along(route.waypoints);
+    return route;
+  }
+
+ private:
+  const std::string planner_;
+  const std::shared_ptr<TerrainProvider> terrains_;
+};
+
+/// A planner of routes.
+class RouteFinder final : public finding::IFinder {
+ public:
+  RouteFinder(std::string planner, double spacing_m, std::shared_ptr<TerrainProvider> terrains)
+      : planner_(std::move(planner)), spacing_m_(spacing_m), terrains_(std::move(terrains)) {}
+
+  Route find(const finding::Task& task) override {
+    navigation::PlannerOptions options;
+    options.grid_spacing_m = spacing_m_;
+    if (task.exposure_cap_m >= 0) options.exposure_cap_m = task.exposure_cap_m;
+    return navigation::make_planner(planner_, terrains_, options)->plan(task.problem);
+  }
+
+ private:
+  const std::string planner_;
+  const double spacing_m_;
+  const std::shared_ptr<TerrainProvider> terrains_;
+};
+
+/// An algorithm on a bad day: takes a multiple of its time, or for ever.
+class Staged final : public finding::IFinder {
+ public:
+  Staged(std::string name, std::unique_ptr<finding::IFinder> finder, Stage& stage)
+      : name_(std::move(name)), finder_(std::move(finder)), stage_(stage) {}
+
+  Route find(const finding::Task& task) override {
+    stage_.enter();
+    const std::shared_ptr<void> leave(nullptr, [this](void*) { stage_.leave(); });
+    if (stage_.hang(name_)) throw NoRoute("it hung", false);
+    const double factor = stage_.factor(name_);
+    finding::Task timed = task;
+    timed.problem.time_limit_ms = time_limit_ms(factor);
+    const auto begin = steady_clock::now();
+    try {
+      Route route = finder_->find(timed);
+      spin(begin, factor);
+      return route;
+    } catch (const NoRoute&) {
+      spin(begin, factor);
+      throw;
+    }
+  }
+
+ private:
+  /// What is left, so that the planner ends in time however slow it is today.
+  static std::uint32_t time_limit_ms(double factor) {
+    const Duration left = CallContext::current()->remaining();
+    return 1 + static_cast<std::uint32_t>(std::chrono::duration<double, std::milli>(left).count() /
+                                          factor);
+  }
+
+  static void spin(steady_clock::time_point begin, double factor) {
+    const auto end =
+        begin + std::chrono::duration_cast<Duration>((steady_clock::now() - begin) * factor);
+    while (steady_clock::now() < end && !CallContext::current()->cancelled()) {
+    }
+  }
+
+  const std::string name_;
+  const std::unique_ptr<finding::IFinder> finder_;
+  Stage& stage_;
+};
+
+struct Make {
+  const char* name;
+  const char* planner;
+  double spacing_m;  // 0: on cells
+  const char* latency_ms;
+  const char* quality;
+};
+
+// Declared is what their maker may have measured on 64 x 64 cells.
+constexpr Make kMakes[] = {{"AnyAngle", "theta", 0, "2", "0.4"},
+                           {"Capped", "CappedAStar", 100, "150", "1"},
+                           {"CappedCoarse", "CappedAStar", 300, "20", "0.7"},
+                           {"Jumper", "jps", 0, "1", "0.3"},
+                           {"Sampler", "RRTConnect", 100, "10", "0.5"},
+                           {"Weighted", "AStar", 100, "30", "0.8"}};
+
+std::unique_ptr<finding::IFinder> make_finder(const Make& make,
+                                              std::shared_ptr<TerrainProvider> terrains) {
+  if (make.spacing_m == 0) return std::make_unique<GridFinder>(make.planner, std::move(terrains));
+  return std::make_unique<RouteFinder>(make.planner, make.spacing_m, std::move(terrains));
+}
+
+}  // namespace
+
+void Stage::set(std::map<std::string, double> factors, std::string hangs) {
+  const std::lock_guard lock(mutex_);
+  factors_ = std::move(factors);
+  hangs_ = std::move(hangs);
+}
+
+void Stage::clear() {
+  std::unique_lock lock(mutex_);
+  hangs_.clear();
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return at_work_ == 0; });
+}
+
+double Stage::factor(const std::string& algorithm) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = factors_.find(algorithm);
+  return found == factors_.end() ? 1 : found->second;
+}
+
+bool Stage::hang(const std::string& algorithm) {
+  std::unique_lock lock(mutex_);
+  const auto hangs = [&] { return hangs_ == "all" || hangs_ == algorithm; };
+  if (!hangs()) return false;
+  changed_.wait(lock, [&] { return !hangs(); });
+  return true;
+}
+
+void Stage::enter() {
+  const std::lock_guard lock(mutex_);
+  ++at_work_;
+}
+
+void Stage::leave() {
+  const std::lock_guard lock(mutex_);
+  --at_work_;
+  changed_.notify_all();
+}
+
+std::vector<Algorithm> make_algorithms(std::shared_ptr<TerrainProvider> terrains, Stage& stage) {
+  std::vector<Algorithm> algorithms;
+  for (const Make& make : kMakes) {
+    algorithms.push_back({make.name,
+                          {{"latency", make.latency_ms}, {"quality", make.quality}},
+                          std::make_shared<Staged>(make.name, make_finder(make, terrains), stage)});
+  }
+  return algorithms;
+}
+
+const std::vector<std::string>& algorithm_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const Make& make : kMakes) names.emplace_back(make.name);
+    return names;
+  }();
+  return kNames;
+}
+
+}  // namespace skein::benchmarks
