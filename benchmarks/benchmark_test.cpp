@@ -353,6 +353,26 @@ TEST_CASE("no kind of grid is missing, and those of the test data are skipped wi
   CHECK(has(results, mean, "skein canonical-astar", json::object(), "plain A*"));
 }
 
+TEST_CASE("each strategy is scored, and decisions.csv has a row for each request") {
+  const QuickRun& run = QuickRun::get();
+  const std::string loss = "PAR10 beyond the virtual best, mean over requests";
+  std::size_t requests = 0;
+  for (const char* strategy : {"skein learned", "skein declared", "skein fixed_order"}) {
+    CHECK(has(run.results, loss, strategy, {{"where", "held-out"}}, "single best"));
+    CHECK(has(run.results, "results that the Head accepts", strategy, json::object()));
+    CHECK(has(run.results, "deadline to the answer, an algorithm hangs", strategy, json::object()));
+  }
+  for (const json& row : run.results) {
+    if (row.at("claim") == loss && row.at("subject") == "skein learned")
+      requests += row.at("parameters").at("requests").get<std::size_t>();
+  }
+  std::ifstream table(run.folder / "decisions.csv");
+  std::size_t lines = 0;
+  for (std::string line; std::getline(table, line);) ++lines;
+  CHECK(lines == requests + 1);
+  CHECK(requests > 20);
+}
+
 TEST_CASE("a user measures calls by the command, and compares what it saved") {
   const auto folder = std::filesystem::current_path() / "command_bench";
   std::filesystem::remove_all(folder);

@@ -75,7 +75,7 @@ Plan quick_plan() {
           1,
           {1, 2, 1, std::chrono::milliseconds(1500)},
           {3, 100},
-          {150}};
+          {60}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {

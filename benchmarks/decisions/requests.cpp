@@ -104,7 +104,7 @@ class Drawing {
     const auto one = static_cast<std::size_t>(below(static_cast<int>(algorithms_.size()), random_));
     request.hangs = all ? kAllHang : algorithms_[one];
     request.limit =
-        std::chrono::microseconds(static_cast<std::int64_t>(1000 * log_uniform(1, 100, random_)));
+        std::chrono::microseconds(static_cast<std::int64_t>(1000 * log_uniform(1, 30, random_)));
   }
 
   const std::shared_ptr<const World> world_;

@@ -19,20 +19,25 @@ constexpr double kLeastQuality = 1e-9;
 struct Outlook {
   explicit Outlook(const Candidate& candidate) {
     typical = safe = candidate.latency.value_or(Duration::zero());
-    double quality = candidate.quality;
-    double reliability = 1;
+    quality = candidate.quality;
     if (const auto& learned = candidate.learned) {
       typical = learned->median.value_or(typical);
       safe = learned->q95.value_or(safe);
       quality = learned->quality.value_or(quality);
       reliability = learned->reliability;
     }
-    utility = reliability * std::max(quality, kLeastQuality);
+    quality = std::max(quality, kLeastQuality);
   }
+
+  double utility() const { return reliability * quality; }
+  /// Time per accepted result: of several that follow each other until one is accepted, the
+  /// expected time is least where those with the least pace go first.
+  double pace() const { return static_cast<double>(typical.count()) / reliability; }
 
   Duration typical;
   Duration safe;
-  double utility;
+  double quality;
+  double reliability = 1;
 };
 
 class Choice {
@@ -46,6 +51,7 @@ class Choice {
     const auto best = best_that_fits();
     if (!best) return fastest_anyway();
     if (const auto other = to_explore(*best)) return explore(*other, *best);
+    if (const auto quick = worth_a_try(*best)) return try_first(*quick, *best);
     return take(*best);
   }
 
@@ -53,15 +59,35 @@ class Choice {
   std::optional<std::size_t> best_that_fits() const {
     double greatest = 0;
     for (const Outlook& outlook : outlooks_) {
-      if (outlook.safe <= situation_.remaining) greatest = std::max(greatest, outlook.utility);
+      if (outlook.safe <= situation_.remaining) greatest = std::max(greatest, outlook.utility());
     }
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < outlooks_.size(); ++i) {
-      if (outlooks_[i].safe > situation_.remaining || outlooks_[i].utility < kEqual * greatest)
+      if (outlooks_[i].safe > situation_.remaining || outlooks_[i].utility() < kEqual * greatest)
         continue;
       if (!best || outlooks_[i].typical < outlooks_[*best].typical) best = i;
     }
     return best;
+  }
+
+  // One that is as good where it succeeds, and so quick that it costs less to try it first than it
+  // saves; where there is time for it and then for the best.
+  std::optional<std::size_t> worth_a_try(std::size_t best) const {
+    std::optional<std::size_t> quick;
+    for (std::size_t i = 0; i < outlooks_.size(); ++i) {
+      if (i == best || outlooks_[i].safe + outlooks_[best].safe > situation_.remaining ||
+          outlooks_[i].quality < kEqual * outlooks_[best].quality)
+        continue;
+      if (outlooks_[i].pace() < outlooks_[quick.value_or(best)].pace()) quick = i;
+    }
+    return quick;
+  }
+
+  Selection try_first(std::size_t quick, std::size_t best) const {
+    return {quick, situation_.remaining - outlooks_[best].safe,
+            candidates_[quick].name + " has " + outlook_text(quick) + ": worth a try before " +
+                candidates_[best].name + ", for which " + in_ms(outlooks_[best].safe) + " are kept",
+            outlooks_[quick].safe};
   }
 
   // The one that has not run for longest, where there is time for it and then for the best.

@@ -69,6 +69,23 @@ TEST_CASE("the 95 % latency of the quickest other CSP is kept in reserve where i
   CHECK(select(two, 510ms).slice == 510ms);
 }
 
+TEST_CASE(
+    "a quick CSP that often fails goes first where that costs less than it saves, and time for the "
+    "best one is kept") {
+  const auto sound = candidate("sound", 0ms, 0.9, shown(80ms, 100ms, 0.9));
+  const auto chancy = [&](double reliability, double quality = 0.9) {
+    return std::vector<Candidate>{
+        sound, candidate("chancy", 0ms, 0.9, shown(8ms, 10ms, quality, reliability))};
+  };
+  const Selection selection = select(chancy(0.2), 1s);
+  CHECK(selection.candidate == 1);
+  CHECK(selection.slice == 900ms);
+  CHECK_THAT(selection.reason, Catch::Contains("worth a try before sound"));
+  CHECK(select(chancy(0.05), 1s).candidate == 0);      // 8 ms for one in twenty
+  CHECK(select(chancy(0.2, 0.5), 1s).candidate == 0);  // not as good
+  CHECK(select(chancy(0.2), 105ms).candidate == 0);    // no time for both
+}
+
 TEST_CASE("where no 95 % latency fits the fastest is selected and gets all of the time") {
   const Selection selection = select({candidate("good", 0ms, 0.9, shown(400ms, 500ms, 0.9)),
                                       candidate("quick", 0ms, 0.1, shown(20ms, 30ms, 0.1))},
