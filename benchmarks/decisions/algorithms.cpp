@@ -21,7 +21,7 @@ using navigation::grid::Cell;
 using navigation::grid::GridMap;
 using std::chrono::steady_clock;
 
-constexpr double kPatienceMs = 60;
+constexpr double kPatienceMs = 40;
 
 /// The cells that a zone's box touches are blocked: zones here are boxes of whole cells.
 std::shared_ptr<const GridMap> cells_of(const Problem& problem,

@@ -55,7 +55,7 @@ class Drawing {
     if (share(random_) < 0.6) add_radars(request.task, way);
     request.limit =
         std::chrono::microseconds(static_cast<std::int64_t>(1000 * log_uniform(1, 2000, random_)));
-    if (share(random_) < 0.05) add_hang(request);
+    if (share(random_) < 0.08) add_hang(request);
     return request;
   }
 
