@@ -55,6 +55,7 @@ class Contest {
     stage_.set(request.factors, request.hangs);
     Answer answer = contestant.answer(request);
     stage_.clear();
+    contestant.settle();
     if (answer.route) trial.valid[contestant.name()] = is_valid(request, *answer.route);
     trial.request = &request;
     trial.answers[contestant.name()] = std::move(answer);

@@ -1,11 +1,13 @@
 #include "decisions/contestant.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <thread>
 
 #include "skein/core/error.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/navigation/keep_out.hpp"
 #include "skein/navigation/radar_exposure.hpp"
 
@@ -142,6 +144,11 @@ Answer Contestant::answer(const Request& request) {
     if (attempt.outcome == Attempt::Outcome::Accepted) break;
   }
   return answer;
+}
+
+void Contestant::settle() const {
+  const auto at_work = [](const auto& service) { return service.running > 0; };
+  while (std::ranges::any_of(entity_->statistics(), at_work)) std::this_thread::yield();
 }
 
 Features features_of(const finding::Task& task, const navigation::Terrain& terrain) {

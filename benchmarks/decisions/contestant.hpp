@@ -31,6 +31,8 @@ class Contestant {
   const std::string& name() const { return name_; }
 
   Answer answer(const Request& request);
+  /// Waits until none of its algorithms is at work.
+  void settle() const;
 
  private:
   Contestant(std::string name, HeadOptions head, const std::vector<Algorithm>& algorithms,

@@ -70,8 +70,7 @@ TEST_CASE("the 95 % latency of the quickest other CSP is kept in reserve where i
 }
 
 TEST_CASE(
-    "a quick CSP that often fails goes first where that costs less than it saves, and time for the "
-    "best one is kept") {
+    "a quick CSP that often fails has a short try first where that costs less than it saves") {
   const auto sound = candidate("sound", 0ms, 0.9, shown(80ms, 100ms, 0.9));
   const auto chancy = [&](double reliability, double quality = 0.9) {
     return std::vector<Candidate>{
@@ -79,7 +78,7 @@ TEST_CASE(
   };
   const Selection selection = select(chancy(0.2), 1s);
   CHECK(selection.candidate == 1);
-  CHECK(selection.slice == 900ms);
+  CHECK(selection.slice == 10ms);
   CHECK_THAT(selection.reason, Catch::Contains("worth a try before sound"));
   CHECK(select(chancy(0.05), 1s).candidate == 0);      // 8 ms for one in twenty
   CHECK(select(chancy(0.2, 0.5), 1s).candidate == 0);  // not as good
