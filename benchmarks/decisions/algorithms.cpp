@@ -13,6 +13,7 @@
 namespace skein::benchmarks {
 namespace {
 
+using AE_navigator::IPlanner;
 using AE_navigator::NoRoute;
 using AE_navigator::Problem;
 using AE_navigator::Route;
@@ -44,14 +45,21 @@ Cell cell_at(const AE_navigator::Position& position) {
   return {static_cast<int>(position.east_m / kCellM), static_cast<int>(position.north_m / kCellM)};
 }
 
-/// A planner on grids, over flat land.
-class GridFinder final : public finding::IFinder {
+/// Brings the one route that it finds.
+class OneRoutePlanner : public IPlanner {
  public:
-  GridFinder(std::string planner, std::shared_ptr<TerrainProvider> terrains)
+  void improve(const Problem& problem, StreamSink<Route>& routes) override {
+    routes.push(plan(problem));
+  }
+};
+
+/// A planner on grids, over flat land.
+class GridPlanner final : public OneRoutePlanner {
+ public:
+  GridPlanner(std::string planner, std::shared_ptr<TerrainProvider> terrains)
       : planner_(std::move(planner)), terrains_(std::move(terrains)) {}
 
-  Route find(const finding::Task& task) override {
-    const Problem& problem = task.problem;
+  Route plan(const Problem& problem) override {
     const auto terrain = terrains_->load(problem.terrain);
     const auto planner = navigation::grid::make_grid_planner(planner_, cells_of(problem, *terrain));
     const auto path = planner->plan(cell_at(problem.start), cell_at(problem.goal));
@@ -71,41 +79,22 @@ class GridFinder final : public finding::IFinder {
   const std::shared_ptr<TerrainProvider> terrains_;
 };
 
-/// A planner of routes.
-class RouteFinder final : public finding::IFinder {
- public:
-  RouteFinder(std::string planner, double spacing_m, std::shared_ptr<TerrainProvider> terrains)
-      : planner_(std::move(planner)), spacing_m_(spacing_m), terrains_(std::move(terrains)) {}
-
-  Route find(const finding::Task& task) override {
-    navigation::PlannerOptions options;
-    options.grid_spacing_m = spacing_m_;
-    if (task.exposure_cap_m >= 0) options.exposure_cap_m = task.exposure_cap_m;
-    return navigation::make_planner(planner_, terrains_, options)->plan(task.problem);
-  }
-
- private:
-  const std::string planner_;
-  const double spacing_m_;
-  const std::shared_ptr<TerrainProvider> terrains_;
-};
-
 /// An algorithm on a bad day: takes a multiple of its time, or for ever.
-class Staged final : public finding::IFinder {
+class Staged final : public OneRoutePlanner {
  public:
-  Staged(std::string name, std::unique_ptr<finding::IFinder> finder, Stage& stage)
-      : name_(std::move(name)), finder_(std::move(finder)), stage_(stage) {}
+  Staged(std::string name, std::unique_ptr<IPlanner> planner, Stage& stage)
+      : name_(std::move(name)), planner_(std::move(planner)), stage_(stage) {}
 
-  Route find(const finding::Task& task) override {
+  Route plan(const Problem& problem) override {
     stage_.enter();
     const std::shared_ptr<void> leave(nullptr, [this](void*) { stage_.leave(); });
     if (stage_.hang(name_)) throw NoRoute("it hung", false);
     const double factor = stage_.factor(name_);
-    finding::Task timed = task;
-    timed.problem.time_limit_ms = time_limit_ms(factor);
+    Problem timed = problem;
+    timed.time_limit_ms = time_limit_ms(factor);
     const auto begin = steady_clock::now();
     try {
-      Route route = finder_->find(timed);
+      Route route = planner_->plan(timed);
       spin(begin, factor);
       return route;
     } catch (const NoRoute&) {
@@ -130,7 +119,7 @@ class Staged final : public finding::IFinder {
   }
 
   const std::string name_;
-  const std::unique_ptr<finding::IFinder> finder_;
+  const std::unique_ptr<IPlanner> planner_;
   Stage& stage_;
 };
 
@@ -150,10 +139,11 @@ constexpr Make kMakes[] = {{"AnyAngle", "theta", 0, "2", "0.4"},
                            {"Sampler", "RRTConnect", 100, "10", "0.5"},
                            {"Weighted", "AStar", 100, "30", "0.8"}};
 
-std::unique_ptr<finding::IFinder> make_finder(const Make& make,
-                                              std::shared_ptr<TerrainProvider> terrains) {
-  if (make.spacing_m == 0) return std::make_unique<GridFinder>(make.planner, std::move(terrains));
-  return std::make_unique<RouteFinder>(make.planner, make.spacing_m, std::move(terrains));
+std::unique_ptr<IPlanner> make_one(const Make& make, std::shared_ptr<TerrainProvider> terrains) {
+  if (make.spacing_m == 0) return std::make_unique<GridPlanner>(make.planner, std::move(terrains));
+  navigation::PlannerOptions options;
+  options.grid_spacing_m = make.spacing_m;
+  return navigation::make_planner(make.planner, std::move(terrains), options);
 }
 
 }  // namespace
@@ -201,7 +191,7 @@ std::vector<Algorithm> make_algorithms(std::shared_ptr<TerrainProvider> terrains
   for (const Make& make : kMakes) {
     algorithms.push_back({make.name,
                           {{"latency", make.latency_ms}, {"quality", make.quality}},
-                          std::make_shared<Staged>(make.name, make_finder(make, terrains), stage)});
+                          std::make_shared<Staged>(make.name, make_one(make, terrains), stage)});
   }
   return algorithms;
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "finder.idl.hpp"
+#include "navigator.idl.hpp"
 #include "skein/entity/entity.hpp"
 #include "skein/navigation/terrain_provider.hpp"
 
@@ -40,7 +40,7 @@ class Stage {
 struct Algorithm {
   std::string name;
   std::vector<ServiceAttribute> declared;
-  std::shared_ptr<finding::IFinder> finder;
+  std::shared_ptr<AE_navigator::IPlanner> planner;
 };
 
 /// Planners of src/navigation, in the order of their names:

@@ -19,9 +19,9 @@ bool is_valid(const Request& request, const AE_navigator::Route& route) {
   const navigation::Terrain& terrain = *request.world->terrain;
   const navigation::HeightGrid ground{terrain.rows(), terrain.columns(), terrain.north_spacing_m(),
                                       terrain.east_spacing_m(), terrain.heights_m()};
-  const double cap = request.task.exposure_cap_m;
-  return navigation::check_route(request.task.problem, route, ground).empty() &&
-         (cap < 0 || route.radar_exposure <= cap);
+  const double cap = request.problem.exposure_cap_m;
+  return navigation::check_route(request.problem, route, ground).empty() &&
+         (cap == 0 || route.radar_exposure <= cap);
 }
 
 class Contest {

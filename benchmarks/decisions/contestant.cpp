@@ -14,9 +14,10 @@
 namespace skein::benchmarks {
 namespace {
 
+using AE_navigator::IPlanner;
 using AE_navigator::Position;
+using AE_navigator::Problem;
 using AE_navigator::Route;
-using finding::IFinder;
 using std::chrono::steady_clock;
 using Flaw = std::optional<std::string>;
 
@@ -26,14 +27,14 @@ double distance_m(const Position& a, const Position& b) {
   return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
 }
 
-Flaw judge_ends(const AE_navigator::Problem& problem, const Route& route) {
+Flaw judge_ends(const Problem& problem, const Route& route) {
   if (route.waypoints.size() < 2) return "it has fewer than two waypoints";
   if (distance_m(route.waypoints.front(), problem.start) > 0.01) return "it begins elsewhere";
   if (distance_m(route.waypoints.back(), problem.goal) > 0.01) return "it ends elsewhere";
   return std::nullopt;
 }
 
-Flaw judge_zones(const AE_navigator::Problem& problem, const Route& route) {
+Flaw judge_zones(const Problem& problem, const Route& route) {
   for (const auto& zone : problem.no_fly_zones) {
     const navigation::KeepOut keep_out(zone, 0);
     for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
@@ -46,17 +47,17 @@ Flaw judge_zones(const AE_navigator::Problem& problem, const Route& route) {
 
 /// The Body's checks. That a planner which knows no cap exceeds it is no fault; to claim less than
 /// there is would be one.
-Evaluation<Route> checks_of(const finding::Task& task, const navigation::Terrain& terrain) {
+Evaluation<Route> checks_of(const Problem& problem, const navigation::Terrain& terrain) {
   Evaluation<Route> checks;
-  checks.check("ends", [&](const Route& route) { return judge_ends(task.problem, route); });
-  checks.check("zones", [&](const Route& route) { return judge_zones(task.problem, route); });
-  if (task.exposure_cap_m < 0) return checks;
+  checks.check("ends", [&](const Route& route) { return judge_ends(problem, route); });
+  checks.check("zones", [&](const Route& route) { return judge_zones(problem, route); });
+  if (problem.exposure_cap_m == 0) return checks;
   checks.admitted("exposure cap", [&](const Route& route) -> Flaw {
-    if (route.radar_exposure <= task.exposure_cap_m) return std::nullopt;
+    if (route.radar_exposure <= problem.exposure_cap_m) return std::nullopt;
     return "its exposure is beyond the cap";
   });
   checks.check("claimed exposure", [&](const Route& route) -> Flaw {
-    const navigation::RadarExposure exposure(terrain, task.problem.radar_sites);
+    const navigation::RadarExposure exposure(terrain, problem.radar_sites);
     if (exposure.along(route.waypoints) <= route.radar_exposure * (1 + kExposureTolerance) + 1)
       return std::nullopt;
     return "it is exposed more than it claims";
@@ -64,11 +65,11 @@ Evaluation<Route> checks_of(const finding::Task& task, const navigation::Terrain
   return checks;
 }
 
-Task<IFinder, Route> task_of(const finding::Task& what, const navigation::Terrain& terrain) {
-  Task<IFinder, Route> task;
-  task.features = features_of(what, terrain);
-  task.run = [&what](IFinder::Proxy& csp, Duration) { return csp.async_find(what); };
-  task.evaluate = checks_of(what, terrain);
+Task<IPlanner, Route> task_of(const Problem& problem, const navigation::Terrain& terrain) {
+  Task<IPlanner, Route> task;
+  task.features = features_of(problem, terrain);
+  task.run = [&problem](IPlanner::Proxy& csp, Duration) { return csp.async_plan(problem); };
+  task.evaluate = checks_of(problem, terrain);
   // Here every right answer is as good as any other; only its time counts.
   task.quality = [](const Route&) { return 1.0; };
   return task;
@@ -76,7 +77,8 @@ Task<IFinder, Route> task_of(const finding::Task& what, const navigation::Terrai
 
 void await_all(Entity& entity, std::size_t count) {
   const auto end = steady_clock::now() + std::chrono::seconds(10);
-  while (entity.broker().find_service(entity.broker().query("finding/IFinder")).size() < count) {
+  while (entity.broker().find_service(entity.broker().query("AE_navigator/IPlanner")).size() <
+         count) {
     if (steady_clock::now() > end) throw std::runtime_error("an algorithm was never seen");
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -117,18 +119,18 @@ Contestant::Contestant(std::string name, HeadOptions head, const std::vector<Alg
   for (const Algorithm& algorithm : algorithms) {
     ServiceOptions service;
     service.attributes = algorithm.declared;
-    entity_->provide_csp<IFinder>(algorithm.name, entity_->id(), algorithm.finder, service);
+    entity_->provide_csp<IPlanner>(algorithm.name, entity_->id(), algorithm.planner, service);
   }
   await_all(*entity_, algorithms.size());
 }
 
 Answer Contestant::answer(const Request& request) {
-  const auto terrain = terrains_->load(request.task.problem.terrain);
+  const auto terrain = terrains_->load(request.problem.terrain);
   Answer answer;
   DecisionRecord record;
   const auto begin = steady_clock::now();
   try {
-    const auto task = task_of(request.task, *terrain);
+    const auto task = task_of(request.problem, *terrain);
     const Duration limit = request.limit - (steady_clock::now() - begin);
     answer.route = entity_->head().perform(task, &record, limit);
     answer.outcome = "answered";
@@ -151,12 +153,11 @@ void Contestant::settle() const {
   while (std::ranges::any_of(entity_->statistics(), at_work)) std::this_thread::yield();
 }
 
-Features features_of(const finding::Task& task, const navigation::Terrain& terrain) {
-  const AE_navigator::Problem& problem = task.problem;
+Features features_of(const Problem& problem, const navigation::Terrain& terrain) {
   double tightness = 0;  // of no cap
-  if (task.exposure_cap_m >= 0) {
+  if (problem.exposure_cap_m > 0) {
     const navigation::RadarExposure exposure(terrain, problem.radar_sites);
-    tightness = exposure.along(problem.start, problem.goal) / (task.exposure_cap_m + 1);
+    tightness = exposure.along(problem.start, problem.goal) / (problem.exposure_cap_m + 1);
   }
   return {{"points", static_cast<double>(terrain.rows()) * terrain.columns()},
           {"zones", static_cast<double>(problem.no_fly_zones.size())},

@@ -43,7 +43,7 @@ class Contestant {
   std::unique_ptr<Entity> entity_;
 };
 
-/// What the Body tells the Head of a task, and finds out within microseconds.
-Features features_of(const finding::Task& task, const navigation::Terrain& terrain);
+/// What the Body tells the Head of a problem, and finds out within microseconds.
+Features features_of(const AE_navigator::Problem& problem, const navigation::Terrain& terrain);
 
 }  // namespace skein::benchmarks

@@ -29,7 +29,8 @@ std::string quality_of(const Trial& trial) {
 
 std::string head_of(const Trial& trial) {
   std::string head = "part,request,world";
-  for (const Feature& feature : features_of(trial.request->task, *trial.request->world->terrain)) {
+  for (const Feature& feature :
+       features_of(trial.request->problem, *trial.request->world->terrain)) {
     head += "," + feature.name;
   }
   head +=
@@ -44,7 +45,7 @@ std::string row_of(const Trial& trial, const std::string& single_best) {
   const Answer& answer = trial.answers.at("learned");
   std::string row =
       fmt::format("{},{},{}", request.part, request.number, request.world->terrain->name());
-  for (const Feature& feature : features_of(request.task, *request.world->terrain))
+  for (const Feature& feature : features_of(request.problem, *request.world->terrain))
     row += fmt::format(",{:.6g}", feature.value);
   const std::string& best = trial.virtual_best();
   row += fmt::format(",{:.3f},{},{},{},{:.3f},{},{},{},{:.3f},{},{:.3f}",

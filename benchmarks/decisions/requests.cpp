@@ -42,7 +42,7 @@ class Drawing {
   Request draw() {
     Request request;
     request.world = world_;
-    AE_navigator::Problem& problem = request.task.problem;
+    AE_navigator::Problem& problem = request.problem;
     problem.terrain = world_->terrain->name();
     problem.no_fly_zones = world_->zones;
     problem.minimum_height_above_ground_m = 50;
@@ -51,8 +51,7 @@ class Drawing {
     const GridPath way = draw_way();
     problem.start = middle_of(way.corners.front());
     problem.goal = middle_of(way.corners.back());
-    request.task.exposure_cap_m = -1;
-    if (share(random_) < 0.6) add_radars(request.task, way);
+    if (share(random_) < 0.6) add_radars(request.problem, way);
     request.limit =
         std::chrono::microseconds(static_cast<std::int64_t>(1000 * log_uniform(1, 2000, random_)));
     if (share(random_) < 0.08) add_hang(request);
@@ -73,7 +72,7 @@ class Drawing {
     }
   }
 
-  void add_radars(finding::Task& task, const GridPath& way) {
+  void add_radars(AE_navigator::Problem& problem, const GridPath& way) {
     const double side_m = kCellM * std::max(world_->map->width(), world_->map->height());
     const int count = 1 + below(3, random_);
     for (int i = 0; i < count; ++i) {
@@ -89,14 +88,14 @@ class Drawing {
       radar.site.north_m = coordinate(a.north_m, b.north_m);
       radar.site.east_m = coordinate(a.east_m, b.east_m);
       radar.range_m = side_m * (0.05 + 0.1 * share(random_));
-      task.problem.radar_sites.push_back(radar);
+      problem.radar_sites.push_back(radar);
     }
     if (share(random_) * 3 > 2) return;
     const double share_of_exposure = log_uniform(0.4, 1.4, random_);
     std::vector<Position> waypoints;
     for (const Cell& cell : way.corners) waypoints.push_back(middle_of(cell));
-    const navigation::RadarExposure exposure(*world_->terrain, task.problem.radar_sites);
-    task.exposure_cap_m = share_of_exposure * exposure.along(waypoints);
+    const navigation::RadarExposure exposure(*world_->terrain, problem.radar_sites);
+    problem.exposure_cap_m = share_of_exposure * exposure.along(waypoints);
   }
 
   void add_hang(Request& request) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "decisions/worlds.hpp"
-#include "finder.idl.hpp"
+#include "navigator.idl.hpp"
 #include "skein/core/clock.hpp"
 #include "skein/navigation/terrain_provider.hpp"
 
@@ -20,7 +20,7 @@ struct Request {
   std::string part;  ///< `training` or `held_out`.
   std::size_t number = 0;
   std::shared_ptr<const World> world;
-  finding::Task task;
+  AE_navigator::Problem problem;
   Duration limit{};
   /// The algorithm that never answers it; kAllHang; or empty.
   std::string hangs;

@@ -16,8 +16,11 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     request.request_id = "across";
     request.problem = skein::navigation::demo_problem(skein::navigation::make_synthetic_terrain(7));
     const auto route = navigator.within(std::chrono::seconds(20)).request_route(request);
-    std::printf("%s: %.1f km\n%s\n", route.planner.c_str(), route.length_m / 1000,
-                navigator.report(request.request_id).reason.c_str());
+    for (const auto& attempt : navigator.report(request.request_id).attempts) {
+      std::printf("%s\n  %s after %.1f ms %s\n", attempt.reason.c_str(), attempt.outcome.c_str(),
+                  attempt.took_ms, attempt.text.c_str());
+    }
+    std::printf("%s: %.1f km\n", route.planner.c_str(), route.length_m / 1000);
     return 0;
   });
 }
