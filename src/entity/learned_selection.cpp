@@ -12,6 +12,8 @@ using selection_text::percent;
 
 // Utilities this near to each other are taken for equal: they rest on few samples.
 constexpr double kEqual = 0.95;
+// A CSP that takes so many times as long as was expected of it hangs.
+constexpr int kHangs = 4;
 // So that reliability counts where neither declares nor measures a quality.
 constexpr double kLeastQuality = 1e-9;
 
@@ -130,11 +132,19 @@ class Choice {
     std::string reason = candidates_[best].name + " has " + outlook_text(best) +
                          ": the best that fits into " + in_ms(situation_.remaining);
     if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
-    return {best, situation_.remaining - reserve, std::move(reason), outlooks_[best].safe};
+    return {best, slice_beside(best, reserve), std::move(reason), outlooks_[best].safe};
   }
 
   static std::string runs_text(std::size_t count) {
     return count == 1 ? "like run " : std::to_string(count) + " like runs ";
+  }
+
+  // All of the time but the reserve; of plenty of time half: who has not answered by then and has
+  // had so many times its 95 % latency will hardly do so.
+  Duration slice_beside(std::size_t best, Duration reserve) const {
+    if (reserve == Duration::zero()) return situation_.remaining;
+    const Duration enough = std::max(kHangs * outlooks_[best].safe, situation_.remaining / 2);
+    return std::min(enough, situation_.remaining - reserve);
   }
 
   std::string outlook_text(std::size_t index) const {

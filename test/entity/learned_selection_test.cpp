@@ -69,6 +69,15 @@ TEST_CASE("the 95 % latency of the quickest other CSP is kept in reserve where i
   CHECK(select(two, 510ms).slice == 510ms);
 }
 
+TEST_CASE("of plenty of time half is left to others, should the best one hang") {
+  const std::vector<Candidate> two{candidate("good", 0ms, 0.9, shown(90ms, 100ms, 0.9)),
+                                   candidate("other", 0ms, 0.1, shown(20ms, 30ms, 0.1))};
+  CHECK(select(two, 2s).slice == 1s);
+  CHECK(select(two, 500ms).slice == 400ms);
+  CHECK(select(two, 410ms).slice == 380ms);
+  CHECK(select({two[0]}, 2s).slice == 2s);
+}
+
 TEST_CASE(
     "a quick CSP that often fails has a short try first where that costs less than it saves") {
   const auto sound = candidate("sound", 0ms, 0.9, shown(80ms, 100ms, 0.9));
