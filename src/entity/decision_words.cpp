@@ -10,10 +10,17 @@ using selection_text::percent;
 
 std::string learned_text(const Prediction& learned) {
   std::string text = "has shown over " + std::to_string(learned.samples) + " like runs";
-  if (learned.median) text += " " + in_ms(*learned.median);
+  if (learned.median) text += " a median of " + in_ms(*learned.median);
   if (learned.q95) text += ", " + in_ms(*learned.q95) + " at 95 %";
   if (learned.quality) text += ", quality " + number(*learned.quality);
   return text + ", " + percent(learned.reliability) + " accepted";
+}
+
+std::string line_of(const Features& features) {
+  std::string text;
+  for (const Feature& feature : features)
+    text += (text.empty() ? "  for " : ", ") + feature.name + " " + number(feature.value);
+  return text.empty() ? text : text + "\n";
 }
 
 std::string line_of(const Candidate& candidate) {
@@ -48,9 +55,7 @@ std::string explain(const DecisionRecord& record) {
   if (!record.request.empty()) text += " on '" + record.request + "'";
   text += ": " + record.interface + " within " + in_ms(record.available) + ", strategy " +
           record.strategy + ", " + record.execution + " at a time\n";
-  for (const Feature& feature : record.situation.features) {
-    text += "  " + feature.name + " = " + number(feature.value) + "\n";
-  }
+  text += line_of(record.situation.features);
   for (const Candidate& candidate : record.candidates) text += line_of(candidate);
   for (const Attempt& attempt : record.attempts) text += line_of(attempt);
   if (record.stuck > 0)

@@ -128,15 +128,12 @@ class Choice {
   }
 
   Selection take(std::size_t best) const {
-    const Duration reserve = reserve_beside(best);
+    const Duration slice = slice_beside(best, reserve_beside(best));
     std::string reason = candidates_[best].name + " has " + outlook_text(best) +
                          ": the best that fits into " + in_ms(situation_.remaining);
-    if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
-    return {best, slice_beside(best, reserve), std::move(reason), outlooks_[best].safe};
-  }
-
-  static std::string runs_text(std::size_t count) {
-    return count == 1 ? "like run " : std::to_string(count) + " like runs ";
+    if (slice < situation_.remaining)
+      reason += "; " + in_ms(situation_.remaining - slice) + " are kept for a fall-back";
+    return {best, slice, std::move(reason), outlooks_[best].safe};
   }
 
   // All of the time but the reserve; of plenty of time half: who has not answered by then and has

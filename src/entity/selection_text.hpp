@@ -8,8 +8,9 @@
 /// How reasons are put in words.
 namespace skein::selection_text {
 
-/// With three decimals at most.
+/// With three decimals at most; from a thousand on whole.
 inline std::string number(double value) {
+  if (std::abs(value) >= 1000) value = std::round(value);
   std::string text = std::to_string(value);
   text.erase(text.size() - 3);
   text.erase(text.find_last_not_of('0') + 1);
