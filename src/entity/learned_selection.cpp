@@ -136,6 +136,10 @@ class Choice {
     return {best, slice, std::move(reason), outlooks_[best].safe};
   }
 
+  static std::string runs_text(std::size_t count) {
+    return count == 1 ? "like run " : std::to_string(count) + " like runs ";
+  }
+
   // All of the time but the reserve; of plenty of time half: who has not answered by then and has
   // had so many times its 95 % latency will hardly do so.
   Duration slice_beside(std::size_t best, Duration reserve) const {

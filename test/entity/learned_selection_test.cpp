@@ -73,6 +73,7 @@ TEST_CASE("of plenty of time half is left to others, should the best one hang") 
   const std::vector<Candidate> two{candidate("good", 0ms, 0.9, shown(90ms, 100ms, 0.9)),
                                    candidate("other", 0ms, 0.1, shown(20ms, 30ms, 0.1))};
   CHECK(select(two, 2s).slice == 1s);
+  CHECK_THAT(select(two, 2s).reason, Catch::Contains("1000 ms are kept for a fall-back"));
   CHECK(select(two, 500ms).slice == 400ms);
   CHECK(select(two, 410ms).slice == 380ms);
   CHECK(select({two[0]}, 2s).slice == 2s);

@@ -120,7 +120,7 @@ TEST_CASE("a decision is explained in plain words") {
   Mixed mixed({});
   mixed.perform(4);
   CHECK_THAT(explain(mixed.office.owner->head().decisions().front()),
-             Catch::Contains("on 'route 7'") &&
+             Catch::Contains("on 'route 7'") && Catch::Contains("\n  for size 100\n") &&
                  Catch::Contains("wrong (in the process) declares 20 ms") &&
                  Catch::Contains("rejected after") &&
                  Catch::Contains("by the check 'evaluation': it is wrong") &&
