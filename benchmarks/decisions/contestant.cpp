@@ -27,7 +27,9 @@ double distance_m(const Position& a, const Position& b) {
   return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
 }
 
-Flaw judge_ends(const Problem& problem, const Route& route) {
+Flaw judge_ends(const Problem& problem, const navigation::Terrain& terrain, const Route& route) {
+  const auto outside = [&](const Position& p) { return !terrain.contains(p.north_m, p.east_m); };
+  if (std::ranges::any_of(route.waypoints, outside)) return "it leaves the terrain";
   if (route.waypoints.size() < 2) return "it has fewer than two waypoints";
   if (distance_m(route.waypoints.front(), problem.start) > 0.01) return "it begins elsewhere";
   if (distance_m(route.waypoints.back(), problem.goal) > 0.01) return "it ends elsewhere";
@@ -49,7 +51,7 @@ Flaw judge_zones(const Problem& problem, const Route& route) {
 /// there is would be one.
 Evaluation<Route> checks_of(const Problem& problem, const navigation::Terrain& terrain) {
   Evaluation<Route> checks;
-  checks.check("ends", [&](const Route& route) { return judge_ends(problem, route); });
+  checks.check("ends", [&](const Route& route) { return judge_ends(problem, terrain, route); });
   checks.check("zones", [&](const Route& route) { return judge_zones(problem, route); });
   if (problem.exposure_cap_m == 0) return checks;
   checks.admitted("exposure cap", [&](const Route& route) -> Flaw {

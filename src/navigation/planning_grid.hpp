@@ -21,8 +21,10 @@ class PlanningGrid {
     const double spacing = wanted_spacing_m > 0 ? wanted_spacing_m : std::max(longer / 256, posts);
     rows_ = std::max(2, static_cast<int>(std::ceil(terrain.north_extent_m() / spacing)) + 1);
     columns_ = std::max(2, static_cast<int>(std::ceil(terrain.east_extent_m() / spacing)) + 1);
-    north_spacing_m_ = terrain.north_extent_m() / (rows_ - 1);
-    east_spacing_m_ = terrain.east_extent_m() / (columns_ - 1);
+    north_extent_m_ = terrain.north_extent_m();
+    east_extent_m_ = terrain.east_extent_m();
+    north_spacing_m_ = north_extent_m_ / (rows_ - 1);
+    east_spacing_m_ = east_extent_m_ / (columns_ - 1);
   }
 
   int rows() const { return rows_; }
@@ -38,8 +40,10 @@ class PlanningGrid {
   int node(int row, int column) const { return row * columns_ + column; }
   int row(int node) const { return node / columns_; }
   int column(int node) const { return node % columns_; }
+  /// Never beyond the terrain's edge, where rounding might put the last row or column.
   GroundPoint point(int node) const {
-    return {row(node) * north_spacing_m_, column(node) * east_spacing_m_};
+    return {std::min(row(node) * north_spacing_m_, north_extent_m_),
+            std::min(column(node) * east_spacing_m_, east_extent_m_)};
   }
 
   /// The cell around a point: its south-western node and where in the cell the point is, 0 to 1.
@@ -67,6 +71,8 @@ class PlanningGrid {
  private:
   int rows_;
   int columns_;
+  double north_extent_m_;
+  double east_extent_m_;
   double north_spacing_m_;
   double east_spacing_m_;
 };

@@ -35,6 +35,25 @@ TEST_CASE(
   CHECK(route.radar_exposure > 1e6);
 }
 
+TEST_CASE("A route along the terrain's edge stays on the terrain, whatever the grid's spacing") {
+  const auto terrains = std::make_shared<TerrainProvider>();
+  // 22 pieces of 6400 m: their sum is a rounding error more.
+  const auto terrain =
+      std::make_shared<const Terrain>(make_terrain(65, 100, [](double, double) { return 0.0; }));
+  terrains->add(terrain);
+  Problem problem;
+  problem.terrain = "made";
+  problem.start = {3000, 1000, 300};
+  problem.goal = {3000, 5000, 300};
+  problem.no_fly_zones = {{"wall", {{0, 3000}, {0, 3200}, {6250, 3200}, {6250, 3000}}, 0, 0, 1000}};
+  problem.limits = {30, 10, 0, 900};
+  PlannerOptions options;
+  options.grid_spacing_m = 300;
+  const Route route = make_a_star(terrains, options)->plan(problem);
+  const HeightGrid ground{65, 65, 100, 100, terrain->heights_m()};
+  CHECK(violations(problem, route, ground) == "");
+}
+
 TEST_CASE("With a weight a detour is flown that costs less than it saves") {
   FlatCrossing crossing;
   const Route detour = crossing.plan();
