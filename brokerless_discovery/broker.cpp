@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -74,6 +75,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   mutable std::condition_variable changed;
   bool leaving = false;  // nobody waits for services any more
   Table table;
+  std::atomic<std::uint64_t> generation{0};  // written under the lock
   std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
   std::uint64_t last_observer = 0;
   std::uint64_t malformed = 0;
@@ -172,6 +174,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
       std::lock_guard lock(mutex);
       changes = event(table);
       if (changes.empty()) return;
+      ++generation;
       changed.notify_all();
       if (observers.empty()) return;
     }
@@ -382,6 +385,8 @@ Table::Found Broker::all() const {
   std::lock_guard lock(state_->mutex);
   return state_->table.all();
 }
+
+std::uint64_t Broker::generation() const noexcept { return state_->generation; }
 
 Broker::Registration Broker::observe(std::function<void(const Change&)> observer) {
   std::lock_guard lock(state_->mutex);

@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <map>
+#include <system_error>
 #include <utility>
 
 #include "skein/core/call_memory.hpp"
+#include "skein/core/log.hpp"
+#include "skein/core/worker.hpp"
 
 namespace skein {
 namespace {
@@ -15,6 +19,7 @@ namespace {
 // Executors nest when a task of one runs another's task inline, so the innermost alone is not
 // enough.
 thread_local std::vector<const Executor*> entered;
+thread_local Worker* own_worker = nullptr;
 
 class Entered {
  public:
@@ -35,19 +40,31 @@ void leave_behind(std::shared_ptr<void> state) {
 }  // namespace
 
 // Shared with the threads, so that one of them can be left behind.
-struct ThreadExecutor::State {
-  State(const ThreadExecutor* executor, std::size_t capacity, std::size_t concurrency,
-        const ThreadSettings& settings)
-      : identity(executor), capacity(capacity), concurrency(concurrency), settings(settings) {}
+struct ThreadExecutor::State : std::enable_shared_from_this<State> {
+  State(const ThreadExecutor* executor, std::string name_, std::size_t capacity,
+        std::size_t concurrency, const ThreadSettings& settings)
+      : identity(executor),
+        name(std::move(name_)),
+        capacity(capacity),
+        concurrency(concurrency),
+        settings(settings) {}
+
+  struct Hand {
+    std::thread thread;
+    std::shared_ptr<Worker> worker;
+  };
 
   const Executor* const identity;  // compared, never followed
+  const std::string name;
   const std::size_t capacity;
   const std::size_t concurrency;
   const ThreadSettings settings;
   std::mutex mutex;
   std::condition_variable changed;
   std::pmr::deque<Action> tasks{&call_memory()};
-  std::size_t threads = 0;
+  std::map<std::uint64_t, Hand> hands;  // those that were written off are gone from here
+  std::uint64_t last_hand = 0;
+  std::size_t threads = 0;  // that have not ended
   bool stopping = false;
   bool finishing = false;  // finish() waits until nothing is left to do
 
@@ -103,9 +120,56 @@ struct ThreadExecutor::State {
     changed.wait(lock, [&] { return stopping || (!tasks.empty() && try_begin(false)); });
   }
 
-  void work(const std::string& name) {
+  // Under the lock.
+  void add_thread() {
+    const std::uint64_t number = ++last_hand;
+    const auto worker = std::make_shared<Worker>([state = weak_from_this(), number] {
+      if (const auto self = state.lock()) self->replace(number);
+    });
+    Hand& hand = hands[number] = {{}, worker};
+    hand.thread = std::thread([state = shared_from_this(), worker] { state->work(*worker); });
+    ++threads;
+  }
+
+  void replace(std::uint64_t number) {
+    std::lock_guard lock(mutex);
+    const auto lost = hands.find(number);
+    if (lost == hands.end()) return;  // with the whole executor
+    lost->second.thread.detach();
+    hands.erase(lost);
+    --threads;
+    state.fetch_sub(kOne);
+    try {
+      if (!stopping) add_thread();
+    } catch (const std::system_error& error) {
+      hands.erase(last_hand);
+      log(LogLevel::Error, name,
+          std::string("has a thread less, as the system gives no other: ") + error.what());
+    }
+    changed.notify_all();
+  }
+
+  // Joins those that have ended; the others are left to themselves.
+  void let_go(bool ended) {
+    std::map<std::uint64_t, Hand> leaving;
+    {
+      std::lock_guard lock(mutex);
+      leaving.swap(hands);
+    }
+    for (auto& [number, hand] : leaving) {
+      if (ended) {
+        hand.thread.join();
+      } else {
+        hand.worker->abandon();
+        hand.thread.detach();
+      }
+    }
+  }
+
+  void work(Worker& worker) {
     pthread_setname_np(pthread_self(), name.c_str());
     apply(settings, name);
+    own_worker = &worker;
     const Entered here(identity);
     std::unique_lock lock(mutex);
     while (true) {
@@ -129,17 +193,18 @@ struct ThreadExecutor::State {
 };
 
 ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity,
-                               const ThreadSettings& settings)
-    : state_(std::make_shared<State>(this, capacity, std::max<std::size_t>(threads, 1), settings)) {
+                               const ThreadSettings& settings) {
   check(settings, name);
   name.resize(std::min<std::size_t>(name.size(), 15));
-  state_->threads = state_->concurrency;
-  for (std::size_t i = 0; i < state_->concurrency; ++i) {
-    threads_.emplace_back([state = state_, name] { state->work(name); });
-  }
+  state_ = std::make_shared<State>(this, std::move(name), capacity,
+                                   std::max<std::size_t>(threads, 1), settings);
+  std::lock_guard lock(state_->mutex);
+  for (std::size_t i = 0; i < state_->concurrency; ++i) state_->add_thread();
 }
 
 ThreadExecutor::~ThreadExecutor() { stop(); }
+
+Worker* ThreadExecutor::worker() noexcept { return entered.size() == 1 ? own_worker : nullptr; }
 
 void ThreadExecutor::request_stop() {
   std::pmr::deque<Action> dropped{
@@ -153,10 +218,11 @@ void ThreadExecutor::request_stop() {
 
 void ThreadExecutor::stop() {
   request_stop();
-  for (std::thread& thread : threads_) thread.join();
-  threads_.clear();
-  std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [&] { return state_->running() == 0; });
+  {
+    std::unique_lock lock(state_->mutex);
+    state_->changed.wait(lock, [&] { return state_->idle(); });
+  }
+  state_->let_go(true);
 }
 
 bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
@@ -165,14 +231,7 @@ bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
   const bool ended = state_->changed.wait_for(lock, patience, [&] { return state_->idle(); });
   lock.unlock();
   if (!ended) leave_behind(state_);
-  for (std::thread& thread : threads_) {
-    if (ended) {
-      thread.join();
-    } else {
-      thread.detach();
-    }
-  }
-  threads_.clear();
+  state_->let_go(ended);
   return ended;
 }
 

@@ -35,7 +35,11 @@ void CircuitBreaker::succeed() noexcept {
 
 void CircuitBreaker::fail(Instant now) noexcept {
   probing_ = false;
-  if (++faults_ < rules_.faults && quarantine_ == Duration::zero()) return;
+  if (++faults_ >= rules_.faults || quarantine_ > Duration::zero()) trip(now);
+}
+
+void CircuitBreaker::trip(Instant now) noexcept {
+  probing_ = false;
   quarantine_ = quarantine_ == Duration::zero()
                     ? rules_.first_quarantine
                     : std::min(2 * quarantine_, rules_.longest_quarantine);

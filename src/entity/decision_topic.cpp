@@ -63,8 +63,10 @@ DecisionTopic::~DecisionTopic() {
   writer.swap(state_->writer);
 }
 
+bool DecisionTopic::on() const noexcept { return state_->readers > 0; }
+
 void DecisionTopic::tell(const DecisionRecord& record) {
-  if (state_->readers <= 0) return;
+  if (!on()) return;
   state_->control.post([state = std::weak_ptr(state_), decision = report_of(record)] {
     if (const auto self = state.lock()) self->write(decision);
   });

@@ -54,8 +54,8 @@ std::string name_of(const Broker& broker, const Guid& provider) {
 // In the order in which it comes to be; it goes in the opposite one.
 struct Entity::Provided {
   std::string name;
-  std::unique_ptr<ThreadExecutor> executor;
-  std::shared_ptr<rpc::Service> service;
+  std::shared_ptr<ThreadExecutor> executor;
+  std::shared_ptr<rpc::Service> service;  // keeps the executor, and the clock
   std::unique_ptr<rpc::DdsServer> server;
   Broker::Registration load;
   Broker::Registration registration;
@@ -69,7 +69,6 @@ struct Entity::Provided {
       log(LogLevel::Error, name, "a call did not return; its thread is left behind");
       // What the stuck thread may still touch must outlive it.
       static_cast<void>(new std::shared_ptr<rpc::Service>(service));
-      static_cast<void>(executor.release());
     }
   }
 };
@@ -182,12 +181,14 @@ Guid Entity::provide_csp(const std::string& name, const std::string& owner,
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
   const InterfaceInfo& interface = servant->interface_info();
-  auto executor =
-      std::make_unique<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
-  provided->executor = std::move(executor);
+  provided->executor =
+      std::make_shared<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   rpc::Service::Options service_options;
+  service_options.keeps =
+      std::make_shared<std::pair<std::shared_ptr<Clock>, std::shared_ptr<ThreadExecutor>>>(
+          state_->process->shared_clock(), provided->executor);
   service_options.threads = options.threads;
   service_options.queue = options.queue;
   service_options.journal = state_->journal;

@@ -14,10 +14,10 @@ namespace {
 // What carrying the answer back to the caller may take of the time that it has given.
 constexpr std::chrono::milliseconds kAnswerReserve{3};
 
-Duration time_left(const Clock& clock, Duration limit) {
+Duration time_left(Instant now, Duration limit) {
   const CallContext* context = CallContext::current();
   if (!context) return limit;
-  return std::min(limit, context->deadline() - clock.now() - Duration(kAnswerReserve));
+  return std::min(limit, context->deadline() - now - Duration(kAnswerReserve));
 }
 
 std::uint64_t unix_time() {
@@ -44,6 +44,7 @@ Head::Head(const Parts& parts, HeadOptions options)
     : state_(std::make_unique<State>(parts, std::move(options))) {}
 
 Head::~Head() {
+  state_->watch->close();
   const auto& file = state_->options.history;
   if (file.empty()) return;
   try {
@@ -64,23 +65,29 @@ std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const
       request.strategy.empty() ? state_->options.strategy : request.strategy));
 }
 
-void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
-                  DecisionRecord& record) {
-  const Instant begin = state_->parts.clock.now();
-  const auto strategy = state_->strategy();
-  const TaskOptions& options = task.options();
-  record = {};
+DecisionRecord Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
+                                 const TaskOptions& options, Instant begin, Duration limit) const {
+  DecisionRecord record;
   record.entity = state_->parts.entity;
   record.time = unix_time();
   record.request = options.request;
   record.interface = interface.name;
-  record.strategy = strategy->name();
+  record.strategy = strategy.name();
   record.execution = to_string(options.execution);
-  record.available = time_left(state_->parts.clock, limit);
+  record.available = time_left(begin, limit);
   record.situation = state_->situation(interface, options.features, record.available);
+  return record;
+}
+
+void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
+                  DecisionRecord* wanted) {
+  const Instant begin = state_->parts.clock.now();
+  const auto strategy = state_->strategy();
+  const TaskOptions& options = task.options();
+  DecisionRecord record = open_record(interface, *strategy, options, begin, limit);
   std::exception_ptr failure;
   try {
-    record.candidates = state_->candidates(interface, options.only, options.features);
+    record.candidates = state_->candidates(interface, options.only, options.features, begin);
     if (record.candidates.empty()) state_->refuse_without(interface, options.only);
     Run run(*state_, interface, *strategy, task, record, begin);
     if (!run.run()) run.fail();
@@ -89,15 +96,16 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
     record.failure = task_run::verdict_of_current_exception().text;
   }
   record.took = state_->parts.clock.now() - begin;
-  state_->conclude(record);
+  state_->conclude(std::move(record), wanted);
   if (failure) std::rethrow_exception(failure);
 }
 
 std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const Features& features,
                                          Duration limit) {
+  const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
-  const Duration available = time_left(state_->parts.clock, limit);
-  auto candidates = state_->candidates(interface, {}, features);
+  const Duration available = time_left(begin, limit);
+  auto candidates = state_->candidates(interface, {}, features, begin);
   if (candidates.empty()) state_->refuse_without(interface, {});
   CandidateIterator iterator(*strategy, std::move(candidates),
                              state_->situation(interface, features, available));
@@ -107,7 +115,7 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
 std::vector<Head::Current> Head::running() const {
   std::lock_guard lock(state_->mutex);
   std::vector<Current> running;
-  for (const auto& [run, current] : state_->running) running.push_back(current);
+  for (const auto& [run, csp, pid] : state_->running) running.push_back({csp, pid, state_->host});
   return running;
 }
 

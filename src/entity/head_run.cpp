@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "skein/core/call_context.hpp"
+#include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein {
@@ -62,9 +64,7 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       record_(record),
       begin_(begin),
       deadline_(begin + record.available),
-      iterator_(strategy, record.candidates, record.situation) {
-  last_.error = std::make_exception_ptr(TimedOut("no time was left to run a CSP"));
-}
+      iterator_(strategy, record.candidates, record.situation) {}
 
 bool Head::Run::run() {
   while (!done_ && !settled_) {
@@ -90,7 +90,7 @@ bool Head::Run::run() {
 bool Head::Run::look_again() {
   if (done_ || settled_ || now() >= deadline_) return false;
   const auto& options = task_.options();
-  auto joined = state_.candidates(interface_, options.only, options.features);
+  auto joined = state_.candidates(interface_, options.only, options.features, now());
   std::erase_if(joined, [&](const Candidate& candidate) {
     return std::any_of(
         record_.candidates.begin(), record_.candidates.end(),
@@ -119,16 +119,18 @@ bool Head::Run::may_begin() const {
   return true;
 }
 
-void Head::Run::begin_next() { begin(iterator_.next(deadline_ - now())); }
-
-void Head::Run::begin(CandidateIterator::Next next) {
+void Head::Run::begin_next() {
   const Instant began = now();
+  begin(iterator_.next(deadline_ - began), began);
+}
+
+void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   Attempt& attempt = record_.attempts.emplace_back();
   static_cast<Choice&>(attempt) = std::move(next.choice);
   attempt.round = round_;
   attempt.began = began - begin_;
   Live live{record_.attempts.size() - 1, std::move(next.candidate), 0, nullptr};
-  if (!state_.begin(interface_, live.candidate, live.run)) {
+  if (!state_.begin(interface_, live.candidate, began, live.run)) {
     attempt.outcome = Outcome::Cancelled;
     attempt.text = "it has been quarantined meanwhile";
     return;
@@ -142,6 +144,8 @@ void Head::Run::begin(CandidateIterator::Next next) {
   try {
     auto channel =
         state_.channel_to(live.candidate, std::min(end - began, Duration(kOpeningPatience)));
+    Exposure exposure;
+    channel = expose(live, std::move(channel), began, exposure);
     live.work =
         task_.begin(std::move(channel), std::max(Duration::zero(), end - now()), live.candidate);
     live_.push_back(std::move(live));
@@ -156,6 +160,40 @@ void Head::Run::begin(CandidateIterator::Next next) {
   }
 }
 
+// A CSP that is quick, and has always come back, is called without a change of threads, where this
+// thread can be spared if it does not come back for once.
+std::shared_ptr<Channel> Head::Run::expose(Live& live, std::shared_ptr<Channel> channel,
+                                           Instant began, Exposure& exposure) {
+  Worker* const worker = ThreadExecutor::worker();
+  const CallContext* const caller = CallContext::current();
+  if (!worker || !caller || task_.options().execution != Execution::One) return channel;
+  const std::size_t most = state_.room_inline(interface_, live.candidate, deadline_ - began);
+  const auto service = most > 0 ? state_.parts.directory->find(live.candidate.provider) : nullptr;
+  if (!service) return channel;
+  exposure.channel = make_shared_in_call_memory<ExposedChannel>(
+      std::move(channel), service,
+      ExposedChannel::Terms{*state_.watch, *worker, deadline_, most,
+                            [this, &live, caller] { lose(live, *caller); }});
+  return exposure.channel;
+}
+
+// On `control`, in the place of the performing thread, which hangs in the CSP and touches nothing
+// of this any more.
+void Head::Run::lose(Live& live, const CallContext& caller) {
+  Verdict verdict;
+  verdict.outcome = Outcome::TimedOut;
+  verdict.fault = false;  // it is quarantined at once
+  verdict.text = live.candidate.name + " hangs on the thread of the service that asked for it; " +
+                 "the thread is written off, and the CSP has one of its own from now on";
+  const auto error = std::make_exception_ptr(TimedOut(verdict.text));
+  record_.failure = verdict.text;
+  note(live, std::move(verdict));
+  state_.distrust(interface_, live.candidate);
+  record_.took = now() - begin_;
+  state_.conclude(std::move(record_));
+  caller.answer_instead(error);
+}
+
 bool Head::Run::waits_for_late_ones() const {
   return task_.options().execution == Execution::Staggered && !iterator_.done() &&
          live_.size() < task_.options().width;
@@ -167,6 +205,7 @@ void Head::Run::await() {
   for (const Live& live : live_) {
     if (live.work->ready()) return;
   }
+  if (!bell_) bell_ = std::make_shared<Bell>();
   for (const Live& live : live_) live.work->notify([bell = bell_] { bell->ring(); });
   Clock& clock = state_.parts.clock;
   const TimerId timer = waits_for_late_ones()
@@ -194,7 +233,7 @@ void Head::Run::note(Live& live, Verdict verdict) {
   Attempt& attempt = record_.attempts[live.attempt];
   attempt.took = now() - begin_ - attempt.began;
   attempt.outcome = verdict.outcome;
-  attempt.check = verdict.check;
+  attempt.check = std::move(verdict.check);
   attempt.text = verdict.text;
   attempt.quality = verdict.quality;
   // Late by less is a matter of load, and for the history.
@@ -235,6 +274,7 @@ void Head::Run::fail() const {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }
   if (last_.error) std::rethrow_exception(last_.error);
+  if (record_.attempts.empty()) throw TimedOut("no time was left to run a CSP");
   throw NoneAccepted("no result was good enough; the last one: " + last_.text);
 }
 

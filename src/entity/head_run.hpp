@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <optional>
 
+#include "exposed_channel.hpp"
 #include "head_state.hpp"
 
 namespace skein {
@@ -29,6 +30,14 @@ class Head::Run {
     std::unique_ptr<task_run::Work> work;
   };
 
+  /// Lets a channel run calls here while it lives.
+  struct Exposure {
+    std::shared_ptr<ExposedChannel> channel{};
+    ~Exposure() {
+      if (channel) channel->end();
+    }
+  };
+
   /// Where the caller's thread waits for several CSPs.
   class Bell {
    public:
@@ -45,7 +54,10 @@ class Head::Run {
   bool may_begin() const;
   void begin_next();
   bool look_again();
-  void begin(CandidateIterator::Next next);
+  void begin(CandidateIterator::Next next, Instant began);
+  std::shared_ptr<Channel> expose(Live& live, std::shared_ptr<Channel> channel, Instant began,
+                                  Exposure& exposure);
+  void lose(Live& live, const CallContext& caller);
   void await();
   void judge_ready();
   void note(Live& live, task_run::Verdict verdict);
@@ -63,7 +75,7 @@ class Head::Run {
   std::uint32_t round_ = 0;
   std::vector<Live> live_;
   std::optional<Instant> late_at_;
-  std::shared_ptr<Bell> bell_ = std::make_shared<Bell>();
+  std::shared_ptr<Bell> bell_;  // once several work at a time
   task_run::Verdict last_;
   bool done_ = false;
   bool settled_ = false;

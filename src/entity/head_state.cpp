@@ -7,18 +7,23 @@
 #include "skein/core/call_context.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
-#include "skein/discovery.idl.hpp"
 #include "skein/idl/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein {
 namespace {
 
-using brokerless_discovery::number_attribute;
-using brokerless_discovery::ServiceDescription;
 using Outcome = Attempt::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
+
+// A CSP runs on its caller's thread if of so many runs on requests like this one (as many as a
+// prediction rests on) hardly any took longer than this: a thread of its own would cost more than
+// it protects.
+constexpr std::size_t kRunsBeforeInline = History::kNeighbours;
+constexpr std::chrono::microseconds kLatencyInline{100};
+// And only if it has a thousand times as long, so that the system's load is not taken for a hang.
+constexpr std::chrono::milliseconds kTimeInline{100};
 
 }  // namespace
 
@@ -26,6 +31,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
     : parts(parts_),
       options(std::move(options_)),
       host(brokerless_discovery::ProcessWatch::host()),
+      watch(std::make_shared<InlineWatch>(parts_.clock, parts_.control)),
       topic(parts.participant, parts.control) {
   strategies.make(options.strategy);
   if (!options.history.empty()) history = History::load(options.history);
@@ -46,86 +52,17 @@ std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
   return strategies.make(options.strategy);
 }
 
-Candidate Head::State::candidate_of(const InterfaceInfo& interface,
-                                    const ServiceDescription& description, bool in_process,
-                                    const Features& features, Instant now) const {
-  Candidate candidate;
-  candidate.name = description.entity;
-  candidate.provider = {description.provider};
-  candidate.in_process = in_process;
-  candidate.pid = description.pid;
-  candidate.quality = number_attribute(description, "quality").value_or(0);
-  if (const auto latency_ms = number_attribute(description, "latency")) {
-    candidate.latency = std::chrono::duration_cast<Duration>(
-        std::chrono::duration<double, std::milli>(*latency_ms));
-  }
-  const std::string service(interface.name);
-  candidate.learned = history.predict(service, candidate.name, features);
-  if (const auto found = breakers.find({service, candidate.name}); found != breakers.end()) {
-    candidate.breaker = found->second.state(now);
-    candidate.quarantine = found->second.quarantine(now);
-  }
-  return candidate;
+Head::State::Standing& Head::State::standing(std::string_view interface, std::string_view csp) {
+  const auto found = standings.find(ByCsp::View(interface, csp));
+  if (found != standings.end()) return found->second;
+  const Standing first{CircuitBreaker(options.breaker), history.was_late(interface, csp)};
+  return standings.try_emplace({std::string(interface), std::string(csp)}, first).first->second;
 }
 
-std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
-                                               const std::string& only, const Features& features) {
-  auto query = parts.broker.query(std::string(interface.name));
-  query.client = &interface;
-  const Instant now = parts.clock.now();
-  std::vector<Candidate> candidates;
-  const auto found = parts.broker.find_service(query);
-  std::lock_guard lock(mutex);
-  for (const auto& description : found) {
-    if (!only.empty() && description->entity != only) continue;
-    const auto local = parts.directory->find({description->provider});
-    // An instance that overran its time is never entered again before it has come back.
-    if (local && local->overdue()) continue;
-    candidates.push_back(candidate_of(interface, *description, local != nullptr, features, now));
-  }
-  return candidates;
-}
-
-void Head::State::refuse_without(const InterfaceInfo& interface, const std::string& only) const {
-  auto query = parts.broker.query(std::string(interface.name));
-  query.client = &interface;
-  throw NoCandidate(only.empty() ? parts.broker.explain(query)
-                                 : "the planner or other CSP '" + only +
-                                       "' does not stand by for " + std::string(interface.name));
-}
-
-Situation Head::State::situation(const InterfaceInfo& interface, const Features& features,
-                                 Duration remaining) const {
-  std::lock_guard lock(mutex);
-  return {features, remaining, options.exploration, history.decisions(std::string(interface.name))};
-}
-
-std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration timeout) {
-  {
-    std::lock_guard lock(mutex);
-    std::erase_if(channels, [](const auto& entry) { return !entry.second->connected(); });
-    if (const auto found = channels.find(candidate.provider); found != channels.end())
-      return found->second;
-  }
-  for (const auto& description : parts.broker.all()) {
-    if (description->provider != candidate.provider.bytes) continue;
-    auto channel = parts.connector.open_provider(*description, {}, timeout);
-    std::lock_guard lock(mutex);
-    return channels.insert_or_assign(candidate.provider, std::move(channel)).first->second;
-  }
-  throw Unavailable(candidate.name + " left before it could be asked");
-}
-
-CircuitBreaker& Head::State::breaker(const InterfaceInfo& interface, const Candidate& candidate) {
-  return breakers.try_emplace({std::string(interface.name), candidate.name}, options.breaker)
-      .first->second;
-}
-
-bool Head::State::begin(const InterfaceInfo& interface, const Candidate& candidate,
+bool Head::State::begin(const InterfaceInfo& interface, const Candidate& candidate, Instant now,
                         std::uint64_t& run) {
-  const Instant now = parts.clock.now();
   std::lock_guard lock(mutex);
-  CircuitBreaker& breaker = this->breaker(interface, candidate);
+  CircuitBreaker& breaker = standing(interface.name, candidate.name).breaker;
   // Listed as open it is the last resort.
   if (breaker.state(now) == CircuitBreaker::State::Open &&
       candidate.breaker != CircuitBreaker::State::Open) {
@@ -133,7 +70,7 @@ bool Head::State::begin(const InterfaceInfo& interface, const Candidate& candida
   }
   breaker.begin(now);
   run = ++last_run;
-  running[run] = {candidate.name, candidate.pid, host};
+  running.push_back({run, candidate.name, candidate.pid});
   return true;
 }
 
@@ -142,22 +79,43 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
                       bool fault) {
   {
     std::lock_guard lock(mutex);
-    running.erase(run);
-    CircuitBreaker& breaker = this->breaker(interface, candidate);
+    std::erase_if(running, [&](const Running& each) { return each.run == run; });
+    Standing& standing = this->standing(interface.name, candidate.name);
     if (fault) {
-      breaker.fail(parts.clock.now());
+      standing.breaker.fail(parts.clock.now());
     } else if (attempt.outcome == Outcome::Accepted || attempt.outcome == Outcome::Refused) {
-      breaker.succeed();
+      standing.breaker.succeed();
     } else {
-      breaker.end();
+      standing.breaker.end();
     }
     learn(interface, candidate, features, attempt);
-    if (attempt.outcome == Outcome::TimedOut && candidate.in_process)
+    if (attempt.outcome == Outcome::TimedOut && candidate.in_process) {
+      standing.hung = true;
       hung.insert(candidate.provider);
+    }
   }
   if (attempt.outcome == Outcome::TimedOut && fault && !candidate.in_process && options.on_hang) {
     options.on_hang(candidate);
   }
+}
+
+std::size_t Head::State::room_inline(const InterfaceInfo& interface, const Candidate& candidate,
+                                     Duration time) {
+  const auto& learned = candidate.learned;
+  if (!candidate.in_process || time < kTimeInline || !learned ||
+      learned->samples < kRunsBeforeInline || !learned->q95 || *learned->q95 > kLatencyInline)
+    return 0;
+  std::lock_guard lock(mutex);
+  if (standing(interface.name, candidate.name).hung) return 0;
+  return options.most_stuck - std::min(options.most_stuck, hung.size());
+}
+
+void Head::State::distrust(const InterfaceInfo& interface, const Candidate& candidate) {
+  std::lock_guard lock(mutex);
+  Standing& standing = this->standing(interface.name, candidate.name);
+  standing.breaker.trip(parts.clock.now());
+  standing.hung = true;
+  hung.erase(candidate.provider);  // its worker is counted
 }
 
 void Head::State::learn(const InterfaceInfo& interface, const Candidate& candidate,
@@ -167,39 +125,52 @@ void Head::State::learn(const InterfaceInfo& interface, const Candidate& candida
       attempt.outcome == Outcome::TimedOut || (attempt.outcome == Outcome::Cancelled && overran);
   if (attempt.outcome == Outcome::Cancelled && !late) return;
   history.add(
-      std::string(interface.name), candidate.name,
+      interface.name, candidate.name,
       {features, attempt.took, attempt.outcome == Outcome::Accepted, late, attempt.quality});
 }
 
 std::size_t Head::State::count_stuck() {
   std::lock_guard lock(mutex);
+  return stuck();
+}
+
+// Under the lock.
+std::size_t Head::State::stuck() {
   std::erase_if(hung, [&](const Guid& provider) {
     const auto service = parts.directory->find(provider);
     return !service || !service->overdue();
   });
-  const bool degraded = hung.size() >= options.most_stuck;
+  const std::size_t stuck = hung.size() + watch->lost();
+  const bool degraded = stuck >= options.most_stuck;
   if (degraded && !was_degraded) {
     log(LogLevel::Error, parts.entity,
-        std::to_string(hung.size()) +
-            " CSPs in this process do not return; it should be restarted");
+        std::to_string(stuck) + " CSPs in this process do not return; it should be restarted");
   }
   was_degraded = degraded;
-  return hung.size();
+  return stuck;
 }
 
-void Head::State::conclude(DecisionRecord& record) {
-  record.stuck = count_stuck();
+void Head::State::conclude(DecisionRecord record, DecisionRecord* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
                                     [](const Attempt& attempt) { return attempt.explores; });
+  const bool told = topic.on() || !options.log.empty();
+  DecisionRecord copy;
+  DecisionRecord dropped;  // outside the lock
   {
     std::lock_guard lock(mutex);
+    record.stuck = stuck();
     history.count(record.interface, explored);
     record.number = ++last_decision;
-    decisions.push_back(record);
-    if (decisions.size() > kKeptDecisions) decisions.pop_front();
+    if (told || wanted) copy = record;
+    decisions.push_back(std::move(record));
+    if (decisions.size() > kKeptDecisions) {
+      dropped = std::move(decisions.front());
+      decisions.pop_front();
+    }
   }
-  topic.tell(record);
-  if (!options.log.empty()) write_log(record);
+  if (told) topic.tell(copy);
+  if (!options.log.empty()) write_log(copy);
+  if (wanted) *wanted = std::move(copy);
 }
 
 void Head::State::write_log(const DecisionRecord& record) {

@@ -1,7 +1,9 @@
 #include "skein/entity/history.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace skein {
 namespace {
@@ -33,59 +35,66 @@ double difference(const Features& request, const Features& sample) {
   return request.empty() ? 0 : sum / static_cast<double>(request.size());
 }
 
-using Samples = std::vector<const History::Sample*>;
+/// The nearest samples, by distance and then by age.
+class Nearest {
+ public:
+  bool full() const { return count_ == kept_.size(); }
+  /// Of the farthest one.
+  double reach() const { return kept_[count_ - 1].first; }
+  std::size_t size() const { return count_; }
 
-Samples newest(const std::deque<History::Sample>& samples) {
-  Samples found;
-  for (auto each = samples.rbegin(); each != samples.rend() && found.size() < History::kNeighbours;
-       ++each) {
-    found.push_back(&*each);
+  /// Those that come later are older.
+  void offer(double distance, const History::Sample& sample) {
+    if (full() && distance >= reach()) return;
+    std::size_t place = full() ? count_ - 1 : count_++;
+    for (; place > 0 && kept_[place - 1].first > distance; --place) kept_[place] = kept_[place - 1];
+    kept_[place] = {distance, &sample};
   }
-  return found;
-}
 
-Samples nearest(const std::deque<History::Sample>& samples, const Features& features) {
-  if (features.empty()) return newest(samples);
-  std::vector<std::pair<double, std::size_t>> ranked;  // by distance, then by age
-  for (std::size_t age = 0; age < samples.size(); ++age) {
-    const auto& sample = samples[samples.size() - 1 - age];
-    ranked.emplace_back(difference(features, sample.features) + static_cast<double>(age) / kHorizon,
-                        age);
-  }
-  const std::size_t count = std::min(ranked.size(), History::kNeighbours);
-  const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(count);
-  std::partial_sort(ranked.begin(), end, ranked.end());
-  Samples found;
-  for (auto each = ranked.begin(); each != end; ++each) {
-    found.push_back(&samples[samples.size() - 1 - each->second]);
+  const History::Sample& operator[](std::size_t index) const { return *kept_[index].second; }
+
+ private:
+  std::array<std::pair<double, const History::Sample*>, History::kNeighbours> kept_;
+  std::size_t count_ = 0;
+};
+
+Nearest nearest(const std::deque<History::Sample>& samples, const Features& features) {
+  Nearest found;
+  std::size_t age = 0;
+  for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample, ++age) {
+    const double distance = static_cast<double>(age) / kHorizon;
+    if (found.full() && distance >= found.reach()) break;  // and so are all that are older
+    found.offer(difference(features, sample->features) + distance, *sample);
   }
   return found;
 }
 
 // By nearest rank.
-std::optional<Duration> quantile(const std::vector<Duration>& sorted, double share) {
+std::optional<Duration> quantile(std::span<const Duration> sorted, double share) {
   if (sorted.empty()) return std::nullopt;
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(rank) - 1];
 }
 
-void predict_times(Prediction& prediction, const Samples& samples) {
-  std::vector<Duration> times;
-  for (const auto* sample : samples) {
-    if (sample->late) times.push_back(2 * sample->took);
-    if (sample->accepted) times.push_back(sample->took);
+void predict_times(Prediction& prediction, const Nearest& samples) {
+  std::array<Duration, 2 * History::kNeighbours> room;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].late) room[count++] = 2 * samples[i].took;
+    if (samples[i].accepted) room[count++] = samples[i].took;
   }
+  const std::span times(room.data(), count);
   std::sort(times.begin(), times.end());
   prediction.median = quantile(times, 0.5);
   prediction.q95 = quantile(times, 0.95);
 }
 
-void predict_results(Prediction& prediction, const Samples& samples) {
+void predict_results(Prediction& prediction, const Nearest& samples) {
   double accepted = 0, measured = 0, quality = 0;
-  for (const auto* sample : samples) {
-    accepted += sample->accepted ? 1 : 0;
-    measured += sample->quality ? 1 : 0;
-    quality += sample->quality.value_or(0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    accepted += samples[i].accepted ? 1 : 0;
+    measured += samples[i].quality ? 1 : 0;
+    quality += samples[i].quality.value_or(0);
   }
   prediction.reliability = (accepted + 1) / static_cast<double>(samples.size() + 1);
   if (measured > 0) prediction.quality = quality / measured;
@@ -93,17 +102,24 @@ void predict_results(Prediction& prediction, const Samples& samples) {
 
 }  // namespace
 
-std::optional<Prediction> History::predict(const std::string& interface, const std::string& csp,
+std::optional<Prediction> History::predict(std::string_view interface, std::string_view csp,
                                            const Features& features) const {
-  const auto found = records_.find({interface, csp});
-  if (found == records_.end()) return std::nullopt;
-  const Samples samples = nearest(found->second.samples, features);
+  const auto found = records_.find(ByCsp::View(interface, csp));
+  if (found == records_.end() || found->second.samples.empty()) return std::nullopt;
+  const Nearest samples = nearest(found->second.samples, features);
   Prediction prediction;
   prediction.samples = samples.size();
   prediction.idle = decisions(interface).made - found->second.samples.back().decision;
   predict_times(prediction, samples);
   predict_results(prediction, samples);
   return prediction;
+}
+
+bool History::was_late(std::string_view interface, std::string_view csp) const {
+  const auto found = records_.find(ByCsp::View(interface, csp));
+  return found != records_.end() &&
+         std::any_of(found->second.samples.begin(), found->second.samples.end(),
+                     [](const Sample& sample) { return sample.late; });
 }
 
 void History::note_surprise(Record& record, const Prediction& before, const Sample& sample) {
@@ -119,10 +135,14 @@ void History::note_surprise(Record& record, const Prediction& before, const Samp
   }
 }
 
-void History::add(const std::string& interface, const std::string& csp, Sample sample) {
-  const auto before = predict(interface, csp, sample.features);
-  Record& record = records_[{interface, csp}];
-  if (before) note_surprise(record, *before, sample);
+void History::add(std::string_view interface, std::string_view csp, Sample sample) {
+  auto found = records_.find(ByCsp::View(interface, csp));
+  if (found == records_.end()) {
+    found = records_.try_emplace({std::string(interface), std::string(csp)}).first;
+  } else if (const auto before = predict(interface, csp, sample.features)) {
+    note_surprise(found->second, *before, sample);
+  }
+  Record& record = found->second;
   sample.decision = decisions(interface).made;
   record.samples.push_back(std::move(sample));
   if (static_cast<std::size_t>(std::abs(record.surprises)) >= kSurprises) {
@@ -132,13 +152,14 @@ void History::add(const std::string& interface, const std::string& csp, Sample s
   if (record.samples.size() > kKept) record.samples.pop_front();
 }
 
-void History::count(const std::string& interface, bool explored) {
-  Decisions& decisions = decisions_[interface];
-  ++decisions.made;
-  decisions.explored += explored ? 1 : 0;
+void History::count(std::string_view interface, bool explored) {
+  auto found = decisions_.find(interface);
+  if (found == decisions_.end()) found = decisions_.try_emplace(std::string(interface)).first;
+  ++found->second.made;
+  found->second.explored += explored ? 1 : 0;
 }
 
-History::Decisions History::decisions(const std::string& interface) const {
+History::Decisions History::decisions(std::string_view interface) const {
   const auto found = decisions_.find(interface);
   return found == decisions_.end() ? Decisions() : found->second;
 }

@@ -7,6 +7,7 @@ namespace skein {
 namespace {
 
 using selection_text::in_ms;
+using selection_text::joined;
 using selection_text::number;
 using selection_text::percent;
 
@@ -129,10 +130,12 @@ class Choice {
 
   Selection take(std::size_t best) const {
     const Duration slice = slice_beside(best, reserve_beside(best));
-    std::string reason = candidates_[best].name + " has " + outlook_text(best) +
-                         ": the best that fits into " + in_ms(situation_.remaining);
-    if (slice < situation_.remaining)
-      reason += "; " + in_ms(situation_.remaining - slice) + " are kept for a fall-back";
+    const Duration kept = situation_.remaining - slice;
+    const bool keeps = kept > Duration::zero();
+    std::string reason =
+        joined({candidates_[best].name, " has ", outlook_text(best), ": the best that fits into ",
+                in_ms(situation_.remaining), keeps ? "; " : "", keeps ? in_ms(kept) : "",
+                keeps ? " are kept for a fall-back" : ""});
     return {best, slice, std::move(reason), outlooks_[best].safe};
   }
 
@@ -150,13 +153,14 @@ class Choice {
 
   std::string outlook_text(std::size_t index) const {
     const Candidate& candidate = candidates_[index];
-    std::string text = candidate.learned ? "by its last " + runs_text(candidate.learned->samples)
-                                         : "by its description (it has not run before) ";
-    text += "a 95 % latency of " + in_ms(outlooks_[index].safe) + ", quality " +
-            number(candidate.learned ? candidate.learned->quality.value_or(candidate.quality)
-                                     : candidate.quality);
-    if (candidate.learned) text += " and " + percent(candidate.learned->reliability) + " accepted";
-    return text;
+    const auto& learned = candidate.learned;
+    const double quality =
+        learned ? learned->quality.value_or(candidate.quality) : candidate.quality;
+    return joined({learned ? "by its last " : "by its description (it has not run before) ",
+                   learned ? runs_text(learned->samples) : "", "a 95 % latency of ",
+                   in_ms(outlooks_[index].safe), ", quality ", number(quality),
+                   learned ? " and " : "", learned ? percent(learned->reliability) : "",
+                   learned ? " accepted" : ""});
   }
 
   Duration reserve_beside(std::size_t best) const {

@@ -10,6 +10,7 @@ namespace skein {
 namespace {
 
 using selection_text::in_ms;
+using selection_text::joined;
 using selection_text::number;
 
 // A latency that is not declared is taken for none: such a candidate is never ruled out by time.
@@ -31,10 +32,12 @@ class DeclaredSelection final : public SelectionStrategy {
     }
     if (!best) return fastest_anyway(candidates, remaining);
     const Duration reserve = reserve_beside(*best, candidates, remaining);
-    std::string reason = best->name + " has the best declared quality (" + number(best->quality) +
-                         ") of those whose latency fits into " + in_ms(remaining) +
-                         " (its own: " + in_ms(latency_of(*best)) + ")";
-    if (reserve > Duration::zero()) reason += "; " + in_ms(reserve) + " are kept for a fall-back";
+    const bool keeps = reserve > Duration::zero();
+    std::string reason =
+        joined({best->name, " has the best declared quality (", number(best->quality),
+                ") of those whose latency fits into ", in_ms(remaining),
+                " (its own: ", in_ms(latency_of(*best)), keeps ? "); " : ")",
+                keeps ? in_ms(reserve) : "", keeps ? " are kept for a fall-back" : ""});
     return {index_of(*best, candidates), remaining - reserve, std::move(reason), latency_of(*best)};
   }
 

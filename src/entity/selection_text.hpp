@@ -1,21 +1,40 @@
 #pragma once
 
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 
 #include "skein/core/clock.hpp"
 
 /// How reasons are put in words.
 namespace skein::selection_text {
 
+/// The parts one after the other: each decision words its reasons, so they are put together at
+/// once.
+inline std::string joined(std::initializer_list<std::string_view> parts) {
+  std::size_t size = 0;
+  for (const std::string_view part : parts) size += part.size();
+  std::string text;
+  text.reserve(size);
+  for (const std::string_view part : parts) text += part;
+  return text;
+}
+
 /// With three decimals at most; from a thousand on whole.
 inline std::string number(double value) {
   if (std::abs(value) >= 1000) value = std::round(value);
-  std::string text = std::to_string(value);
-  text.erase(text.size() - 3);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
+  std::array<char, 330> room;  // the greatest double has 309 digits
+  const char* const begin = room.data();
+  const char* end =
+      std::to_chars(room.data(), room.data() + room.size(), value, std::chars_format::fixed, 3).ptr;
+  if (std::string_view(begin, end).find('.') != std::string_view::npos) {
+    while (end[-1] == '0') --end;
+    if (end[-1] == '.') --end;
+  }
+  return {begin, end};
 }
 
 inline std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }

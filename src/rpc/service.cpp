@@ -100,7 +100,11 @@ void Service::execute_next() {
 
 bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
                               Invocation& frame) {
-  if (!options_.inline_calls) return false;
+  return options_.inline_calls && try_call_exposed(operation, in, out, frame);
+}
+
+bool Service::try_call_exposed(const OperationInfo& operation, const void* in, void* out,
+                               Invocation& frame) {
   refuse_self_wait(frame);
   const auto task = [&] {
     OperationMeter::count(meter_.of(operation).received);
@@ -209,7 +213,7 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
                        Invocation& frame) {
   const CallContext context(clock_, frame.deadline, frame.caller,
                             {frame.outer, frame.chain, options_.strand}, frame.session.get(),
-                            &frame.cancelled);
+                            &frame.cancelled, &frame.respond);
   const CallContextScope scope(context);
   const Running running(*this, frame);
   OperationMeter& meter = meter_.of(operation);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -84,6 +85,10 @@ class Broker {
 
   /// Everything known, suspects included.
   Table::Found all() const;
+
+  /// Grows with each change of what find_service() could give: who has looked need not look again
+  /// while it stands. Takes no lock.
+  std::uint64_t generation() const noexcept;
 
   /// Calls `observer` for each change, one at a time, on `control`, until the returned registration
   /// goes; what stands already is not repeated.

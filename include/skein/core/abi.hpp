@@ -5,7 +5,7 @@
 /// The number of libskein's binary interface. It grows whenever a class or function that modules
 /// and plugins use changes its layout or its meaning; a module built against another number is
 /// refused.
-#define SKEIN_ABI 3
+#define SKEIN_ABI 4
 
 namespace skein {
 

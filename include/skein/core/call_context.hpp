@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,15 +33,21 @@ class CallContext {
     Guid strand{};
   };
 
-  /// What the arguments point to outlives the context.
+  /// Sends the call's outcome: the out struct, or what was thrown.
+  using Respond = std::function<void(const void* out, std::exception_ptr error)>;
+
+  /// What the arguments point to outlives the context. `respond` is null or empty where the caller
+  /// waits on this thread.
   CallContext(const Clock& clock, Instant deadline, Guid caller, const Waiting& waiting,
-              Session* session, const std::atomic<bool>* cancelled)
+              Session* session, const std::atomic<bool>* cancelled,
+              const Respond* respond = nullptr)
       : clock_(clock),
         deadline_(deadline),
         caller_(caller),
         waiting_(waiting),
         session_(session),
-        cancelled_(cancelled) {}
+        cancelled_(cancelled),
+        respond_(respond) {}
 
   /// The innermost call on this thread, or nullptr outside of any.
   static const CallContext* current() noexcept;
@@ -52,6 +60,12 @@ class CallContext {
   /// Whether nobody waits for the answer any more: cancelled, client gone, or deadline passed.
   bool cancelled() const {
     return (cancelled_ && cancelled_->load(std::memory_order_relaxed)) || clock_.now() >= deadline_;
+  }
+
+  /// Answers the call in the place of its thread, which hangs and has been written off (Worker), so
+  /// that it never will. Once, from another thread.
+  void answer_instead(std::exception_ptr error) const {
+    if (respond_ && *respond_) (*respond_)(nullptr, std::move(error));
   }
 
   /// Identity of the client's connection; nil for a caller in the same process.
@@ -73,6 +87,7 @@ class CallContext {
   Waiting waiting_;
   Session* session_;
   const std::atomic<bool>* cancelled_;
+  const Respond* respond_;
 };
 
 /// Makes a context the current one for as long as the scope lasts.

@@ -6,13 +6,13 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "skein/core/action.hpp"
 #include "skein/core/thread_settings.hpp"
 
 namespace skein {
+
+class Worker;
 
 /// Runs tasks for those who may not run them on their own thread. Every queue is bounded.
 class Executor {
@@ -52,6 +52,10 @@ class ThreadExecutor final : public Executor {
   bool try_run_inline(const std::function<void()>& task) override;
   bool runs_here() const noexcept override;
 
+  /// The calling thread, if it is one of some ThreadExecutor and runs that one's task itself, not
+  /// another executor's inline; else nullptr. Of use on this thread, while the task lasts.
+  static Worker* worker() noexcept;
+
   /// Lets tasks that have begun end, drops the others, ends the threads. Twice is no error. Not to
   /// be called, nor the executor destroyed, from one of its own tasks.
   void stop();
@@ -60,7 +64,8 @@ class ThreadExecutor final : public Executor {
   void finish();
 
   /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left
-  /// to itself for the rest of the process's life. False where that was so.
+  /// to itself for the rest of the process's life, and so is each that was written off (Worker).
+  /// False where one had to be left now.
   bool stop_or_abandon(std::chrono::milliseconds patience);
 
  private:
@@ -69,7 +74,6 @@ class ThreadExecutor final : public Executor {
   bool enqueue(Action& task, std::size_t capacity);
 
   std::shared_ptr<State> state_;
-  std::vector<std::thread> threads_;
 };
 
 /// An executor without a thread, for tests: tasks run when the owner says so.

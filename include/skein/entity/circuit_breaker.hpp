@@ -31,6 +31,8 @@ class CircuitBreaker {
 
   void succeed() noexcept;
   void fail(Instant now) noexcept;
+  /// A fault so grave that it opens at once.
+  void trip(Instant now) noexcept;
   /// It ended without a word on the CSP: cancelled, or given too little time.
   void end() noexcept { probing_ = false; }
 

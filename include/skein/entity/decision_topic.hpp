@@ -17,6 +17,8 @@ class DecisionTopic {
   DecisionTopic(dds::Participant& participant, Executor& control);
   ~DecisionTopic();
 
+  /// Whether somebody reads it.
+  bool on() const noexcept;
   void tell(const DecisionRecord& record);
 
  private:

@@ -29,6 +29,14 @@ class NoneAccepted : public Internal {
 /// the managed interface at that moment, so CSPs come and go while the system runs. A CSP that
 /// fails again and again is kept in quarantine (CircuitBreaker), what each one took and achieved is
 /// remembered (History). Thread-safe.
+///
+/// CSPs in this process have threads of their own, so that one that hangs holds up nobody. Only one
+/// that has never been late, and of whose last twelve like runs 95 % took 100 us at most, runs its
+/// blocking calls on the thread of the Body that performs, if the task has 100 ms or more left and
+/// runs one CSP at a time. Should it hang all the same, the Head writes that thread off at the
+/// task's deadline: the caller is told TimedOut, a spare takes over the Body's service, the CSP is
+/// quarantined and has its own thread for good. A thread that comes back after that is parked, and
+/// nothing of the Body runs on it any more: a Body holds no lock while it performs.
 class Head {
  public:
   struct Current {
@@ -71,8 +79,7 @@ class Head {
   Result perform(const Task<Interface, Result>& task, DecisionRecord* record = nullptr,
                  Duration limit = std::chrono::seconds(60)) {
     task_run::TypedRun<Interface, Result> run(task);
-    DecisionRecord own;
-    decide(Interface::interface_info(), run, limit, record ? *record : own);
+    decide(Interface::interface_info(), run, limit, record);
     return run.take();
   }
 
@@ -103,8 +110,10 @@ class Head {
   struct State;
   class Run;
 
+  DecisionRecord open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
+                             const TaskOptions& options, Instant begin, Duration limit) const;
   void decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
-              DecisionRecord& record);
+              DecisionRecord* wanted);
   std::shared_ptr<Channel> preselect(const InterfaceInfo& interface, const Features& features,
                                      Duration limit);
 

@@ -20,7 +20,8 @@ struct HeadOptions {
   /// The share of decisions in which `learned` may try a CSP only to learn of it.
   double exploration = 0.02;
   CircuitBreaker::Rules breaker{};
-  /// So many CSPs in this process that do not return make the peer degraded.
+  /// So many CSPs in this process that do not return, and threads that one of them has cost (see
+  /// Head), make the peer degraded. No more CSPs than that run on their callers' threads at a time.
   std::size_t most_stuck = 3;
   /// Told of a CSP in another process that did not answer in the time that it was given, on the
   /// thread that performs: whoever launched it may end and restart it. Must return soon.

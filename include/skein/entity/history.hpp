@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,17 @@ struct Prediction {
   bool operator==(const Prediction&) const = default;
 };
 
+/// Orders by interface and CSP, and finds by views of them.
+struct ByCsp {
+  using is_transparent = void;
+  using View = std::pair<std::string_view, std::string_view>;
+  static View view(const std::pair<std::string, std::string>& key) {
+    return {key.first, key.second};
+  }
+  static const View& view(const View& key) { return key; }
+  bool operator()(const auto& left, const auto& right) const { return view(left) < view(right); }
+};
+
 /// What each CSP made of past requests: Rice's model (features to performance) by nearest
 /// neighbours. Similar are requests whose features differ by a small part of their size, and recent
 /// ones; what is older than 256 runs is forgotten, and all that is old once five runs in a row took
@@ -59,13 +71,15 @@ class History {
   static constexpr std::size_t kKept = 256;
   static constexpr std::size_t kNeighbours = 12;
 
-  void add(const std::string& interface, const std::string& csp, Sample sample);
-  void count(const std::string& interface, bool explored);
+  void add(std::string_view interface, std::string_view csp, Sample sample);
+  void count(std::string_view interface, bool explored);
 
   /// Nothing for a CSP that has never run.
-  std::optional<Prediction> predict(const std::string& interface, const std::string& csp,
+  std::optional<Prediction> predict(std::string_view interface, std::string_view csp,
                                     const Features& features) const;
-  Decisions decisions(const std::string& interface) const;
+  /// Whether one of its runs that are remembered was late.
+  bool was_late(std::string_view interface, std::string_view csp) const;
+  Decisions decisions(std::string_view interface) const;
 
   /// As JSON, which from_json() reads back the same. from_json() throws InvalidArgument with the
   /// place for a text that is none, and for another version.
@@ -87,8 +101,8 @@ class History {
   };
   static void note_surprise(Record& record, const Prediction& before, const Sample& sample);
 
-  std::map<std::pair<std::string, std::string>, Record> records_;
-  std::map<std::string, Decisions> decisions_;
+  std::map<std::pair<std::string, std::string>, Record, ByCsp> records_;
+  std::map<std::string, Decisions, std::less<>> decisions_;
 };
 
 }  // namespace skein

@@ -51,9 +51,9 @@ struct Invocation {
   std::atomic<bool> cancelled{false};
   /// Where the results go, where the operation is a stream.
   std::shared_ptr<OutgoingStream> stream;
-  /// Called once, on the executor's thread: the out struct, or what was thrown; neither at the end
-  /// of a stream.
-  std::function<void(const void* out, std::exception_ptr error)> respond;
+  /// Called once, on the executor's thread (but see CallContext::answer_instead): the out struct,
+  /// or what was thrown; neither at the end of a stream.
+  CallContext::Respond respond;
   std::shared_ptr<Invocation> next;  ///< The FairQueue's.
 
   /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink).
@@ -85,6 +85,8 @@ class Service : public std::enable_shared_from_this<Service> {
     bool inline_calls = true;
     SessionFactory open;
     std::shared_ptr<CallJournal> journal;  ///< May be null.
+    /// What lives as long as the service: its executor, say.
+    std::shared_ptr<const void> keeps;
   };
 
   /// `executor` and `clock` outlive the service.
@@ -110,6 +112,11 @@ class Service : public std::enable_shared_from_this<Service> {
   /// by submit().
   bool try_call_inline(const OperationInfo& operation, const void* in, void* out,
                        Invocation& frame);
+
+  /// As try_call_inline(), whatever Options::inline_calls says: for a caller that is prepared to
+  /// lose its thread.
+  bool try_call_exposed(const OperationInfo& operation, const void* in, void* out,
+                        Invocation& frame);
 
   /// Throws Unavailable, which names the services of the circle, where the invocation would wait
   /// for itself.
