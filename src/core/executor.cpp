@@ -66,6 +66,7 @@ struct ThreadExecutor::State : std::enable_shared_from_this<State> {
   std::uint64_t last_hand = 0;
   std::size_t threads = 0;  // that have not ended
   bool stopping = false;
+  bool abandoned = false;  // nobody waits for those that run
   bool finishing = false;  // finish() waits until nothing is left to do
 
   // How many tasks run, and whether a task waits or the end is near: in one word, so that a task
@@ -189,7 +190,7 @@ struct ThreadExecutor::State : std::enable_shared_from_this<State> {
     changed.notify_all();
   }
 
-  bool idle() const { return threads == 0 && running() == 0; }
+  bool idle() const { return abandoned || (threads == 0 && running() == 0); }
 };
 
 ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity,
@@ -229,6 +230,7 @@ bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
   request_stop();
   std::unique_lock lock(state_->mutex);
   const bool ended = state_->changed.wait_for(lock, patience, [&] { return state_->idle(); });
+  state_->abandoned = !ended;
   lock.unlock();
   if (!ended) leave_behind(state_);
   state_->let_go(ended);

@@ -102,14 +102,14 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
 
 std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const Features& features,
                                          Duration limit) {
-  const Instant begin = state_->parts.clock.now();
+  Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
   const Duration available = time_left(begin, limit);
   auto candidates = state_->candidates(interface, {}, features, begin);
   if (candidates.empty()) state_->refuse_without(interface, {});
   CandidateIterator iterator(*strategy, std::move(candidates),
                              state_->situation(interface, features, available));
-  return state_->channel_to(iterator.next(available).candidate, available);
+  return state_->channel_to(iterator.next(available).candidate, available, begin);
 }
 
 std::vector<Head::Current> Head::running() const {

@@ -77,7 +77,8 @@ Situation Head::State::situation(const InterfaceInfo& interface, const Features&
   return {features, remaining, options.exploration, history.decisions(interface.name)};
 }
 
-std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration timeout) {
+std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration patience,
+                                                 Instant& now) {
   {
     std::lock_guard lock(mutex);
     const auto found = channels.find(candidate.provider);
@@ -86,7 +87,8 @@ std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Dur
   }
   for (const auto& description : parts.broker.all()) {
     if (description->provider != candidate.provider.bytes) continue;
-    auto channel = parts.connector.open_provider(*description, {}, timeout);
+    auto channel = parts.connector.open_provider(*description, {}, patience);
+    now = parts.clock.now();
     std::lock_guard lock(mutex);
     return channels.insert_or_assign(candidate.provider, std::move(channel)).first->second;
   }

@@ -68,7 +68,8 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
 
 bool Head::Run::run() {
   while (!done_ && !settled_) {
-    while (may_begin()) begin_next();
+    while (begin_another()) {
+    }
     if (live_.empty()) {
       if (!look_again()) break;
       continue;
@@ -104,24 +105,17 @@ bool Head::Run::look_again() {
   return true;
 }
 
-bool Head::Run::may_begin() const {
-  if (done_ || settled_ || iterator_.done() || now() >= deadline_) return false;
-  if (live_.empty()) return true;
-  if (live_.size() >= task_.options().width) return false;
-  switch (task_.options().execution) {
-    case Execution::One:
-      return false;
-    case Execution::Staggered:
-      return late_at_ && now() >= *late_at_;
-    case Execution::All:
-      break;
-  }
+bool Head::Run::begin_another() {
+  if (done_ || settled_ || iterator_.done()) return false;
+  const bool alone = live_.empty();
+  const Execution execution = task_.options().execution;
+  if (!alone && (execution == Execution::One || live_.size() >= task_.options().width))
+    return false;
+  const Instant now = this->now();
+  if (now >= deadline_) return false;
+  if (!alone && execution == Execution::Staggered && !(late_at_ && now >= *late_at_)) return false;
+  begin(iterator_.next(deadline_ - now), now);
   return true;
-}
-
-void Head::Run::begin_next() {
-  const Instant began = now();
-  begin(iterator_.next(deadline_ - began), began);
 }
 
 void Head::Run::begin(CandidateIterator::Next next, Instant began) {
@@ -129,12 +123,13 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   static_cast<Choice&>(attempt) = std::move(next.choice);
   attempt.round = round_;
   attempt.began = began - begin_;
-  Live live{record_.attempts.size() - 1, std::move(next.candidate), 0, nullptr};
-  if (!state_.begin(interface_, live.candidate, began, live.run)) {
+  const auto beginning = state_.begin(interface_, next.candidate, began, deadline_ - began);
+  if (!beginning) {
     attempt.outcome = Outcome::Cancelled;
     attempt.text = "it has been quarantined meanwhile";
     return;
   }
+  Live live{record_.attempts.size() - 1, std::move(next.candidate), beginning->run, nullptr};
   const Instant end =
       task_.options().execution == Execution::One ? began + attempt.slice : deadline_;
   // What is late before the next may begin is late only by what it was expected to take.
@@ -142,12 +137,13 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
       began + (attempt.expected > Duration::zero() ? std::min(attempt.expected, attempt.slice)
                                                    : attempt.slice);
   try {
-    auto channel =
-        state_.channel_to(live.candidate, std::min(end - began, Duration(kOpeningPatience)));
+    Instant reached = began;
+    auto channel = state_.channel_to(live.candidate,
+                                     std::min(end - began, Duration(kOpeningPatience)), reached);
     Exposure exposure;
-    channel = expose(live, std::move(channel), began, exposure);
+    channel = expose(live, std::move(channel), beginning->room_inline, exposure);
     live.work =
-        task_.begin(std::move(channel), std::max(Duration::zero(), end - now()), live.candidate);
+        task_.begin(std::move(channel), std::max(Duration::zero(), end - reached), live.candidate);
     live_.push_back(std::move(live));
   } catch (...) {
     Verdict verdict = task_run::verdict_of_current_exception();
@@ -163,23 +159,23 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
 // A CSP that is quick, and has always come back, is called without a change of threads, where this
 // thread can be spared if it does not come back for once.
 std::shared_ptr<Channel> Head::Run::expose(Live& live, std::shared_ptr<Channel> channel,
-                                           Instant began, Exposure& exposure) {
+                                           std::size_t most, Exposure& exposure) {
+  if (most == 0 || task_.options().execution != Execution::One) return channel;
   Worker* const worker = ThreadExecutor::worker();
-  const CallContext* const caller = CallContext::current();
-  if (!worker || !caller || task_.options().execution != Execution::One) return channel;
-  const std::size_t most = state_.room_inline(interface_, live.candidate, deadline_ - began);
-  const auto service = most > 0 ? state_.parts.directory->find(live.candidate.provider) : nullptr;
+  caller_ = CallContext::current();
+  if (!worker || !caller_) return channel;
+  auto service = state_.parts.directory->find(live.candidate.provider);
   if (!service) return channel;
   exposure.channel = make_shared_in_call_memory<ExposedChannel>(
-      std::move(channel), service,
+      std::move(channel), std::move(service),
       ExposedChannel::Terms{*state_.watch, *worker, deadline_, most,
-                            [this, &live, caller] { lose(live, *caller); }});
+                            [this, &live] { lose(live); }});
   return exposure.channel;
 }
 
 // On `control`, in the place of the performing thread, which hangs in the CSP and touches nothing
 // of this any more.
-void Head::Run::lose(Live& live, const CallContext& caller) {
+void Head::Run::lose(Live& live) {
   Verdict verdict;
   verdict.outcome = Outcome::TimedOut;
   verdict.fault = false;  // it is quarantined at once
@@ -191,7 +187,7 @@ void Head::Run::lose(Live& live, const CallContext& caller) {
   state_.distrust(interface_, live.candidate);
   record_.took = now() - begin_;
   state_.conclude(std::move(record_));
-  caller.answer_instead(error);
+  caller_->answer_instead(error);
 }
 
 bool Head::Run::waits_for_late_ones() const {

@@ -51,13 +51,12 @@ class Head::Run {
   };
 
   Instant now() const { return state_.parts.clock.now(); }
-  bool may_begin() const;
-  void begin_next();
+  bool begin_another();
   bool look_again();
   void begin(CandidateIterator::Next next, Instant began);
-  std::shared_ptr<Channel> expose(Live& live, std::shared_ptr<Channel> channel, Instant began,
+  std::shared_ptr<Channel> expose(Live& live, std::shared_ptr<Channel> channel, std::size_t most,
                                   Exposure& exposure);
-  void lose(Live& live, const CallContext& caller);
+  void lose(Live& live);
   void await();
   void judge_ready();
   void note(Live& live, task_run::Verdict verdict);
@@ -74,6 +73,7 @@ class Head::Run {
   CandidateIterator iterator_;
   std::uint32_t round_ = 0;
   std::vector<Live> live_;
+  const CallContext* caller_ = nullptr;  // whom a CSP on this thread keeps waiting
   std::optional<Instant> late_at_;
   std::shared_ptr<Bell> bell_;  // once several work at a time
   task_run::Verdict last_;

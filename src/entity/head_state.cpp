@@ -59,19 +59,28 @@ Head::State::Standing& Head::State::standing(std::string_view interface, std::st
   return standings.try_emplace({std::string(interface), std::string(csp)}, first).first->second;
 }
 
-bool Head::State::begin(const InterfaceInfo& interface, const Candidate& candidate, Instant now,
-                        std::uint64_t& run) {
+std::optional<Head::State::Beginning> Head::State::begin(const InterfaceInfo& interface,
+                                                         const Candidate& candidate, Instant now,
+                                                         Duration time) {
   std::lock_guard lock(mutex);
-  CircuitBreaker& breaker = standing(interface.name, candidate.name).breaker;
+  Standing& standing = this->standing(interface.name, candidate.name);
   // Listed as open it is the last resort.
-  if (breaker.state(now) == CircuitBreaker::State::Open &&
+  if (standing.breaker.state(now) == CircuitBreaker::State::Open &&
       candidate.breaker != CircuitBreaker::State::Open) {
-    return false;
+    return std::nullopt;
   }
-  breaker.begin(now);
-  run = ++last_run;
-  running.push_back({run, candidate.name, candidate.pid});
-  return true;
+  standing.breaker.begin(now);
+  running.push_back({++last_run, candidate.name, candidate.pid});
+  return Beginning{last_run, room_inline(candidate, standing, time)};
+}
+
+std::size_t Head::State::room_inline(const Candidate& candidate, const Standing& standing,
+                                     Duration time) const {
+  const auto& learned = candidate.learned;
+  const bool quick = learned && learned->samples >= kRunsBeforeInline && learned->q95 &&
+                     *learned->q95 <= kLatencyInline;
+  if (!candidate.in_process || standing.hung || !quick || time < kTimeInline) return 0;
+  return options.most_stuck - std::min(options.most_stuck, hung.size());
 }
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
@@ -97,17 +106,6 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
   if (attempt.outcome == Outcome::TimedOut && fault && !candidate.in_process && options.on_hang) {
     options.on_hang(candidate);
   }
-}
-
-std::size_t Head::State::room_inline(const InterfaceInfo& interface, const Candidate& candidate,
-                                     Duration time) {
-  const auto& learned = candidate.learned;
-  if (!candidate.in_process || time < kTimeInline || !learned ||
-      learned->samples < kRunsBeforeInline || !learned->q95 || *learned->q95 > kLatencyInline)
-    return 0;
-  std::lock_guard lock(mutex);
-  if (standing(interface.name, candidate.name).hung) return 0;
-  return options.most_stuck - std::min(options.most_stuck, hung.size());
 }
 
 void Head::State::distrust(const InterfaceInfo& interface, const Candidate& candidate) {
@@ -150,12 +148,12 @@ std::size_t Head::State::stuck() {
   return stuck;
 }
 
-void Head::State::conclude(DecisionRecord record, DecisionRecord* wanted) {
+void Head::State::conclude(DecisionRecord&& record, DecisionRecord* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
                                     [](const Attempt& attempt) { return attempt.explores; });
   const bool told = topic.on() || !options.log.empty();
-  DecisionRecord copy;
-  DecisionRecord dropped;  // outside the lock
+  std::optional<DecisionRecord> copy;
+  std::optional<DecisionRecord> dropped;  // outside the lock
   {
     std::lock_guard lock(mutex);
     record.stuck = stuck();
@@ -168,9 +166,9 @@ void Head::State::conclude(DecisionRecord record, DecisionRecord* wanted) {
       decisions.pop_front();
     }
   }
-  if (told) topic.tell(copy);
-  if (!options.log.empty()) write_log(copy);
-  if (wanted) *wanted = std::move(copy);
+  if (told) topic.tell(*copy);
+  if (!options.log.empty()) write_log(*copy);
+  if (wanted) *wanted = std::move(*copy);
 }
 
 void Head::State::write_log(const DecisionRecord& record) {

@@ -25,23 +25,27 @@ struct Head::State {
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only) const;
   Situation situation(const InterfaceInfo& interface, const Features& features,
                       Duration remaining) const;
-  std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration timeout);
+  /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
+  std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 
-  /// A CSP begins to work; false, and nothing happens, where it has been quarantined since it was
-  /// listed.
-  bool begin(const InterfaceInfo& interface, const Candidate& candidate, Instant now,
-             std::uint64_t& run);
+  struct Beginning {
+    std::uint64_t run = 0;
+    /// How many CSPs may run on their callers' threads for this one to be among them; none where it
+    /// has a thread of its own in any case.
+    std::size_t room_inline = 0;
+  };
+
+  /// A CSP begins to work, with so much time; nothing, and nothing happens, where it has been
+  /// quarantined since it was listed.
+  std::optional<Beginning> begin(const InterfaceInfo& interface, const Candidate& candidate,
+                                 Instant now, Duration time);
   /// What came of it: for the breaker, the history, and whoever is told of hangs.
   void end(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
            std::uint64_t run, const Attempt& attempt, bool fault);
-  /// How many CSPs may run on their callers' threads for this one to be among them; none where it
-  /// has a thread of its own in any case.
-  std::size_t room_inline(const InterfaceInfo& interface, const Candidate& candidate,
-                          Duration time);
   /// It hung on its caller's thread: it is quarantined at once, and has its own thread for good.
   void distrust(const InterfaceInfo& interface, const Candidate& candidate);
   /// Numbers the decision, keeps it and tells of it; a copy to whom `wanted` belongs, if anybody.
-  void conclude(DecisionRecord record, DecisionRecord* wanted = nullptr);
+  void conclude(DecisionRecord&& record, DecisionRecord* wanted = nullptr);
   std::size_t count_stuck();
 
   /// What is held of a CSP by its name.
@@ -94,6 +98,8 @@ struct Head::State {
   Known known(const InterfaceInfo& interface,
               const brokerless_discovery::ServiceDescription& description);
   Standing& standing(std::string_view interface, std::string_view csp);
+  std::size_t room_inline(const Candidate& candidate, const Standing& standing,
+                          Duration time) const;
   void learn(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
              const Attempt& attempt);
   std::size_t stuck();

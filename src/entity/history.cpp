@@ -106,12 +106,20 @@ std::optional<Prediction> History::predict(std::string_view interface, std::stri
                                            const Features& features) const {
   const auto found = records_.find(ByCsp::View(interface, csp));
   if (found == records_.end() || found->second.samples.empty()) return std::nullopt;
-  const Nearest samples = nearest(found->second.samples, features);
+  const Record& record = found->second;
+  if (!record.predicted || record.predicted->first != features)
+    record.predicted = {features, predict(record.samples, features)};
+  Prediction prediction = record.predicted->second;
+  prediction.idle = decisions(interface).made - record.samples.back().decision;
+  return prediction;
+}
+
+Prediction History::predict(const std::deque<Sample>& samples, const Features& features) {
+  const Nearest near = nearest(samples, features);
   Prediction prediction;
-  prediction.samples = samples.size();
-  prediction.idle = decisions(interface).made - found->second.samples.back().decision;
-  predict_times(prediction, samples);
-  predict_results(prediction, samples);
+  prediction.samples = near.size();
+  predict_times(prediction, near);
+  predict_results(prediction, near);
   return prediction;
 }
 
@@ -143,6 +151,7 @@ void History::add(std::string_view interface, std::string_view csp, Sample sampl
     note_surprise(found->second, *before, sample);
   }
   Record& record = found->second;
+  record.predicted.reset();
   sample.decision = decisions(interface).made;
   record.samples.push_back(std::move(sample));
   if (static_cast<std::size_t>(std::abs(record.surprises)) >= kSurprises) {

@@ -252,8 +252,9 @@ introspection::ServiceStatistics Service::statistics() const {
 }
 
 bool Service::overdue() const {
-  const Instant now = clock_.now();
   std::lock_guard lock(mutex_);
+  if (!running_) return false;
+  const Instant now = clock_.now();
   for (const Running* each = running_; each; each = each->next()) {
     if (each->invocation().deadline <= now) return true;
   }

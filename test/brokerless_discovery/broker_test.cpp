@@ -188,6 +188,21 @@ TEST_CASE("observers hear of what comes and goes until they stop listening") {
   CHECK(kinds.size() == 2);
 }
 
+TEST_CASE("the table's generation stands while nothing changes, and grows with each change") {
+  World world;
+  Peer navigator(world, "navigator");
+  Peer ground(world, "ground");
+  const auto begin = ground.broker.generation();
+  auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  REQUIRE(ground.finds("A/INavigator"));
+  const auto added = ground.broker.generation();
+  CHECK(added > begin);
+  pass(world, {&navigator, &ground}, 5s);
+  CHECK(ground.broker.generation() == added);
+  registration.withdraw();
+  CHECK(ground.broker.generation() > added);
+}
+
 TEST_CASE("waiting for a service ends when it appears") {
   World world;
   Peer ground(world, "ground");

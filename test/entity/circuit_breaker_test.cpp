@@ -29,6 +29,13 @@ TEST_CASE("a breaker opens at the third fault in a row") {
   CHECK(breaker.quarantine(kStart) == 1s);
 }
 
+TEST_CASE("a breaker that is tripped opens at once") {
+  CircuitBreaker breaker(kRules);
+  breaker.trip(kStart);
+  CHECK(breaker.state(kStart) == State::Open);
+  CHECK(breaker.quarantine(kStart) == 1s);
+}
+
 TEST_CASE("a success between faults keeps a breaker closed") {
   CircuitBreaker breaker(kRules);
   for (int i = 0; i < 5; ++i) {

@@ -74,6 +74,18 @@ TEST_CASE("a run that was given up counts with twice its time") {
   CHECK(of(history, 1).q95 == 100ms);
 }
 
+TEST_CASE("that a run was late is known for as long as the run is remembered") {
+  History history;
+  auto late = ran(50ms, 1, false);
+  late.late = true;
+  CHECK_FALSE(history.was_late(kService, "A"));
+  history.add(kService, "A", late);
+  CHECK(history.was_late(kService, "A"));
+  CHECK_FALSE(history.was_late(kService, "B"));
+  for (std::size_t i = 0; i < History::kKept; ++i) history.add(kService, "A", ran(50ms));
+  CHECK_FALSE(history.was_late(kService, "A"));
+}
+
 TEST_CASE("a result that was rejected lowers the reliability and says nothing of the latency") {
   History history;
   history.add(kService, "A", ran(1ms, 1, false));

@@ -97,8 +97,13 @@ class History {
   struct Record {
     std::deque<Sample> samples;  // oldest first
     int surprises = 0;           // in a row: positive were slower than predicted, negative faster
-    bool operator==(const Record&) const = default;
+    mutable std::optional<std::pair<Features, Prediction>>
+        predicted{};  // of the samples as they are
+    bool operator==(const Record& other) const {
+      return samples == other.samples && surprises == other.surprises;
+    }
   };
+  static Prediction predict(const std::deque<Sample>& samples, const Features& features);
   static void note_surprise(Record& record, const Prediction& before, const Sample& sample);
 
   std::map<std::pair<std::string, std::string>, Record, ByCsp> records_;
