@@ -3,13 +3,10 @@
 #include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <mutex>
@@ -18,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "abstract_socket.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/guid.hpp"
 
@@ -25,16 +23,6 @@ namespace skein::brokerless_discovery {
 namespace {
 
 constexpr std::string_view kPrefix = "skein/";
-
-// An abstract socket: its name begins with NUL, it lives in the network namespace, and the kernel
-// removes it with the process.
-socklen_t fill(sockaddr_un& address, const std::string& name) {
-  address = {};
-  address.sun_family = AF_UNIX;
-  const std::size_t length = std::min(name.size(), sizeof(address.sun_path) - 1);
-  std::memcpy(address.sun_path + 1, name.data(), length);
-  return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
-}
 
 std::string system_error(const char* what) {
   return std::string(what) + ": " + std::strerror(errno);

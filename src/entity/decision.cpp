@@ -14,9 +14,9 @@ namespace {
 using Outcome = Attempt::Outcome;
 using Breaker = CircuitBreaker::State;
 
-constexpr std::array kOutcomes{Outcome::Accepted, Outcome::Rejected,     Outcome::Refused,
-                               Outcome::TimedOut, Outcome::Disconnected, Outcome::Failed,
-                               Outcome::Cancelled};
+constexpr std::array kOutcomes{Outcome::Accepted,  Outcome::Rejected,     Outcome::Refused,
+                               Outcome::TimedOut,  Outcome::Disconnected, Outcome::Failed,
+                               Outcome::Cancelled, Outcome::Preselected};
 constexpr std::array kBreakers{Breaker::Closed, Breaker::Open, Breaker::HalfOpen};
 
 template <class Enumeration, std::size_t kSize>
@@ -128,6 +128,8 @@ const char* to_string(Attempt::Outcome outcome) noexcept {
       return "disconnected";
     case Outcome::Cancelled:
       return "cancelled";
+    case Outcome::Preselected:
+      return "preselected";
     case Outcome::Failed:
       break;
   }

@@ -51,16 +51,19 @@ std::string line_of(const Attempt& attempt) {
 }  // namespace
 
 std::string explain(const DecisionRecord& record) {
+  const bool preselected = record.execution == "none";
   std::string text = "decision " + std::to_string(record.number) + " of " + record.entity;
   if (!record.request.empty()) text += " on '" + record.request + "'";
-  text += ": " + record.interface + " within " + in_ms(record.available) + ", strategy " +
-          record.strategy + ", " + record.execution + " at a time\n";
+  text +=
+      ": " + record.interface + " within " + in_ms(record.available) + ", strategy " +
+      record.strategy +
+      (preselected ? ", for the Body to call itself\n" : ", " + record.execution + " at a time\n");
   text += line_of(record.situation.features);
   for (const Candidate& candidate : record.candidates) text += line_of(candidate);
   for (const Attempt& attempt : record.attempts) text += line_of(attempt);
   if (record.stuck > 0)
     text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";
-  text += record.failure.empty() ? "  answered" : "  failed";
+  text += preselected ? "  selected" : record.failure.empty() ? "  answered" : "  failed";
   text += " after " + in_ms(record.took);
   if (!record.synthesis.empty()) text += ": " + record.synthesis;
   if (!record.failure.empty()) text += ": " + record.failure;

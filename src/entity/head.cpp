@@ -66,16 +66,14 @@ std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const
 }
 
 DecisionRecord Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
-                                 const TaskOptions& options, Instant begin, Duration limit) const {
+                                 const Features& features, Instant begin, Duration limit) const {
   DecisionRecord record;
   record.entity = state_->parts.entity;
   record.time = unix_time();
-  record.request = options.request;
   record.interface = interface.name;
   record.strategy = strategy.name();
-  record.execution = to_string(options.execution);
   record.available = time_left(begin, limit);
-  record.situation = state_->situation(interface, options.features, record.available);
+  record.situation = state_->situation(interface, features, record.available);
   return record;
 }
 
@@ -84,7 +82,9 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
   const TaskOptions& options = task.options();
-  DecisionRecord record = open_record(interface, *strategy, options, begin, limit);
+  DecisionRecord record = open_record(interface, *strategy, options.features, begin, limit);
+  record.request = options.request;
+  record.execution = to_string(options.execution);
   std::exception_ptr failure;
   try {
     record.candidates = state_->candidates(interface, options.only, options.features, begin);
@@ -102,14 +102,22 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
 
 std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const Features& features,
                                          Duration limit) {
-  Instant begin = state_->parts.clock.now();
+  const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
-  const Duration available = time_left(begin, limit);
-  auto candidates = state_->candidates(interface, {}, features, begin);
-  if (candidates.empty()) state_->refuse_without(interface, {});
-  CandidateIterator iterator(*strategy, std::move(candidates),
-                             state_->situation(interface, features, available));
-  return state_->channel_to(iterator.next(available).candidate, available, begin);
+  DecisionRecord record = open_record(interface, *strategy, features, begin, limit);
+  record.execution = "none";
+  record.candidates = state_->candidates(interface, {}, features, begin);
+  if (record.candidates.empty()) state_->refuse_without(interface, {});
+  CandidateIterator iterator(*strategy, record.candidates, record.situation);
+  auto next = iterator.next(record.available);
+  Attempt& attempt = record.attempts.emplace_back();
+  static_cast<Choice&>(attempt) = std::move(next.choice);
+  attempt.outcome = Attempt::Outcome::Preselected;
+  Instant reached = begin;
+  auto channel = state_->channel_to(next.candidate, record.available, reached);
+  record.took = state_->parts.clock.now() - begin;
+  state_->conclude(std::move(record));
+  return channel;
 }
 
 std::vector<Head::Current> Head::running() const {

@@ -86,11 +86,16 @@ std::size_t Head::State::room_inline(const Candidate& candidate, const Standing&
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
                       const Features& features, std::uint64_t run, const Attempt& attempt,
                       bool fault) {
+  const bool timed_out = attempt.outcome == Outcome::TimedOut;
+  const bool is_told = timed_out && fault && attempt.expected > Duration::zero() &&
+                       !candidate.in_process && options.on_hang;
   {
     std::lock_guard lock(mutex);
     std::erase_if(running, [&](const Running& each) { return each.run == run; });
     Standing& standing = this->standing(interface.name, candidate.name);
-    if (fault) {
+    if (is_told) {  // it may be ended
+      standing.breaker.trip(parts.clock.now());
+    } else if (fault) {
       standing.breaker.fail(parts.clock.now());
     } else if (attempt.outcome == Outcome::Accepted || attempt.outcome == Outcome::Refused) {
       standing.breaker.succeed();
@@ -98,14 +103,12 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
       standing.breaker.end();
     }
     learn(interface, candidate, features, attempt);
-    if (attempt.outcome == Outcome::TimedOut && candidate.in_process) {
+    if (timed_out && candidate.in_process) {
       standing.hung = true;
       hung.insert(candidate.provider);
     }
   }
-  if (attempt.outcome == Outcome::TimedOut && fault && !candidate.in_process && options.on_hang) {
-    options.on_hang(candidate);
-  }
+  if (is_told) options.on_hang(candidate);
 }
 
 void Head::State::distrust(const InterfaceInfo& interface, const Candidate& candidate) {

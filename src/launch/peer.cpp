@@ -5,6 +5,7 @@
 #include <csignal>
 #include <set>
 
+#include "hung_csp.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
 #include "skein/core/suggestion.hpp"
@@ -159,7 +160,11 @@ void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
 
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
   load_plugins(registry, peer);
-  Entity entity(entity_options(mission, peer));
+  Entity* self = nullptr;
+  EntityOptions options = entity_options(mission, peer);
+  options.head.on_hang = [&](const Candidate& hung) { end_hung_csp(*self, peer, hung); };
+  Entity entity(std::move(options));
+  self = &entity;
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);

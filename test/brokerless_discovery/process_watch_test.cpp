@@ -9,7 +9,9 @@
 #include <memory>
 
 #include "../tools/eventually.hpp"
+#include "skein/brokerless_discovery/kill_process.hpp"
 
+using skein::brokerless_discovery::kill_process;
 using skein::brokerless_discovery::ProcessWatch;
 using skein::test::eventually;
 
@@ -80,6 +82,23 @@ TEST_CASE("a process that ended before it was watched is told at once") {
   std::atomic<int> ended = 0;
   watch.watch(child.address, [&] { ++ended; });
   CHECK(ended == 1);
+}
+
+TEST_CASE("a process is killed by its address, running or stopped, and once it is gone nobody is") {
+  Child child;
+  if (GENERATE(false, true)) kill(child.pid, SIGSTOP);
+  CHECK(kill_process(child.address));
+  int status = 0;
+  REQUIRE(waitpid(child.pid, &status, 0) == child.pid);
+  child.pid = 0;
+  CHECK(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == SIGKILL);
+  CHECK_FALSE(kill_process(child.address));
+}
+
+TEST_CASE("a process does not kill itself") {
+  const ProcessWatch own;
+  CHECK_FALSE(kill_process(own.address()));
 }
 
 TEST_CASE("processes of one network namespace are on one host") {

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "office.hpp"
+#include "skein/introspection.idl.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -144,7 +145,12 @@ TEST_CASE("a Body may call the CSP that the Head selects beforehand itself") {
   auto worker = office.owner->head().preselect<crew::Worker>();
   CHECK(worker.work("a") == "better did a");
   CHECK(worker.work("b") == "better did b");
-  CHECK(office.owner->head().decisions().empty());
+  REQUIRE(office.owner->head().decisions().size() == 1);
+  office.record = office.owner->head().decisions().front();
+  CHECK(office.attempts() == std::vector<std::string>{"better preselected"});
+  CHECK_THAT(explain(office.record), Catch::Contains("for the Body to call itself") &&
+                                         Catch::Contains("better has the best declared quality"));
+  CHECK(replay(record_of(report_of(office.record))).front().csp == "better");
 }
 
 TEST_CASE("without any CSP nothing can be selected beforehand") {

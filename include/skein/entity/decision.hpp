@@ -23,6 +23,7 @@ struct Attempt : Choice {
     Disconnected,  ///< It crashed or left while it worked.
     Failed,        ///< With any other error.
     Cancelled,     ///< Others were enough.
+    Preselected,   ///< The Body calls it itself.
   };
   std::uint32_t round = 0;  ///< Its candidate's.
   Duration began{};         ///< After the decision began.

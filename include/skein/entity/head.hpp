@@ -84,8 +84,8 @@ class Head {
   }
 
   /// A proxy of the CSP that the session's strategy selects now, for a Body that calls it directly:
-  /// nothing is evaluated, recorded or done again. `limit` is the proxy's. Throws as perform()
-  /// does.
+  /// the choice is recorded, but nothing is evaluated or done again, nor known of its calls.
+  /// `limit` is the proxy's. Throws as perform() does.
   template <class Interface>
   typename Interface::Proxy preselect(const Features& features = {},
                                       Duration limit = std::chrono::seconds(5)) {
@@ -111,7 +111,7 @@ class Head {
   class Run;
 
   DecisionRecord open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
-                             const TaskOptions& options, Instant begin, Duration limit) const;
+                             const Features& features, Instant begin, Duration limit) const;
   void decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
               DecisionRecord* wanted);
   std::shared_ptr<Channel> preselect(const InterfaceInfo& interface, const Features& features,

@@ -23,8 +23,8 @@ struct HeadOptions {
   /// So many CSPs in this process that do not return, and threads that one of them has cost (see
   /// Head), make the peer degraded. No more CSPs than that run on their callers' threads at a time.
   std::size_t most_stuck = 3;
-  /// Told of a CSP in another process that did not answer in the time that it was given, on the
-  /// thread that performs: whoever launched it may end and restart it. Must return soon.
+  /// Told on the performing thread of a CSP in another process that took four times as long as was
+  /// expected of it: it is quarantined, and whoever launched it may restart it. Must return soon.
   std::function<void(const Candidate&)> on_hang{};
 };
 

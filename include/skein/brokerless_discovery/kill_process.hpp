@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace skein::brokerless_discovery {
+
+/// Kills the process of this host that can be watched at `address` (ServiceDescription::process),
+/// running or stopped; SIGKILL, for one that hangs. Never another process, whatever has become of
+/// process numbers since: the kernel says whose address it is. False where no other process has it
+/// any more, or this one may not.
+bool kill_process(const std::string& address);
+
+}  // namespace skein::brokerless_discovery
