@@ -30,7 +30,7 @@ class Profile {
     write("sound.xml", csp_text("sound", "10", "0.5"));
     write("office.xml",
           "<component name='office'><interfaces><implements><type>IDL:crew/Desk</type>"
-          "</implements></interfaces><subcomponents><type>IDL:crew/Worker</type>"
+          "</implements></interfaces><subcomponents><subcomponent>IDL:crew/Worker</subcomponent>"
           "</subcomponents></component>");
     write("client.xml",
           "<component name='client'><dependencies><depends>IDL:crew/Desk</depends>"
