@@ -1,11 +1,12 @@
 // A worker that hangs when it is told to, one that does not, a desk in front of them, and a mission
 // that tells the first to hang and waits until it works again.
 
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "../tools/eventually.hpp"
 #include "skein/core/abi.hpp"
@@ -24,7 +25,7 @@ class Worker final : public crew::Worker {
 
   std::string work(const std::string& task) override {
     if (name_ == "moody" && task == "stop") raise(SIGSTOP);
-    while (name_ == "moody" && task == "hang") std::this_thread::sleep_for(1h);
+    while (name_ == "moody" && task == "hang") pause();
     return name_ + " did " + task;
   }
   void improve(const std::string& task, StreamSink<std::string>& sink) override {
