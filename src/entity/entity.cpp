@@ -181,10 +181,11 @@ Guid Entity::provide_csp(const std::string& name, const std::string& owner,
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
   const InterfaceInfo& interface = servant->interface_info();
+  auto executor =
+      std::make_shared<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
-  provided->executor =
-      std::make_shared<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
+  provided->executor = std::move(executor);
   rpc::Service::Options service_options;
   service_options.keeps =
       std::make_shared<std::pair<std::shared_ptr<Clock>, std::shared_ptr<ThreadExecutor>>>(
