@@ -20,7 +20,8 @@ std::string configuration(std::uint32_t greatest_number) {
          "<Watermarks><WhcHigh>256 MiB</WhcHigh><WhcHighInit>256 MiB</WhcHighInit>"
          "<WhcAdaptive>false</WhcAdaptive></Watermarks>"
          "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval><NackDelay>10 "
-         "ms</NackDelay></Internal></Domain></CycloneDDS>";
+         "ms</NackDelay><WriterLingerDuration>100 "
+         "ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
 }
 
 class Qos {

@@ -59,14 +59,17 @@ std::string discovery(const ParticipantOptions& options,
 /// acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
 /// NackDelay: for so long what was asked for is not asked for again. A reader that has just found
 /// its writer asks before the writer listens: with 100 ms, the default, a first request waits as
-/// long in one start of three.
+/// long in one start of three. WriterLingerDuration: so long a writer's destruction waits for what
+/// has not been acknowledged. Who lives does so in a heartbeat or two; with 1 s, the default,
+/// whoever leaves a provider that has died for another is held up as long.
 std::string internal() {
   return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
                                  element("Watermarks", element("WhcHigh", "256 MiB") +
                                                            element("WhcHighInit", "256 MiB") +
                                                            element("WhcAdaptive", "false")) +
                                  "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval>"
-                                 "<NackDelay>10 ms</NackDelay>");
+                                 "<NackDelay>10 ms</NackDelay>"
+                                 "<WriterLingerDuration>100 ms</WriterLingerDuration>");
 }
 
 }  // namespace
