@@ -1,7 +1,6 @@
 #include "skein/connector/connector.hpp"
 
 #include <algorithm>
-#include <future>
 #include <random>
 #include <thread>
 
@@ -175,26 +174,14 @@ std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interfac
                                                    const ConnectOptions& options) const {
   const Connections::Opening opening(*connections_);
   const Instant deadline = parts_.clock->now() + options.timeout;
-  struct Begun {
-    Opened opened;
-    std::future<std::shared_ptr<Channel>> channel;
-  };
-  // All at once: the patience that one takes who does not answer is nobody else's.
-  std::vector<Begun> begun;
-  for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
-    const Duration left = std::max(Duration::zero(), deadline - parts_.clock->now());
-    begun.push_back({{Guid{provider->provider}, provider->entity, nullptr},
-                     std::async(std::launch::async, [this, provider, &options, left] {
-                       return open_provider(*provider, options.strategy,
-                                            std::min<Duration>(left, kOpenPatience));
-                     })});
-  }
   std::vector<Opened> all;
   std::exception_ptr failure;
-  for (Begun& one : begun) {
+  for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
+    const Duration left = std::max(Duration::zero(), deadline - parts_.clock->now());
     try {
-      one.opened.channel = one.channel.get();
-      all.push_back(std::move(one.opened));
+      all.push_back(
+          {Guid{provider->provider}, provider->entity,
+           open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
     } catch (const Unavailable&) {
       failure = std::current_exception();
     }
