@@ -132,26 +132,3 @@ TEST_CASE("64 MiB go in one call with the system's default socket buffers") {
   REQUIRE(room == 2 * kDefaultSocketBuffer);  // Linux doubles what it is asked for
   call_with_64_mib();
 }
-
-TEST_CASE("small calls of the connection that carries 64 MiB come through as well") {
-  const SocketBuffersOfAtMost host(kDefaultSocketBuffer);
-  Stage stage;
-  const auto content = large_content();
-  auto large = stage.large.within(kDeadline).async_echo_octets(content);
-  SmallCalls small(stage.large);
-  CHECK(large.get() == content);
-  const std::size_t during = small.done();
-  REQUIRE(eventually([&] { return small.done() >= during + 100; }));
-  small.end();
-  CHECK(small.failed() == 0);
-}
-
-TEST_CASE("many large answers to one client all arrive") {
-  const SocketBuffersOfAtMost host(kDefaultSocketBuffer);
-  Stage stage;
-  const std::vector<std::uint8_t> content(1 << 20, 7);
-  std::vector<Call<std::vector<std::uint8_t>>> calls;
-  for (int i = 0; i < 64; ++i)
-    calls.push_back(stage.large.within(kDeadline).async_echo_octets(content));
-  for (auto& call : calls) CHECK(call.get() == content);
-}

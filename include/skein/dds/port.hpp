@@ -41,8 +41,8 @@ struct Qos {
   /// take; nothing means all.
   std::optional<std::uint32_t> history_depth;
   /// With "all": how many samples may wait for acknowledgment before a reliable writer blocks; 0
-  /// means no limit on their number (Cyclone DDS still bounds their bytes, at 256 MiB). Readers
-  /// have no limit: a full one would stop a participant's reception, and its leases with it.
+  /// means no limit on their number (Cyclone DDS still bounds their bytes, at 4 MiB). Readers have
+  /// no limit: a full one would stop a participant's reception, and its leases with it.
   std::uint32_t max_samples = 0;
   /// A reader's: how many samples may wait to be taken; one more takes the oldest one's place. 0:
   /// no limit.

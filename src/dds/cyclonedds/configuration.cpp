@@ -51,22 +51,20 @@ std::string discovery(const ParticipantOptions& options,
 }
 
 /// GenerateKeyhash: Fast DDS cannot tell an instance's identity otherwise.
-/// Watermarks: so much may wait for acknowledgment before a writer blocks, from the start, and no
-/// less while there are losses. With less, a large answer on its way blocks a service's thread, and
-/// the answers behind it are lost when that takes longer than a write may wait. HeartbeatInterval:
-/// a lost last sample is noticed, and an acknowledgment asked for, after so long. The interval
-/// doubles up to `max`; a Fast DDS reader that found this writer anew begins to count its
-/// acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
-/// NackDelay: for so long what was asked for is not asked for again. A reader that has just found
-/// its writer asks before the writer listens: with 100 ms, the default, a first request waits as
-/// long in one start of three. WriterLingerDuration: so long a writer's destruction waits for what
-/// has not been acknowledged. Who lives does so in a heartbeat or two; with 1 s, the default,
-/// whoever leaves a provider that has died for another is held up as long.
+/// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops
+/// a writer in the middle of a mebibyte. HeartbeatInterval: a lost last sample is noticed, and an
+/// acknowledgment asked for, after so long. The interval doubles up to `max`; a Fast DDS reader
+/// that found this writer anew begins to count its acknowledgments at 1, and Cyclone ignores each
+/// one until the count has passed the old one. NackDelay: for so long what was asked for is not
+/// asked for again. A reader that has just found its writer asks before the writer listens: with
+/// 100 ms, the default, a first request waits as long in one start of three. WriterLingerDuration:
+/// so long a writer's destruction waits for what has not been acknowledged. Who lives does so in a
+/// heartbeat or two; with 1 s, the default, whoever leaves a provider that has died for another is
+/// held up as long.
 std::string internal() {
   return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
-                                 element("Watermarks", element("WhcHigh", "256 MiB") +
-                                                           element("WhcHighInit", "256 MiB") +
-                                                           element("WhcAdaptive", "false")) +
+                                 element("Watermarks", element("WhcHigh", "4 MiB") +
+                                                           element("WhcHighInit", "1 MiB")) +
                                  "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval>"
                                  "<NackDelay>10 ms</NackDelay>"
                                  "<WriterLingerDuration>100 ms</WriterLingerDuration>");
