@@ -185,6 +185,7 @@ void GroundStation::ask_with_an_old_picture() {
                           "it is off the air, and missiles stand on the last route",
                           problem.threat_epoch, now.epoch));
   print_field("cap", fmt::format("{:.1f} km of exposure", problem.exposure_cap_m / 1000));
+  missiles_ = now.missile_sites;
   const Answer answer = show(question, navigator_.ask(question));
   use(now, problem);
   accept("fresh picture", question, answer);
@@ -227,8 +228,9 @@ void GroundStation::accept(const std::string& label, const Question& question,
 }
 
 void GroundStation::draw() {
-  skein::navigation::write_route_picture(picture_, *terrain_,
-                                         skein::navigation::demo_problem(*terrain_), routes_,
+  Problem problem = skein::navigation::demo_problem(*terrain_);
+  problem.missile_sites = missiles_;
+  skein::navigation::write_route_picture(picture_, *terrain_, problem, routes_,
                                          "Route planning over " + terrain_title_);
 }
 

@@ -57,6 +57,7 @@ class GroundStation {
   NavigatorLink navigator_;
   AE_flightControllerI::FlightLimits limits_;
   std::vector<skein::navigation::PicturedRoute> routes_;
+  std::vector<AE_navigator::MissileSite> missiles_;  // found on the way
   std::vector<std::string> failures_;
 };
 

@@ -130,20 +130,33 @@ stroke-linejoin="round" stroke-linecap="round"/>)svg",
   svg.add("</g>");
 }
 
-void add_radar(Svg& svg, const AE_navigator::RadarSite& site, const MapScale& map) {
-  const double x = map.x(site.site.east_m);
-  const double y = map.y(site.site.north_m);
-  const double range = map.units(site.range_m);
+struct Symbol {
+  const char* outline;
+  const char* colour;
+  const char* dashes;  ///< Of the ring of its range.
+};
+
+constexpr Symbol kRadar{"M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4",
+                        "#7a0b23", "7 5"};
+constexpr Symbol kMissiles{"M0 -11L4 -4V5L7 9H-7L-4 5V-4Z", "#3b1f8f", "2 4"};
+
+void add_site(Svg& svg, const Symbol& symbol, const GroundPoint& site, double range_m,
+              const MapScale& map) {
+  const double x = map.x(site.east_m);
+  const double y = map.y(site.north_m);
   svg.add(R"svg(<circle cx="{0:.1f}" cy="{1:.1f}" r="{2:.1f}" fill="none" stroke="#fff"
 stroke-opacity="0.7" stroke-width="3"/><circle cx="{0:.1f}" cy="{1:.1f}" r="{2:.1f}"
-fill="none" stroke="#7a0b23" stroke-width="1.4" stroke-dasharray="7 5"/>)svg",
-          x, y, range);
-  svg.add(R"svg(<g transform="translate({:.1f} {:.1f})" fill="none" stroke="#fff"
-stroke-width="4"><path
-d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4"/><path
-d="M-7 8L0 -3L7 8ZM-5 -10A8 8 0 0 1 5 -10M-2.6 -6.4A4 4 0 0 1 2.6 -6.4" stroke="#7a0b23"
-stroke-width="1.8"/></g>)svg",
-          x, y);
+fill="none" stroke="{3}" stroke-width="1.4" stroke-dasharray="{4}"/>)svg",
+          x, y, map.units(range_m), symbol.colour, symbol.dashes);
+  svg.add(R"svg(<g transform="translate({0:.1f} {1:.1f})" fill="none" stroke="#fff"
+stroke-width="4"><path d="{2}"/><path d="{2}" stroke="{3}" stroke-width="1.8"/></g>)svg",
+          x, y, symbol.outline, symbol.colour);
+}
+
+void add_site_name(Svg& svg, const std::string& name, const GroundPoint& site,
+                   const MapScale& map) {
+  svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name">{}</text>)svg", map.x(site.east_m) + 12,
+          map.y(site.north_m) + 6, escaped(name));
 }
 
 /// Above all else on the map, so that no route hides them.
@@ -153,10 +166,9 @@ void add_names(Svg& svg, const AE_navigator::Problem& problem, const MapScale& m
     svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name" text-anchor="middle">{}</text>)svg",
             map.x(at.east_m), map.y(at.north_m) + 4, escaped(zone.name));
   }
-  for (const auto& site : problem.radar_sites) {
-    svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="name">{}</text>)svg",
-            map.x(site.site.east_m) + 12, map.y(site.site.north_m) + 6, escaped(site.name));
-  }
+  for (const auto& radar : problem.radar_sites) add_site_name(svg, radar.name, radar.site, map);
+  for (const auto& missiles : problem.missile_sites)
+    add_site_name(svg, missiles.name, missiles.site, map);
 }
 
 void add_route(Svg& svg, const AE_navigator::Route& route, std::string_view colour,
@@ -218,6 +230,12 @@ stroke-linecap="round"/><text x="{3}" y="{4:.0f}" class="small" font-weight="600
   return y;
 }
 
+void add_ring_key(Svg& svg, const Symbol& symbol, const char* what, double y) {
+  svg.add(R"svg(<circle cx="{0}" cy="{1:.0f}" r="8" fill="none" stroke="{2}"
+stroke-width="1.4" stroke-dasharray="{3}"/><text x="{4}" y="{5:.0f}" class="small">{6}</text>)svg",
+          kLegendLeft + 12, y - 4, symbol.colour, symbol.dashes, kLegendLeft + 36, y, what);
+}
+
 void add_key(Svg& svg, const Terrain& terrain, const AE_navigator::Problem& problem, double y) {
   svg.add(R"svg(<text x="{}" y="{:.0f}" class="small"
 font-weight="600">Ground, {:.0f} m to {:.0f} m</text>)svg",
@@ -241,10 +259,8 @@ fill-opacity="{:.2f}"/>)svg",
 class="tick" text-anchor="end">strongly</text>)svg",
           kLegendLeft, y + 36, kLegendLeft + 240);
   y += 62;
-  svg.add(R"svg(<circle cx="{0}" cy="{1:.0f}" r="8" fill="none" stroke="#7a0b23"
-stroke-width="1.4" stroke-dasharray="5 3.5"/><text x="{2}" y="{3:.0f}"
-class="small">range of a radar</text>)svg",
-          kLegendLeft + 12, y - 4, kLegendLeft + 36, y);
+  add_ring_key(svg, kRadar, "range of a radar", y);
+  if (!problem.missile_sites.empty()) add_ring_key(svg, kMissiles, "range of missiles", y += 28);
   y += 28;
   svg.add(R"svg(<g opacity="0.6"><rect x="{0}" y="{1:.0f}" width="24" height="14" fill="#f3c6c6"
 stroke="#8f0d1c" stroke-width="2"/><rect x="{0}" y="{1:.0f}" width="24" height="14"
@@ -259,14 +275,17 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
   const MapScale map(terrain);
   const auto profiles = static_cast<double>(std::count_if(
       routes.begin(), routes.end(), [](const auto& pictured) { return drawable(pictured.route); }));
-  const double legend_height = 62.0 * static_cast<double>(routes.size()) + 250;
+  const double legend_height = 62.0 * static_cast<double>(routes.size()) + 278;
   const double below_map = kMapTop + std::max(map.height(), legend_height) + 34;
   Svg svg;
   add_head(svg, title, terrain, below_map + profiles * kProfileHeight + 16);
   add_ground(svg, terrain, problem, map);
   svg.add(R"svg(<g clip-path="url(#map)">)svg");
   for (const auto& zone : problem.no_fly_zones) add_zone(svg, zone, map);
-  for (const auto& site : problem.radar_sites) add_radar(svg, site, map);
+  for (const auto& radar : problem.radar_sites)
+    add_site(svg, kRadar, radar.site, radar.range_m, map);
+  for (const auto& missiles : problem.missile_sites)
+    add_site(svg, kMissiles, missiles.site, missiles.range_m, map);
   for (std::size_t i = routes.size(); i-- > 0;) {
     if (drawable(routes[i].route)) add_route(svg, routes[i].route, route_colour(i), map);
   }

@@ -37,12 +37,14 @@ TEST_CASE("A picture is well-formed, below 2 MB and refers to nothing outside of
   }
 }
 
-TEST_CASE("A picture names routes, zones, radars, both ends and the figures of each route") {
-  const Demo demo;
+TEST_CASE("A picture names routes, zones, threats, both ends and the figures of each route") {
+  Demo demo;
+  demo.problem.missile_sites.push_back({"Sierra", {20'000, 15'000}, 20, 4000, 0.02});
   const auto routes = two_routes(demo);
   const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
-  for (const char* name : {"A*, 2 s", "RRTConnect, 50 ms", "City", "Reserve", "Corridor", "Alpha",
-                           "Delta", "Start", "Goal", "synthetic:7"}) {
+  for (const char* name :
+       {"A*, 2 s", "RRTConnect, 50 ms", "City", "Reserve", "Corridor", "Alpha", "Delta", "Sierra",
+        "range of missiles", "Start", "Goal", "synthetic:7"}) {
     CHECK_THAT(svg, Contains(name));
   }
   CHECK_THAT(svg,

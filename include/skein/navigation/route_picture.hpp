@@ -15,10 +15,10 @@ struct PicturedRoute {
 };
 
 /// Draws routes over the shaded terrain as one SVG that refers to nothing outside of itself, below
-/// 2 MB for any terrain: zones, radar sites with the rings of their range, what they see at the
-/// minimum height above ground, start and goal, scale, north arrow, a legend with length, exposure
-/// and lowest height, and one altitude profile per route. A route with a number that is not finite
-/// is listed in the legend, but not drawn.
+/// 2 MB for any terrain: zones, radar and missile sites with the rings of their range, what radars
+/// see at the minimum height above ground, start and goal, scale, north arrow, a legend with
+/// length, exposure and lowest height, and one altitude profile per route. A route with a number
+/// that is not finite is listed in the legend, but not drawn.
 std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& problem,
                           std::span<const PicturedRoute> routes, const std::string& title);
 
