@@ -49,6 +49,14 @@ std::string name_of(const Broker& broker, const Guid& provider) {
   return {};
 }
 
+// What a stuck thread may still touch: for the rest of the process's life.
+void leave_behind(std::shared_ptr<rpc::Service> service) {
+  static std::mutex mutex;
+  static auto& left = *new std::vector<std::shared_ptr<rpc::Service>>;
+  std::lock_guard lock(mutex);
+  left.push_back(std::move(service));
+}
+
 }  // namespace
 
 // In the order in which it comes to be; it goes in the opposite one.
@@ -67,8 +75,7 @@ struct Entity::Provided {
     service->close();
     if (!executor->stop_or_abandon(kStopPatience)) {
       log(LogLevel::Error, name, "a call did not return; its thread is left behind");
-      // What the stuck thread may still touch must outlive it.
-      static_cast<void>(new std::shared_ptr<rpc::Service>(service));
+      leave_behind(service);
     }
   }
 };

@@ -62,8 +62,7 @@ struct OpenOffice {
 
   std::shared_ptr<ScriptedWorker> add(Moody& moody) {
     return add("moody", "0.9", [this, &moody, hang = moody.hang.script()](const std::string& task) {
-      const bool here = csp_thread.load() == body->thread.load();
-      if (moody.hangs || (moody.hangs_on_the_body && here)) return hang(task);
+      if (moody.hangs || (moody.hangs_on_the_body && runs_on_the_bodys_thread())) return hang(task);
       return "moody did " + task;
     });
   }
@@ -80,9 +79,10 @@ struct OpenOffice {
     });
   }
 
+  bool runs_on_the_bodys_thread() const { return csp_thread.load() == body->thread.load(); }
   bool ran_on_the_bodys_thread() {
     desk->ask("it");
-    return csp_thread.load() == body->thread.load();
+    return runs_on_the_bodys_thread();
   }
   bool is_trusted() {
     return eventually([&] { return ran_on_the_bodys_thread(); });
@@ -213,7 +213,8 @@ TEST_CASE(
     std::optional<Call<std::string>> call;
     REQUIRE(eventually([&] {
       call.emplace(open.desk->within(60s).async_ask("it"));
-      return eventually([&] { return call->ready() || worker->inside == 1; }) && !call->ready();
+      const auto hangs = [&] { return worker->inside == 1 && open.runs_on_the_bodys_thread(); };
+      return eventually([&] { return call->ready() || hangs(); }) && hangs();
     }));
     open.office.reset();
     CHECK_THROWS_AS(call->get(), Error);
