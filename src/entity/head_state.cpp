@@ -17,12 +17,9 @@ using Outcome = Attempt::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
 
-// A CSP runs on its caller's thread if of so many runs on requests like this one (as many as a
-// prediction rests on) hardly any took longer than this: a thread of its own would cost more than
-// it protects.
+// A CSP runs on its Body's thread if as many like runs as a prediction rests on were quick, and the
+// task has so much time that the system's load is not taken for a hang.
 constexpr std::size_t kRunsBeforeInline = History::kNeighbours;
-constexpr std::chrono::microseconds kLatencyInline{100};
-// And only if it has a thousand times as long, so that the system's load is not taken for a hang.
 constexpr std::chrono::milliseconds kTimeInline{100};
 
 }  // namespace
@@ -78,7 +75,7 @@ std::size_t Head::State::room_inline(const Candidate& candidate, const Standing&
                                      Duration time) const {
   const auto& learned = candidate.learned;
   const bool quick = learned && learned->samples >= kRunsBeforeInline && learned->q95 &&
-                     *learned->q95 <= kLatencyInline;
+                     *learned->q95 <= options.quick;
   if (!candidate.in_process || standing.hung || !quick || time < kTimeInline) return 0;
   return options.most_stuck - std::min(options.most_stuck, hung.size());
 }

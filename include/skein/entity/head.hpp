@@ -31,12 +31,12 @@ class NoneAccepted : public Internal {
 /// remembered (History). Thread-safe.
 ///
 /// CSPs in this process have threads of their own, so that one that hangs holds up nobody. Only one
-/// that has never been late, and of whose last twelve like runs 95 % took 100 us at most, runs its
-/// blocking calls on the thread of the Body that performs, if the task has 100 ms or more left and
-/// runs one CSP at a time. Should it hang all the same, the Head writes that thread off at the
-/// task's deadline: the caller is told TimedOut, a spare takes over the Body's service, the CSP is
-/// quarantined and has its own thread for good. A thread that comes back after that is parked, and
-/// nothing of the Body runs on it any more: a Body holds no lock while it performs.
+/// that has never been late, and of whose last twelve like runs 95 % took HeadOptions::quick at
+/// most, runs its blocking calls on the thread of the Body that performs, if the task has 100 ms or
+/// more left and runs one CSP at a time. Should it hang all the same, the Head writes that thread
+/// off at the task's deadline: the caller is told TimedOut, a spare takes over the Body's service,
+/// the CSP is quarantined and has its own thread for good. A thread that comes back after that is
+/// parked, and nothing of the Body runs on it any more: a Body holds no lock while it performs.
 class Head {
  public:
   struct Current {
