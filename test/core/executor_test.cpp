@@ -205,6 +205,7 @@ TEST_CASE("a worker whose work has come back is not written off") {
 }
 
 TEST_CASE("an executor ends although a worker was written off, before or while it ends") {
+  const auto parked = parked_threads();
   ThreadExecutor executor("test");
   Exposed stuck(executor);
   SECTION("before") {
@@ -219,6 +220,8 @@ TEST_CASE("an executor ends although a worker was written off, before or while i
     executor.stop();
     other.join();
   }
+  stuck.release();
+  CHECK(eventually([&] { return parked_threads() == parked + 1; }));
   CHECK_FALSE(stuck.went_on());
 }
 
