@@ -74,8 +74,8 @@ std::optional<Head::State::Beginning> Head::State::begin(const InterfaceInfo& in
 std::size_t Head::State::room_inline(const Candidate& candidate, const Standing& standing,
                                      Duration time) const {
   const auto& learned = candidate.learned;
-  const bool quick = learned && learned->samples >= kRunsBeforeInline && learned->q95 &&
-                     *learned->q95 <= options.quick;
+  const bool quick = learned && learned->samples >= kRunsBeforeInline && learned->median &&
+                     *learned->median <= options.quick;
   if (!candidate.in_process || standing.hung || !quick || time < kTimeInline) return 0;
   return options.most_stuck - std::min(options.most_stuck, hung.size());
 }

@@ -31,7 +31,7 @@ class NoneAccepted : public Internal {
 /// remembered (History). Thread-safe.
 ///
 /// CSPs in this process have threads of their own, so that one that hangs holds up nobody. Only one
-/// that has never been late, and of whose last twelve like runs 95 % took HeadOptions::quick at
+/// that has never been late, and of whose last twelve like runs half took HeadOptions::quick at
 /// most, runs its blocking calls on the thread of the Body that performs, if the task has 100 ms or
 /// more left and runs one CSP at a time. Should it hang all the same, the Head writes that thread
 /// off at the task's deadline: the caller is told TimedOut, a spare takes over the Body's service,

@@ -24,7 +24,7 @@ struct HeadOptions {
   /// So many CSPs in this process that do not return, and threads that one of them has cost (see
   /// Head), make the peer degraded. No more CSPs than that run on their callers' threads at a time.
   std::size_t most_stuck = 3;
-  /// A CSP in this process of whose like runs 95 % took no longer may run on its Body's thread (see
+  /// A CSP in this process of whose like runs half took no longer may run on its Body's thread (see
   /// Head): a change of threads would cost more than it protects. 0: none does, for Bodies that
   /// hold locks while they perform.
   Duration quick = std::chrono::microseconds(100);
