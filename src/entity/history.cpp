@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t kSurprises = 5;
 constexpr double kSurprise = 2;
+// Below this a change of threads and the system's load count for more than the CSP.
+constexpr Duration kShortest = std::chrono::microseconds(100);
 // A run so many runs ago is as far away as one on a request with nothing in common.
 constexpr double kHorizon = 2560;
 
@@ -132,8 +134,8 @@ bool History::was_late(std::string_view interface, std::string_view csp) const {
 
 void History::note_surprise(Record& record, const Prediction& before, const Sample& sample) {
   if (!before.median || !(sample.accepted || sample.late)) return;
-  const double ratio = static_cast<double>(sample.took.count()) /
-                       std::max(1.0, static_cast<double>(before.median->count()));
+  const double ratio = static_cast<double>(std::max(sample.took, kShortest).count()) /
+                       static_cast<double>(std::max(*before.median, kShortest).count());
   if (ratio > kSurprise) {
     record.surprises = std::max(record.surprises, 0) + 1;
   } else if (ratio < 1 / kSurprise && !sample.late) {
