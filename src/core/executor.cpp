@@ -30,9 +30,9 @@ class Entered {
 };
 
 // What a task that never ended may still use: for the rest of the process's life.
-void leave_behind(std::shared_ptr<void> state) {
+void leave_behind(std::shared_ptr<const void> state) {
   static std::mutex mutex;
-  static auto& left = *new std::vector<std::shared_ptr<void>>;
+  static auto& left = *new std::vector<std::shared_ptr<const void>>;
   std::lock_guard lock(mutex);
   left.push_back(std::move(state));
 }
@@ -226,13 +226,17 @@ void ThreadExecutor::stop() {
   state_->let_go(true);
 }
 
-bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience) {
+bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience,
+                                     std::shared_ptr<const void> what_it_uses) {
   request_stop();
   std::unique_lock lock(state_->mutex);
   const bool ended = state_->changed.wait_for(lock, patience, [&] { return state_->idle(); });
   state_->abandoned = !ended;
   lock.unlock();
-  if (!ended) leave_behind(state_);
+  if (!ended) {
+    leave_behind(state_);
+    leave_behind(std::move(what_it_uses));
+  }
   state_->let_go(ended);
   return ended;
 }

@@ -49,14 +49,6 @@ std::string name_of(const Broker& broker, const Guid& provider) {
   return {};
 }
 
-// What a stuck thread may still touch: for the rest of the process's life.
-void leave_behind(std::shared_ptr<rpc::Service> service) {
-  static std::mutex mutex;
-  static auto& left = *new std::vector<std::shared_ptr<rpc::Service>>;
-  std::lock_guard lock(mutex);
-  left.push_back(std::move(service));
-}
-
 }  // namespace
 
 // In the order in which it comes to be; it goes in the opposite one.
@@ -73,9 +65,8 @@ struct Entity::Provided {
     load.withdraw();
     server.reset();
     service->close();
-    if (!executor->stop_or_abandon(kStopPatience)) {
+    if (!executor->stop_or_abandon(kStopPatience, service)) {
       log(LogLevel::Error, name, "a call did not return; its thread is left behind");
-      leave_behind(service);
     }
   }
 };

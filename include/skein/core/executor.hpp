@@ -64,9 +64,10 @@ class ThreadExecutor final : public Executor {
   void finish();
 
   /// As stop(), but waits no longer than `patience`: a thread that is stuck in a task then is left
-  /// to itself for the rest of the process's life, and so is each that was written off (Worker).
-  /// False where one had to be left now.
-  bool stop_or_abandon(std::chrono::milliseconds patience);
+  /// to itself for the rest of the process's life, with `what_it_uses`, and so is each that was
+  /// written off (Worker). False where one had to be left now.
+  bool stop_or_abandon(std::chrono::milliseconds patience,
+                       std::shared_ptr<const void> what_it_uses = nullptr);
 
  private:
   struct State;
