@@ -76,26 +76,17 @@ void require_valid_zone(const AE_navigator::NoFlyZone& zone) {
           zone.name, zone.floor_m, zone.ceiling_m);
 }
 
-void require_valid_site(const AE_navigator::RadarSite& site, const Terrain& terrain) {
-  require(finite({site.site.north_m, site.site.east_m, site.mast_height_m, site.range_m,
-                  site.strength}),
-          "radar site '{}' has a number that is not finite", site.name);
+/// `rate` is what the site does to whom it sees; `rate_name` is what people call that.
+template <class Site>
+void require_valid_site(const char* kind, const Site& site, double rate, const char* rate_name,
+                        const Terrain& terrain) {
+  require(finite({site.site.north_m, site.site.east_m, site.mast_height_m, site.range_m, rate}),
+          "{} site '{}' has a number that is not finite", kind, site.name);
   require(terrain.contains(site.site.north_m, site.site.east_m),
-          "radar site '{}' stands off the terrain '{}'", site.name, terrain.name());
-  require(site.mast_height_m > 0 && site.range_m > 0 && site.strength >= 0,
-          "radar site '{}' needs a mast and a range greater than 0 and a strength of 0 or more",
-          site.name);
-}
-
-void require_valid_site(const AE_navigator::MissileSite& site, const Terrain& terrain) {
-  require(finite({site.site.north_m, site.site.east_m, site.mast_height_m, site.range_m,
-                  site.kills_per_second}),
-          "missile site '{}' has a number that is not finite", site.name);
-  require(terrain.contains(site.site.north_m, site.site.east_m),
-          "missile site '{}' stands off the terrain '{}'", site.name, terrain.name());
-  require(site.mast_height_m > 0 && site.range_m > 0 && site.kills_per_second >= 0,
-          "missile site '{}' needs a mast and a range greater than 0 and a rate of 0 or more",
-          site.name);
+          "{} site '{}' stands off the terrain '{}'", kind, site.name, terrain.name());
+  require(site.mast_height_m > 0 && site.range_m > 0 && rate >= 0,
+          "{} site '{}' needs a mast and a range greater than 0 and a {} of 0 or more", kind,
+          site.name, rate_name);
 }
 
 void require_valid_end(const char* which, const AE_navigator::Position& end,
@@ -130,10 +121,12 @@ void require_valid(const AE_navigator::Problem& problem, const Terrain& terrain)
   require(problem.radar_sites.size() <= kMostSites, "there are {} radar sites; {} are the most",
           problem.radar_sites.size(), kMostSites);
   for (const auto& zone : problem.no_fly_zones) require_valid_zone(zone);
-  for (const auto& site : problem.radar_sites) require_valid_site(site, terrain);
+  for (const auto& site : problem.radar_sites)
+    require_valid_site("radar", site, site.strength, "strength", terrain);
   require(problem.missile_sites.size() <= kMostSites, "there are {} missile sites; {} are the most",
           problem.missile_sites.size(), kMostSites);
-  for (const auto& site : problem.missile_sites) require_valid_site(site, terrain);
+  for (const auto& site : problem.missile_sites)
+    require_valid_site("missile", site, site.kills_per_second, "rate", terrain);
   require_valid_end("start", problem.start, problem, terrain);
   require_valid_end("goal", problem.goal, problem, terrain);
 }
