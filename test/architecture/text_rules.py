@@ -14,7 +14,6 @@ SLEEPERS = {
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
     "test/conformance/suite_lifetime.cpp": "the pace of a writer that never rests",
     "test/faults/death_test.cpp": "an operation that takes its time until it is let go",
-    "test/entity/worker_process.cpp": "a CSP that never returns",
     "test/mission/planner_process.cpp": "a planner that is slower than it declares",
     "test/faults/first_call_test.cpp": "the offset between two starts, which is what the test varies",
     "test/faults/processes.hpp": "how long a fault lasts, which is what the tests vary",

@@ -1,10 +1,10 @@
 // A CSP in a process of its own, to be killed: worker_process VENDOR NAME OWNER. It says `ready`,
 // then `inside` when it has begun to work, and never ends by itself.
-#include <chrono>
+#include <unistd.h>
+
 #include <cstdio>
 #include <iostream>
 #include <string>
-#include <thread>
 
 #include "scripted_worker.hpp"
 #include "skein/entity/entity.hpp"
@@ -33,7 +33,7 @@ int main(int, char** argv) {
       argv[2], argv[3],
       std::make_shared<skein::test::ScriptedWorker>([](const std::string&) -> std::string {
         say("inside");
-        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+        for (;;) pause();
       }),
       declared);
   say("ready");
