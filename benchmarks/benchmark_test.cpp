@@ -57,7 +57,9 @@ class Workshop {
   std::filesystem::path program() const { return folder_ / "skein_bench"; }
 
  private:
-  const std::filesystem::path folder_ = std::filesystem::current_path() / "broken_workshop";
+  // Beside the folder of programs: they look for their libraries from where they stand.
+  const std::filesystem::path folder_ =
+      std::filesystem::path(SKEIN_BENCH).parent_path().parent_path() / "broken_workshop";
 };
 
 bool is_about_raw_fastdds(const json& row) {

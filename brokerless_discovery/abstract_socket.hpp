@@ -4,11 +4,19 @@
 #include <sys/un.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <string>
 
+#include "../src/core/file_descriptor.hpp"
+
 namespace skein::brokerless_discovery {
+
+inline FileDescriptor local_socket() {
+  return FileDescriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+}
 
 // An abstract socket: its name begins with NUL, it lives in the network namespace, and the kernel
 // removes it with the process.
@@ -18,6 +26,27 @@ inline socklen_t fill(sockaddr_un& address, const std::string& name) {
   const std::size_t length = std::min(name.size(), sizeof(address.sun_path) - 1);
   std::memcpy(address.sun_path + 1, name.data(), length);
   return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+}
+
+/// Nobody listens, or nothing is known, with the socket not connected.
+enum class Connected { Yes, Nobody, Unknown };
+
+inline Connected connect_to(const FileDescriptor& socket, const std::string& name) {
+  sockaddr_un address;
+  const socklen_t length = fill(address, name);
+  if (!socket) return Connected::Unknown;
+  if (connect(socket.get(), reinterpret_cast<sockaddr*>(&address), length) == 0) {
+    return Connected::Yes;
+  }
+  return errno == ECONNREFUSED ? Connected::Nobody : Connected::Unknown;
+}
+
+/// Who is at the other end, by the kernel's word.
+inline std::optional<ucred> other_end(const FileDescriptor& socket) {
+  ucred owner{};
+  socklen_t size = sizeof owner;
+  if (getsockopt(socket.get(), SOL_SOCKET, SO_PEERCRED, &owner, &size) != 0) return std::nullopt;
+  return owner;
 }
 
 }  // namespace skein::brokerless_discovery

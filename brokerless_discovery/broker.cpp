@@ -2,28 +2,44 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <condition_variable>
-#include <map>
-#include <mutex>
-#include <set>
-
-#include "skein/brokerless_discovery/process_watch.hpp"
+#include "broker_state.hpp"
 #include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
-#include "skein/discovery.idl.hpp"
+#include "skein/core/sole_owner.hpp"
 #include "skein/idl/codec.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
-const dds::Topic kTopic{"skein/services", "skein::discovery::ServiceDescription", true};
+void check_name(const std::string& what, const std::string& name) {
+  if (is_name(name)) return;
+  throw InvalidArgument("'" + name + "' is no name for " + what +
+                        ": use letters, digits, '_', '-' and '.'");
+}
 
-// How many writers that have gone are remembered, in case that one of them comes back.
-constexpr std::size_t kMaxLostWriters = 4096;
+// Others would refuse it.
+void check_own(const ServiceDescription& description, const Guid& participant) {
+  try {
+    check_description(description, participant);
+    const std::size_t size = idl::encode_message(description).size();
+    if (size <= kMostDescriptionBytes) return;
+    throw Refused(Refusal::Oversized, "it would have " + std::to_string(size) +
+                                          " bytes, more than " +
+                                          std::to_string(kMostDescriptionBytes));
+  } catch (const Refused& refusal) {
+    throw InvalidArgument("the service " + description.service + " of " + description.entity +
+                          " cannot be described to others: " + refusal.what());
+  }
+}
 
-dds::Qos description_qos(std::vector<std::string> partitions, std::chrono::milliseconds lease) {
+}  // namespace
+
+const dds::Topic& Broker::State::topic() {
+  static const dds::Topic topic{"skein/services", "skein::discovery::ServiceDescription", true};
+  return topic;
+}
+
+dds::Qos Broker::State::description_qos(std::vector<std::string> partitions,
+                                        std::chrono::milliseconds lease) {
   dds::Qos qos;
   qos.transient_local = true;
   qos.history_depth = 1;
@@ -32,249 +48,32 @@ dds::Qos description_qos(std::vector<std::string> partitions, std::chrono::milli
   return qos;
 }
 
-std::string owner_partition(const std::string& owner) { return "managed/" + owner; }
+std::string Broker::State::owner_partition(const std::string& owner) { return "managed/" + owner; }
 
-// What may stand in a partition's name on every vendor, and in a topic.
-void check_name(const std::string& what, const std::string& name) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == '.';
-  };
-  if (!name.empty() && std::all_of(name.begin(), name.end(), allowed)) return;
-  throw InvalidArgument("'" + name + "' is no name for " + what +
-                        ": use letters, digits, '_', '-' and '.'");
+// One task for all changes that wait: a flood of them does not fill the executor, where one that
+// finds no room would be lost.
+void Broker::State::wake_teller() {
+  const bool posted = control.post([state = weak_from_this()] {
+    if (const auto self = state.lock()) self->tell();
+  });
+  if (posted) return;
+  std::lock_guard lock(mutex);
+  telling = false;  // the next change tries again
 }
 
-}  // namespace
-
-struct Broker::State : std::enable_shared_from_this<State> {
-  using Observer = std::function<void(const Change&)>;
-
-  struct Own {
-    ServiceDescription description;
-    Bytes message;
-  };
-
-  State(dds::Participant& participant_, Clock& clock_, Executor& control_, ProcessWatch& watch_,
-        Options options_)
-      : participant(participant_),
-        clock(clock_),
-        control(control_),
-        watch(watch_),
-        options(std::move(options_)) {}
-
-  dds::Participant& participant;
-  Clock& clock;
-  Executor& control;
-  ProcessWatch& watch;
-  const Options options;
-  const std::string asker = options.system + "/" + options.entity;
-  const std::string host = ProcessWatch::host();
-
-  mutable std::mutex mutex;
-  mutable std::condition_variable changed;
-  bool leaving = false;  // nobody waits for services any more
-  Table table;
-  std::atomic<std::uint64_t> generation{0};  // written under the lock
-  std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
-  std::uint64_t last_observer = 0;
-  std::uint64_t malformed = 0;
-
-  std::mutex writing;  // guards what follows; taken before `mutex` where both are
-  std::map<Guid, Own> own;
-  std::map<std::string, std::unique_ptr<dds::Writer>> writers;  // by owner; "" for public services
-  Instant last_tick{};
-  Instant last_renewal{};
-  TimerId tick_timer = 0;
-  bool closed = false;
-  std::unique_ptr<dds::Reader> reader;
-
-  std::set<Guid> lost_writers;  // guarded by `mutex`
-
-  // ---- what others tell
-
-  void on_sample(const dds::Sample& sample) {
-    if (sample.state == dds::InstanceState::Disposed) {
-      return apply([&](Table& table) { return table.on_withdrawn(sample.key); });
-    }
-    try {
-      auto description = idl::decode_message<ServiceDescription>(sample.cdr);
-      watch_process(description);
-      apply([&](Table& table) {
-        return table.on_description(std::move(description), sample.writer);
-      });
-    } catch (const std::exception& error) {
-      std::lock_guard lock(mutex);
-      if (++malformed > 1) return;
-      log(LogLevel::Warning, "broker",
-          std::string("dropped a malformed service description: ") + error.what());
-    }
+void Broker::State::tell() {
+  std::vector<std::shared_ptr<Observer>> told;
+  Table::Changes changes;
+  {
+    std::lock_guard lock(mutex);
+    for (const auto& [id, observer] : observers) told.push_back(observer);
+    changes.swap(untold);
+    telling = false;
   }
-
-  void on_writer(const Guid& writer, bool matched) {
-    if (!matched) apply([&](Table& table) { return table.on_writer_gone(writer); });
-    {
-      std::lock_guard lock(mutex);
-      if (!matched) {
-        if (lost_writers.size() >= kMaxLostWriters) lost_writers.erase(lost_writers.begin());
-        lost_writers.insert(writer);
-        return;
-      }
-      if (lost_writers.erase(writer) == 0) return;
-    }
-    control.post([state = weak_from_this()] {
-      if (const auto self = state.lock()) self->renew_reader();
-    });
+  for (const Change& change : changes) {
+    for (const auto& observer : told) (*observer)(change);
   }
-
-  // R17: a writer that comes back need not know that it was gone, and some vendors do not deliver
-  // again what a reader has had from it. A new reader gets everything from everybody.
-  void renew_reader() {
-    std::lock_guard lock(writing);
-    if (closed) return;
-    try {
-      auto renewed = make_reader();
-      reader.swap(renewed);
-      last_renewal = clock.now();
-    } catch (const Error& error) {
-      log(LogLevel::Error, "broker",
-          std::string("descriptions cannot be read again: ") + error.what());
-    }
-  }
-
-  std::unique_ptr<dds::Reader> make_reader() {
-    dds::ReaderListener listener;
-    listener.on_data = [this](dds::Reader& source) {
-      source.take([this](const dds::Sample& sample) { on_sample(sample); });
-    };
-    listener.on_matched = [this](const Guid& writer, bool matched) { on_writer(writer, matched); };
-    listener.on_liveliness = [this](const Guid& writer, bool alive) {
-      apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
-    };
-    return participant.create_reader(
-        kTopic, description_qos({"", owner_partition(asker)}, options.lease), std::move(listener));
-  }
-
-  void watch_process(const ServiceDescription& description) {
-    if (description.host != host || description.process.empty() ||
-        description.process == watch.address()) {
-      return;
-    }
-    watch.watch(description.process, [state = weak_from_this(), process = description.process] {
-      if (const auto self = state.lock()) {
-        self->apply([&](Table& table) { return table.on_process_ended(process); });
-      }
-    });
-  }
-
-  template <class Event>
-  void apply(Event event) {
-    Table::Changes changes;
-    {
-      std::lock_guard lock(mutex);
-      changes = event(table);
-      if (changes.empty()) return;
-      ++generation;
-      changed.notify_all();
-      if (observers.empty()) return;
-    }
-    control.post([state = weak_from_this(), changes = std::move(changes)] {
-      if (const auto self = state.lock()) self->tell(changes);
-    });
-  }
-
-  void tell(const Table::Changes& changes) {
-    std::vector<std::shared_ptr<Observer>> told;
-    {
-      std::lock_guard lock(mutex);
-      for (const auto& [id, observer] : observers) told.push_back(observer);
-    }
-    for (const Change& change : changes) {
-      for (const auto& observer : told) (*observer)(change);
-    }
-  }
-
-  // ---- what this peer tells
-
-  void publish(ServiceDescription description) {
-    const Guid provider{description.provider};
-    std::lock_guard lock(writing);
-    Own& mine = own[provider];
-    mine.message = idl::encode_message(description);
-    mine.description = std::move(description);
-    write(mine);
-  }
-
-  void write(const Own& mine) {
-    auto& writer = writers[mine.description.owner];
-    if (!writer) {
-      const std::string& owner = mine.description.owner;
-      writer = participant.create_writer(
-          kTopic, description_qos({owner.empty() ? "" : owner_partition(owner)}, options.lease));
-    }
-    writer->write(mine.message, {mine.description.provider});
-  }
-
-  void withdraw(const Guid& provider) {
-    {
-      std::lock_guard lock(writing);
-      const auto node = own.extract(provider);
-      if (!node) return;
-      const auto& writer = writers[node.mapped().description.owner];
-      try {
-        writer->dispose(provider);
-      } catch (const Error& error) {
-        log(LogLevel::Warning, "broker", std::string("a withdrawal was not sent: ") + error.what());
-      }
-    }
-    apply([&](Table& table) { return table.on_withdrawn(provider); });
-  }
-
-  // R17: a peer that slept through its lease is suspect to others, and on some vendors stays so
-  // until it writes again.
-  void tick() {
-    if (suspects_stay()) renew_reader();
-    std::lock_guard lock(writing);
-    if (closed) return;
-    const Instant now = clock.now();
-    if (now - last_tick > options.lease / 2) {
-      for (const auto& [provider, mine] : own) {
-        try {
-          write(mine);
-        } catch (const Error& error) {
-          log(LogLevel::Warning, "broker",
-              std::string("a description was not sent again: ") + error.what());
-        }
-      }
-    }
-    last_tick = now;
-    arm();
-  }
-
-  // A writer that is alive again is not reported as such by every vendor.
-  bool suspects_stay() {
-    std::lock_guard lock(writing);
-    if (clock.now() - last_renewal < options.lease) return false;
-    std::lock_guard table_lock(mutex);
-    return table.has_suspects();
-  }
-
-  void arm() {
-    tick_timer = clock.call_after(options.lease / 4, [state = weak_from_this()] {
-      const auto self = state.lock();
-      if (!self) return;
-      self->control.post([state] {
-        if (const auto self = state.lock()) self->tick();
-      });
-    });
-  }
-
-  Registration registration(std::function<void(State&)> end) {
-    return Registration([state = weak_from_this(), end = std::move(end)] {
-      if (const auto self = state.lock()) end(*self);
-    });
-  }
-};
+}
 
 Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, ProcessWatch& watch,
                Options options) {
@@ -290,26 +89,47 @@ Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, P
 
 Broker::~Broker() {
   TimerId timer;
+  // They end here: the participant's end does not wait for whoever lets go of the state last.
   std::unique_ptr<dds::Reader> reader;
+  std::map<std::string, std::unique_ptr<dds::Writer>> writers;
+  std::string address;
   {
     std::lock_guard lock(state_->writing);
     state_->closed = true;
+    state_->own.clear();
+    address = state_->address;
     timer = state_->tick_timer;
     reader.swap(state_->reader);
+    writers.swap(state_->writers);
   }
   state_->clock.cancel(timer);
   reader.reset();
+  writers.clear();
+  state_->watch.unwatch(state_.get());
+  state_->watch.close(address);
+  await_sole_owner(state_);
 }
 
 const Broker::Options& Broker::options() const noexcept { return state_->options; }
 
+// The last byte is of no endpoint (RTPS 9.3.1.2), so that none has the identity.
+Guid Broker::new_provider() {
+  Guid provider = state_->participant.guid().participant();
+  const std::uint32_t number = ++state_->last_provider;
+  for (int i = 0; i < 3; ++i) {
+    provider.bytes[12 + i] = static_cast<std::uint8_t>(number >> 8 * i);
+  }
+  return provider;
+}
+
 Broker::Registration Broker::add_service(ServiceDescription description) {
   description.host = state_->host;
-  description.process = state_->watch.address();
+  description.process = state_->watched_at();
   description.pid = static_cast<std::uint32_t>(getpid());
   description.vendor = state_->options.vendor;
   if (description.system.empty()) description.system = state_->options.system;
   check_name("an entity or a CSP", description.entity);
+  check_own(description, state_->participant.guid());
   const Guid provider{description.provider};
   // Its own services a peer knows at once, whether or not its writer and its reader have matched.
   state_->apply([&](Table& table) { return table.on_description(description, Guid{}); });
@@ -376,9 +196,16 @@ bool Broker::knows(const Guid& provider) const {
   return state_->table.knows(provider);
 }
 
-std::uint64_t Broker::malformed() const {
+std::optional<Guid> Broker::participant_of(const Guid& provider) const {
   std::lock_guard lock(state_->mutex);
-  return state_->malformed;
+  const auto writer = state_->table.writer_of(provider);
+  if (!writer) return std::nullopt;
+  return writer->is_nil() ? state_->participant.guid() : writer->participant();
+}
+
+std::uint64_t Broker::refused(Refusal why) const {
+  std::lock_guard lock(state_->mutex);
+  return state_->refused[static_cast<std::size_t>(why)];
 }
 
 Table::Found Broker::all() const {

@@ -1,55 +1,58 @@
 #include "skein/brokerless_discovery/kill_process.hpp"
 
-#include <poll.h>
 #include <sys/syscall.h>
-#include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <fstream>
 
 #include "abstract_socket.hpp"
+#include "skein/brokerless_discovery/process_watch.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
-struct Descriptor {
-  explicit Descriptor(int number) : value(number) {}
-  ~Descriptor() {
-    if (value >= 0) close(value);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  const int value;
-};
-
 // The system's own header declares neither call for C++.
-int open_process(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
-bool send_kill(const Descriptor& process) {
-  return syscall(SYS_pidfd_send_signal, process.value, SIGKILL, nullptr, 0) == 0;
+FileDescriptor open_process(pid_t pid) {
+  return FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+}
+bool send_kill(const FileDescriptor& process) {
+  return syscall(SYS_pidfd_send_signal, process.get(), SIGKILL, nullptr, 0) == 0;
 }
 
-bool hung_up(const Descriptor& connection) {
-  pollfd look{connection.value, POLLRDHUP, 0};
-  return poll(&look, 1, 0) != 0;
+// 0 where nobody listens.
+pid_t listening_at(const std::string& address) {
+  const FileDescriptor socket = local_socket();
+  if (connect_to(socket, address) != Connected::Yes) return 0;
+  const auto owner = other_end(socket);
+  return owner ? owner->pid : 0;
+}
+
+// The state stands behind the name, which may hold anything.
+bool is_stopped(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text, '\0');
+  const auto name_ends = text.rfind(") ");
+  return name_ends != std::string::npos && text.compare(name_ends + 2, 1, "T") == 0;
+}
+
+bool kill_if(const std::string& address, bool (*condition)(pid_t)) {
+  if (!ProcessWatch::is_address(address)) return false;
+  const pid_t number = listening_at(address);
+  if (number <= 0 || number == getpid()) return false;
+  // Who listened before and listens still has lived all the while, so the number was his when it
+  // was looked up.
+  const FileDescriptor process = open_process(number);
+  return process && listening_at(address) == number && condition(number) && send_kill(process);
 }
 
 }  // namespace
 
 bool kill_process(const std::string& address) {
-  const Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  sockaddr_un name;
-  const socklen_t length = fill(name, address);
-  ucred owner{};
-  socklen_t size = sizeof owner;
-  if (connection.value < 0 ||
-      connect(connection.value, reinterpret_cast<sockaddr*>(&name), length) != 0 ||
-      getsockopt(connection.value, SOL_SOCKET, SO_PEERCRED, &owner, &size) != 0 || owner.pid <= 0 ||
-      owner.pid == getpid()) {
-    return false;
-  }
-  // While the connection stands its owner lives, so the number is still his, and so is what the
-  // descriptor holds.
-  const Descriptor process(open_process(owner.pid));
-  return process.value >= 0 && !hung_up(connection) && send_kill(process);
+  return kill_if(address, [](pid_t) { return true; });
 }
+
+bool kill_stopped_process(const std::string& address) { return kill_if(address, is_stopped); }
 
 }  // namespace skein::brokerless_discovery

@@ -3,10 +3,11 @@
 #include <atomic>
 #include <map>
 #include <mutex>
-#include <unordered_map>
 
+#include "skein/brokerless_discovery/admission.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
+#include "skein/core/sole_owner.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/idl/codec.hpp"
 
@@ -31,11 +32,6 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
     std::function<std::size_t()> measure;
     std::size_t told = 0;
   };
-  struct Told {
-    std::size_t load = 0;
-    Guid writer;
-  };
-
   State(dds::Participant& participant_, Clock& clock_, Executor& control_)
       : participant(participant_), clock(clock_), control(control_) {}
 
@@ -44,7 +40,8 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
   Executor& control;
 
   mutable std::mutex mutex;
-  std::unordered_map<Guid, Told> loads;
+  Reports<std::size_t> loads;
+  std::uint64_t refused = 0;
 
   std::mutex telling;  // guards what follows; never taken by a listener
   std::map<Guid, Own> own;
@@ -64,8 +61,7 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
     };
     listener.on_matched = [this](const Guid& gone, bool matched) {
       std::lock_guard lock(mutex);
-      if (!matched)
-        std::erase_if(loads, [&](const auto& load) { return load.second.writer == gone; });
+      if (!matched) loads.writer_gone(gone);
     };
     std::lock_guard lock(telling);
     reader = participant.create_reader(kTopic, load_qos(), std::move(listener));
@@ -73,15 +69,20 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
 
   void on_sample(const dds::Sample& sample) {
     std::lock_guard lock(mutex);
+    if (!take(sample)) ++refused;
+  }
+
+  // Of whom nothing is believed is taken for idle.
+  bool take(const dds::Sample& sample) {
     if (sample.state == dds::InstanceState::Disposed) {
-      loads.erase(sample.key);
-      return;
+      return loads.erase(sample.key, sample.writer);
     }
     try {
       const auto load = idl::decode_message<ServiceLoad>(sample.cdr);
-      loads[{load.provider}] = {load.requests, sample.writer};
+      return sample.key.bytes == load.provider &&
+             loads.put(sample.key, sample.writer, load.requests, sizeof load);
     } catch (const std::exception&) {
-      // Who tells what cannot be read is taken for idle.
+      return false;
     }
   }
 
@@ -147,6 +148,7 @@ LoadBoard::~LoadBoard() {
     writer.swap(state_->writer);
   }
   state_->clock.cancel(state_->timer);
+  await_sole_owner(state_);
 }
 
 Broker::Registration LoadBoard::tell(const Guid& provider, std::function<std::size_t()> measure) {
@@ -168,8 +170,13 @@ std::function<void()> LoadBoard::notifier() const {
 
 std::size_t LoadBoard::load_of(const Guid& provider) const {
   std::lock_guard lock(state_->mutex);
-  const auto found = state_->loads.find(provider);
-  return found == state_->loads.end() ? 0 : found->second.load;
+  const std::size_t* const load = state_->loads.find(provider);
+  return load ? *load : 0;
+}
+
+std::uint64_t LoadBoard::refused() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->refused;
 }
 
 }  // namespace skein::brokerless_discovery

@@ -4,59 +4,76 @@
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/stat.h>
-#include <unistd.h>
+#include <sys/timerfd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <mutex>
-#include <set>
 #include <thread>
 #include <unordered_map>
 #include <vector>
 
 #include "abstract_socket.hpp"
 #include "skein/core/error.hpp"
-#include "skein/core/guid.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
 constexpr std::string_view kPrefix = "skein/";
+constexpr std::size_t kParticipantDigits = 24;
 
-std::string system_error(const char* what) {
-  return std::string(what) + ": " + std::strerror(errno);
-}
+// How long nobody is let in after somebody was turned away, and after the kernel had no descriptor:
+// who waits there meanwhile costs nothing, and hears of this process's end all the same.
+constexpr std::chrono::milliseconds kAfterRefusal{10};
+constexpr std::chrono::milliseconds kAfterShortage{100};
+constexpr int kAcceptedInARow = 16;
+
+constexpr std::uint64_t kWake = 0;
+constexpr std::uint64_t kTimer = 1;
+
+using Action = std::function<void()>;
+using Actions = std::vector<Action>;
 
 }  // namespace
 
 struct ProcessWatch::State {
-  std::string address = std::string(kPrefix) + Guid::random().hex();
-  int listener = -1;
-  int epoll = -1;
-  int wake = -1;
-  std::mutex mutex;
+  struct Listener {
+    std::string address;
+    FileDescriptor socket;
+  };
+  struct Watcher {
+    pid_t process;
+    FileDescriptor socket;
+  };
+  struct Watched {
+    std::uint64_t id = 0;
+    FileDescriptor socket;
+    bool greeted = false;
+    std::map<const void*, Action> actions;
+  };
+
+  FileDescriptor epoll{epoll_create1(EPOLL_CLOEXEC)};
+  FileDescriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  FileDescriptor timer{timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)};
+  mutable std::mutex mutex;
   bool stopping = false;
-  std::set<std::string> watched;
-  std::unordered_map<int, std::function<void()>> connections;  // accepted ones have no action
+  // What the kernel tells of is known by a number that is never used again, as descriptors are.
+  std::uint64_t last_id = kTimer;
+  std::map<std::uint64_t, Listener> listeners;
+  std::unordered_map<std::uint64_t, Watcher> watchers;
+  std::unordered_map<pid_t, std::size_t> watchers_of;
+  std::unordered_map<std::string, Watched> watched;
+  std::unordered_map<std::uint64_t, std::string> watched_addresses;
+  std::uint64_t refused = 0;
   std::thread thread;
 
   State() {
-    listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    epoll = epoll_create1(EPOLL_CLOEXEC);
-    wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    sockaddr_un name;
-    const socklen_t length = fill(name, address);
-    if (listener < 0 || epoll < 0 || wake < 0 ||
-        bind(listener, reinterpret_cast<sockaddr*>(&name), length) != 0 ||
-        ::listen(listener, SOMAXCONN) != 0) {
-      const std::string text =
-          system_error("cannot open the socket by which peers see this process end");
-      close_all();
-      throw Unavailable(text);
-    }
-    add(listener, EPOLLIN);
-    add(wake, EPOLLIN);
+    if (!epoll || !wake || !timer) throw_unavailable();
+    control(EPOLL_CTL_ADD, wake, kWake, EPOLLIN);
+    control(EPOLL_CTL_ADD, timer, kTimer, EPOLLIN);
     thread = std::thread([this] { run(); });
   }
 
@@ -65,78 +82,216 @@ struct ProcessWatch::State {
       std::lock_guard lock(mutex);
       stopping = true;
     }
-    eventfd_write(wake, 1);
+    eventfd_write(wake.get(), 1);
     thread.join();
-    close_all();
   }
 
-  void close_all() {
-    for (const auto& [fd, action] : connections) close(fd);
-    for (const int fd : {listener, epoll, wake}) {
-      if (fd >= 0) close(fd);
-    }
+  [[noreturn]] static void throw_unavailable() {
+    throw Unavailable(std::string("cannot open the socket by which peers see this process end: ") +
+                      std::strerror(errno));
   }
 
-  void add(int fd, std::uint32_t events) {
+  bool control(int operation, const FileDescriptor& of, std::uint64_t id, std::uint32_t events) {
     epoll_event event{};
     event.events = events;
-    event.data.fd = fd;
-    epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &event);
+    event.data.u64 = id;
+    return epoll_ctl(epoll.get(), operation, of.get(), &event) == 0;
   }
 
   void run() {
     pthread_setname_np(pthread_self(), "skein-watch");
     while (true) {
       epoll_event events[32];
-      const int count = epoll_wait(epoll, events, 32, -1);
-      std::vector<std::function<void()>> ended;
+      const int count = epoll_wait(epoll.get(), events, 32, -1);
+      Actions ended;
       {
         std::lock_guard lock(mutex);
         if (stopping) return;
-        for (int i = 0; i < count; ++i) handle(events[i].data.fd, ended);
+        for (int i = 0; i < count; ++i) handle(events[i].data.u64, events[i].events, ended);
       }
       for (const auto& action : ended) action();
     }
   }
 
-  void handle(int fd, std::vector<std::function<void()>>& ended) {
-    if (fd == listener) {
-      const int accepted = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-      if (accepted < 0) return;
-      connections.emplace(accepted, nullptr);
-      add(accepted, EPOLLRDHUP);
-    } else if (fd == wake) {
-      eventfd_t count;
-      eventfd_read(wake, &count);
-    } else if (auto node = connections.extract(fd)) {
-      close(fd);
-      if (node.mapped()) ended.push_back(std::move(node.mapped()));
+  void handle(std::uint64_t id, std::uint32_t events, Actions& ended) {
+    if (id == kTimer) return let_in_again();
+    if (const auto listener = listeners.find(id); listener != listeners.end()) {
+      return let_in(listener->second);
+    }
+    if (const auto node = watchers.extract(id)) return forget(node.mapped().process);
+    if (const auto address = watched_addresses.find(id); address != watched_addresses.end()) {
+      heard(watched.find(address->second), events, ended);
     }
   }
 
-  void watch(const std::string& target, std::function<void()> action) {
-    std::unique_lock lock(mutex);
-    if (!watched.insert(target).second) return;
-    const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  // ---- those who watch this process
+
+  std::string open(const Guid& participant) {
+    Listener listener;
+    listener.address = std::string(kPrefix) + participant.hex().substr(0, kParticipantDigits) +
+                       Guid::random().hex().substr(kParticipantDigits);
+    listener.socket = local_socket();
     sockaddr_un name;
-    const socklen_t length = fill(name, target);
-    if (fd < 0 || connect(fd, reinterpret_cast<sockaddr*>(&name), length) != 0) {
-      const bool refused = fd >= 0 && errno == ECONNREFUSED;
-      if (fd >= 0) close(fd);
-      lock.unlock();
-      // Anything but "nobody listens" proves nothing; the lease will tell then.
-      if (refused) action();
+    const socklen_t length = fill(name, listener.address);
+    std::lock_guard lock(mutex);
+    const std::uint64_t id = ++last_id;
+    if (!listener.socket ||
+        bind(listener.socket.get(), reinterpret_cast<sockaddr*>(&name), length) != 0 ||
+        ::listen(listener.socket.get(), SOMAXCONN) != 0 ||
+        !control(EPOLL_CTL_ADD, listener.socket, id, EPOLLIN)) {
+      throw_unavailable();
+    }
+    const std::string address = listener.address;
+    listeners.emplace(id, std::move(listener));
+    return address;
+  }
+
+  void let_in(const Listener& listener) {
+    const std::uint64_t before = refused;
+    for (int i = 0; i < kAcceptedInARow; ++i) {
+      FileDescriptor socket(
+          accept4(listener.socket.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+      if (!socket) {
+        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) {
+          return let_nobody_in(kAfterShortage);
+        }
+        break;
+      }
+      if (!greet(std::move(socket))) ++refused;
+    }
+    if (refused > before) let_nobody_in(kAfterRefusal);
+  }
+
+  bool greet(FileDescriptor socket) {
+    const auto owner = other_end(socket);
+    if (!owner || owner->uid != geteuid() || watchers.size() >= kMostWatchers) return false;
+    std::size_t& of_one = watchers_of[owner->pid];
+    if (of_one >= kMostWatchersOfOne) return false;
+    const std::uint64_t id = ++last_id;
+    if (!control(EPOLL_CTL_ADD, socket, id, EPOLLRDHUP) ||
+        send(socket.get(), "!", 1, MSG_NOSIGNAL) != 1) {
+      if (of_one == 0) watchers_of.erase(owner->pid);
+      return false;
+    }
+    ++of_one;
+    watchers.emplace(id, Watcher{owner->pid, std::move(socket)});
+    return true;
+  }
+
+  void forget(pid_t process) {
+    const auto of_one = watchers_of.find(process);
+    if (--of_one->second == 0) watchers_of.erase(of_one);
+  }
+
+  void let_nobody_in(std::chrono::milliseconds time) {
+    for (const auto& [id, listener] : listeners) control(EPOLL_CTL_MOD, listener.socket, id, 0);
+    itimerspec until{};
+    until.it_value.tv_nsec = std::chrono::nanoseconds(time).count();
+    timerfd_settime(timer.get(), 0, &until, nullptr);
+  }
+
+  void let_in_again() {
+    std::uint64_t times;
+    [[maybe_unused]] const auto size = read(timer.get(), &times, sizeof times);
+    for (const auto& [id, listener] : listeners) {
+      control(EPOLL_CTL_MOD, listener.socket, id, EPOLLIN);
+    }
+  }
+
+  // ---- those whom this process watches
+
+  void watch(const std::string& address, const void* watcher, Action action) {
+    std::unique_lock lock(mutex);
+    if (!is_address(address) || is_own(address)) return;
+    if (const auto found = watched.find(address); found != watched.end()) {
+      found->second.actions.try_emplace(watcher, std::move(action));
       return;
     }
-    connections.emplace(fd, std::move(action));
-    add(fd, EPOLLRDHUP);
+    if (watched.size() >= kMostWatched) return;
+    Watched other;
+    other.socket = local_socket();
+    const Connected connected = connect_to(other.socket, address);
+    if (connected == Connected::Nobody) {
+      lock.unlock();
+      action();
+    }
+    if (connected != Connected::Yes) return;
+    const auto owner = other_end(other.socket);
+    other.id = ++last_id;
+    if (!owner || owner->uid != geteuid() ||
+        !control(EPOLL_CTL_ADD, other.socket, other.id, EPOLLIN | EPOLLRDHUP)) {
+      return;
+    }
+    other.actions.emplace(watcher, std::move(action));
+    watched_addresses.emplace(other.id, address);
+    watched.emplace(address, std::move(other));
+  }
+
+  bool is_own(const std::string& address) const {
+    for (const auto& [id, listener] : listeners) {
+      if (listener.address == address) return true;
+    }
+    return false;
+  }
+
+  using Position = std::unordered_map<std::string, Watched>::iterator;
+
+  void heard(Position position, std::uint32_t events, Actions& ended) {
+    Watched& other = position->second;
+    char greeting;
+    if (!other.greeted && recv(other.socket.get(), &greeting, 1, MSG_DONTWAIT) == 1) {
+      other.greeted = true;
+      control(EPOLL_CTL_MOD, other.socket, other.id, EPOLLRDHUP);
+    }
+    if ((events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) == 0) return;
+    // Who was not greeted may have been turned away, or the process ended before it greeted.
+    if (other.greeted || connect_to(local_socket(), position->first) == Connected::Nobody) {
+      for (auto& [watcher, action] : other.actions) ended.push_back(std::move(action));
+    }
+    drop(position);
+  }
+
+  Position drop(Position position) {
+    watched_addresses.erase(position->second.id);
+    return watched.erase(position);
+  }
+
+  void unwatch(const std::string& address, const void* watcher) {
+    std::lock_guard lock(mutex);
+    const auto found = watched.find(address);
+    if (found == watched.end()) return;
+    found->second.actions.erase(watcher);
+    if (found->second.actions.empty()) drop(found);
+  }
+
+  void unwatch(const void* watcher) {
+    std::lock_guard lock(mutex);
+    for (auto position = watched.begin(); position != watched.end();) {
+      position->second.actions.erase(watcher);
+      position = position->second.actions.empty() ? drop(position) : std::next(position);
+    }
   }
 };
 
 ProcessWatch::ProcessWatch() : state_(std::make_unique<State>()) {}
 ProcessWatch::~ProcessWatch() = default;
 
-const std::string& ProcessWatch::address() const noexcept { return state_->address; }
+std::string ProcessWatch::open(const Guid& participant) { return state_->open(participant); }
+
+void ProcessWatch::close(const std::string& address) {
+  std::lock_guard lock(state_->mutex);
+  std::erase_if(state_->listeners,
+                [&](const auto& listener) { return listener.second.address == address; });
+}
+
+bool ProcessWatch::is_address(std::string_view address) {
+  return address.starts_with(kPrefix) && Guid::from_hex(address.substr(kPrefix.size())).has_value();
+}
+
+bool ProcessWatch::is_address_of(const Guid& participant, std::string_view address) {
+  if (!is_address(address)) return false;
+  return Guid::from_hex(address.substr(kPrefix.size()))->participant() == participant.participant();
+}
 
 std::string ProcessWatch::host() {
   std::string boot;
@@ -146,8 +301,20 @@ std::string ProcessWatch::host() {
   return boot + "/" + std::to_string(status.st_ino);
 }
 
-void ProcessWatch::watch(const std::string& address, std::function<void()> ended) {
-  state_->watch(address, std::move(ended));
+void ProcessWatch::watch(const std::string& address, const void* watcher,
+                         std::function<void()> ended) {
+  state_->watch(address, watcher, std::move(ended));
+}
+
+void ProcessWatch::unwatch(const std::string& address, const void* watcher) {
+  state_->unwatch(address, watcher);
+}
+
+void ProcessWatch::unwatch(const void* watcher) { state_->unwatch(watcher); }
+
+ProcessWatch::Counters ProcessWatch::counters() const {
+  std::lock_guard lock(state_->mutex);
+  return {state_->watchers.size(), state_->watched.size(), state_->refused};
 }
 
 }  // namespace skein::brokerless_discovery

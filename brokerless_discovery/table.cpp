@@ -33,6 +33,15 @@ bool wanted(const ServiceDescription& description, const Query& query) {
   return query.provider.is_nil() || query.provider == provider_of(description);
 }
 
+bool is_own(const Entry& entry) { return entry.writer.is_nil(); }
+
+// R23.
+void check_writer(const Guid& provider, const Guid& writer) {
+  if (writer.is_nil() || speaks_for(writer, provider)) return;
+  throw Refused(Refusal::Forged, "it is about a provider of another participant, " +
+                                     provider.participant().hex().substr(0, 24));
+}
+
 void canonicalise(ServiceDescription& description) {
   description.service = canonical_interface_name(description.service);
   for (std::string& base : description.bases) base = canonical_interface_name(base);
@@ -54,33 +63,45 @@ const OperationInfo* missing_operation(const InterfaceInfo& client,
 }
 
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {
+  const Guid provider = provider_of(description);
+  check_writer(provider, writer);
   if (ended_processes_.contains(description.process)) return {};
   canonicalise(description);
-  const Guid provider = provider_of(description);
-  auto shared = std::make_shared<const ServiceDescription>(std::move(description));
   const auto found = entries_.find(provider);
+  if (found != entries_.end() && is_own(found->second) && !writer.is_nil()) {
+    if (*found->second.description != description) contradicted_.insert(provider);
+    return {};
+  }
+  const std::size_t weight = weight_of(description);
+  auto shared = std::make_shared<const ServiceDescription>(std::move(description));
   if (found == entries_.end()) {
-    Entry& entry = entries_[provider] = {shared, writer, false};
+    take_room(writer, weight);
+    Entry& entry = entries_[provider] = {shared, writer, false, weight};
     index(entry);
     return {{Change::Kind::Added, shared}};
   }
   Entry& entry = found->second;
+  const Change::Kind change = entry.suspect ? Change::Kind::Trusted : Change::Kind::Updated;
   const bool same = *entry.description == *shared;
-  const bool was_suspect = entry.suspect;
+  exchange_room(entry, writer, weight);
   unindex(entry);
-  entry = {shared, writer, false};
+  entry = {shared, writer, false, weight};
   index(entry);
-  if (was_suspect) return {{Change::Kind::Trusted, shared}};
-  if (same) return {};
-  return {{Change::Kind::Updated, shared}};
+  if (same && change == Change::Kind::Updated) return {};
+  return {{change, shared}};
 }
 
-Table::Changes Table::on_withdrawn(const Guid& provider) {
+Table::Changes Table::on_withdrawn(const Guid& provider, const Guid& writer) {
+  check_writer(provider, writer);
   const auto found = entries_.find(provider);
   if (found == entries_.end()) return {};
-  unindex(found->second);
-  const auto node = entries_.extract(found);
-  return {{Change::Kind::Removed, node.mapped().description, Departure::Left}};
+  if (is_own(found->second) && !writer.is_nil()) {
+    contradicted_.insert(provider);
+    return {};
+  }
+  const auto gone = found->second.description;
+  remove(found);
+  return {{Change::Kind::Removed, gone, Departure::Left}};
 }
 
 Table::Changes Table::on_writer_alive(const Guid& writer, bool alive) {
@@ -98,7 +119,11 @@ Table::Changes Table::on_writer_gone(const Guid& writer) {
 }
 
 Table::Changes Table::on_process_ended(const std::string& process) {
-  ended_processes_.insert(process);
+  if (ended_processes_.insert(process).second) ended_in_order_.push_back(process);
+  if (ended_in_order_.size() > kMostEnded) {
+    ended_processes_.erase(ended_in_order_.front());
+    ended_in_order_.pop_front();
+  }
   return remove_if([&](const Entry& entry) { return entry.description->process == process; },
                    Departure::Died);
 }
@@ -111,10 +136,56 @@ Table::Changes Table::remove_if(auto predicate, Departure departure) {
       continue;
     }
     changes.push_back({Change::Kind::Removed, position->second.description, departure});
-    unindex(position->second);
-    position = entries_.erase(position);
+    position = remove(position);
   }
   return changes;
+}
+
+Table::Entries::iterator Table::remove(Entries::iterator position) {
+  give_back_room(position->second);
+  room_again_ = refused_for_room_;
+  unindex(position->second);
+  return entries_.erase(position);
+}
+
+// This peer's own services need none.
+bool Table::get_room(const Guid& writer, std::size_t weight) {
+  return writer.is_nil() || room_.take(writer.participant(), weight);
+}
+
+void Table::take_room(const Guid& writer, std::size_t weight) {
+  if (get_room(writer, weight)) return;
+  refused_for_room_ = true;
+  throw Refused(Refusal::NoRoom,
+                "there is no room for it: one participant may have " +
+                    std::to_string(Room::kEntriesOfOne) + " descriptions, all together " +
+                    std::to_string(Room::kEntriesOfAll) + "; it is asked for again when some go");
+}
+
+void Table::give_back_room(const Entry& entry) {
+  if (!is_own(entry)) room_.give_back(entry.writer.participant(), entry.weight);
+}
+
+void Table::exchange_room(const Entry& entry, const Guid& writer, std::size_t weight) {
+  give_back_room(entry);
+  try {
+    take_room(writer, weight);
+  } catch (const Refused&) {
+    get_room(entry.writer, entry.weight);  // it had it a moment ago
+    throw;
+  }
+}
+
+bool Table::take_room_again() {
+  if (!room_again_) return false;
+  refused_for_room_ = false;
+  return std::exchange(room_again_, false);
+}
+
+std::optional<Guid> Table::writer_of(const Guid& provider) const {
+  const auto found = entries_.find(provider);
+  if (found == entries_.end()) return std::nullopt;
+  return found->second.writer;
 }
 
 // Of an entry that has the name, in the system, that was asked for.
@@ -219,12 +290,6 @@ bool Table::has_suspects() const {
                      [](const auto& entry) { return entry.second.suspect; });
 }
 
-bool Table::knows_process(const std::string& process) const {
-  return std::any_of(entries_.begin(), entries_.end(), [&](const auto& entry) {
-    return entry.second.description->process == process;
-  });
-}
-
 std::size_t Table::PlaceHash::operator()(const PlaceView& place) const noexcept {
   constexpr std::hash<std::string_view> hash;
   return hash(place.name) * 31 + (place.system ? hash(*place.system) : 0);
@@ -256,6 +321,7 @@ std::string Table::resolve(const std::string& name) const {
 }
 
 void Table::index(const Entry& entry) {
+  ++processes_[entry.description->process];
   for (const std::string& name : names_of(*entry.description)) {
     shelves_[{name, entry.description->system}].add(entry);
     shelves_[{name, std::nullopt}].add(entry);
@@ -270,6 +336,8 @@ void Table::take_from_shelf(const Place& place, const Entry& entry) {
 }
 
 void Table::unindex(const Entry& entry) {
+  const auto process = processes_.find(entry.description->process);
+  if (--process->second == 0) processes_.erase(process);
   for (const std::string& name : names_of(*entry.description)) {
     take_from_shelf({name, entry.description->system}, entry);
     take_from_shelf({name, std::nullopt}, entry);

@@ -1,6 +1,5 @@
 #include "calls/skein_peer.hpp"
 
-#include <algorithm>
 #include <future>
 #include <random>
 #include <thread>
@@ -132,8 +131,7 @@ class Finder {
   std::string bind(std::size_t count) {
     while (registrations_.size() < count) {
       brokerless_discovery::ServiceDescription description;
-      const Guid provider = Guid::random();
-      std::copy(provider.bytes.begin(), provider.bytes.end(), description.provider.begin());
+      description.provider = broker_.new_provider().bytes;
       description.service = service_name(registrations_.size());
       description.bases = {kCommonBase};
       description.entity = "entity" + std::to_string(registrations_.size());

@@ -4,7 +4,7 @@
 
 #include "skein/core/error.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 Connections::Opening::Opening(Connections& connections) : connections_(connections) {
   std::lock_guard lock(connections_.mutex_);
@@ -57,4 +57,4 @@ void Connections::end(Channel& channel) {
   channel.disconnect();
 }
 
-}  // namespace skein
+}  // namespace skein::connector

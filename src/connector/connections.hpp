@@ -9,7 +9,7 @@
 
 #include "skein/core/channel.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 /// What an entity has connected to: all of it ends with the entity, whoever still holds proxies,
 /// calls or streams. Thread-safe.
@@ -52,4 +52,4 @@ class Connections {
   std::size_t look_at_ = 16;
 };
 
-}  // namespace skein
+}  // namespace skein::connector

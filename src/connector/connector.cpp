@@ -20,6 +20,10 @@ using brokerless_discovery::Change;
 using brokerless_discovery::Query;
 using brokerless_discovery::ServiceDescription;
 using brokerless_discovery::Table;
+using connector::Connections;
+using connector::FailoverChannel;
+using connector::Link;
+using connector::Wanted;
 
 std::string peer_name(const ServiceDescription& provider) {
   return scoped_interface_name(provider.service) + " of " + provider.entity + " (" +
@@ -133,6 +137,9 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
     connections->refuse_if_closed();
     return broker.knows(id);
   };
+  const auto participant = parts_.broker.participant_of(id);
+  if (!participant) throw Unavailable(options.peer + " left before it was connected");
+  options.participant = *participant;
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
   Link link{id, channel};

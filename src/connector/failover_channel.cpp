@@ -7,7 +7,7 @@
 #include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
-namespace skein {
+namespace skein::connector {
 namespace {
 
 bool contains(const std::vector<Guid>& providers, const Guid& provider) {
@@ -173,4 +173,4 @@ void FailoverChannel::keep(const Link& link) {
   if (closed_) link.channel->disconnect();
 }
 
-}  // namespace skein
+}  // namespace skein::connector

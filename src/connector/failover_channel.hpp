@@ -11,7 +11,7 @@
 #include "skein/core/clock.hpp"
 #include "skein/core/executor.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 /// A connection that outlives its provider: `connect` is asked for a new link when the present one
 /// is found lost, or when its provider is suspect; a suspect provider has calls only where no other
@@ -69,4 +69,4 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
 /// A copy that lives as long as the pointer.
 std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value);
 
-}  // namespace skein
+}  // namespace skein::connector

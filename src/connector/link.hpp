@@ -8,7 +8,7 @@
 #include "skein/core/clock.hpp"
 #include "skein/core/guid.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 /// An open connection to one provider.
 struct Link {
@@ -28,4 +28,4 @@ struct Wanted {
   bool wait = true;              ///< Until a provider appears; otherwise only those that stand now.
 };
 
-}  // namespace skein
+}  // namespace skein::connector

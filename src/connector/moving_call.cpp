@@ -7,7 +7,7 @@
 #include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 void MovingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                        const std::shared_ptr<PendingCall>& call, const void* in) {
@@ -153,4 +153,4 @@ void MovingCall::cancel() {
   for (const auto& [provider, attempt] : attempts) attempt->cancel();
 }
 
-}  // namespace skein
+}  // namespace skein::connector

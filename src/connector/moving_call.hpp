@@ -9,7 +9,7 @@
 #include "skein/core/call_memory.hpp"
 #include "skein/core/channel.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 class FailoverChannel;
 
@@ -67,4 +67,4 @@ class MovingCall final : public std::enable_shared_from_this<MovingCall> {
   bool cancelled_ = false;
 };
 
-}  // namespace skein
+}  // namespace skein::connector

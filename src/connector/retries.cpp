@@ -5,7 +5,7 @@
 
 #include "skein/core/error.hpp"
 
-namespace skein {
+namespace skein::connector {
 namespace {
 
 // A request that kills whoever executes it must not kill them all.
@@ -34,4 +34,4 @@ bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Insta
   return ++failures_ < kMaxFailures && now < wanted_.deadline;
 }
 
-}  // namespace skein
+}  // namespace skein::connector

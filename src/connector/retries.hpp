@@ -4,7 +4,7 @@
 
 #include "link.hpp"
 
-namespace skein {
+namespace skein::connector {
 
 /// How often, and by whom, one call to an idempotent operation may still be tried. Not thread-safe.
 class Retries {
@@ -23,4 +23,4 @@ class Retries {
   int failures_ = 0;
 };
 
-}  // namespace skein
+}  // namespace skein::connector

@@ -4,15 +4,19 @@
 #include <mutex>
 #include <string>
 
+#include "skein/core/printable.hpp"
+
 namespace skein {
 namespace {
+
+constexpr std::size_t kLongestText = 4096;
 
 using Sink = std::function<void(LogLevel, std::string_view, std::string_view)>;
 
 void write_to_standard_error(LogLevel level, std::string_view place, std::string_view text) {
   if (level < LogLevel::Warning) return;
   std::string line(level == LogLevel::Error ? "error: " : "warning: ");
-  line.append(place).append(": ").append(text).append("\n");
+  line.append(printable(place)).append(": ").append(printable(text, kLongestText)).append("\n");
   std::fputs(line.c_str(), stderr);
 }
 

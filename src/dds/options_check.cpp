@@ -1,15 +1,12 @@
 #include "options_check.hpp"
 
 #include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <netdb.h>
 
 #include <algorithm>
 #include <cctype>
-#include <memory>
 
 #include "skein/core/error.hpp"
+#include "skein/core/host.hpp"
 #include "skein/core/suggestion.hpp"
 
 namespace skein::dds {
@@ -17,28 +14,8 @@ namespace {
 
 constexpr const char* kLoopbackAddress = "127.0.0.1";
 
-struct Interface {
-  std::string name;
-  std::string address;
-};
-
-std::vector<Interface> interfaces_of_this_host() {
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) throw Internal("the interfaces of this host cannot be listed");
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, freeifaddrs);
-  std::vector<Interface> found;
-  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
-    char text[INET_ADDRSTRLEN] = {};
-    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
-    inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
-    found.push_back({entry->ifa_name, text});
-  }
-  return found;
-}
-
-std::string address_of(const std::string& wanted, const std::vector<Interface>& host) {
-  for (const Interface& interface : host) {
+std::string address_of(const std::string& wanted, const std::vector<HostInterface>& host) {
+  for (const HostInterface& interface : host) {
     if (wanted == interface.name || wanted == interface.address) return interface.address;
   }
   // All of 127.0.0.0/8 is this host, whether or not an interface lists it.
@@ -47,14 +24,9 @@ std::string address_of(const std::string& wanted, const std::vector<Interface>& 
     return wanted;
   }
   std::vector<std::string> known;
-  std::string listed;
-  for (const Interface& interface : host) {
-    known.push_back(interface.name);
-    listed += (listed.empty() ? "" : ", ") + interface.name + " (" + interface.address + ")";
-  }
+  for (const HostInterface& interface : host) known.push_back(interface.name);
   throw InvalidArgument("this host has no interface '" + wanted + "' with an IPv4 address" +
-                        suggestion(wanted, known) + "; it has " +
-                        (listed.empty() ? "none" : listed));
+                        suggestion(wanted, known) + "; it has " + to_text(host));
 }
 
 bool is_host_name(const std::string& text) {
@@ -82,6 +54,7 @@ void check_domain(const ParticipantOptions& options) {
 void check_options(const ParticipantOptions& options) {
   check_domain(options);
   const auto addresses = interface_addresses(options.network);
+  allowed_sources(options.network);
   for (const std::string& peer : options.network.peers) {
     if (!is_host_name(peer)) {
       throw InvalidArgument("peer '" + peer + "' is neither an address nor a host's name");
@@ -108,24 +81,11 @@ std::vector<std::string> interface_addresses(const Network& network) {
   return addresses;
 }
 
-std::vector<std::string> host_addresses(const std::string& host) {
-  addrinfo wanted{};
-  wanted.ai_family = AF_INET;
-  wanted.ai_socktype = SOCK_DGRAM;
-  addrinfo* list = nullptr;
-  const int failure = getaddrinfo(host.c_str(), nullptr, &wanted, &list);
-  if (failure != 0) {
-    throw InvalidArgument("peer '" + host + "' has no IPv4 address: " + gai_strerror(failure));
-  }
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
-  std::vector<std::string> addresses;
-  for (const addrinfo* entry = list; entry != nullptr; entry = entry->ai_next) {
-    char text[INET_ADDRSTRLEN] = {};
-    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ai_addr);
-    inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
-    addresses.emplace_back(text);
-  }
-  return addresses;
+AllowedSources allowed_sources(const Network& network) {
+  AllowedSources sources(network.allowed_sources);
+  if (network.allowed_sources.empty()) return sources;
+  for (const std::string& address : interface_addresses(network)) sources.add(address);
+  return sources;
 }
 
 bool is_loopback_only(const Network& network) {

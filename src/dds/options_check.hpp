@@ -1,5 +1,6 @@
 #pragma once
 
+#include "skein/dds/allowed_sources.hpp"
 #include "skein/dds/port.hpp"
 
 /// Checks that all back ends make alike, before a vendor sees anything. All throw InvalidArgument.
@@ -22,8 +23,8 @@ void refuse_shared_memory(const ParticipantOptions& options, const std::string& 
 /// The IPv4 addresses of `network.interfaces`, in dotted form; 127.0.0.1 where none is named.
 std::vector<std::string> interface_addresses(const Network& network);
 
-/// The IPv4 addresses of a host, in dotted form; throws InvalidArgument where there are none.
-std::vector<std::string> host_addresses(const std::string& host);
+/// `network.allowed_sources`, with the addresses of its interfaces.
+AllowedSources allowed_sources(const Network& network);
 
 /// Whether the network goes no further than this host's 127.0.0.1.
 bool is_loopback_only(const Network& network);

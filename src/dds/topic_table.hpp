@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <string>
@@ -37,6 +39,18 @@ class TopicTable {
     if (--found->second.users > 0) return;
     destroy(found->second.handle);
     entries_.erase(found);
+  }
+
+  /// Ends the program where a topic is in use: a participant must outlive its writers and readers.
+  void expect_unused(const std::string& participant) {
+    std::lock_guard lock(mutex_);
+    if (entries_.empty()) return;
+    std::fprintf(stderr,
+                 "skein: participant '%s' is destroyed before %zu of its writers and readers on "
+                 "topic '%s'; destroy these first\n",
+                 participant.c_str(), entries_.begin()->second.users,
+                 entries_.begin()->first.c_str());
+    std::abort();
   }
 
  private:

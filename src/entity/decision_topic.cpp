@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
@@ -75,15 +76,18 @@ void DecisionTopic::tell(const DecisionRecord& record) {
 DecisionReader::DecisionReader(dds::Participant& participant,
                                std::function<void(const Decision&)> consumer) {
   dds::ReaderListener listener;
-  listener.on_data = [consumer = std::move(consumer)](dds::Reader& reader) {
+  listener.on_data = [consumer = std::move(consumer),
+                      malformed = false](dds::Reader& reader) mutable {
     reader.take([&](const dds::Sample& sample) {
       if (sample.state != dds::InstanceState::Alive) return;
       Decision decision;
       try {
         decision = idl::decode_message<Decision>(sample.cdr);
       } catch (const std::exception& error) {
+        if (std::exchange(malformed, true)) return;
         log(LogLevel::Warning, kTopic.name,
-            std::string("dropped a malformed sample: ") + error.what());
+            std::string("dropped a malformed sample: ") + error.what() +
+                "; further ones are not logged");
         return;
       }
       consumer(decision);

@@ -1,4 +1,5 @@
 #include "selection_text.hpp"
+#include "skein/core/printable.hpp"
 #include "skein/entity/decision.hpp"
 
 namespace skein {
@@ -7,6 +8,12 @@ namespace {
 using selection_text::in_ms;
 using selection_text::number;
 using selection_text::percent;
+
+/// Records come from the network and from files, too.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kLongest = 4096;
+  return printable(text, kLongest);
+}
 
 std::string learned_text(const Prediction& learned) {
   std::string text = "has shown over " + std::to_string(learned.samples) + " like runs";
@@ -19,12 +26,12 @@ std::string learned_text(const Prediction& learned) {
 std::string line_of(const Features& features) {
   std::string text;
   for (const Feature& feature : features)
-    text += (text.empty() ? "  for " : ", ") + feature.name + " " + number(feature.value);
+    text += (text.empty() ? "  for " : ", ") + shown(feature.name) + " " + number(feature.value);
   return text.empty() ? text : text + "\n";
 }
 
 std::string line_of(const Candidate& candidate) {
-  std::string text = "  " + candidate.name;
+  std::string text = "  " + shown(candidate.name);
   text +=
       candidate.in_process ? " (in the process)" : " (pid " + std::to_string(candidate.pid) + ")";
   text += candidate.latency ? " declares " + in_ms(*candidate.latency) : " declares no latency";
@@ -39,12 +46,12 @@ std::string line_of(const Candidate& candidate) {
 }
 
 std::string line_of(const Attempt& attempt) {
-  std::string text = "  at " + in_ms(attempt.began) + " " + attempt.csp + ", for " +
-                     in_ms(attempt.slice) + ": " + attempt.reason + "\n    " +
+  std::string text = "  at " + in_ms(attempt.began) + " " + shown(attempt.csp) + ", for " +
+                     in_ms(attempt.slice) + ": " + shown(attempt.reason) + "\n    " +
                      to_string(attempt.outcome) + " after " + in_ms(attempt.took);
-  if (!attempt.check.empty()) text += " by the check '" + attempt.check + "'";
+  if (!attempt.check.empty()) text += " by the check '" + shown(attempt.check) + "'";
   if (attempt.quality) text += ", quality " + number(*attempt.quality);
-  if (!attempt.text.empty()) text += ": " + attempt.text;
+  if (!attempt.text.empty()) text += ": " + shown(attempt.text);
   return text + "\n";
 }
 
@@ -52,12 +59,12 @@ std::string line_of(const Attempt& attempt) {
 
 std::string explain(const DecisionRecord& record) {
   const bool preselected = record.execution == "none";
-  std::string text = "decision " + std::to_string(record.number) + " of " + record.entity;
-  if (!record.request.empty()) text += " on '" + record.request + "'";
-  text +=
-      ": " + record.interface + " within " + in_ms(record.available) + ", strategy " +
-      record.strategy +
-      (preselected ? ", for the Body to call itself\n" : ", " + record.execution + " at a time\n");
+  std::string text = "decision " + std::to_string(record.number) + " of " + shown(record.entity);
+  if (!record.request.empty()) text += " on '" + shown(record.request) + "'";
+  text += ": " + shown(record.interface) + " within " + in_ms(record.available) + ", strategy " +
+          shown(record.strategy) +
+          (preselected ? ", for the Body to call itself\n"
+                       : ", " + shown(record.execution) + " at a time\n");
   text += line_of(record.situation.features);
   for (const Candidate& candidate : record.candidates) text += line_of(candidate);
   for (const Attempt& attempt : record.attempts) text += line_of(attempt);
@@ -65,8 +72,8 @@ std::string explain(const DecisionRecord& record) {
     text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";
   text += preselected ? "  selected" : record.failure.empty() ? "  answered" : "  failed";
   text += " after " + in_ms(record.took);
-  if (!record.synthesis.empty()) text += ": " + record.synthesis;
-  if (!record.failure.empty()) text += ": " + record.failure;
+  if (!record.synthesis.empty()) text += ": " + shown(record.synthesis);
+  if (!record.failure.empty()) text += ": " + shown(record.failure);
   return text + "\n";
 }
 

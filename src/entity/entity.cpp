@@ -185,6 +185,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   provided->name = name;
   provided->executor = std::move(executor);
   rpc::Service::Options service_options;
+  service_options.id = state_->broker.new_provider();
   service_options.keeps =
       std::make_shared<std::pair<std::shared_ptr<Clock>, std::shared_ptr<ThreadExecutor>>>(
           state_->process->shared_clock(), provided->executor);

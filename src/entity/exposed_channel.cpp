@@ -1,6 +1,6 @@
 #include "exposed_channel.hpp"
 
-namespace skein {
+namespace skein::entity {
 
 bool ExposedChannel::runs_here(const CallTime& time) const {
   return ThreadExecutor::worker() == &terms_.worker && !ended_ && time.begin < time.deadline &&
@@ -22,4 +22,4 @@ void ExposedChannel::call(const OperationInfo& operation, const void* in, void* 
   if (!ran) queued_->call(operation, in, out, time);
 }
 
-}  // namespace skein
+}  // namespace skein::entity

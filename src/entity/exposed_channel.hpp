@@ -7,7 +7,7 @@
 #include "skein/core/channel.hpp"
 #include "skein/rpc/service.hpp"
 
-namespace skein {
+namespace skein::entity {
 
 /// The connection to a CSP of this process while a task is performed: a blocking call runs on the
 /// performing thread itself, watched, unless the CSP is busy. All else goes by the CSP's own
@@ -51,4 +51,4 @@ class ExposedChannel final : public Channel {
   bool ended_ = false;  // the performing thread's
 };
 
-}  // namespace skein
+}  // namespace skein::entity

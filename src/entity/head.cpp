@@ -61,7 +61,7 @@ void Head::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
 
 std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const {
   std::lock_guard lock(state_->mutex);
-  return std::make_shared<HeadSession>(state_->strategies.make(
+  return std::make_shared<entity::HeadSession>(state_->strategies.make(
       request.strategy.empty() ? state_->options.strategy : request.strategy));
 }
 

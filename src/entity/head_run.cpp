@@ -166,10 +166,10 @@ std::shared_ptr<Channel> Head::Run::expose(Live& live, std::shared_ptr<Channel> 
   if (!worker || !caller_) return channel;
   auto service = state_.parts.directory->find(live.candidate.provider);
   if (!service) return channel;
-  exposure.channel = make_shared_in_call_memory<ExposedChannel>(
+  exposure.channel = make_shared_in_call_memory<entity::ExposedChannel>(
       std::move(channel), std::move(service),
-      ExposedChannel::Terms{*state_.watch, *worker, deadline_, most,
-                            [this, &live] { lose(live); }});
+      entity::ExposedChannel::Terms{*state_.watch, *worker, deadline_, most,
+                                    [this, &live] { lose(live); }});
   return exposure.channel;
 }
 

@@ -32,7 +32,7 @@ class Head::Run {
 
   /// Lets a channel run calls here while it lives.
   struct Exposure {
-    std::shared_ptr<ExposedChannel> channel{};
+    std::shared_ptr<entity::ExposedChannel> channel{};
     ~Exposure() {
       if (channel) channel->end();
     }

@@ -5,7 +5,7 @@
 #include "skein/core/call_context.hpp"
 #include "skein/entity/selection.hpp"
 
-namespace skein {
+namespace skein::entity {
 
 /// What a connected client has asked the Head for.
 struct HeadSession final : Session {
@@ -14,4 +14,4 @@ struct HeadSession final : Session {
   const std::shared_ptr<const SelectionStrategy> strategy;
 };
 
-}  // namespace skein
+}  // namespace skein::entity

@@ -28,7 +28,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
     : parts(parts_),
       options(std::move(options_)),
       host(brokerless_discovery::ProcessWatch::host()),
-      watch(std::make_shared<InlineWatch>(parts_.clock, parts_.control)),
+      watch(std::make_shared<entity::InlineWatch>(parts_.clock, parts_.control)),
       topic(parts.participant, parts.control) {
   strategies.make(options.strategy);
   if (!options.history.empty()) history = History::load(options.history);
@@ -42,7 +42,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
 
 std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
   if (const CallContext* context = CallContext::current()) {
-    if (const auto* session = dynamic_cast<const HeadSession*>(context->session()))
+    if (const auto* session = dynamic_cast<const entity::HeadSession*>(context->session()))
       return session->strategy;
   }
   std::lock_guard lock(mutex);

@@ -76,7 +76,7 @@ struct Head::State {
   const Parts parts;
   const HeadOptions options;
   const std::string host;  // looking it up reads a file
-  const std::shared_ptr<InlineWatch> watch;
+  const std::shared_ptr<entity::InlineWatch> watch;
   mutable std::mutex mutex;
   StrategyFactory strategies;
   History history;

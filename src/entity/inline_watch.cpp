@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace skein {
+namespace skein::entity {
 
 InlineWatch::Watched::Watched(InlineWatch& watch, Worker& worker, Instant deadline,
                               std::size_t most, const std::function<void()>& lost)
@@ -89,4 +89,4 @@ void InlineWatch::close() {
   for (const auto& [when, timer] : timers) clock_.cancel(timer);
 }
 
-}  // namespace skein
+}  // namespace skein::entity

@@ -11,7 +11,7 @@
 #include "skein/core/executor.hpp"
 #include "skein/core/worker.hpp"
 
-namespace skein {
+namespace skein::entity {
 
 /// The CSPs that run on the threads of those who asked for them. One that is not back by its
 /// deadline costs its thread: the worker is written off, and `lost` is run in its place. A timer
@@ -67,4 +67,4 @@ class InlineWatch : public std::enable_shared_from_this<InlineWatch> {
   bool closed_ = false;                // under `expiring_`
 };
 
-}  // namespace skein
+}  // namespace skein::entity

@@ -1,12 +1,13 @@
 #include "skein/entity/statistics_topic.hpp"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 #include <tuple>
 
+#include "skein/brokerless_discovery/admission.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/log.hpp"
+#include "skein/core/sole_owner.hpp"
 #include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -33,7 +34,6 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
   Clock& clock;
   Executor& control;
   const Source source;
-  std::mutex asking;  // held while `source` is asked; taken before `mutex`
   std::mutex mutex;
   std::size_t readers = 0;
   bool ticking = false;
@@ -61,7 +61,6 @@ struct StatisticsTopic::State : std::enable_shared_from_this<State> {
   }
 
   void tick() {
-    std::lock_guard asking_lock(asking);
     std::shared_ptr<dds::Writer> target;
     {
       std::lock_guard lock(mutex);
@@ -108,29 +107,33 @@ StatisticsTopic::~StatisticsTopic() {
     timer = state_->timer;
   }
   state_->clock.cancel(timer);
-  std::lock_guard waited(state_->asking);  // what is being asked may go when this returns
+  await_sole_owner(state_);  // what is being asked may go when this returns
 }
 
 struct StatisticsReader::State {
   mutable std::mutex mutex;
-  std::map<Guid, ServiceStatistics> latest;
+  brokerless_discovery::Reports<ServiceStatistics> latest;
+  std::uint64_t refused = 0;
   std::unique_ptr<dds::Reader> reader;  // last: goes first, and no listener runs after that
 
   void on_sample(const dds::Sample& sample) {
     std::lock_guard lock(mutex);
-    if (sample.state != dds::InstanceState::Alive) {
-      latest.erase(sample.key);
-      return;
-    }
-    ServiceStatistics statistics;
+    std::string reason = "it is another participant's, or there is no room for more";
+    if (take(sample, reason) || ++refused > 1) return;
+    log(LogLevel::Warning, kTopic.name,
+        "dropped statistics: " + reason + "; further ones are counted and not logged");
+  }
+
+  bool take(const dds::Sample& sample, std::string& reason) {
+    if (sample.state != dds::InstanceState::Alive) return latest.erase(sample.key, sample.writer);
     try {
-      statistics = idl::decode_message<ServiceStatistics>(sample.cdr);
+      auto statistics = idl::decode_message<ServiceStatistics>(sample.cdr);
+      return sample.key.bytes == statistics.provider &&
+             latest.put(sample.key, sample.writer, std::move(statistics), sample.cdr.size());
     } catch (const std::exception& error) {
-      log(LogLevel::Warning, kTopic.name,
-          std::string("dropped a malformed sample: ") + error.what());
-      return;
+      reason = error.what();
+      return false;
     }
-    latest[{statistics.provider}] = std::move(statistics);
   }
 };
 
@@ -139,6 +142,10 @@ StatisticsReader::StatisticsReader(dds::Participant& participant)
   dds::ReaderListener listener;
   listener.on_data = [&state = *state_](dds::Reader& reader) {
     reader.take([&state](const dds::Sample& sample) { state.on_sample(sample); });
+  };
+  listener.on_matched = [&state = *state_](const Guid& writer, bool matched) {
+    std::lock_guard lock(state.mutex);
+    if (!matched) state.latest.writer_gone(writer);
   };
   state_->reader = participant.create_reader(kTopic, qos(), std::move(listener));
 }
@@ -149,7 +156,7 @@ std::vector<ServiceStatistics> StatisticsReader::latest() const {
   std::vector<ServiceStatistics> all;
   {
     std::lock_guard lock(state_->mutex);
-    for (const auto& [provider, statistics] : state_->latest) all.push_back(statistics);
+    state_->latest.for_each([&](const ServiceStatistics& one) { all.push_back(one); });
   }
   const auto place = [](const ServiceStatistics& statistics) {
     return std::tie(statistics.system, statistics.entity, statistics.service, statistics.provider);
@@ -157,6 +164,11 @@ std::vector<ServiceStatistics> StatisticsReader::latest() const {
   std::sort(all.begin(), all.end(),
             [&](const auto& left, const auto& right) { return place(left) < place(right); });
   return all;
+}
+
+std::uint64_t StatisticsReader::refused() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->refused;
 }
 
 }  // namespace skein::introspection

@@ -26,8 +26,8 @@ constexpr int kUnknownExitCode = 255;
 constexpr int kCannotExecute = 127;
 
 struct Pipe {
-  Descriptor read_end;
-  Descriptor write_end;
+  FileDescriptor read_end;
+  FileDescriptor write_end;
 };
 
 /// Both ends are closed on exec and stay clear of the descriptors that the child gets, which may be
@@ -35,18 +35,18 @@ struct Pipe {
 Pipe make_pipe() {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("a pipe");
-  const Descriptor first(ends[0]);
-  const Descriptor second(ends[1]);
-  Pipe pipe{Descriptor(::fcntl(first.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor)),
-            Descriptor(::fcntl(second.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor))};
-  if (!pipe.read_end.is_open() || !pipe.write_end.is_open()) throw_system_error("a pipe");
+  const FileDescriptor first(ends[0]);
+  const FileDescriptor second(ends[1]);
+  Pipe pipe{FileDescriptor(::fcntl(first.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor)),
+            FileDescriptor(::fcntl(second.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor))};
+  if (!pipe.read_end || !pipe.write_end) throw_system_error("a pipe");
   return pipe;
 }
 
 // Debian 12's <sys/pidfd.h> cannot be used from C++: it declares its functions without C linkage.
 int open_process(pid_t process) { return static_cast<int>(::syscall(SYS_pidfd_open, process, 0)); }
 
-void make_non_blocking(const Descriptor& descriptor) {
+void make_non_blocking(const FileDescriptor& descriptor) {
   ::fcntl(descriptor.get(), F_SETFL, ::fcntl(descriptor.get(), F_GETFL) | O_NONBLOCK);
 }
 
@@ -121,7 +121,7 @@ void ChildProcess::start(const ChildPlan& plan) {
   auto output = make_pipe();
   auto readiness = make_pipe();
   auto failure = make_pipe();
-  const Descriptor null_input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const FileDescriptor null_input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   auto arguments = plan.argv;
   auto environment = environment_of(plan);
   const auto argument_pointers = pointers_to(arguments);
@@ -148,8 +148,8 @@ void ChildProcess::start(const ChildPlan& plan) {
     throw Unavailable("cannot execute " + plan.argv[0] + ": " +
                       std::generic_category().message(reason));
   }
-  end_ = Descriptor(open_process(id_));
-  if (!end_.is_open()) {
+  end_ = FileDescriptor(open_process(id_));
+  if (!end_) {
     const int cause = errno;
     end_group();
     errno = cause;

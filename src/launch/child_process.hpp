@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "descriptor.hpp"
+#include "../core/file_descriptor.hpp"
 #include "group_guard.hpp"
 #include "skein/launch/launch_plan.hpp"
 
@@ -38,9 +38,9 @@ class ChildProcess {
   /// Becomes readable when the process has ended.
   int end_descriptor() const noexcept { return end_.get(); }
   /// The output of the group, non-blocking.
-  Descriptor& output() noexcept { return output_; }
+  FileDescriptor& output() noexcept { return output_; }
   /// Where the process says that it is ready, non-blocking.
-  Descriptor& readiness() noexcept { return readiness_; }
+  FileDescriptor& readiness() noexcept { return readiness_; }
 
   void send(int signal) const noexcept;  ///< To the whole group.
   /// The status if the process has ended; the rest of its group is killed and gone then.
@@ -52,9 +52,9 @@ class ChildProcess {
 
   GroupGuard& guard_;
   pid_t id_ = -1;
-  Descriptor end_;
-  Descriptor output_;
-  Descriptor readiness_;
+  FileDescriptor end_;
+  FileDescriptor output_;
+  FileDescriptor readiness_;
 };
 
 }  // namespace skein::launch

@@ -49,8 +49,8 @@ constexpr std::size_t kMostGroups = 4096;
 GroupGuard::GroupGuard() {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("a pipe");
-  const Descriptor input(ends[0]);
-  groups_ = Descriptor(ends[1]);
+  const FileDescriptor input(ends[0]);
+  groups_ = FileDescriptor(ends[1]);
   guard_ = ::fork();
   if (guard_ < 0) throw_system_error("its guard process");
   if (guard_ == 0) guard_groups(input.get());

@@ -2,7 +2,7 @@
 
 #include <sys/types.h>
 
-#include "descriptor.hpp"
+#include "../core/file_descriptor.hpp"
 
 namespace skein::launch {
 
@@ -24,7 +24,7 @@ class GroupGuard {
  private:
   void send(pid_t message) noexcept;
 
-  Descriptor groups_;
+  FileDescriptor groups_;
   pid_t guard_ = -1;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "skein/brokerless_discovery/broker.hpp"
 #include "skein/entity/entity.hpp"
 #include "skein/profile/mission_profile.hpp"
 
@@ -9,5 +10,10 @@ namespace skein::launch {
 /// one that the profile gives this peer, with a process of its own on this host that is restarted
 /// when it fails, and that process provides nothing to anybody else.
 void end_hung_csp(Entity& entity, const profile::PeerProfile& peer, const Candidate& hung);
+
+/// The same of a CSP whose lease has run out because its process is stopped. One that runs is left
+/// alone: it was this process, perhaps, that did not.
+void end_stopped_csp(Entity& entity, const profile::PeerProfile& peer,
+                     const brokerless_discovery::Change& change);
 
 }  // namespace skein::launch

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
+
+#include "skein/core/host.hpp"
+#include "skein/core/suggestion.hpp"
 
 namespace skein::launch {
 namespace {
-
-bool is_here(const std::string& wanted, const std::string& host) {
-  return wanted.empty() || wanted == host || wanted == "localhost";
-}
 
 std::string seconds(std::chrono::nanoseconds time) {
   std::array<char, 32> buffer{};
@@ -55,12 +55,49 @@ std::string to_text(const ChildPlan& child) {
 
 }  // namespace
 
+bool is_here(const std::string& wanted, const std::string& self) {
+  if (wanted.empty() || wanted == "localhost") return true;
+  return self.empty() ? is_this_host(wanted) : wanted == self;
+}
+
+std::vector<std::string> hosts_of(const profile::MissionProfile& mission) {
+  std::vector<std::string> hosts;
+  for (const auto& peer : mission.peers) {
+    const bool named = !peer.host.empty() && peer.host != "localhost";
+    if (named && std::find(hosts.begin(), hosts.end(), peer.host) == hosts.end())
+      hosts.push_back(peer.host);
+  }
+  return hosts;
+}
+
+std::string nobody_here(const profile::MissionProfile& mission, const std::string& host) {
+  std::string self = "'" + host + "'";
+  if (host.empty()) {
+    self = "'" + name_of_this_host() + "' with " + to_text(interfaces_of_this_host());
+  }
+  const auto hosts = hosts_of(mission);
+  std::string known;
+  for (const std::string& name : hosts) {
+    std::string names;
+    for (const auto& peer : mission.peers) {
+      if (peer.host == name) names += (names.empty() ? "" : ", ") + peer.name;
+    }
+    known += (known.empty() ? "" : "; ") + name + " (" + names + ")";
+  }
+  return "no peer of mission '" + mission.name + "' is of this host, which is " + self +
+         (host.empty() ? "" : suggestion(host, hosts)) + "; its hosts are " + known +
+         "; say by --host which of them this is";
+}
+
 LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeArgv& make_argv,
                             const std::string& host) {
   LaunchPlan plan;
   plan.mission = mission.name;
+  std::map<std::string, bool> known{{"", true}};  // whether a host is here: names are asked once
+  for (const std::string& name : hosts_of(mission)) known[name] = is_here(name, host);
   for (const auto& peer : mission.peers) {
-    const bool here = is_here(peer.host, host);
+    const bool here = peer.host == "localhost" || known[peer.host];
+    if (peer.runs_mission && !here) plan.mission_elsewhere = peer.name + " on " + peer.host;
     const auto add = [&](ChildPlan child) {
       if (here) {
         plan.children.push_back(std::move(child));

@@ -2,15 +2,23 @@
 
 #include <pthread.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <set>
 
 #include "hung_csp.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/interface_name.hpp"
+#include "skein/core/log.hpp"
+#include "skein/core/printable.hpp"
 #include "skein/core/suggestion.hpp"
 #include "skein/entity/entity.hpp"
+#include "skein/launch/address_space.hpp"
+#include "skein/launch/launch_plan.hpp"
 #include "skein/launch/ready.hpp"
+#include "skein/launch/supervisor.hpp"
 #include "skein/profile/component_xml.hpp"
 
 namespace skein::launch {
@@ -19,6 +27,8 @@ namespace {
 using profile::CspProfile;
 using profile::MissionProfile;
 using profile::PeerProfile;
+
+constexpr std::size_t kLongestError = 4096;
 
 sigset_t ending_signals() {
   sigset_t signals;
@@ -49,8 +59,9 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   options.vendor = dds::load_vendor(owner.vendor);
   options.domain = static_cast<std::uint32_t>(mission.domain);
   options.spin = owner.threads.settings.spin;
-  if (!peer.interface.empty()) options.network.interfaces = {peer.interface};
+  options.network = network_of(mission, peer);
   options.network.shared_memory = owner.shared_memory;
+  options.network.allowed_sources = peer.allowed_sources;
   return options;
 }
 
@@ -117,14 +128,45 @@ void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegist
   entity.provide(std::move(body.servant), options);
 }
 
-void await_dependencies(Entity& entity, const PeerProfile& peer) {
+bool told_to_end() {
+  sigset_t pending;
+  sigpending(&pending);
+  return sigismember(&pending, SIGTERM) || sigismember(&pending, SIGINT) ||
+         sigismember(&pending, SIGHUP);
+}
+
+/// Waits for what the peer depends on, by four fifths of its ready timeout from `begun` on, and
+/// says for what. False where the process was told to end meanwhile.
+bool await_dependencies(Entity& entity, const PeerProfile& peer,
+                        std::chrono::steady_clock::time_point begun) {
+  constexpr Duration kPatience = std::chrono::seconds(1);
+  const Duration limit = peer.rules.ready_timeout * 4 / 5;
   const Instant deadline =
-      entity.clock().now() + std::chrono::duration_cast<Duration>(peer.rules.ready_timeout);
+      entity.clock().now() + limit - Duration(std::chrono::steady_clock::now() - begun);
+  std::string told;
   for (const auto& dependency : peer.component->dependencies) {
     auto query = entity.broker().query(dependency.type);
     query.system = std::nullopt;
-    entity.broker().await_service(query, deadline);
+    while (!told_to_end()) {
+      const Instant look_again = std::min(deadline, entity.clock().now() + kPatience);
+      try {
+        entity.broker().await_service(query, look_again);
+        break;
+      } catch (const Unavailable& error) {
+        const std::string reason = std::string("waits for its dependency: ") + error.what();
+        if (reason != told) {
+          report_waiting(reason);
+          log(LogLevel::Warning, entity.id(), reason);
+          told = reason;
+        }
+        if (look_again == deadline) {
+          throw Unavailable(entity.id() +
+                            " has waited in vain for its dependency: " + error.what());
+        }
+      }
+    }
   }
+  return !told_to_end();
 }
 
 int await_end() {
@@ -158,27 +200,50 @@ void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
   for (const std::string& plugin : plugins) load_plugin(registry, plugin);
 }
 
-int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry) {
+int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry,
+             std::chrono::steady_clock::time_point begun) {
   load_plugins(registry, peer);
   Entity* self = nullptr;
   EntityOptions options = entity_options(mission, peer);
   options.head.on_hang = [&](const Candidate& hung) { end_hung_csp(*self, peer, hung); };
   Entity entity(std::move(options));
   self = &entity;
+  const auto watch_csps = entity.broker().observe(
+      [&](const brokerless_discovery::Change& change) { end_stopped_csp(entity, peer, change); });
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);
   }
   if (!peer.component->interfaces.empty()) provide_body(entity, peer, registry);
-  await_dependencies(entity, peer);
+  if (!await_dependencies(entity, peer, begun)) return 0;
   report_ready();
   if (!peer.runs_mission) return await_end();
   const auto& mission_function = required(registry.find_mission(peer.component->name),
                                           peer.component->name, "mission", registry);
-  return mission_function(entity, values_of(peer.parameters));
+  try {
+    return mission_function(entity, values_of(peer.parameters));
+  } catch (const std::exception& error) {
+    const std::string text =
+        peer.name + ", which runs the mission, ended by an exception: " + error.what();
+    std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
+    return kMissionFailed;
+  }
 }
 
 }  // namespace
+
+dds::Network network_of(const MissionProfile& mission, const PeerProfile& peer) {
+  dds::Network network;
+  if (peer.interface.empty()) return network;
+  network.interfaces = {peer.interface};
+  network.multicast_discovery = peer.multicast;
+  network.peers = peer.peers;
+  if (!peer.peers.empty() || peer.multicast) return network;
+  for (const std::string& host : hosts_of(mission)) {
+    if (host != peer.host) network.peers.push_back(host);
+  }
+  return network;
+}
 
 EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& peer) {
   EntityOptions options = options_of(mission, peer, peer);
@@ -188,6 +253,8 @@ EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& p
 
 int run_process(const MissionProfile& mission, const std::string& process,
                 ComponentRegistry& registry) {
+  const auto begun = std::chrono::steady_clock::now();
+  demand_address_space();
   const std::size_t slash = process.find('/');
   const PeerProfile* peer = mission.find_peer(process.substr(0, slash));
   if (!peer) refuse_process(mission, process);
@@ -201,7 +268,7 @@ int run_process(const MissionProfile& mission, const std::string& process,
     const sigset_t signals = ending_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   }
-  return csp ? run_csp(mission, *peer, *csp, registry) : run_peer(mission, *peer, registry);
+  return csp ? run_csp(mission, *peer, *csp, registry) : run_peer(mission, *peer, registry, begun);
 }
 
 }  // namespace skein::launch

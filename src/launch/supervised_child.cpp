@@ -5,6 +5,9 @@
 #include <csignal>
 #include <cstdio>
 
+#include "skein/core/printable.hpp"
+#include "skein/launch/ready.hpp"
+
 namespace skein::launch {
 namespace {
 
@@ -44,6 +47,8 @@ void SupervisedChild::spawn(Time now) {
     process_ = std::make_unique<ChildProcess>(plan_, guard_);
     started_ = now;
     hung_at_start_ = false;
+    readiness_.clear();
+    reason_.clear();
     report("started as process " + std::to_string(process_->id()));
   } catch (const Error& error) {
     loss_ = plan_.name + " could not be started: " + error.what();
@@ -64,7 +69,8 @@ void SupervisedChild::tick(Time now) {
   if (action == ChildAction::Kill) {
     hung_at_start_ = before == ChildState::Starting;
     report(hung_at_start_
-               ? "is not ready after " + seconds_text(plan_.rules.ready_timeout) + ": killed"
+               ? "is not ready after " + seconds_text(plan_.rules.ready_timeout) + last_reason() +
+                     ": killed"
                : "did not end within " + seconds_text(plan_.rules.stop_timeout) + ": killed");
   }
   perform(action, now);
@@ -83,14 +89,35 @@ void SupervisedChild::read_output() {
 }
 
 void SupervisedChild::read_readiness(Time now) {
-  if (!process_ || !process_->readiness().is_open()) return;
-  std::array<char, 16> buffer;
-  const auto size = ::read(process_->readiness().get(), buffer.data(), buffer.size());
-  if (size < 0) return;
+  if (!process_) return;
+  std::array<char, 4096> buffer;
+  while (process_->readiness()) {
+    const auto size = ::read(process_->readiness().get(), buffer.data(), buffer.size());
+    if (size < 0) return;
+    if (size == 0) process_->readiness().reset();
+    if (size > 0) take_readiness({buffer.data(), static_cast<std::size_t>(size)}, now);
+  }
+}
+
+// Lines that begin with '?' say what the process waits for; anything else, that it is ready.
+void SupervisedChild::take_readiness(std::string_view bytes, Time now) {
+  readiness_ += bytes;
+  while (readiness_.starts_with('?')) {
+    const auto end = readiness_.find('\n');
+    if (end == std::string::npos && readiness_.size() <= kLongestReason + 1) return;
+    reason_ = printable(std::string_view(readiness_).substr(1, end - 1), kLongestReason);
+    readiness_.erase(0, end == std::string::npos ? end : end + 1);
+  }
+  if (readiness_.empty()) return;
   process_->readiness().reset();
-  if (size == 0 || machine_.state() != ChildState::Starting) return;
+  if (machine_.state() != ChildState::Starting) return;
   machine_.ready(now);
+  reason_.clear();
   report("ready after " + seconds_text(now - started_));
+}
+
+std::string SupervisedChild::last_reason() const {
+  return reason_.empty() ? "" : " (last it said: " + reason_ + ")";
 }
 
 void SupervisedChild::collect(Time now) {
@@ -106,6 +133,7 @@ void SupervisedChild::collect(Time now) {
   machine_.exited(status->failed(), now);
   if (machine_.state() == ChildState::Lost) {
     loss_ = plan_.name + (hung_at_start_ ? " did not become ready" : " ended " + to_text(*status)) +
+            last_reason() +
             (machine_.restarts() > 0
                  ? ", given up after " + std::to_string(machine_.restarts()) + " restarts"
                  : "");

@@ -34,6 +34,8 @@ class SupervisedChild {
   /// Whether the launcher killed the last process for not becoming ready, so that its status is the
   /// launcher's doing.
   bool hung_at_start() const noexcept { return hung_at_start_; }
+  /// ` (last it said: ...)`: what it waited for, if it was not ready; or empty.
+  std::string last_reason() const;
   /// Why the child is lost, in one sentence; empty as long as it is not.
   const std::string& loss() const noexcept { return loss_; }
 
@@ -41,6 +43,7 @@ class SupervisedChild {
   void perform(ChildAction action, Time now);
   void spawn(Time now);
   void report(const std::string& text) const;
+  void take_readiness(std::string_view bytes, Time now);
   std::string next_step() const;
 
   ChildPlan plan_;
@@ -50,6 +53,8 @@ class SupervisedChild {
   std::unique_ptr<ChildProcess> process_;
   LineSplitter lines_;
   Time started_{};
+  std::string readiness_;  // what the process said on its pipe and is not a whole line yet
+  std::string reason_;     // what it waits for
   std::optional<ExitStatus> last_status_;
   std::string loss_;
   bool hung_at_start_ = false;

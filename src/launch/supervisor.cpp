@@ -52,6 +52,10 @@ void print_line(std::FILE* stream, std::string_view name, std::string_view separ
   std::fflush(stream);
 }
 
+constexpr const char* kOpenEnd =
+    "; the mission runs on another host: this launcher runs until it is interrupted or all of its "
+    "processes have ended";
+
 std::size_t count_ready(const std::vector<SupervisedChild>& children) {
   return static_cast<std::size_t>(std::count_if(
       children.begin(), children.end(),
@@ -76,7 +80,7 @@ SupervisorOptions with_defaults(SupervisorOptions options) {
 class MissionRun {
  public:
   MissionRun(const LaunchPlan& plan, const SupervisorOptions& options, StopRequest& stop)
-      : options_(options), stop_(stop), signals_(options.handle_signals) {
+      : plan_(plan), options_(options), stop_(stop), signals_(options.handle_signals) {
     for (const auto& child : plan.children) children_.emplace_back(child, options_, guard_);
   }
 
@@ -137,7 +141,7 @@ class MissionRun {
     if (!all_ready_ && !result_ && count_ready(children_) == children_.size()) {
       all_ready_ = true;
       report("all " + std::to_string(children_.size()) + " processes are ready after " +
-             seconds_text(now() - start));
+             seconds_text(now() - start) + (plan_.mission_elsewhere.empty() ? "" : kOpenEnd));
     }
     for (const auto& child : children_) {
       if (!result_ && child.machine().is_final()) judge(child);
@@ -149,7 +153,8 @@ class MissionRun {
     const auto& status = child.last_status();
     if (child.plan().runs_mission && status && !child.hung_at_start()) {
       end({Outcome::MissionEnded, status->exit_code(),
-           child.plan().name + ", which runs the mission, ended " + to_text(*status)});
+           child.plan().name + ", which runs the mission, ended " + to_text(*status) +
+               child.last_reason()});
     } else if (lost && (child.plan().required || child.plan().runs_mission)) {
       const bool started = child.machine().was_ready();
       end({started ? Outcome::PeerLost : Outcome::StartFailed, started ? kPeerLost : kStartFailed,
@@ -186,6 +191,7 @@ class MissionRun {
 
   static constexpr std::int64_t kLongestWaitMs = 60'000;
 
+  const LaunchPlan& plan_;
   const SupervisorOptions& options_;
   StopRequest& stop_;
   SignalReader signals_;

@@ -18,7 +18,7 @@ void throw_system_error(const char* what) {
 }
 
 StopRequest::StopRequest() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (!event_.is_open()) throw_system_error("an event descriptor");
+  if (!event_) throw_system_error("an event descriptor");
 }
 
 void StopRequest::raise() noexcept {
@@ -37,13 +37,13 @@ SignalReader::SignalReader(bool enabled) {
   sigset_t wanted;
   sigemptyset(&wanted);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
-  signals_ = Descriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
-  if (!signals_.is_open()) throw_system_error("a signal descriptor");
+  signals_ = FileDescriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
+  if (!signals_) throw_system_error("a signal descriptor");
   pthread_sigmask(SIG_BLOCK, &wanted, &before_);
 }
 
 SignalReader::~SignalReader() {
-  if (signals_.is_open()) pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  if (signals_) pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 int SignalReader::take() noexcept {

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "descriptor.hpp"
+#include "../core/file_descriptor.hpp"
 
 namespace skein::launch {
 
@@ -18,7 +18,7 @@ class StopRequest {
   int descriptor() const noexcept { return event_.get(); }
 
  private:
-  Descriptor event_;
+  FileDescriptor event_;
 };
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP are read from a descriptor instead of ending the
@@ -35,7 +35,7 @@ class SignalReader {
 
  private:
   sigset_t before_{};
-  Descriptor signals_;
+  FileDescriptor signals_;
 };
 
 }  // namespace skein::launch

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "plane_geometry.hpp"
+#include "route_lines.hpp"
 #include "route_profiles.hpp"
 #include "skein/core/error.hpp"
 #include "terrain_shading.hpp"
@@ -37,15 +38,6 @@ class MapScale {
   double width_;
   double height_;
 };
-
-/// 1, 2 or 5 times a power of ten, not more than `most`.
-double round_number(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= most) return factor * power;
-  }
-  return power;
-}
 
 void add_head(Svg& svg, const std::string& title, const Terrain& terrain, double height) {
   svg.add(R"svg(<svg xmlns="http://www.w3.org/2000/svg"
@@ -171,19 +163,27 @@ void add_names(Svg& svg, const AE_navigator::Problem& problem, const MapScale& m
     add_site_name(svg, missiles.name, missiles.site, map);
 }
 
-void add_route(Svg& svg, const AE_navigator::Route& route, std::string_view colour,
-               const MapScale& map) {
-  std::string path;
-  for (const Position& p : route.waypoints) {
-    path +=
-        fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', map.x(p.east_m), map.y(p.north_m));
+void add_route(Svg& svg, std::string_view path, std::string_view colour, double width) {
+  svg.add(R"svg(<path d="{}" fill="none" stroke="{}" stroke-width="{}"
+stroke-linejoin="round"/>)svg",
+          path, colour, width);
+}
+
+/// The first one on top where they cross.
+void add_routes(Svg& svg, std::span<const PicturedRoute> routes, const MapScale& map) {
+  std::vector<std::vector<PicturePoint>> lines(routes.size());
+  for (std::size_t i = 0; i < routes.size(); ++i) {
+    if (!drawable(routes[i].route)) continue;
+    for (const Position& p : routes[i].route.waypoints)
+      lines[i].push_back({map.x(p.east_m), map.y(p.north_m)});
   }
-  svg.add(R"svg(<path d="{}" fill="none" stroke="#fff" stroke-opacity="0.85" stroke-width="6"
-stroke-linejoin="round" stroke-linecap="round"/>)svg",
-          path);
-  svg.add(R"svg(<path d="{}" fill="none" stroke="{}" stroke-width="3" stroke-linejoin="round"
-stroke-linecap="round"/>)svg",
-          path, colour);
+  const std::vector<std::string> paths = lines_side_by_side(lines);
+  for (const std::string& path : paths) {
+    if (!path.empty()) add_route(svg, path, "#fff", 6);
+  }
+  for (std::size_t i = paths.size(); i-- > 0;) {
+    if (!paths[i].empty()) add_route(svg, paths[i], route_colour(i), 3);
+  }
 }
 
 void add_end(Svg& svg, const char* name, const Position& end, const char* fill,
@@ -226,6 +226,12 @@ stroke-linecap="round"/><text x="{3}" y="{4:.0f}" class="small" font-weight="600
             drawable(route)
                 ? fmt::format("at least {:.0f} m above ground", route.lowest_height_above_ground_m)
                 : std::string("not drawn: not a route"));
+  }
+  if (routes.size() > 1) {
+    svg.add(R"svg(<text x="{}" y="{:.0f}"
+class="tick">Where routes run together their colours take turns.</text>)svg",
+            kLegendLeft, y - 6);
+    y += 20;
   }
   return y;
 }
@@ -275,7 +281,7 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
   const MapScale map(terrain);
   const auto profiles = static_cast<double>(std::count_if(
       routes.begin(), routes.end(), [](const auto& pictured) { return drawable(pictured.route); }));
-  const double legend_height = 62.0 * static_cast<double>(routes.size()) + 278;
+  const double legend_height = 62.0 * static_cast<double>(routes.size()) + 298;
   const double below_map = kMapTop + std::max(map.height(), legend_height) + 34;
   Svg svg;
   add_head(svg, title, terrain, below_map + profiles * kProfileHeight + 16);
@@ -286,9 +292,7 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
     add_site(svg, kRadar, radar.site, radar.range_m, map);
   for (const auto& missiles : problem.missile_sites)
     add_site(svg, kMissiles, missiles.site, missiles.range_m, map);
-  for (std::size_t i = routes.size(); i-- > 0;) {
-    if (drawable(routes[i].route)) add_route(svg, routes[i].route, route_colour(i), map);
-  }
+  add_routes(svg, routes, map);
   add_names(svg, problem, map);
   add_end(svg, "Start", problem.start, "#2b8a3e", map);
   add_end(svg, "Goal", problem.goal, "#111827", map);

@@ -11,8 +11,9 @@
 namespace skein::navigation {
 namespace {
 
-constexpr double kTop = 26;  ///< Room for the label above a profile.
-constexpr double kBar = 6;   ///< Height of the bar of exposure.
+constexpr double kTop = 26;   ///< Room for the label above a profile.
+constexpr double kBar = 6;    ///< Height of the bar of exposure.
+constexpr double kAxis = 20;  ///< Room for distances below it.
 constexpr int kSamples = 360;
 
 /// A route as a function of the distance flown over the map.
@@ -45,10 +46,22 @@ struct Scales {
 
   double x(double distance_m) const { return left + width * distance_m / longest_m; }
   double y(double altitude_m, double top) const {
-    const double height = kProfileHeight - kTop - kBar - 12;
+    const double height = kProfileHeight - kTop - kBar - kAxis - 12;
     return top + kTop + height * (highest_m - altitude_m) / (highest_m - lowest_m);
   }
 };
+
+/// Distances flown, with a line through the profile at each.
+void add_distances(Svg& svg, const Scales& scales, double top) {
+  const double bottom = scales.y(scales.lowest_m, top);
+  const double step = round_number(scales.longest_m / 6);
+  for (double distance = 0; distance <= scales.longest_m; distance += step) {
+    svg.add(R"svg(<path d="M{0:.1f} {1:.1f}V{2:.1f}" stroke="#c3cad1" stroke-width="0.8"/><text
+x="{0:.1f}" y="{3:.1f}" class="tick" text-anchor="middle">{4:g} km</text>)svg",
+            scales.x(distance), top + kTop - 4, bottom + kBar + 7, bottom + kBar + 18,
+            distance / 1000);
+  }
+}
 
 void add_profile(Svg& svg, const Terrain& terrain, const RadarExposure& exposure,
                  const Unrolled& route, std::string_view colour, const Scales& scales, double top) {
@@ -108,6 +121,7 @@ void add_profiles(Svg& svg, const Terrain& terrain, const AE_navigator::Problem&
     svg.add(R"svg(<text x="{:.1f}" y="{:.1f}" class="small"><tspan fill="{}"
 font-weight="600">{}</tspan></text>)svg",
             left, top + kTop - 11, route_colour(i), escaped(routes[i].label));
+    add_distances(svg, scales, top);
     add_profile(svg, terrain, exposure, Unrolled(routes[i].route.waypoints), route_colour(i),
                 scales, top);
     for (const double altitude : {scales.lowest_m, scales.highest_m}) {

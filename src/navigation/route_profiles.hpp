@@ -7,10 +7,11 @@
 
 namespace skein::navigation {
 
-inline constexpr double kProfileHeight = 116;
+inline constexpr double kProfileHeight = 136;
 
 /// Draws an altitude profile for each route below each other: the ground, the flight, and a bar
-/// that shows where it is seen by radars. All have the same scales.
+/// that shows where it is seen by radars, over the distance flown in kilometres. All have the same
+/// scales.
 void add_profiles(Svg& svg, const Terrain& terrain, const AE_navigator::Problem& problem,
                   std::span<const PicturedRoute> routes, double left, double top, double width);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,6 +45,15 @@ inline std::string escaped(std::string_view text) {
     }
   }
   return out;
+}
+
+/// For scales: 1, 2 or 5 times a power of ten, not more than `most`.
+inline double round_number(double most) {
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= most) return factor * power;
+  }
+  return power;
 }
 
 /// The colour of the nth route; they repeat after eight.

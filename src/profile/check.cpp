@@ -62,6 +62,7 @@ class Checker {
   void check_peer(std::size_t number) {
     const auto& peer = mission_.peers[number];
     check_needs(number);
+    check_network(peer);
     Repeated names("the CSP");
     for (const auto& csp : peer.csps) names.add(csp.name, csp.where, findings_);
     if (peer.component) {
@@ -77,6 +78,14 @@ class Checker {
       check_references(csp.parameters, peer);
       check_isolation(csp);
     }
+  }
+
+  void check_network(const PeerProfile& peer) {
+    if (!peer.interface.empty() || (peer.peers.empty() && !peer.multicast)) return;
+    findings_.error(peer.where,
+                    in_quotes(peer.name) + " is to look for peers of other hosts, but speaks on " +
+                        "127.0.0.1 alone",
+                    "name its network interface: interface=\"...\"");
   }
 
   void check_isolation(const CspProfile& csp) {

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "component_cache.hpp"
 #include "dictionary_reader.hpp"
 #include "head_reader.hpp"
 #include "rules_reader.hpp"
+#include "skein/core/error.hpp"
+#include "skein/dds/allowed_sources.hpp"
 #include "skein/profile/mission_profile.hpp"
 #include "text_file.hpp"
 #include "thread_rules_reader.hpp"
@@ -16,6 +19,7 @@ namespace {
 
 constexpr int kLargestDomain = 232;
 constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMostHosts = 64;
 
 /// What a peer has unless it says otherwise.
 struct Defaults {
@@ -23,7 +27,10 @@ struct Defaults {
   std::string system;
   std::string host;
   std::string interface;
+  std::vector<std::string> peers;
+  bool multicast = false;
   std::string plugin;
+  std::vector<std::string> allowed_sources;
 };
 
 class MissionReader {
@@ -40,7 +47,8 @@ class MissionReader {
                       "its outermost element is <mission name=\"...\">");
       return mission;
     }
-    root.allow({"name", "domain", "dictionary", "vendor", "system", "host", "interface", "plugin"},
+    root.allow({"name", "domain", "dictionary", "vendor", "system", "host", "interface", "peers",
+                "multicast", "plugin", "allowed_sources"},
                {"peer"});
     mission.name = root.attribute("name").value;
     mission.domain = domain_of(root);
@@ -109,10 +117,55 @@ class MissionReader {
     return false;
   }
 
+  std::vector<std::string> allowed_sources_of(const XmlElement& element,
+                                              const std::vector<std::string>& fallback) {
+    const auto attribute = element.maybe_attribute("allowed_sources");
+    if (!attribute) return fallback;
+    std::vector<std::string> sources;
+    std::istringstream words(attribute->value);
+    for (std::string word; words >> word;) sources.push_back(word);
+    try {
+      if (sources.empty()) throw InvalidArgument("allowed_sources names none");
+      (void)dds::AllowedSources(sources);
+    } catch (const InvalidArgument& error) {
+      findings_.error(attribute->where, error.what(),
+                      "separate several by spaces; without the attribute all are allowed");
+    }
+    return sources;
+  }
+
   Defaults defaults_of(const XmlElement& element, const Defaults& outer) {
-    return {vendor_of(element, outer.vendor), value_or(element, "system", outer.system),
-            value_or(element, "host", outer.host), value_or(element, "interface", outer.interface),
-            value_or(element, "plugin", outer.plugin)};
+    return {vendor_of(element, outer.vendor),
+            value_or(element, "system", outer.system),
+            value_or(element, "host", outer.host),
+            value_or(element, "interface", outer.interface),
+            hosts_of(element, outer.peers),
+            read_boolean(element, "multicast", outer.multicast),
+            value_or(element, "plugin", outer.plugin),
+            allowed_sources_of(element, outer.allowed_sources)};
+  }
+
+  /// Names or addresses, separated by blanks or commas.
+  std::vector<std::string> hosts_of(const XmlElement& element, std::vector<std::string> fallback) {
+    const auto list = element.maybe_attribute("peers");
+    if (!list) return fallback;
+    std::vector<std::string> hosts;
+    for (std::string_view rest = list->value; !(rest = trimmed(rest)).empty();) {
+      const std::size_t end = std::min(rest.find_first_of(", \t\r\n"), rest.size());
+      hosts.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      const bool plain = !hosts.back().empty() &&
+                         std::all_of(hosts.back().begin(), hosts.back().end(), [](char c) {
+                           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                                  (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+                         });
+      if (plain && hosts.size() <= kMostHosts) continue;
+      findings_.error(list->where, "peers is " + in_quotes(list->value) + ", no list of hosts",
+                      "write names or addresses, as in \"10.0.0.2 10.0.0.3\", at most " +
+                          std::to_string(kMostHosts));
+      return {};
+    }
+    return hosts;
   }
 
   /// Names become parts of topics, partitions, log lines and command lines.
@@ -143,6 +196,9 @@ class MissionReader {
                    "system",
                    "host",
                    "interface",
+                   "peers",
+                   "multicast",
+                   "allowed_sources",
                    "shared_memory",
                    "plugin",
                    "role",
@@ -183,6 +239,9 @@ class MissionReader {
     peer.system = std::move(values.system);
     peer.host = std::move(values.host);
     peer.interface = std::move(values.interface);
+    peer.peers = std::move(values.peers);
+    peer.multicast = values.multicast;
+    peer.allowed_sources = std::move(values.allowed_sources);
     peer.shared_memory = shared_memory_of(element, peer.vendor, false);
     peer.plugin = std::move(values.plugin);
     peer.runs_mission = runs_mission(element);

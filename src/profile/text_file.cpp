@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "../core/file_descriptor.hpp"
 #include "skein/profile/finding.hpp"
 
 namespace skein::profile {
@@ -19,27 +20,16 @@ namespace {
 
 std::string reason() { return std::generic_category().message(errno); }
 
-class OpenFile {
- public:
-  // O_NONBLOCK: opening a named pipe must not wait for somebody to write.
-  explicit OpenFile(const std::filesystem::path& file)
-      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  int get() const noexcept { return descriptor_; }
-
- private:
-  int descriptor_;
-};
+// O_NONBLOCK: opening a named pipe must not wait for somebody to write.
+FileDescriptor open_file(const std::filesystem::path& file) {
+  return FileDescriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+}
 
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file) {
-  const OpenFile input(file);
-  if (input.get() < 0) refuse(file, "cannot be opened: " + reason(), "check the path");
+  const FileDescriptor input = open_file(file);
+  if (!input) refuse(file, "cannot be opened: " + reason(), "check the path");
   struct stat status {};
   if (::fstat(input.get(), &status) != 0) refuse(file, "cannot be examined: " + reason());
   if (S_ISDIR(status.st_mode)) refuse(file, "is a directory", "name a file in it");

@@ -59,8 +59,8 @@ std::shared_ptr<CallJournal> CallJournal::open(dds::Participant& participant, Ex
   listener.on_matched = [weak = std::weak_ptr(journal)](const Guid&, bool matched) {
     if (const auto self = weak.lock()) self->on_reader(matched);
   };
-  std::shared_ptr<dds::Writer> writer =
-      participant.create_writer(kTopic, qos(), std::move(listener));
+  auto writer = SharedWriters::share(participant.create_writer(kTopic, qos(), std::move(listener)),
+                                     journal->writers_.hold());
   std::lock_guard lock(journal->mutex_);
   journal->writer_ = std::move(writer);
   return journal;
@@ -68,10 +68,15 @@ std::shared_ptr<CallJournal> CallJournal::open(dds::Participant& participant, Ex
 
 void CallJournal::close() {
   std::shared_ptr<dds::Writer> writer;  // goes outside the lock, which its listener takes
-  std::lock_guard lock(mutex_);
-  on_ = false;
-  readers_ = 0;
-  writer.swap(writer_);
+  {
+    std::lock_guard lock(mutex_);
+    if (!writer_) return;
+    on_ = false;
+    readers_ = 0;
+    writer.swap(writer_);
+  }
+  writer.reset();
+  writers_.await_end();
 }
 
 void CallJournal::on_reader(bool matched) {
@@ -146,15 +151,18 @@ void CallJournal::write_all() {
 CallJournalReader::CallJournalReader(dds::Participant& participant,
                                      std::function<void(const CallEvent&)> consumer) {
   dds::ReaderListener listener;
-  listener.on_data = [consumer = std::move(consumer)](dds::Reader& reader) {
+  listener.on_data = [consumer = std::move(consumer), &refused = refused_](dds::Reader& reader) {
     reader.take([&](const dds::Sample& sample) {
       if (sample.state != dds::InstanceState::Alive) return;
       CallEvent event;
       try {
         event = idl::decode_message<CallEvent>(sample.cdr);
       } catch (const std::exception& error) {
+        if (++refused > 1) return;
         log(LogLevel::Warning, kTopic.name,
-            std::string("dropped a malformed sample: ") + error.what());
+            "dropped a malformed sample of participant " +
+                sample.writer.participant().hex().substr(0, 24) + ": " + error.what() +
+                "; further ones are counted and not logged");
         return;
       }
       consumer(event);

@@ -1,7 +1,6 @@
 #include "skein/rpc/dds_channel.hpp"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "common.hpp"
@@ -34,11 +33,13 @@ void DdsChannel::State::fail_all(MakeError make_error) {
 
 void DdsChannel::State::create_endpoints() {
   dds::WriterListener listener;
-  listener.on_matched = [state = weak_from_this()](const Guid&, bool matched) {
-    if (const auto self = state.lock()) self->on_server(matched);
+  listener.on_matched = [state = weak_from_this()](const Guid& reader, bool matched) {
+    if (const auto self = state.lock()) self->on_server(reader, matched);
   };
-  auto writer = participant.create_writer(address.request_topic(), call_qos(address.partitions()),
-                                          std::move(listener));
+  auto writer = SharedWriters::share(
+      participant.create_writer(address.request_topic(), call_qos(address.partitions()),
+                                std::move(listener)),
+      writers.hold());
   {
     std::lock_guard lock(mutex);
     client = writer->guid();
@@ -69,10 +70,11 @@ void DdsChannel::State::await_open() {
           std::to_string(
               std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count()) +
           " ms" +
-          (matched_servers == 0 ? ": no provider's endpoint was found on this domain"
-                                : ": its endpoint was found, but it does not reply"));
+          (servers.empty() ? ": no provider's endpoint was found on this domain"
+                           : ": its endpoint was found, but it does not reply") +
+          what_came_malformed());
     }
-    greeted = matched_servers;
+    greeted = servers.size();
     lock.unlock();
     if (options.stands && !options.stands()) {
       throw Unavailable(options.peer + " left while it was being connected");
@@ -80,7 +82,7 @@ void DdsChannel::State::await_open() {
     if (greeted > 0) send_open();
     lock.lock();
     changed.wait_for(lock, greeted > 0 ? interval : kLastOpenInterval, [&] {
-      return phase != Phase::Opening || refusal || matched_servers != greeted;
+      return phase != Phase::Opening || refusal || servers.size() != greeted;
     });
     if (greeted > 0) interval = std::min(2 * interval, kLastOpenInterval);
   }
@@ -99,11 +101,17 @@ void DdsChannel::State::send_open() {
   requests->write(message);
 }
 
-void DdsChannel::State::on_server(bool matched) {
+// Others may read a provider's requests, too: they are not it, and their end is not its end.
+void DdsChannel::State::on_server(const Guid& reader, bool matched) {
+  if (!options.participant.is_nil() && reader.participant() != options.participant) return;
   std::unique_lock lock(mutex);
-  matched_servers += matched ? 1 : -1;
+  if (matched) {
+    servers.push_back(reader);
+  } else {
+    std::erase(servers, reader);
+  }
   changed.notify_all();
-  if (matched || matched_servers > 0 || phase != Phase::Open) return;
+  if (matched || !servers.empty() || phase != Phase::Open) return;
   lock.unlock();
   lose("it left, or it was not heard of for longer than its lease");
 }
@@ -143,13 +151,8 @@ void DdsChannel::State::close() {
     return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
                                              " was closed during " + std::string(operation.name)));
   });
-  await_senders(writer);
-}
-
-// A thread that is inside write() lets go of the writer soon, and none can take hold of it any
-// more.
-void DdsChannel::State::await_senders(const std::shared_ptr<dds::Writer>& writer) {
-  while (writer.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  writer.reset();
+  writers.await_end();
 }
 
 std::shared_ptr<DdsChannel> DdsChannel::open(dds::Participant& participant, Executor& control,
@@ -194,6 +197,11 @@ std::size_t DdsChannel::pending() const {
 std::uint64_t DdsChannel::malformed() const {
   std::lock_guard lock(state_->mutex);
   return state_->malformed;
+}
+
+std::uint64_t DdsChannel::forged() const {
+  std::lock_guard lock(state_->mutex);
+  return state_->forged;
 }
 
 }  // namespace skein::rpc

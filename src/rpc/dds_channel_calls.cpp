@@ -116,11 +116,15 @@ std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Kee
 
 void DdsChannel::State::expire(std::uint64_t number) {
   const auto call = remove(number);
-  if (!call) return;
-  auto error = std::make_exception_ptr(TimedOut(options.peer + " did not answer " +
-                                                std::string(call->operation().name) +
-                                                " before its deadline; whether it ran is unknown"));
-  if (!call->claim()) return;
+  if (!call || !call->claim()) return;
+  std::string hint;
+  {
+    std::lock_guard lock(mutex);
+    hint = what_came_malformed();
+  }
+  auto error = std::make_exception_ptr(
+      TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
+               " before its deadline; whether it ran is unknown" + hint));
   note_end(number, call->operation(), error);
   call->finish(std::move(error));
   tell_server(number);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "dds_channel_state.hpp"
 #include "reply_reading.hpp"
 #include "skein/core/error.hpp"
@@ -7,6 +9,7 @@ namespace skein::rpc {
 
 void DdsChannel::State::on_sample(const dds::Sample& sample) {
   if (sample.state != dds::InstanceState::Alive) return;
+  if (!is_provider(sample.writer)) return note_forged(sample.writer);
   try {
     const wire::ReplyHead head = wire::read_reply_head(sample.cdr);
     if (head.related.client != client) return;
@@ -18,8 +21,38 @@ void DdsChannel::State::on_sample(const dds::Sample& sample) {
       on_reply(sample.cdr, head);
     }
   } catch (const std::exception& error) {
-    note_malformed(error.what());
+    on_unreadable(sample.cdr, error);
   }
+}
+
+// Whoever knows a client's GUID can write to its reader.
+bool DdsChannel::State::is_provider(const Guid& writer) const {
+  const Guid participant = writer.participant();
+  if (!options.participant.is_nil()) return participant == options.participant;
+  std::lock_guard lock(mutex);
+  return std::any_of(servers.begin(), servers.end(),
+                     [&](const Guid& reader) { return reader.participant() == participant; });
+}
+
+void DdsChannel::State::note_forged(const Guid& writer) {
+  std::lock_guard lock(mutex);
+  if (++forged > 1) return;
+  log(LogLevel::Warning, address.service,
+      "refused a reply in the name of " + options.peer + ": participant " +
+          writer.participant().hex() + ", which is not the provider, wrote it");
+}
+
+// A reply of which no more can be read than whose call it answers ends that call all the same.
+void DdsChannel::State::on_unreadable(std::span<const std::byte> message,
+                                      const std::exception& why) {
+  const auto related = wire::read_request_id(message);
+  const auto call = related && related->client == client ? remove(related->number) : nullptr;
+  if (!call) return note_malformed(why.what());
+  auto error = unreadable(call->operation(), why);
+  if (!call->claim()) return;
+  note_end(related->number, call->operation(), error);
+  call->finish(std::move(error));
+  if (call->operation().stream) tell_server(related->number);
 }
 
 void DdsChannel::State::on_reply(std::span<const std::byte> message, const wire::ReplyHead& head) {
@@ -35,17 +68,31 @@ void DdsChannel::State::on_reply(std::span<const std::byte> message, const wire:
 
 void DdsChannel::State::note_malformed(const std::string& why) {
   std::lock_guard lock(mutex);
-  if (++malformed == 1) {
-    log(LogLevel::Warning, address.service, "malformed reply from " + options.peer + ": " + why);
-  }
+  if (++malformed > 1) return;
+  first_malformed = why;
+  log(LogLevel::Warning, address.service, "malformed reply from " + options.peer + ": " + why);
+}
+
+// For who waited in vain; under the lock.
+std::string DdsChannel::State::what_came_malformed() const {
+  const std::uint64_t headless = replies ? replies->malformed() : 0;
+  if (malformed + headless == 0) return {};
+  return "; " + std::to_string(malformed + headless) +
+         " malformed replies came on this connection, the first: " +
+         (malformed > 0 ? first_malformed : "no PLAIN_CDR encapsulation header") +
+         ". The network damages packets, or the two sides were built from different IDL";
 }
 
 void DdsChannel::State::on_opened(std::span<const std::byte> message, const wire::ReplyHead& head) {
   std::exception_ptr refused;
   // A server that is not built with Skein does not know `open`; that it says so proves it ready.
-  const bool known = head.exception != wire::RemoteException::Ok &&
-                     head.exception != wire::RemoteException::UnknownOperation;
-  if (known) refused = error_in(message, head, "open", options.peer);
+  // One that is refuses with a trailer.
+  const bool unknown = head.exception == wire::RemoteException::UnknownOperation ||
+                       (head.exception == wire::RemoteException::Unsupported &&
+                        !wire::read_reply_trailer(message, head.result + 1));
+  if (head.exception != wire::RemoteException::Ok && !unknown) {
+    refused = error_in(message, head, "open", options.peer);
+  }
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Opening) {
@@ -82,9 +129,10 @@ void DdsChannel::State::complete(PendingCall& call, std::span<const std::byte> m
 std::exception_ptr DdsChannel::State::unreadable(const OperationInfo& operation,
                                                  const std::exception& malformed) {
   note_malformed(malformed.what());
-  return std::make_exception_ptr(Internal(options.peer + " answered " +
-                                          std::string(operation.name) +
-                                          " with what cannot be read: " + malformed.what()));
+  return std::make_exception_ptr(
+      Internal(options.peer + " answered " + std::string(operation.name) +
+               " with what cannot be read: " + malformed.what() +
+               "; the network damaged it, or the two sides were built from different IDL"));
 }
 
 // What is wrong with a stream ends it, here and at the server.

@@ -10,6 +10,7 @@
 #include "skein/core/call_memory.hpp"
 #include "skein/core/stream.hpp"
 #include "skein/rpc/dds_channel.hpp"
+#include "skein/rpc/shared_writers.hpp"
 #include "skein/rpc/wire.hpp"
 
 namespace skein::rpc {
@@ -46,13 +47,16 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   Phase phase = Phase::Opening;
   std::string lost_how;
   std::exception_ptr refusal;
-  std::size_t matched_servers = 0;
+  std::vector<Guid> servers;  // their request readers
   std::uint64_t last_number = 0;
   std::uint64_t malformed = 0;
+  std::uint64_t forged = 0;
+  std::string first_malformed;  // what was wrong with it
   Entries entries{&call_memory()};
   TimerId timer = 0;  // one for all calls: steady calls come and go without it
   Instant timer_due = Instant::max();
   Guid client;
+  SharedWriters writers;
   std::shared_ptr<dds::Writer> requests;
   std::shared_ptr<dds::Reader> replies;
   std::shared_ptr<void> companion;
@@ -63,10 +67,14 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void send_open();
 
   // ---- on the vendor's threads
-  void on_server(bool matched);
+  void on_server(const Guid& reader, bool matched);
   void on_sample(const dds::Sample& sample);
+  bool is_provider(const Guid& writer) const;
+  void note_forged(const Guid& writer);
+  void on_unreadable(std::span<const std::byte> message, const std::exception& why);
   void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head);
   void note_malformed(const std::string& why);
+  std::string what_came_malformed() const;
   void on_opened(std::span<const std::byte> message, const wire::ReplyHead& head);
   void dismissed(const std::string& how);
   void complete(PendingCall& call, std::span<const std::byte> message, const wire::ReplyHead& head);
@@ -95,7 +103,6 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   // ---- ending
   void lose(const std::string& how);
   void close();
-  static void await_senders(const std::shared_ptr<dds::Writer>& writer);
   template <class MakeError>
   void fail_all(MakeError make_error);
 };

@@ -1,6 +1,7 @@
 #include "skein/rpc/dds_server.hpp"
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "common.hpp"
@@ -19,6 +20,15 @@ dds::Topic topic_of(const std::string& service, const char* suffix) {
   return {name + suffix, type + suffix, false};
 }
 
+bool is_reserved(std::uint32_t operation) {
+  return operation == wire::kOpen || operation == wire::kCancel || operation == wire::kCredit;
+}
+
+std::string unreadable(const std::string& what, const std::exception& why) {
+  return what + " cannot be read: " + why.what() +
+         "; the network damaged it, or the two sides were built from different IDL";
+}
+
 }  // namespace
 
 dds::Topic DdsAddress::request_topic() const { return topic_of(service, "_Request"); }
@@ -34,15 +44,9 @@ void DdsServer::State::on_sample(const dds::Sample& sample) {
   try {
     head = wire::read_request_head(sample.cdr);
   } catch (const Error& error) {
-    return drop_malformed(error.what());
+    return on_unreadable(sample, error);
   }
-  try {
-    on_request(sample, head);
-  } catch (const Error& error) {
-    refuse(head.id, error.code(), error.what());
-  } catch (const std::exception& error) {
-    refuse(head.id, ErrorCode::Internal, error.what());
-  }
+  on_request(sample, head);
 }
 
 void DdsServer::State::drop_malformed(const std::string& why) {
@@ -52,11 +56,50 @@ void DdsServer::State::drop_malformed(const std::string& why) {
   }
 }
 
-// A Skein client's identity is that of its request writer: nobody speaks for another.
-bool DdsServer::State::is_impostor(const dds::Sample& sample, const wire::RequestHead& head) {
-  if (sample.writer == head.id.client) return false;
+void DdsServer::State::drop_impostor() {
   drop_malformed("it is in the name of a client that did not send it");
-  return true;
+}
+
+// A client whose request was damaged hears so, where it can be seen which one that was.
+void DdsServer::State::on_unreadable(const dds::Sample& sample, const Error& why) {
+  drop_malformed(why.what());
+  const auto id = wire::read_request_id(sample.cdr);
+  if (!id || id->client != sample.writer) return;
+  std::shared_ptr<Client> client;
+  {
+    std::lock_guard lock(mutex);
+    const auto found = clients.find(id->client);
+    if (found == clients.end()) return;
+    client = found->second;
+  }
+  refuse(client, *id, ErrorCode::InvalidArgument, unreadable("a request", why));
+}
+
+// Who is to be answered; nobody where the request is not to be executed. A Skein client's identity
+// is that of its request writer: nobody speaks for another. That is known before its arguments are
+// decoded, which may cost much.
+std::shared_ptr<DdsServer::State::Client> DdsServer::State::sender_of(
+    const dds::Sample& sample, const wire::RequestHead& head) {
+  const bool own_name = sample.writer == head.id.client;
+  bool known;
+  {
+    std::lock_guard lock(mutex);
+    const auto found = clients.find(head.id.client);
+    known = found != clients.end();
+    if (own_name && known && !found->second->refusal) return found->second;
+  }
+  const bool skein_client = known || wire::ends_with_trailer(sample.cdr);
+  if (!own_name && (skein_client || !foreign)) {
+    drop_impostor();
+    return nullptr;
+  }
+  if (!skein_client && foreign) return foreign;
+  {
+    std::lock_guard lock(mutex);
+    ++counters.unconnected;
+  }
+  if (skein_client) announce({head.id});
+  return nullptr;
 }
 
 void DdsServer::State::on_request(const dds::Sample& sample, const wire::RequestHead& head) {
@@ -65,22 +108,41 @@ void DdsServer::State::on_request(const dds::Sample& sample, const wire::Request
     std::lock_guard lock(mutex);
     ++counters.received;
   }
-  const auto message = sample.cdr;
-  const OperationInfo* operation = service->interface_info().find_operation(head.operation);
-  if (!operation) return on_reserved(sample, head);
+  if (is_reserved(head.operation) && wire::ends_with_trailer(sample.cdr)) {
+    return on_reserved(sample, head);
+  }
+  const auto client = sender_of(sample, head);
+  if (!client) return;
+  try {
+    accept(sample, head, arrived, client);
+  } catch (const Error& error) {
+    refuse(client, head.id, error.code(), error.what());
+  } catch (const std::exception& error) {
+    refuse(client, head.id, ErrorCode::Internal, error.what());
+  }
+}
 
+void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead& head,
+                              Instant arrived, const std::shared_ptr<Client>& client) {
+  const OperationInfo* operation = service->interface_info().find_operation(head.operation);
+  if (!operation) {
+    throw Unimplemented(address.service + " has no operation with hash " +
+                        std::to_string(head.operation));
+  }
   auto invocation = make_shared_in_call_memory<Request>();
   invocation->operation = operation;
   invocation->in = {operation->in->make(), operation->in->destroy};
-  const std::size_t end = operation->in->decode(invocation->in.get(), message, head.body);
-  auto trailer = wire::read_request_trailer(message, end);
-  if (trailer && is_impostor(sample, head)) return;
+  std::optional<wire::RequestTrailer> trailer;
+  try {
+    const std::size_t end = operation->in->decode(invocation->in.get(), sample.cdr, head.body);
+    trailer = wire::read_request_trailer(sample.cdr, end);
+    if (trailer.has_value() != (client != foreign)) throw InvalidArgument("its end is damaged");
+  } catch (const InvalidArgument& error) {
+    throw InvalidArgument(unreadable("the request of " + std::string(operation->name), error));
+  }
   invocation->caller = head.id.client;
-  invocation->connection = head.id.client;
+  invocation->connection = sample.writer;
   invocation->number = head.id.number;
-
-  const auto client = client_of(head.id, trailer.has_value());
-  if (!client) return;
   invocation->deadline =
       arrived + (trailer ? remaining(*client, *trailer, arrived) : options.default_deadline);
   if (trailer) invocation->chain = std::move(trailer->chain);
@@ -96,6 +158,11 @@ void DdsServer::State::on_request(const dds::Sample& sample, const wire::Request
   };
   {
     std::lock_guard lock(mutex);
+    // A client that has left since is not there to be cancelled: drop() has looked at `active`.
+    if (!is_known(head.id.client, client)) {
+      ++counters.unconnected;
+      return;
+    }
     active.emplace(head.id, invocation);
   }
   if (options.on_load) options.on_load();
@@ -114,28 +181,33 @@ std::shared_ptr<OutgoingStream> DdsServer::State::make_stream(const std::shared_
   const OperationInfo& operation = *invocation.operation;
   return std::make_shared<OutgoingStream>(
       operation, clock, invocation.deadline, credit,
-      [state = weak_from_this(), client, id, &operation](const void* out, std::uint64_t position) {
-        if (const auto self = state.lock()) self->send_item(*client, id, operation, out, position);
+      [state = weak_from_this(), client, id, &operation, deadline = invocation.deadline](
+          const void* out, std::uint64_t position) {
+        const auto self = state.lock();
+        if (self) self->send_item(client, id, operation, out, position, deadline);
       });
 }
 
 void DdsServer::State::on_reserved(const dds::Sample& sample, const wire::RequestHead& head) {
-  auto trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
-  if (trailer && is_impostor(sample, head)) return;
-  if (trailer && head.operation == wire::kOpen) {
-    TransitDelay transit;
-    if (trailer->sent != Duration::zero()) transit.excess(trailer->sent, clock.now());
-    control.post([state = weak_from_this(), id = head.id, strategy = trailer->strategy, transit] {
-      if (const auto self = state.lock()) self->open(id, strategy, transit);
-    });
-  } else if (trailer && head.operation == wire::kCancel) {
-    if (const auto call = find_active({head.id.client, trailer->target})) call->cancel();
-  } else if (trailer && head.operation == wire::kCredit) {
-    const auto call = find_active({head.id.client, trailer->target});
-    if (call && call->stream) call->stream->grant(trailer->credit);
-  } else {
-    refuse(head.id, ErrorCode::Unimplemented,
-           address.service + " has no operation with hash " + std::to_string(head.operation));
+  if (sample.writer != head.id.client) return drop_impostor();
+  std::optional<wire::RequestTrailer> trailer;
+  try {
+    trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
+  } catch (const Error& error) {
+    return drop_malformed(error.what());
+  }
+  if (!trailer) return drop_malformed("its end is damaged");
+  if (head.operation == wire::kOpen) {
+    Newcomer newcomer{head.id, true, std::move(trailer->strategy), {}};
+    if (trailer->sent != Duration::zero()) newcomer.transit.excess(trailer->sent, clock.now());
+    return announce(std::move(newcomer));
+  }
+  const auto call = find_active({head.id.client, trailer->target});
+  if (!call) return;
+  if (head.operation == wire::kCancel) {
+    call->cancel();
+  } else if (call->stream) {
+    call->stream->grant(trailer->credit);
   }
 }
 
@@ -143,22 +215,6 @@ std::shared_ptr<Invocation> DdsServer::State::find_active(const RequestId& id) c
   std::lock_guard lock(mutex);
   const auto call = active.find(id);
   return call == active.end() ? nullptr : call->second;
-}
-
-std::shared_ptr<DdsServer::State::Client> DdsServer::State::client_of(const RequestId& id,
-                                                                      bool skein_client) {
-  std::lock_guard lock(mutex);
-  if (!skein_client) {
-    if (!foreign) ++counters.unconnected;
-    return foreign;
-  }
-  const auto found = clients.find(id.client);
-  if (found != clients.end() && !found->second->refusal) return found->second;
-  ++counters.unconnected;
-  control.post([state = weak_from_this(), id] {
-    if (const auto self = state.lock()) self->dismiss(id);
-  });
-  return nullptr;
 }
 
 // Of the time that the caller gave, what is left after the way here. Where that is none, the
@@ -176,7 +232,9 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
   State& state = *state_;
   if (options.foreign_clients) {
     state.foreign = state.make_client();
-    state.foreign->writer = participant.create_writer(state.address.reply_topic(), call_qos({""}));
+    state.foreign->writer =
+        SharedWriters::share(participant.create_writer(state.address.reply_topic(), call_qos({""})),
+                             state.writers.hold());
   }
   std::vector<std::string> partitions = state.address.partitions();
   if (options.foreign_clients) partitions.push_back("");
@@ -194,15 +252,24 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 DdsServer::~DdsServer() {
   state_->requests.reset();
   state_->service->close();
-  // The writers end here, where their listeners can be waited for: a listener that still runs may
-  // be the last to let go of its client, and of the state.
-  std::vector<std::shared_ptr<dds::Writer>> writers;
-  std::unordered_map<Guid, std::shared_ptr<State::Client>> clients;
-  std::lock_guard lock(state_->mutex);
-  state_->closed = true;
-  clients.swap(state_->clients);
-  for (const auto& [key, client] : clients) writers.push_back(std::move(client->writer));
-  if (state_->foreign) writers.push_back(std::move(state_->foreign->writer));
+  std::vector<TimerId> timers;
+  {
+    // The writers end here, where their listeners can be waited for: a listener that still runs may
+    // be the last to let go of its client, and of the state.
+    std::vector<std::shared_ptr<dds::Writer>> writers;
+    std::unordered_map<Guid, std::shared_ptr<State::Client>> clients;
+    std::lock_guard lock(state_->mutex);
+    state_->closed = true;
+    clients.swap(state_->clients);
+    const auto end = [&](State::Client& client) {
+      writers.push_back(std::move(client.writer));
+      timers.insert(timers.end(), {client.patience, client.retry});
+    };
+    for (const auto& [key, client] : clients) end(*client);
+    if (state_->foreign) end(*state_->foreign);
+  }
+  for (const TimerId timer : timers) state_->clock.cancel(timer);
+  state_->writers.await_end();
 }
 
 DdsServer::Counters DdsServer::counters() const {

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include "common.hpp"
 #include "dds_server_state.hpp"
 #include "reply_encoding.hpp"
@@ -9,8 +13,9 @@ namespace {
 
 // How long an opened client may take to match its reply reader before it is forgotten.
 constexpr std::chrono::seconds kOpenPatience{10};
-// How many clients that have gone are remembered, in case that one of them comes back.
-constexpr std::size_t kMaxForgotten = 1024;
+// How many clients beyond its share are told so: of each peer, and in all.
+constexpr std::size_t kRefusedOfPeer = 16;
+constexpr std::size_t kRefused = 128;
 
 }  // namespace
 
@@ -22,26 +27,102 @@ std::shared_ptr<DdsServer::State::Client> DdsServer::State::make_client() {
           }};
 }
 
-void DdsServer::State::open(const RequestId& id, const std::string& strategy,
-                            const TransitDelay& transit) {
+// Clients are looked at one a task, so that what else waits for `control` has its turn, too. What
+// is not taken here is repeated by who sent it.
+void DdsServer::State::announce(Newcomer newcomer) {
+  const Guid client = newcomer.id.client;
+  {
+    std::lock_guard lock(mutex);
+    if (!newcomers.push(std::move(newcomer))) {
+      turn_away(client);
+      return;
+    }
+    if (std::exchange(admitting, true)) return;
+  }
+  admit_later();
+}
+
+void DdsServer::State::admit_later() {
+  const bool posted = control.post([state = weak_from_this()] {
+    if (const auto self = state.lock()) self->admit_next();
+  });
+  if (posted) return;
+  std::lock_guard lock(mutex);
+  admitting = false;
+}
+
+void DdsServer::State::admit_next() {
+  std::optional<Newcomer> next;
+  {
+    std::lock_guard lock(mutex);
+    next = newcomers.pop();
+    if (!next) {
+      admitting = false;
+      return;
+    }
+  }
+  if (next->opens) {
+    open(*next);
+  } else {
+    dismiss(next->id);
+  }
+  admit_later();
+}
+
+void DdsServer::State::open(const Newcomer& newcomer) {
+  const RequestId& id = newcomer.id;
+  bool room;
   {
     std::lock_guard lock(mutex);
     if (const auto found = clients.find(id.client); found != clients.end()) {
       found->second->open = id;
       if (!found->second->matched) return;
     }
+    room = has_room(id.client, 0, 0);
   }
   if (answer_open(id.client)) return;
 
   auto client = make_client();
   client->open = id;
-  client->transit = transit;
+  client->transit = newcomer.transit;
   try {
-    client->session = service->open({id.client, strategy});
+    if (!room) {
+      throw Overloaded("this client's process has its share of sessions already (at most " +
+                       std::to_string(kMostClientsOfPeer) + " of " + std::to_string(kMostClients) +
+                       "); close connections that are not needed");
+    }
+    client->session = service->open({id.client, newcomer.strategy});
   } catch (...) {
     client->refusal = std::current_exception();
   }
+  if (!room) {
+    std::lock_guard lock(mutex);
+    turn_away(id.client);
+    if (!has_room(id.client, kRefusedOfPeer, kRefused)) return;
+  }
   admit(id, client);
+}
+
+// Under the lock: whether one more client of that peer is within the limits, or so many beyond.
+bool DdsServer::State::has_room(const Guid& client, std::size_t beyond_of_peer,
+                                std::size_t beyond) const {
+  const Guid peer = client.participant();
+  const auto of_peer =
+      static_cast<std::size_t>(std::count_if(clients.begin(), clients.end(), [&](const auto& each) {
+        return each.first.participant() == peer;
+      }));
+  const std::size_t most = kMostClients + beyond;
+  const std::size_t left = most - std::min(most, clients.size());
+  return of_peer < std::min(kMostClientsOfPeer + beyond_of_peer, left);
+}
+
+// Under the lock.
+void DdsServer::State::turn_away(const Guid& client) {
+  if (++counters.turned_away > 1) return;
+  log(LogLevel::Warning, address.service,
+      "participant " + client.participant().hex() +
+          " opens more sessions than its share (at most " + std::to_string(kMostClientsOfPeer) +
+          " of " + std::to_string(kMostClients) + "); what is beyond it is refused");
 }
 
 // This side forgot the client (it was stopped, or cut off), and the client did not notice: it
@@ -54,6 +135,10 @@ void DdsServer::State::dismiss(const RequestId& id) {
       found->second->open = id;
   }
   if (answer_open(id.client)) return;
+  {
+    std::lock_guard lock(mutex);
+    if (!has_room(id.client, kRefusedOfPeer, kRefused)) return turn_away(id.client);
+  }
   auto client = make_client();
   client->open = id;
   client->refusal = std::make_exception_ptr(
@@ -70,26 +155,35 @@ void DdsServer::State::admit(const RequestId& id, const std::shared_ptr<Client>&
     return drop(id.client);
   }
   answer_open(id.client);
-  clock.call_after(kOpenPatience, [state = weak_from_this(), key = id.client] {
-    if (const auto self = state.lock()) self->drop_unless_matched(key);
-  });
+  const TimerId patience =
+      clock.call_after(kOpenPatience, [state = weak_from_this(), key = id.client] {
+        if (const auto self = state.lock()) self->drop_unless_matched(key);
+      });
+  std::lock_guard lock(mutex);
+  client->patience = patience;
 }
 
 void DdsServer::State::make_reply_writer(const RequestId& id,
                                          const std::shared_ptr<Client>& client) {
+  SharedWriters::Hold hold;
   {
     std::lock_guard lock(mutex);
+    if (closed) return;
+    hold = writers.hold();
     clients.emplace(id.client, client);
   }
   dds::WriterListener listener;
   listener.on_matched = [state = weak_from_this(), key = id.client, weak = std::weak_ptr(client)](
-                            const Guid&, bool matched) {
+                            const Guid& reader, bool matched) {
+    if (reader.participant() != key.participant()) return;  // somebody who listens in
     const auto self = state.lock();
     const auto client = weak.lock();
     if (self && client) self->on_reply_reader(key, client, matched);
   };
-  auto writer = participant.create_writer(address.reply_topic(), call_qos({id.client.hex()}),
-                                          std::move(listener));
+  auto writer = SharedWriters::share(
+      participant.create_writer(address.reply_topic(), call_qos({id.client.hex()}),
+                                std::move(listener)),
+      std::move(hold));
   const std::lock_guard lock(mutex);
   if (!closed) client->writer = std::move(writer);
 }
@@ -114,7 +208,7 @@ bool DdsServer::State::answer_open(const Guid& key) {
   } catch (const std::exception& error) {
     encode_error(message, client->open, ErrorCode::Internal, error.what(), wire::kOpen);
   }
-  write(*client, message);
+  write(client, message, clock.now() + kOpenPatience);
   return true;
 }
 
@@ -137,6 +231,12 @@ void DdsServer::State::on_reply_reader(const Guid& key, const std::shared_ptr<Cl
 
 bool DdsServer::State::is_current(const Guid& key, const std::shared_ptr<Client>& client) const {
   std::lock_guard lock(mutex);
+  return is_known(key, client);
+}
+
+// Under the lock.
+bool DdsServer::State::is_known(const Guid& key, const std::shared_ptr<Client>& client) const {
+  if (client == foreign) return true;
   const auto found = clients.find(key);
   return found != clients.end() && found->second == client;
 }
@@ -147,10 +247,10 @@ void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
   {
     std::lock_guard lock(mutex);
     if (!matched) {
-      if (clients.contains(key)) remember_forgotten(key);
+      if (clients.contains(key)) forgotten.insert(key);
       return;
     }
-    if (forgotten.erase(key) == 0) return;
+    if (!forgotten.erase(key)) return;
   }
   control.post_or_run([state = weak_from_this(), key] {
     const auto self = state.lock();
@@ -158,11 +258,6 @@ void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
     self->drop(key);
     self->dismiss({key, 0});
   });
-}
-
-void DdsServer::State::remember_forgotten(const Guid& key) {
-  if (forgotten.size() >= kMaxForgotten) forgotten.erase(forgotten.begin());
-  forgotten.insert(key);
 }
 
 void DdsServer::State::drop_unless_matched(const Guid& key) {
@@ -181,16 +276,26 @@ void DdsServer::State::drop(const Guid& key) {
   std::shared_ptr<dds::Writer>
       writer;  // goes here, where its listener can be waited for, and unlocked
   std::shared_ptr<Client> client;
-  std::lock_guard lock(mutex);
-  const auto found = clients.find(key);
-  if (found == clients.end()) return;
-  client = std::move(found->second);
-  writer = std::move(client->writer);
-  clients.erase(found);
-  remember_forgotten(key);
-  for (const auto& [id, invocation] : active) {
-    if (id.client == key) invocation->cancel();
+  TimerId patience;
+  TimerId retry;
+  {
+    std::lock_guard lock(mutex);
+    const auto found = clients.find(key);
+    if (found == clients.end()) return;
+    client = std::move(found->second);
+    writer = std::move(client->writer);
+    patience = client->patience;
+    retry = client->retry;
+    clients.erase(found);
+    forgotten.insert(key);
+    discount_unsent(*client, client->unsent_size);
+    client->unsent.clear();
+    for (const auto& [id, invocation] : active) {
+      if (id.client == key) invocation->cancel();
+    }
   }
+  clock.cancel(patience);
+  clock.cancel(retry);
 }
 
 }  // namespace skein::rpc

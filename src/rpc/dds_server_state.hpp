@@ -4,20 +4,23 @@
 #include <deque>
 #include <memory>
 #include <mutex>
-#include <set>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
+#include "../core/recent_set.hpp"
+#include "newcomers.hpp"
 #include "skein/core/call_memory.hpp"
 #include "skein/rpc/dds_server.hpp"
+#include "skein/rpc/shared_writers.hpp"
 #include "skein/rpc/wire.hpp"
 #include "transit_delay.hpp"
 
 namespace skein::rpc {
 
 /// Requests come in on the vendor's thread (dds_server.cpp), clients come and go on `control`
-/// (dds_server_clients.cpp), replies leave from the service's executor and refusals from `control`
-/// (dds_server_replies.cpp).
+/// (dds_server_clients.cpp), replies leave from the service's executor, refusals and what found no
+/// room at first from `control` (dds_server_replies.cpp).
 struct DdsServer::State : std::enable_shared_from_this<State> {
   using RequestId = wire::RequestId;
 
@@ -34,17 +37,28 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     std::string text;
   };
 
+  /// A reply that waits for room in its client's writer.
+  struct Unsent {
+    Bytes message;
+    Instant deadline;
+  };
+
   struct Client {
     std::shared_ptr<dds::Writer> writer;  // under the server's mutex; nothing once the server ends
     std::shared_ptr<Session> session;
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
     bool matched = false;
-    std::atomic<bool> stalled{false};  // did not take a reply in time
+    std::atomic<bool> stalled{false};  // replies wait in `unsent`, or are about to
     // Under the server's mutex:
     TransitDelay transit;
+    TimerId patience = 0;
+    TimerId retry = 0;
     std::deque<Refusal> refusals;
     bool refusing = false;  // a task of `control` is about to write them
+    std::deque<Unsent> unsent;
+    std::size_t unsent_size = 0;
+    bool retrying = false;  // a task of `control` is about to send them
   };
 
   struct Request : Invocation {
@@ -72,49 +86,72 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   mutable std::mutex mutex;
   std::unordered_map<Guid, std::shared_ptr<Client>> clients;
   Active active{&call_memory()};
-  std::set<Guid> forgotten;  // clients whose sessions have ended
-  std::shared_ptr<Client> foreign;
+  /// Clients whose sessions have ended, in case that one of them comes back.
+  RecentSet<Guid> forgotten{1024};
+  std::shared_ptr<Client> foreign;  // fixed once requests come
+  Newcomers newcomers;
+  bool admitting = false;       // a task of `control` is about to look at them
+  std::size_t unsent_size = 0;  // of all clients
   Counters counters;
   bool closed = false;
+  SharedWriters writers;
   std::unique_ptr<dds::Reader> requests;  // last: goes first, and no listener runs after that
 
   std::shared_ptr<Client> make_client();
 
   // ---- on the vendor's thread
   void on_sample(const dds::Sample& sample);
+  void on_unreadable(const dds::Sample& sample, const Error& why);
   void drop_malformed(const std::string& why);
-  bool is_impostor(const dds::Sample& sample, const wire::RequestHead& head);
+  void drop_impostor();
+  std::shared_ptr<Client> sender_of(const dds::Sample& sample, const wire::RequestHead& head);
   void on_request(const dds::Sample& sample, const wire::RequestHead& head);
+  void accept(const dds::Sample& sample, const wire::RequestHead& head, Instant arrived,
+              const std::shared_ptr<Client>& client);
   std::shared_ptr<OutgoingStream> make_stream(const std::shared_ptr<Client>& client,
                                               const RequestId& id, const Invocation& invocation,
                                               std::uint32_t credit);
   void on_reserved(const dds::Sample& sample, const wire::RequestHead& head);
   std::shared_ptr<Invocation> find_active(const RequestId& id) const;
-  std::shared_ptr<Client> client_of(const RequestId& id, bool skein_client);
   Duration remaining(Client& client, const wire::RequestTrailer& trailer, Instant arrived);
-  void refuse(const RequestId& id, ErrorCode code, std::string text);
+  void refuse(const std::shared_ptr<Client>& client, const RequestId& id, ErrorCode code,
+              std::string text);
+  void announce(Newcomer newcomer);
 
   // ---- on the control executor
-  void write_refusals(Client& client);
-  void open(const RequestId& id, const std::string& strategy, const TransitDelay& transit);
+  void write_refusals(const std::shared_ptr<Client>& client);
+  void admit_later();
+  void admit_next();
+  void open(const Newcomer& newcomer);
   void dismiss(const RequestId& id);
+  bool has_room(const Guid& client, std::size_t beyond_of_peer, std::size_t beyond) const;
+  void turn_away(const Guid& client);
   void admit(const RequestId& id, const std::shared_ptr<Client>& client);
   void make_reply_writer(const RequestId& id, const std::shared_ptr<Client>& client);
   bool answer_open(const Guid& key);
   void on_reply_reader(const Guid& key, const std::shared_ptr<Client>& client, bool matched);
   bool is_current(const Guid& key, const std::shared_ptr<Client>& client) const;
+  bool is_known(const Guid& key, const std::shared_ptr<Client>& client) const;
   void on_request_writer(const Guid& key, bool matched);
-  void remember_forgotten(const Guid& key);
   void drop_unless_matched(const Guid& key);
   void drop(const Guid& key);
+  void send_unsent(const std::shared_ptr<Client>& client);
+  std::optional<Unsent> next_unsent(Client& client);
+  bool try_to_send(Client& client, const Unsent& reply, bool await_room);
+  void count_unsent(Client& client, std::size_t size);
+  void discount_unsent(Client& client, std::size_t size);
 
   // ---- on the service's executor
   void respond(Request& request, const void* out, const std::exception_ptr& error);
-  void send_item(Client& client, const RequestId& id, const OperationInfo& operation,
-                 const void* out, std::uint64_t position);
+  void send_item(const std::shared_ptr<Client>& client, const RequestId& id,
+                 const OperationInfo& operation, const void* out, std::uint64_t position,
+                 Instant deadline);
   void forget(const RequestId& id);
   std::shared_ptr<dds::Writer> writer_of(const Client& client) const;
-  bool write(Client& client, const Bytes& message);
+  bool write(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
+  bool keep_unsent(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
+  void retry_later(const std::shared_ptr<Client>& client);
+  void note_lost(std::uint64_t count, const std::string& why);
 };
 
 }  // namespace skein::rpc

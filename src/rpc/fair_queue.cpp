@@ -5,15 +5,6 @@
 #include "skein/rpc/service.hpp"
 
 namespace skein::rpc {
-namespace {
-
-template <class Lines>
-auto find_line(Lines& lines, const Guid& connection) {
-  return std::find_if(lines.begin(), lines.end(),
-                      [&](const auto& line) { return line.connection == connection; });
-}
-
-}  // namespace
 
 FairQueue::~FairQueue() {
   while (pop()) {
@@ -21,39 +12,38 @@ FairQueue::~FairQueue() {
 }
 
 bool FairQueue::has_room(const Guid& connection) const noexcept {
-  const auto line = find_line(lines_, connection);
-  return (line == lines_.end() ? 0 : line->size) < capacity_ - std::min(capacity_, size_);
+  const Peer* const peer =
+      peers_.find([&](const Peer& each) { return each.participant == connection.participant(); });
+  return (peer ? peer->size : 0) < capacity_ - std::min(capacity_, size_);
 }
 
 void FairQueue::push(std::shared_ptr<Invocation> invocation) {
   Invocation* const last = invocation.get();
-  const auto line = find_line(lines_, last->connection);
-  if (line == lines_.end()) {
-    // Behind all others: just before the one whose turn it is.
-    const auto position = lines_.begin() + static_cast<std::ptrdiff_t>(turn_);
-    lines_.insert(position, Line{last->connection, std::move(invocation), last, 1});
-    if (lines_.size() > 1) turn_ = (turn_ + 1) % lines_.size();
-  } else {
+  const Guid participant = last->connection.participant();
+  Peer* peer = peers_.find([&](const Peer& each) { return each.participant == participant; });
+  if (!peer) peer = &peers_.add({participant, {}});
+  Line* const line =
+      peer->lines.find([&](const Line& each) { return each.connection == last->connection; });
+  if (line) {
     line->last->next = std::move(invocation);
     line->last = last;
-    ++line->size;
+  } else {
+    peer->lines.add({last->connection, std::move(invocation), last});
   }
+  ++peer->size;
   ++size_;
 }
 
 std::shared_ptr<Invocation> FairQueue::pop() noexcept {
-  if (lines_.empty()) return nullptr;
-  Line& line = lines_[turn_];
+  if (peers_.empty()) return nullptr;
+  Peer& peer = peers_.present();
+  Line& line = peer.lines.present();
   auto invocation = std::move(line.first);
   line.first = std::move(invocation->next);
-  --line.size;
+  line.first ? peer.lines.pass() : peer.lines.remove();
+  --peer.size;
   --size_;
-  if (line.first) {
-    ++turn_;
-  } else {
-    lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(turn_));
-  }
-  if (turn_ >= lines_.size()) turn_ = 0;
+  peer.lines.empty() ? peers_.remove() : peers_.pass();
   return invocation;
 }
 

@@ -16,6 +16,9 @@ constexpr std::size_t kMaxChain = 64;
 constexpr std::chrono::hours kMaxRemaining{24 * 365};
 constexpr std::chrono::hours kMaxSent{24 * 365 * 100};  // so that differences can be computed
 constexpr std::size_t kMaxText = 64 * 1024;
+constexpr std::size_t kMaxStrategy = 256;
+constexpr std::size_t kMaxTrailer = kMaxText + 4096;
+constexpr std::size_t kIdEnd = kOrigin + 24;
 
 template <class T>
 void put(Bytes& message, T value) {
@@ -175,6 +178,29 @@ void append_trailer(Bytes& message, const ReplyTrailer& trailer) {
   });
 }
 
+std::optional<RequestId> read_request_id(std::span<const std::byte> message) noexcept {
+  if (message.size() < kIdEnd || message[0] != std::byte{0} || message[1] > std::byte{1}) {
+    return std::nullopt;
+  }
+  Cursor cursor(message, kOrigin, is_big_endian(message));
+  return cursor.request_id();
+}
+
+bool ends_with_trailer(std::span<const std::byte> message) noexcept {
+  constexpr std::size_t kFrame = 8;    // magic and length
+  constexpr std::size_t kPadding = 3;  // some vendors pass on what RTPS padded
+  if (message.size() < kOrigin + kFrame) return false;
+  const std::size_t first = message.size() - std::min(message.size() - kOrigin, kMaxTrailer);
+  for (std::size_t at = (message.size() - kFrame) & ~std::size_t{3}; at >= std::max(first, kOrigin);
+       at -= 4) {
+    std::uint32_t frame[2];
+    std::memcpy(frame, message.data() + at, sizeof frame);
+    const std::size_t rest = message.size() - at - kFrame;
+    if (frame[0] == kTrailerMagic && frame[1] <= rest && rest - frame[1] <= kPadding) return true;
+  }
+  return false;
+}
+
 RequestHead read_request_head(std::span<const std::byte> message) {
   Cursor cursor(message, 0, is_big_endian(message));
   cursor.bytes(kOrigin);
@@ -224,7 +250,7 @@ std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> me
                           std::to_string(kMaxChain));
   }
   for (std::uint32_t i = 0; i < count; ++i) trailer.chain.push_back(cursor->guid());
-  trailer.strategy = cursor->text(kMaxText);
+  trailer.strategy = cursor->text(kMaxStrategy);
   if (!cursor->at_end()) trailer.credit = cursor->get<std::uint32_t>();
   if (!cursor->at_end()) {
     trailer.sent = std::clamp<Duration>(std::chrono::nanoseconds(cursor->get<std::int64_t>()),

@@ -1,7 +1,3 @@
-#include <pthread.h>
-#include <signal.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -9,6 +5,7 @@
 #include "bench.hpp"
 #include "bench.idl.hpp"
 #include "harness/statistics.hpp"
+#include "interruption.hpp"
 #include "skein/core/error.hpp"
 #include "skein/entity/entity.hpp"
 
@@ -73,17 +70,12 @@ Rows measure_each_payload(const Arguments& arguments, const char* what, const Me
 }  // namespace
 
 void serve(const Arguments& arguments) {
-  sigset_t ending;
-  sigemptyset(&ending);
-  sigaddset(&ending, SIGINT);
-  sigaddset(&ending, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &ending, nullptr);  // before the vendor makes threads
+  const Interruption interruption;
   const Side side = side_of(arguments, Role::Provider);
   if (side.lock_memory) lock_memory();
   Entity entity(side.entity);
   entity.provide<Mirror>(std::make_shared<MirrorBody>(), side.service);
-  int signal = 0;
-  sigwait(&ending, &signal);
+  interruption.wait(0);
 }
 
 Rows measure_latency(const Arguments& arguments) {

@@ -1,14 +1,17 @@
 #include <cstdio>
 #include <ctime>
-#include <thread>
 
 #include "commands.hpp"
+#include "interruption.hpp"
 #include "onlooker.hpp"
+#include "skein/core/printable.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/rpc/call_journal.hpp"
 
 namespace skein::command {
 namespace {
+
+constexpr std::size_t kLongestError = 4096;
 
 struct Arguments : Onlooker {
   double seconds = 0;
@@ -41,23 +44,22 @@ void print(const introspection::CallEvent& event) {
   std::strftime(time, sizeof time, "%H:%M:%S", &local);
   std::printf("%s.%06u %-8s %s %s.%s #%s:%llu%s%s\n", time,
               static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step),
-              event.entity.c_str(), event.service.c_str(), event.operation.c_str(),
-              Guid{event.client}.hex().c_str(), static_cast<unsigned long long>(event.number),
-              event.error.empty() ? "" : "  ", event.error.c_str());
+              printable(event.entity).c_str(), printable(event.service).c_str(),
+              printable(event.operation).c_str(), Guid{event.client}.hex().c_str(),
+              static_cast<unsigned long long>(event.number), event.error.empty() ? "" : "  ",
+              printable(event.error, kLongestError).c_str());
   if (event.dropped > 0) {
-    std::printf("  (%s has dropped %llu events)\n", event.entity.c_str(),
+    std::printf("  (%s has dropped %llu events)\n", printable(event.entity).c_str(),
                 static_cast<unsigned long long>(event.dropped));
   }
   std::fflush(stdout);
 }
 
 void watch(const Arguments& arguments) {
+  const Interruption interruption;
   Entity entity(arguments.entity_options("calls"));
   const rpc::CallJournalReader reader(entity.participant(), print);
-  do {
-    std::this_thread::sleep_for(
-        std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
-  } while (arguments.seconds <= 0);
+  interruption.wait(arguments.seconds);
 }
 
 }  // namespace

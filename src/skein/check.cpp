@@ -3,19 +3,46 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "skein/launch/machine_check.hpp"
 #include "skein/launch/supervisor.hpp"
 
 namespace skein::command {
 
+namespace {
+
+struct Arguments {
+  std::string profile;
+  std::string host;
+};
+
+std::vector<profile::Finding> findings_of(const Arguments& arguments) {
+  auto findings = profile::check_file(arguments.profile);
+  // Of a profile with gaps it cannot be said what it needs here.
+  if (profile::has_errors(findings)) return findings;
+  const auto mission = profile::read_mission_profile(arguments.profile);
+  for (const auto& more : {launch::check_machine(mission, arguments.host),
+                           launch::check_hosts(mission, arguments.host),
+                           launch::check_plugins(mission, arguments.host)}) {
+    findings.insert(findings.end(), more.begin(), more.end());
+  }
+  return findings;
+}
+
+}  // namespace
+
 void add_check(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("check", "Check a mission profile and all that it names");
-  auto profile = std::make_shared<std::string>();
-  command->add_option("PROFILE", *profile, "Mission profile (XML)")->required();
-  command->callback([profile, &result] {
-    const auto findings = skein::profile::check_file(*profile);
-    std::fputs(skein::profile::to_text(findings).c_str(), stderr);
-    const bool refused = skein::profile::has_errors(findings);
-    if (!refused) std::printf("%s: complete: every dependency is resolved\n", profile->c_str());
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("PROFILE", arguments->profile, "Mission profile (XML)")->required();
+  command->add_option("--host", arguments->host,
+                      "Which host of the profile this is, where names do not tell");
+  command->callback([arguments, &result] {
+    const auto findings = findings_of(*arguments);
+    std::fputs(profile::to_text(findings).c_str(), stderr);
+    const bool refused = profile::has_errors(findings);
+    if (!refused) {
+      std::printf("%s: complete: every dependency is resolved\n", arguments->profile.c_str());
+    }
     result = refused ? launch::kConfigurationError : 0;
   });
 }

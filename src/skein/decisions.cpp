@@ -1,16 +1,19 @@
 #include <cstdio>
 #include <fstream>
-#include <thread>
 
 #include "commands.hpp"
+#include "interruption.hpp"
 #include "onlooker.hpp"
 #include "skein/core/error.hpp"
+#include "skein/core/printable.hpp"
 #include "skein/entity/decision_topic.hpp"
 #include "skein/idl/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::command {
 namespace {
+
+constexpr std::size_t kLongestDifference = 4096;
 
 struct Arguments : Onlooker {
   double seconds = 0;
@@ -24,19 +27,17 @@ void print(const DecisionRecord& record) {
 }
 
 void watch(const Arguments& arguments) {
+  const Interruption interruption;
   Entity entity(arguments.entity_options("decisions"));
-  const introspection::DecisionReader reader(entity.participant(),
-                                             [](const introspection::Decision& decision) {
-                                               try {
-                                                 print(record_of(decision));
-                                               } catch (const InvalidArgument& error) {
-                                                 std::fprintf(stderr, "skein: %s\n", error.what());
-                                               }
-                                             });
-  do {
-    std::this_thread::sleep_for(
-        std::chrono::duration<double>(arguments.seconds > 0 ? arguments.seconds : 1));
-  } while (arguments.seconds <= 0);
+  const introspection::DecisionReader reader(
+      entity.participant(), [](const introspection::Decision& decision) {
+        try {
+          print(record_of(decision));
+        } catch (const InvalidArgument& error) {
+          std::fprintf(stderr, "skein: %s\n", printable(error.what()).c_str());
+        }
+      });
+  interruption.wait(arguments.seconds);
 }
 
 // What comes out differently, in words; empty where nothing does.
@@ -75,8 +76,8 @@ int read(const Arguments& arguments) {
     } else if (const std::string what = difference(record); !what.empty()) {
       ++different;
       std::printf("%s: decision %llu of %s: %s\n", place.c_str(),
-                  static_cast<unsigned long long>(record.number), record.entity.c_str(),
-                  what.c_str());
+                  static_cast<unsigned long long>(record.number), printable(record.entity).c_str(),
+                  printable(what, kLongestDifference).c_str());
     }
   }
   if (!arguments.replays) return 0;

@@ -1,10 +1,13 @@
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <set>
 
 #include "commands.hpp"
+#include "skein/core/error.hpp"
+#include "skein/core/printable.hpp"
+#include "skein/launch/address_space.hpp"
+#include "skein/launch/machine_check.hpp"
+#include "skein/launch/mission_claim.hpp"
 #include "skein/launch/peer.hpp"
 #include "skein/launch/supervisor.hpp"
 #include "skein/profile/check.hpp"
@@ -16,6 +19,7 @@ struct Arguments {
   std::string profile;
   std::string process;
   std::vector<std::string> settings;
+  std::string host;
   bool dry_run = false;
   bool verbose = false;
 };
@@ -61,7 +65,7 @@ class Narrator {
 
   void tell_line(std::string_view child, std::string_view line) const {
     std::string text = child == mission_ ? "" : std::string(child) + " | ";
-    write(stdout, text.append(line) + "\n");
+    write(stdout, text.append(printable(line, line.size())) + "\n");
   }
 
   void tell(const launch::ChildEvent& event) {
@@ -75,7 +79,8 @@ class Narrator {
  private:
   bool in_order(const launch::ChildEvent& event) const {
     using launch::ChildState;
-    if (event.child.empty()) return true;
+    // Without the mission's own text nothing else would tell that it flies.
+    if (event.child.empty()) return !mission_.empty();
     switch (event.state) {
       case ChildState::Starting:
       case ChildState::Ready:
@@ -103,14 +108,24 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator) {
 }
 
 int launch(const Arguments& arguments) {
+  const profile::MissionProfile mission = read(arguments);
   const auto plan = launch::make_launch_plan(
-      read(arguments), [&](const profile::PeerProfile& peer, const profile::CspProfile* csp) {
+      mission,
+      [&](const profile::PeerProfile& peer, const profile::CspProfile* csp) {
         return command_line(arguments, peer, csp);
-      });
+      },
+      arguments.host);
   if (arguments.dry_run) {
     std::fputs(launch::to_text(plan).c_str(), stdout);
     return 0;
   }
+  if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
+  const auto findings = launch::check_machine(mission, arguments.host);
+  if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+  launch::demand_address_space();
+  const launch::MissionClaim claim(mission, arguments.host);
+  for (const std::string& name : plan.elsewhere)
+    write(stderr, "* mission: " + name + " is not started here\n");
   const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
   launch::Supervisor supervisor(plan, told_by(narrator));
   const launch::LaunchResult outcome = supervisor.run();
@@ -124,6 +139,8 @@ void add_launch(CLI::App& app, int& result) {
   auto* command = app.add_subcommand("launch", "Fly a mission: each peer in a process of its own");
   auto arguments = std::make_shared<Arguments>();
   add_common(*command, *arguments);
+  command->add_option("--host", arguments->host,
+                      "Which host of the profile this is, where names do not tell");
   command->add_flag("--dry-run", arguments->dry_run, "Only say what would run");
   command->add_flag("--verbose", arguments->verbose,
                     "Show the start, readiness and end of each process");

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "skein/entity/entity.hpp"
 
@@ -14,23 +13,19 @@ struct Onlooker {
   std::string vendor = "cyclonedds";
   std::uint32_t domain = 0;
   std::string interface;
+  std::vector<std::string> peers;
+  bool multicast = false;
+  std::string profile;
+  std::string host;
 
-  void add_options(CLI::App& command) {
-    command.add_option("--vendor", vendor, "fastdds or cyclonedds")->capture_default_str();
-    command.add_option("--domain", domain, "DDS domain of the mission")->capture_default_str();
-    command.add_option("--interface", interface, "Network interface; loopback by default");
-  }
+  void add_options(CLI::App& command);
 
-  /// What an entity of the command's `name` joins with.
-  EntityOptions entity_options(const std::string& name) const {
-    EntityOptions options;
-    options.name = "skein-" + name + "-" + std::to_string(getpid());
-    options.system = "tools";
-    options.vendor = dds::load_vendor(vendor);
-    options.domain = domain;
-    if (!interface.empty()) options.network.interfaces = {interface};
-    return options;
-  }
+  /// The domain that it looks at: the option's or the profile's.
+  std::uint32_t watched_domain() const;
+
+  /// What an entity of the command's `name` joins with. Throws what reading the profile throws, and
+  /// InvalidArgument where none of its peers is of this host, or options are missing.
+  EntityOptions entity_options(const std::string& name) const;
 };
 
 }  // namespace skein::command

@@ -1,9 +1,10 @@
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 #include "commands.hpp"
+#include "interruption.hpp"
 #include "onlooker.hpp"
+#include "skein/core/printable.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity/statistics_topic.hpp"
 #include "skein/introspection.idl.hpp"
@@ -26,13 +27,14 @@ void print_latency(const char* what, const introspection::Latency& latency) {
 }
 
 void print(const introspection::ServiceStatistics& service) {
-  std::printf("%-40s %s/%s  waiting %u  running %u\n", service.service.c_str(),
-              service.system.c_str(), service.entity.c_str(), service.waiting, service.running);
+  std::printf("%-40s %s/%s  waiting %u  running %u\n", printable(service.service).c_str(),
+              printable(service.system).c_str(), printable(service.entity).c_str(), service.waiting,
+              service.running);
   for (const auto& operation : service.operations) {
     std::printf(
         "    %s: received %llu, answered %llu, raised %llu, failed %llu, refused %llu, expired "
         "%llu\n",
-        operation.name.c_str(), static_cast<unsigned long long>(operation.received),
+        printable(operation.name).c_str(), static_cast<unsigned long long>(operation.received),
         static_cast<unsigned long long>(operation.answered),
         static_cast<unsigned long long>(operation.raised),
         static_cast<unsigned long long>(operation.failed),
@@ -44,23 +46,26 @@ void print(const introspection::ServiceStatistics& service) {
 }
 
 void print(const Arguments& arguments) {
+  const Interruption interruption;
   Entity entity(arguments.entity_options("services"));
   std::optional<introspection::StatisticsReader> statistics;
   if (arguments.statistics) statistics.emplace(entity.participant());
-  std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
+  if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   if (statistics) {
     for (const auto& service : statistics->latest()) print(service);
     return;
   }
   const auto services = entity.broker().all();
   for (const auto& service : services) {
-    std::printf("%-40s %s/%s  pid %u  %s\n", service->service.c_str(), service->system.c_str(),
-                service->entity.c_str(), service->pid, service->vendor.c_str());
+    std::printf("%-40s %s/%s  pid %u  %s\n", printable(service->service).c_str(),
+                printable(service->system).c_str(), printable(service->entity).c_str(),
+                service->pid, printable(service->vendor).c_str());
     for (const auto& attribute : service->attributes) {
-      std::printf("    %s = %s\n", attribute.name.c_str(), attribute.value.c_str());
+      std::printf("    %s = %s\n", printable(attribute.name).c_str(),
+                  printable(attribute.value).c_str());
     }
   }
-  std::printf("%zu services on domain %u\n", services.size(), arguments.domain);
+  std::printf("%zu services on domain %u\n", services.size(), arguments.watched_domain());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""architecture.py CHECK --root FOLDER [--compiler C --include FOLDER … --header FILE --library FILE]
+"""architecture.py CHECK --root FOLDER [--compiler C --include FOLDER … --header FILE --library FILE … --build FOLDER --folder FOLDER …]
 
 Prints each violation of a rule of ARCHITECTURE.md; the exit code is 1 where there are any, 77 where there was nothing to check.
 """
@@ -7,6 +7,7 @@ import argparse
 import sys
 
 import compile_rules
+import definition_rules
 import include_rules
 import text_rules
 from source_tree import SourceTree
@@ -19,7 +20,9 @@ def main():
     parser.add_argument("--compiler", default="c++")
     parser.add_argument("--include", action="append", default=[])
     parser.add_argument("--header")
-    parser.add_argument("--library")
+    parser.add_argument("--library", action="append", default=[])
+    parser.add_argument("--build", default=".")
+    parser.add_argument("--folder", action="append", default=[])
     arguments = parser.parse_args()
     tree = SourceTree(arguments.root)
     compiler = compile_rules.Compiler(arguments.compiler, arguments.include)
@@ -32,7 +35,9 @@ def main():
         "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),
         "generated_includes": lambda: compile_rules.generated_includes(arguments.header),
-        "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library),
+        "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library[0]),
+        "one_definition": lambda: definition_rules.one_definition(arguments.library, arguments.build),
+        "open_search_paths": lambda: compile_rules.open_search_paths(arguments.folder),
     }
     if arguments.check not in checks:
         parser.error(f"there is no check '{arguments.check}'; known are {', '.join(checks)}")

@@ -2,11 +2,13 @@
 
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
 
 import compile_rules
+import definition_rules
 import include_rules
 import text_rules
 from source_tree import SourceTree
@@ -144,6 +146,13 @@ class Compiled(TreeTest):
         self.write("include/skein/core/x.hpp", "struct X {};\n")
         self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "redefinition")
 
+    def test_a_program_whose_search_path_has_an_empty_entry_is_found(self):
+        source = self.write("main.cpp", "int main() {}\n")
+        for places, found in (("$ORIGIN/../lib", 0), ("$ORIGIN/../lib:", 1), (":/usr/lib", 1)):
+            program = os.path.join(self.root, "program")
+            subprocess.run([COMPILER, source, "-o", program, f"-Wl,-rpath,{places}"], check=True)
+            self.assertEqual(len(list(compile_rules.open_search_paths([self.root]))), found, places)
+
     def test_generated_code_that_checks_no_version_is_found(self):
         header = self.write("x.idl.hpp", "struct X {};\n")
         self.assertFinds(compile_rules.generated_version(header, self.compiler), "does not check the version")
@@ -159,6 +168,38 @@ class Compiled(TreeTest):
     def test_generated_code_that_knows_dds_is_found(self):
         header = self.write("x.idl.hpp", '#include "skein/core/call.hpp"\n#include "skein/dds/port.hpp"\n')
         self.assertFinds(compile_rules.generated_includes(header), "skein/dds/port.hpp")
+
+
+class Definitions(TreeTest):
+    def build(self, *sources):
+        """A library of one unit a source, with debug information."""
+        units = []
+        for number, text in enumerate(sources):
+            units.append(f"{number}.cpp")
+            self.write(units[-1], text)
+        subprocess.run([COMPILER, "-std=c++20", "-g", "-shared", "-fPIC", "-o", "library.so", *units], cwd=self.root, check=True)
+        return [os.path.join(self.root, "library.so")]
+
+    def test_one_name_for_two_classes_is_found(self):
+        libraries = self.build("namespace skein { class Try { int a; }; Try one; }\n", "\nnamespace skein { struct Try { double b; } two; }\n")
+        self.assertFinds(definition_rules.one_definition(libraries, self.root), "skein::Try", "0.cpp:1", "1.cpp:2")
+
+    def test_one_class_in_two_units_is_none_too_many(self):
+        self.write("try.hpp", "namespace skein { class Try { int a; }; enum class Kind : int { A }; }\n")
+        libraries = self.build('#include "try.hpp"\nskein::Try one; skein::Kind kind;\nvoid first() {}\n',
+                               'namespace skein {\nenum class Kind : int;\n}\nskein::Kind* known;\n#include "try.hpp"\nskein::Try two;\nvoid second() {}\n')
+        self.assertFindsNothing(definition_rules.one_definition(libraries, self.root))
+
+    def test_what_a_unit_keeps_to_itself_may_have_any_name(self):
+        text = "namespace skein { namespace { struct Try { int a; }; } Try %s; }\n"
+        known = "namespace skein { struct Known { int a; } known; }\n"
+        libraries = self.build(text % "one", text % "two", known)
+        self.assertFindsNothing(definition_rules.one_definition(libraries, self.root))
+
+    def test_a_library_without_debug_information_is_found(self):
+        path = self.write("x.cpp", "int x;\n")
+        subprocess.run([COMPILER, "-shared", "-fPIC", "-o", os.path.join(self.root, "x.so"), path], check=True)
+        self.assertFinds(definition_rules.one_definition([os.path.join(self.root, "x.so")], self.root), "no debug information")
 
 
 if __name__ == "__main__":

@@ -59,6 +59,24 @@ def linked_vendors(library):
             yield f"{library}: needs {needed}"
 
 
+def open_search_paths(folders):
+    """A program or library whose search path has an empty entry: the loader would look in the working folder."""
+    for folder in folders:
+        for name in sorted(os.listdir(folder)):
+            path = os.path.join(folder, name)
+            if not os.path.isfile(path) or os.path.islink(path) or _magic(path) != b"\x7fELF":
+                continue
+            ran = subprocess.run(["readelf", "--dynamic", path], text=True, capture_output=True, check=True)
+            for places in re.findall(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", ran.stdout):
+                if "" in places.split(":"):
+                    yield f"{path}: its search path has an empty entry: {places}"
+
+
+def _magic(path):
+    with open(path, "rb") as stream:
+        return stream.read(4)
+
+
 def _read(path):
     with open(path, encoding="utf-8") as stream:
         return stream.read()

@@ -1,6 +1,7 @@
 #include "skein/brokerless_discovery/broker.hpp"
 
 #include <catch2/catch.hpp>
+#include <condition_variable>
 #include <thread>
 
 #include "../tools/eventually.hpp"
@@ -8,6 +9,7 @@
 #include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/core/error.hpp"
 #include "skein/dds/loopback.hpp"
+#include "skein/idl/codec.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;
@@ -20,8 +22,41 @@ namespace {
 
 /// A network on which time passes only when told.
 struct World {
+  std::unique_ptr<dds::Writer> services_writer(dds::Participant& participant) {
+    dds::Qos qos;
+    qos.transient_local = true;
+    qos.history_depth = 1;
+    qos.liveliness_lease = 1000ms;
+    return participant.create_writer(
+        {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+  }
+
   ManualClock clock;
   dds::LoopbackNetwork network{clock};
+};
+
+/// Who writes descriptions as he likes.
+struct Writer {
+  explicit Writer(World& world)
+      : participant(world.network.vendor()->create_participant({})),
+        writer(world.services_writer(*participant)) {}
+
+  discovery::ServiceDescription describe(std::uint8_t number, const std::string& service) const {
+    auto result = description(number, service, "stranger");
+    result.provider = guid(number, participant->guid()).bytes;
+    result.process = "";
+    return result;
+  }
+
+  void write(const discovery::ServiceDescription& description) const {
+    write(description, {description.provider});
+  }
+  void write(const discovery::ServiceDescription& description, const Guid& key) const {
+    writer->write(idl::encode_message(description), key);
+  }
+
+  std::unique_ptr<dds::Participant> participant;
+  std::unique_ptr<dds::Writer> writer;
 };
 
 /// A peer's Broker; callbacks wait in `control` until run.
@@ -29,6 +64,14 @@ struct Peer {
   Peer(World& world, const std::string& entity, const std::string& system = "uav-1")
       : participant(world.network.vendor()->create_participant({})),
         broker(*participant, world.clock, control, watch, {system, entity, "loopback", 1000ms}) {}
+
+  /// A description of one of its services.
+  discovery::ServiceDescription describe(std::uint8_t number, const std::string& service,
+                                         const std::string& entity) const {
+    auto result = description(number, service, entity);
+    result.provider = guid(number, participant->guid()).bytes;
+    return result;
+  }
 
   bool finds(const std::string& name) const {
     return !broker.find_service(broker.query(name)).empty();
@@ -53,8 +96,8 @@ void pass(World& world, std::initializer_list<Peer*> peers, Duration time) {
 TEST_CASE("a late joiner receives every description that stands", "[R16]") {
   World world;
   Peer early(world, "navigator");
-  const auto one = early.broker.add_service(description(1, "A/INavigator", "navigator"));
-  const auto two = early.broker.add_service(description(2, "A/IOther", "navigator"));
+  const auto one = early.broker.add_service(early.describe(1, "A/INavigator", "navigator"));
+  const auto two = early.broker.add_service(early.describe(2, "A/IOther", "navigator"));
   const Peer late(world, "ground");
   CHECK(late.finds("A/INavigator"));
   CHECK(late.finds("A/IOther"));
@@ -67,7 +110,7 @@ TEST_CASE("a peer knows its own services at once, and forgets them when they are
   Peer ground(world, "ground");
   {
     const auto registration =
-        navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+        navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
     CHECK(navigator.finds("A/INavigator"));
     CHECK(ground.finds("A/INavigator"));
   }
@@ -80,10 +123,10 @@ TEST_CASE("a description carries host, process, pid and vendor of its peer") {
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
   const auto found = ground.broker.find_service(ground.broker.query("navigator")).at(0);
   CHECK(found->host == ProcessWatch::host());
-  CHECK(found->process == navigator.watch.address());
+  CHECK(ProcessWatch::is_address_of(navigator.participant->guid(), found->process));
   CHECK(found->pid == static_cast<std::uint32_t>(getpid()));
   CHECK(found->vendor == "loopback");
 }
@@ -94,7 +137,7 @@ TEST_CASE("a managed description does not reach strangers", "[R6]") {
   Peer owner(world, "navigator");
   Peer namesake(world, "navigator", "uav-2");
   Peer stranger(world, "ground");
-  auto planner = description(1, "A/IPlanner", "AStar");
+  auto planner = csp.describe(1, "A/IPlanner", "AStar");
   planner.owner = "uav-1/navigator";
   const auto registration = csp.broker.add_service(planner);
   CHECK(owner.finds("A/IPlanner"));
@@ -109,7 +152,7 @@ TEST_CASE("a provider that is stopped is suspect after its lease and comes back 
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
 
   world.network.pause(navigator.participant->guid());
   pass(world, {&ground}, 1500ms);
@@ -120,12 +163,44 @@ TEST_CASE("a provider that is stopped is suspect after its lease and comes back 
   CHECK(ground.finds("A/INavigator"));
 }
 
+TEST_CASE("while a provider stays suspect, each request for all descriptions waits longer",
+          "[R17]") {
+  World world;
+  Peer ground(world, "ground");
+  const auto stranger = world.network.vendor()->create_participant({.lease = 10min});
+  const auto writer = world.services_writer(*stranger);
+  auto service = description(1, "A/INavigator", "stranger");
+  service.provider = guid(1, stranger->guid()).bytes;
+  service.process = "";
+  writer->write(idl::encode_message(service), {service.provider});
+  REQUIRE(ground.finds("A/INavigator"));
+
+  int requests = 0;
+  const auto onlooker = world.network.vendor()->create_participant({});
+  dds::Qos qos;
+  qos.transient_local = true;
+  qos.liveliness_lease = 1000ms;
+  const auto asked = onlooker->create_writer(
+      {"skein/services", "skein::discovery::ServiceDescription", true}, qos,
+      {.on_matched = [&](const Guid&, bool matched) { requests += matched; }});
+  requests = 0;
+  world.network.pause(stranger->guid());
+  pass(world, {&ground}, 2s);
+  REQUIRE(ground.broker.all().size() == 1);
+  REQUIRE_FALSE(ground.finds("A/INavigator"));
+
+  requests = 0;
+  pass(world, {&ground}, 60s);
+  CHECK(requests >= 3);
+  CHECK(requests <= 6);
+}
+
 TEST_CASE("descriptions come back after a partition", "[R13][R17]") {
   World world;
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
 
   world.network.separate(navigator.participant->guid(), ground.participant->guid());
   pass(world, {&navigator, &ground}, 30s);
@@ -142,7 +217,7 @@ TEST_CASE("a peer that vanishes takes its descriptions with it", "[R13]") {
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
   std::vector<Change> changes;
   const auto observation =
       ground.broker.observe([&](const Change& change) { changes.push_back(change); });
@@ -157,17 +232,180 @@ TEST_CASE("a peer that vanishes takes its descriptions with it", "[R13]") {
 
 TEST_CASE("the end of a process is known without any lease", "[R14][R15]") {
   World world;
-  auto navigator = std::make_unique<Peer>(world, "navigator");
   Peer ground(world, "ground");
+  Writer navigator(world);
   // The watch is the process as far as others can see; here it ends before its participant does.
   auto process = std::make_unique<ProcessWatch>();
-  auto ghost = description(1, "A/INavigator", "navigator");
-  Broker broker(*navigator->participant, world.clock, navigator->control, *process,
-                {"uav-1", "navigator", "loopback", 1000ms});
-  const auto registration = broker.add_service(ghost);
+  auto ghost = navigator.describe(1, "A/INavigator");
+  ghost.host = ProcessWatch::host();
+  ghost.process = process->open(navigator.participant->guid());
+  navigator.write(ghost);
   REQUIRE(ground.finds("A/INavigator"));
+  CHECK(eventually([&] { return process->counters().watchers == 1; }));
   process.reset();
   CHECK(eventually([&] { return !ground.finds("A/INavigator"); }));
+  navigator.write(ghost);
+  CHECK_FALSE(ground.finds("A/INavigator"));
+}
+
+TEST_CASE("whom nobody describes any more is not watched", "[R27]") {
+  World world;
+  Peer ground(world, "ground");
+  Writer navigator(world);
+  auto one = navigator.describe(1, "A/INavigator");
+  auto two = navigator.describe(2, "A/IOther");
+  one.host = two.host = ProcessWatch::host();
+  {
+    ProcessWatch own;
+    one.process = two.process = own.open(navigator.participant->guid());
+    navigator.write(one);
+    navigator.write(two);
+    CHECK(ground.watch.counters().watched == 1);
+    navigator.writer->dispose({one.provider});
+    CHECK(ground.watch.counters().watched == 1);
+    navigator.writer->dispose({two.provider});
+    CHECK(ground.watch.counters().watched == 0);
+    CHECK(eventually([&] { return own.counters().watchers == 0; }));
+  }
+  CHECK(ground.broker.all().empty());
+}
+
+TEST_CASE("two entities of one process both hear of another process's end", "[R14]") {
+  World world;
+  ManualExecutor control;
+  ProcessWatch shared;
+  const auto here = world.network.vendor()->create_participant({});
+  const auto there = world.network.vendor()->create_participant({});
+  Broker first(*here, world.clock, control, shared, {"uav-1", "first", "loopback", 1000ms});
+  Broker second(*there, world.clock, control, shared, {"uav-1", "second", "loopback", 1000ms});
+  Writer navigator(world);
+  auto process = std::make_unique<ProcessWatch>();
+  auto described = navigator.describe(1, "A/INavigator");
+  described.host = ProcessWatch::host();
+  described.process = process->open(navigator.participant->guid());
+  navigator.write(described);
+  REQUIRE(first.all().size() == 1);
+  REQUIRE(second.all().size() == 1);
+  process.reset();
+  CHECK(eventually([&] { return first.all().empty() && second.all().empty(); }));
+}
+
+TEST_CASE("a rogue neither withdraws another's service nor takes it with him when he goes",
+          "[R23]") {
+  World world;
+  Peer navigator(world, "navigator");
+  Peer ground(world, "ground");
+  const auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  auto rogue = std::make_unique<Writer>(world);
+  auto claimed = navigator.describe(1, "A/INavigator", "navigator");
+  claimed.process = "";
+
+  SECTION("by withdrawing it") { rogue->writer->dispose({claimed.provider}); }
+  SECTION("by describing it, and going") {
+    rogue->write(claimed);
+    rogue.reset();
+  }
+  SECTION("by describing it as an own service's sample, and going") {
+    rogue->write(claimed, guid(1, rogue->participant->guid()));
+    rogue.reset();
+  }
+  pass(world, {&navigator, &ground}, 5s);
+  CHECK(ground.finds("A/INavigator"));
+  CHECK(ground.broker.refused(Refusal::Forged) + ground.broker.refused(Refusal::Malformed) == 1);
+  CHECK(Peer(world, "late").finds("A/INavigator"));
+}
+
+TEST_CASE("a rogue's description names no process but his own", "[R23][R27]") {
+  World world;
+  Peer navigator(world, "navigator");
+  Peer ground(world, "ground");
+  const auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  const auto described = ground.broker.all().at(0);
+  Writer rogue(world);
+  auto claim = rogue.describe(1, "A/IPlanner");
+  claim.host = described->host;
+  claim.process = described->process;
+  rogue.write(claim);
+  CHECK_FALSE(ground.finds("A/IPlanner"));
+  CHECK(ground.broker.refused(Refusal::Forged) == 1);
+}
+
+TEST_CASE(
+    "who hears himself withdrawn, or described otherwise, writes again, but not at once each "
+    "time",
+    "[R24]") {
+  World world;
+  Peer navigator(world, "navigator");
+  Peer ground(world, "ground");
+  const auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  std::size_t written = 0;
+  world.network.judge_transfers([&](const dds::Transfer& transfer) {
+    if (transfer.topic == "skein/services" &&
+        transfer.reader.participant() == ground.participant->guid()) {
+      ++written;
+    }
+    return dds::Fate::deliver();
+  });
+  // As good as a forged GUID.
+  const auto forged = world.services_writer(*navigator.participant);
+  for (int i = 0; i < 100; ++i) forged->dispose(guid(1, navigator.participant->guid()));
+  CHECK(navigator.finds("A/INavigator"));
+  CHECK_FALSE(ground.finds("A/INavigator"));
+  written = 0;
+  pass(world, {&navigator, &ground}, 1000ms);
+  CHECK(ground.finds("A/INavigator"));
+  CHECK(written == 1);
+}
+
+TEST_CASE("what found no room is asked for again when something goes", "[R26]") {
+  World world;
+  Peer ground(world, "ground");
+  Writer crowd(world);
+  auto one = crowd.describe(0, "A/ICrowd");
+  for (std::size_t i = 0; i <= Room::kEntriesOfOne; ++i) {
+    one.provider = guid(static_cast<std::uint8_t>(i), crowd.participant->guid()).bytes;
+    one.provider[13] = static_cast<std::uint8_t>(i >> 8);
+    one.entity = "crowd" + std::to_string(i);
+    crowd.write(one);
+  }
+  CHECK(ground.broker.all().size() == Room::kEntriesOfOne);
+  CHECK(ground.broker.refused(Refusal::NoRoom) == 1);
+  CHECK_FALSE(ground.finds(one.entity));
+
+  crowd.writer->dispose(guid(7, crowd.participant->guid()));
+  pass(world, {&ground}, 20s);
+  CHECK(ground.finds(one.entity));
+  CHECK(ground.broker.all().size() == Room::kEntriesOfOne);
+}
+
+TEST_CASE("a description of more than it may be is refused, by its own peer at once", "[R25]") {
+  World world;
+  Peer ground(world, "ground");
+  auto large = ground.describe(1, "A/ILarge", "ground");
+  large.component = std::string(kMostDescriptionBytes, ' ');
+  CHECK_THROWS_WITH(ground.broker.add_service(large),
+                    Catch::Contains("A/ILarge") && Catch::Contains("bytes"));
+  Writer rogue(world);
+  large.provider = guid(1, rogue.participant->guid()).bytes;
+  large.process = "";
+  rogue.write(large);
+  CHECK(ground.broker.refused(Refusal::Oversized) == 1);
+  CHECK(ground.broker.all().empty());
+}
+
+TEST_CASE("a peer's own service has an identity that nobody else can have", "[R23]") {
+  World world;
+  Peer navigator(world, "navigator");
+  Peer ground(world, "ground");
+  auto described = navigator.describe(1, "A/I", "navigator");
+  described.provider = ground.broker.new_provider().bytes;
+  CHECK_THROWS_AS(navigator.broker.add_service(described), InvalidArgument);
+  described.provider = navigator.broker.new_provider().bytes;
+  CHECK_NOTHROW(navigator.broker.add_service(described));
+  CHECK(navigator.broker.new_provider() != navigator.broker.new_provider());
 }
 
 TEST_CASE("observers hear of what comes and goes until they stop listening") {
@@ -177,15 +415,33 @@ TEST_CASE("observers hear of what comes and goes until they stop listening") {
   std::vector<Change::Kind> kinds;
   auto observation =
       ground.broker.observe([&](const Change& change) { kinds.push_back(change.kind); });
-  auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
   registration.withdraw();
   ground.control.run_all();
   CHECK(kinds == std::vector{Change::Kind::Added, Change::Kind::Removed});
 
   observation.withdraw();
-  const auto again = navigator.broker.add_service(description(2, "A/INavigator", "navigator"));
+  const auto again =
+      navigator.broker.add_service(navigator.describe(2, "A/INavigator", "navigator"));
   ground.control.run_all();
   CHECK(kinds.size() == 2);
+}
+
+TEST_CASE("many changes at once are told by one task, all of them and in their order", "[R26]") {
+  World world;
+  Peer ground(world, "ground");
+  std::vector<std::string> told;
+  const auto observation = ground.broker.observe(
+      [&](const Change& change) { told.push_back(change.description->service); });
+  Writer crowd(world);
+  std::vector<std::string> written;
+  for (std::uint8_t i = 0; i < 100; ++i) {
+    written.push_back("A/I" + std::to_string(i));
+    crowd.write(crowd.describe(i, written.back()));
+  }
+  CHECK(ground.control.run_all() == 1);
+  CHECK(told == written);
 }
 
 TEST_CASE("the table's generation stands while nothing changes, and grows with each change") {
@@ -193,7 +449,8 @@ TEST_CASE("the table's generation stands while nothing changes, and grows with e
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto begin = ground.broker.generation();
-  auto registration = navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+  auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
   REQUIRE(ground.finds("A/INavigator"));
   const auto added = ground.broker.generation();
   CHECK(added > begin);
@@ -212,7 +469,7 @@ TEST_CASE("waiting for a service ends when it appears") {
     found = ground.broker.await_service(ground.broker.query("navigator"), world.clock.now() + 1h);
   });
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
   waiting.join();
   CHECK(found.size() == 1);
 }
@@ -231,17 +488,72 @@ TEST_CASE("a malformed description is dropped and the others stand", "[R4]") {
   Peer navigator(world, "navigator");
   Peer ground(world, "ground");
   const auto registration =
-      navigator.broker.add_service(description(1, "A/INavigator", "navigator"));
-  dds::Qos qos;
-  qos.transient_local = true;
-  qos.history_depth = 1;
-  qos.liveliness_lease = 1000ms;
-  const auto stranger = world.network.vendor()->create_participant({});
-  const auto writer = stranger->create_writer(
-      {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  const Writer stranger(world);
   const std::uint8_t truncated[] = {0, 1, 0, 0, 1, 2, 3};
-  writer->write(std::as_bytes(std::span(truncated)), guid(9));
+  stranger.writer->write(std::as_bytes(std::span(truncated)),
+                         guid(9, stranger.participant->guid()));
   CHECK(ground.broker.all().size() == 1);
+  CHECK(ground.broker.refused(Refusal::Malformed) == 1);
+}
+
+namespace {
+
+/// Keeps who hands it a task from returning, until it is told.
+struct SlowToTake final : Executor {
+  bool post(Action task) override {
+    tasks.post(std::move(task));
+    std::unique_lock lock(mutex);
+    ++inside;
+    changed.wait(lock, [&] { return open; });
+    --inside;
+    return true;
+  }
+  void post_or_run(Action task) override { post(std::move(task)); }
+  bool try_run_inline(const std::function<void()>&) override { return false; }
+  bool runs_here() const noexcept override { return false; }
+  bool let_in(bool now) {
+    std::lock_guard lock(mutex);
+    open = now;
+    changed.notify_all();
+    return inside > 0;
+  }
+
+  ManualExecutor tasks;
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool open = true;
+  int inside = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a Broker's end leaves no endpoint to a timer's action that has not returned") {
+  World world;
+  SlowToTake control;
+  ProcessWatch watch;
+  const auto participant = world.network.vendor()->create_participant({});
+  auto broker = std::make_unique<Broker>(*participant, world.clock, control, watch,
+                                         Broker::Options{"uav-1", "navigator", "loopback", 1000ms});
+  auto service = description(1, "A/INavigator", "navigator");
+  service.provider = broker->new_provider().bytes;
+  const auto registration = broker->add_service(service);
+  const auto onlooker = world.network.vendor()->create_participant({});
+  const auto reader =
+      onlooker->create_reader({"skein/services", "skein::discovery::ServiceDescription", true}, {});
+  REQUIRE(reader->matched_writers().size() == 1);
+
+  control.let_in(false);
+  std::thread timer([&] { world.clock.advance(250ms); });
+  const bool held = eventually([&] { return control.let_in(false); });
+  control.tasks.run_all();  // which sets the next timer
+  std::thread end([&] { broker.reset(); });
+  const bool gone = eventually([&] { return reader->matched_writers().empty(); });
+  control.let_in(true);
+  timer.join();
+  end.join();
+  CHECK(held);
+  CHECK(gone);
 }
 
 TEST_CASE("names that would not survive the wire are refused") {

@@ -7,9 +7,10 @@
 
 namespace skein::test {
 
-inline Guid guid(std::uint8_t number) {
-  Guid guid;
-  guid.bytes[0] = number;
+/// An identity within a participant; without one, within that of all descriptions made here.
+inline Guid guid(std::uint8_t number, const Guid& participant = {}) {
+  Guid guid = participant.participant();
+  guid.bytes[12] = number;
   return guid;
 }
 

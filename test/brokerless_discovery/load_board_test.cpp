@@ -38,6 +38,7 @@ struct World {
   std::map<Guid, std::size_t> written;
   std::unique_ptr<dds::Participant> near = network.vendor()->create_participant({});
   std::unique_ptr<dds::Participant> far = network.vendor()->create_participant({});
+  const Guid id = guid(1, near->guid());  // of a provider there
   LoadBoard provider{*near, clock, control};
   LoadBoard client{*far, clock, control};
 };
@@ -47,24 +48,24 @@ struct World {
 TEST_CASE("everybody hears of a provider's load, its own peer too, and a late joiner", "[R21]") {
   World world;
   std::size_t load = 3;
-  const auto told = world.provider.tell(guid(1), [&] { return load; });
-  CHECK(world.client.load_of(guid(1)) == 0);
+  const auto told = world.provider.tell(world.id, [&] { return load; });
+  CHECK(world.client.load_of(world.id) == 0);
   world.pass(LoadBoard::kInterval);
-  CHECK(world.client.load_of(guid(1)) == 3);
-  CHECK(world.provider.load_of(guid(1)) == 3);
+  CHECK(world.client.load_of(world.id) == 3);
+  CHECK(world.provider.load_of(world.id) == 3);
   const auto participant = world.network.vendor()->create_participant({});
   const LoadBoard late(*participant, world.clock, world.control);
-  CHECK(late.load_of(guid(1)) == 3);
+  CHECK(late.load_of(world.id) == 3);
   load = 0;
   world.provider.notifier()();
   world.pass(LoadBoard::kInterval);
-  CHECK(world.client.load_of(guid(1)) == 0);
+  CHECK(world.client.load_of(world.id) == 0);
 }
 
 TEST_CASE("a load is told when it has changed, and at most once in an interval", "[R21]") {
   World world;
   std::size_t load = 0;
-  const auto told = world.provider.tell(guid(1), [&] { return load; });
+  const auto told = world.provider.tell(world.id, [&] { return load; });
   const auto change = world.provider.notifier();
   world.pass(10 * LoadBoard::kInterval);
   CHECK(world.transfers() == 0);
@@ -88,21 +89,21 @@ TEST_CASE("a load is told when it has changed, and at most once in an interval",
 
 TEST_CASE("of a provider that has withdrawn, or whose peer is gone, no load is known", "[R21]") {
   World world;
-  auto told = world.provider.tell(guid(1), [] { return std::size_t{3}; });
+  auto told = world.provider.tell(world.id, [] { return std::size_t{3}; });
   world.pass(LoadBoard::kInterval);
-  REQUIRE(world.client.load_of(guid(1)) == 3);
+  REQUIRE(world.client.load_of(world.id) == 3);
   SECTION("it has withdrawn") { told.withdraw(); }
   SECTION("its peer is gone") {
     world.network.kill(world.near->guid());
     world.pass(10s);
   }
-  CHECK(world.client.load_of(guid(1)) == 0);
+  CHECK(world.client.load_of(world.id) == 0);
 }
 
 TEST_CASE("a load that nobody says has changed is not even measured", "[R21]") {
   World world;
   std::size_t measured = 0;
-  const auto told = world.provider.tell(guid(1), [&] { return ++measured; });
+  const auto told = world.provider.tell(world.id, [&] { return ++measured; });
   for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
   CHECK(measured == 1);
   world.provider.notifier()();
@@ -117,4 +118,31 @@ TEST_CASE("a load may change after its board has gone", "[R21]") {
     change = world.provider.notifier();
   }
   CHECK_NOTHROW(change());
+}
+
+TEST_CASE("nobody tells another provider's load, nor withdraws it", "[R21][R23]") {
+  World world;
+  const auto told = world.provider.tell(world.id, [] { return std::size_t{3}; });
+  world.pass(LoadBoard::kInterval);
+  const auto stranger = world.network.vendor()->create_participant({});
+  LoadBoard forger(*stranger, world.clock, world.control);
+  auto forged = forger.tell(world.id, [] { return std::size_t{0xFFFF}; });
+  world.pass(LoadBoard::kInterval);
+  CHECK(world.client.load_of(world.id) == 3);
+  CHECK(world.client.refused() == 1);
+  forged.withdraw();
+  CHECK(world.client.load_of(world.id) == 3);
+  CHECK(world.client.refused() == 2);
+}
+
+TEST_CASE("a participant's loads have so much room", "[R21][R26]") {
+  World world;
+  std::vector<Broker::Registration> told;
+  for (std::size_t i = 0; i <= Room::kEntriesOfOne; ++i) {
+    Guid provider = guid(static_cast<std::uint8_t>(i), world.near->guid());
+    provider.bytes[13] = static_cast<std::uint8_t>(i >> 8);
+    told.push_back(world.provider.tell(provider, [] { return std::size_t{1}; }));
+  }
+  world.pass(LoadBoard::kInterval);
+  CHECK(world.client.refused() == 1);
 }

@@ -1,45 +1,87 @@
 #include "skein/brokerless_discovery/process_watch.hpp"
 
+#include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
 #include <memory>
+#include <vector>
 
+#include "../../brokerless_discovery/abstract_socket.hpp"
 #include "../tools/eventually.hpp"
 #include "skein/brokerless_discovery/kill_process.hpp"
 
-using skein::brokerless_discovery::kill_process;
-using skein::brokerless_discovery::ProcessWatch;
+using namespace skein::brokerless_discovery;
+using skein::FileDescriptor;
 using skein::test::eventually;
 
 namespace {
 
-/// A process that watches nothing, can be watched, and waits to be killed.
+const skein::Guid kParticipant = *skein::Guid::from_hex("0102030405060708090a0b0c00000000");
+const void* const kWatcher = &kParticipant;
+
+/// A process that can be watched, and waits to be killed.
 struct Child {
   pid_t pid;
   std::string address;
+  FileDescriptor told;  // one byte for each end that it hears of
 
-  Child() {
+  /// It watches nothing, or what listens at `target`, after it did what `prepare` says.
+  explicit Child(
+      const std::string& target = {}, const std::function<void()>& prepare = [] {}) {
     int ends[2];
     REQUIRE(pipe(ends) == 0);
     pid = fork();
     if (pid == 0) {
-      const ProcessWatch own;
-      const ssize_t written = write(ends[1], own.address().data(), own.address().size());
-      (void)written;
-      close(ends[1]);
+      prepare();
+      ProcessWatch own;
+      const auto tell = [&](std::string_view text) {
+        [[maybe_unused]] const ssize_t written = write(ends[1], text.data(), text.size());
+      };
+      const std::string own_address = own.open(kParticipant);
+      if (!target.empty()) own.watch(target, kWatcher, [&] { tell("!"); });
+      tell(own_address);  // when it watches: who knows the address may fill its descriptors
       while (true) pause();
     }
     close(ends[1]);
+    told = FileDescriptor(ends[0]);
     char text[128];
     const ssize_t count = read(ends[0], text, sizeof text);
-    close(ends[0]);
     REQUIRE(count > 0);
     address.assign(text, static_cast<std::size_t>(count));
   }
+
+  bool heard_of_an_end() const {
+    pollfd look{told.get(), POLLIN, 0};
+    return poll(&look, 1, 0) == 1;
+  }
+
+  std::size_t descriptors() const {
+    const std::filesystem::directory_iterator all("/proc/" + std::to_string(pid) + "/fd");
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::begin(all), std::filesystem::end(all)));
+  }
+
+  /// Whether none of its threads runs or wants to.
+  bool asleep() const {
+    const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(pid) + "/task");
+    return std::all_of(std::filesystem::begin(tasks), std::filesystem::end(tasks),
+                       [](const auto& task) {
+                         std::ifstream file(task.path() / "stat");
+                         const std::string text{std::istreambuf_iterator<char>(file), {}};
+                         return text.substr(text.rfind(')') + 2, 1) == "S";
+                       });
+  }
+
   ~Child() { end(); }
 
   void end() {
@@ -50,14 +92,44 @@ struct Child {
   }
 };
 
+std::vector<FileDescriptor> connections_to(const std::string& address, std::size_t count) {
+  std::vector<FileDescriptor> connections;
+  for (std::size_t i = 0; i < count; ++i) {
+    connections.push_back(local_socket());
+    if (connect_to(connections.back(), address) != Connected::Yes) break;
+  }
+  return connections;
+}
+
+/// Listens at an address as a process does, but accepts nobody by itself.
+struct Doorman {
+  std::string address = "skein/" + skein::Guid::random().hex();
+  FileDescriptor socket = local_socket();
+
+  Doorman() {
+    sockaddr_un name;
+    const socklen_t length = fill(name, address);
+    REQUIRE(bind(socket.get(), reinterpret_cast<sockaddr*>(&name), length) == 0);
+    REQUIRE(listen(socket.get(), 8) == 0);
+  }
+  FileDescriptor let_in() const {
+    FileDescriptor guest;
+    REQUIRE(eventually([&] {
+      guest = FileDescriptor(accept(socket.get(), nullptr, nullptr));
+      return static_cast<bool>(guest);
+    }));
+    return guest;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("the kernel tells of the end of a watched process, once") {
   Child child;
   ProcessWatch watch;
   std::atomic<int> ended = 0;
-  watch.watch(child.address, [&] { ++ended; });
-  watch.watch(child.address, [&] { ++ended; });
+  watch.watch(child.address, kWatcher, [&] { ++ended; });
+  watch.watch(child.address, kWatcher, [&] { ++ended; });
   CHECK(ended == 0);
   child.end();
   CHECK(eventually([&] { return ended == 1; }));
@@ -68,7 +140,7 @@ TEST_CASE("a stopped process has not ended") {
   ProcessWatch watch;
   std::atomic<int> ended = 0;
   kill(child.pid, SIGSTOP);
-  watch.watch(child.address, [&] { ++ended; });
+  watch.watch(child.address, kWatcher, [&] { ++ended; });
   kill(child.pid, SIGCONT);
   CHECK(ended == 0);
   child.end();
@@ -80,7 +152,7 @@ TEST_CASE("a process that ended before it was watched is told at once") {
   child.end();
   ProcessWatch watch;
   std::atomic<int> ended = 0;
-  watch.watch(child.address, [&] { ++ended; });
+  watch.watch(child.address, kWatcher, [&] { ++ended; });
   CHECK(ended == 1);
 }
 
@@ -96,12 +168,180 @@ TEST_CASE("a process is killed by its address, running or stopped, and once it i
   CHECK_FALSE(kill_process(child.address));
 }
 
+TEST_CASE("where only a stopped process is to be killed, one that runs is left alone") {
+  Child child;
+  CHECK_FALSE(kill_stopped_process(child.address));
+  kill(child.pid, SIGSTOP);
+  REQUIRE(eventually([&] { return kill_stopped_process(child.address); }));
+  int status = 0;
+  REQUIRE(waitpid(child.pid, &status, 0) == child.pid);
+  child.pid = 0;
+  CHECK(WTERMSIG(status) == SIGKILL);
+}
+
 TEST_CASE("a process does not kill itself") {
-  const ProcessWatch own;
-  CHECK_FALSE(kill_process(own.address()));
+  ProcessWatch own;
+  CHECK_FALSE(kill_process(own.open(kParticipant)));
 }
 
 TEST_CASE("processes of one network namespace are on one host") {
   CHECK_FALSE(ProcessWatch::host().empty());
   CHECK(ProcessWatch::host() == ProcessWatch::host());
+}
+
+TEST_CASE("an address is of the participant for which it was opened, and of no other", "[R27]") {
+  ProcessWatch watch;
+  const std::string address = watch.open(kParticipant);
+  CHECK(ProcessWatch::is_address_of(kParticipant, address));
+  CHECK_FALSE(ProcessWatch::is_address_of(skein::Guid::random(), address));
+  CHECK(watch.open(kParticipant) != address);
+  for (const std::string& other :
+       {std::string(), std::string("skein/"), address + "0", "/" + address,
+        "skein/" + std::string(32, 'g'), "other/" + skein::Guid::random().hex()}) {
+    CAPTURE(other);
+    CHECK_FALSE(ProcessWatch::is_address(other));
+    CHECK_FALSE(kill_process(other));
+    int ended = 0;
+    watch.watch(other, kWatcher, [&] { ++ended; });
+    CHECK(ended == 0);
+  }
+}
+
+TEST_CASE("each watcher of an address hears of the end, and who has left does not", "[R27]") {
+  Child child;
+  ProcessWatch watch;
+  std::atomic<int> one = 0;
+  std::atomic<int> two = 0;
+  std::atomic<int> three = 0;
+  watch.watch(child.address, &one, [&] { ++one; });
+  watch.watch(child.address, &two, [&] { ++two; });
+  watch.watch(child.address, &three, [&] { ++three; });
+  CHECK(watch.counters().watched == 1);
+  watch.unwatch(child.address, &two);
+  child.end();
+  CHECK(eventually([&] { return one == 1 && three == 1; }));
+  CHECK(two == 0);
+  CHECK(watch.counters().watched == 0);
+}
+
+TEST_CASE("what nobody watches any more holds no descriptor", "[R27]") {
+  Child child;
+  ProcessWatch watch;
+  const int other = 0;
+  watch.watch(child.address, kWatcher, [] {});
+  watch.watch(child.address, &other, [] {});
+  watch.unwatch(child.address, kWatcher);
+  CHECK(watch.counters().watched == 1);
+  watch.unwatch(&other);
+  CHECK(watch.counters().watched == 0);
+}
+
+TEST_CASE("who is turned away does not take it for the process's end", "[R27]") {
+  const Doorman door;
+  ProcessWatch watch;
+  std::atomic<int> ended = 0;
+  watch.watch(door.address, kWatcher, [&] { ++ended; });
+  { const FileDescriptor turned_away = door.let_in(); }
+  CHECK(eventually([&] { return watch.counters().watched == 0; }));
+  CHECK(ended == 0);
+}
+
+TEST_CASE("who was not let in yet hears of the process's end, too", "[R27]") {
+  auto door = std::make_unique<Doorman>();
+  ProcessWatch watch;
+  std::atomic<int> ended = 0;
+  watch.watch(door->address, kWatcher, [&] { ++ended; });
+  CHECK(ended == 0);
+  door.reset();
+  CHECK(eventually([&] { return ended == 1; }));
+}
+
+TEST_CASE("one process has so many connections to another, which has room for others beside it",
+          "[R27]") {
+  ProcessWatch own;
+  const std::string address = own.open(kParticipant);
+  const Child other(address);  // first: a child has copies of its parent's descriptors
+  CHECK(eventually([&] { return own.counters().watchers == 1; }));
+
+  constexpr std::size_t kMore = 10;
+  auto many = connections_to(address, ProcessWatch::kMostWatchersOfOne + kMore);
+  CHECK(eventually([&] { return own.counters().refused == kMore; }));
+  CHECK(own.counters().watchers == ProcessWatch::kMostWatchersOfOne + 1);
+
+  many.clear();
+  CHECK(eventually([&] { return own.counters().watchers == 1; }));
+  const auto again = connections_to(address, 1);
+  CHECK(eventually([&] { return own.counters().watchers == 2; }));
+}
+
+TEST_CASE("a process watches so many others", "[R27]") {
+  const std::vector<Doorman> doors(ProcessWatch::kMostWatched + 1);
+  ProcessWatch watch;
+  for (const Doorman& door : doors) watch.watch(door.address, kWatcher, [] {});
+  CHECK(watch.counters().watched == ProcessWatch::kMostWatched);
+}
+
+TEST_CASE("a process without a free descriptor waits for one in peace, and hears of others' ends",
+          "[R27]") {
+  constexpr rlim_t kDescriptors = 64;
+  Child watched;
+  Child full(watched.address, [] {
+    const rlimit limit{kDescriptors, kDescriptors};
+    REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  });
+  auto crowd = connections_to(full.address, kDescriptors + 36);
+  REQUIRE(eventually([&] { return full.descriptors() >= kDescriptors; }));
+
+  CHECK(eventually([&] { return full.asleep(); }));
+
+  CHECK_FALSE(full.heard_of_an_end());
+  watched.end();
+  CHECK(eventually([&] { return full.heard_of_an_end(); }));
+
+  ProcessWatch late;
+  std::atomic<int> ended = 0;
+  late.watch(full.address, kWatcher, [&] { ++ended; });
+  SECTION("while it is full") {}
+  SECTION("once it is not") {
+    crowd.clear();
+    CHECK(eventually([&] { return full.descriptors() < kDescriptors / 2; }));
+  }
+  CHECK(ended == 0);
+  full.end();
+  CHECK(eventually([&] { return ended == 1; }));
+}
+
+TEST_CASE("another user's process is turned away, and does not take it for an end", "[R27]") {
+  if (geteuid() != 0) {
+    WARN("skipped: only root can become another user");
+    return;
+  }
+  ProcessWatch own;
+  const std::string address = own.open(kParticipant);
+  Child foreign(address, [] { REQUIRE(setuid(65534) == 0); });
+  // Its own side of the connection does not trust root either; this is what a rogue would do.
+  std::atomic<int> ended = 0;
+  own.watch(foreign.address, kWatcher, [&] { ++ended; });
+  CHECK(own.counters().watched == 0);
+  CHECK(own.counters().watchers == 0);
+  foreign.end();
+  CHECK(ended == 0);
+}
+
+TEST_CASE("another user's crowd takes no descriptor, and no room from others", "[R27]") {
+  if (geteuid() != 0) {
+    WARN("skipped: only root can become another user");
+    return;
+  }
+  ProcessWatch own;
+  const std::string address = own.open(kParticipant);
+  constexpr std::size_t kCrowd = 40;
+  Child crowd({}, [&] {
+    REQUIRE(setuid(65534) == 0);
+    static std::vector<FileDescriptor> connections = connections_to(address, kCrowd);
+  });
+  CHECK(eventually([&] { return own.counters().refused == kCrowd; }));
+  CHECK(own.counters().watchers == 0);
+  const Child good(address);
+  CHECK(eventually([&] { return own.counters().watchers == 1; }));
 }

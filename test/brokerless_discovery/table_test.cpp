@@ -15,6 +15,8 @@ namespace {
 
 const Guid kWriter = guid(200);
 const Guid kOtherWriter = guid(201);
+/// A writer of another participant.
+const Guid kStranger = guid(200, *Guid::from_hex("0102030405060708090a0b0c00000000"));
 
 Query query(const std::string& name) {
   Query query;
@@ -66,7 +68,7 @@ TEST_CASE("an interface's last part is enough where it is unambiguous", "[R3]") 
                                                        Catch::Contains("B/IPlanner"));
   CHECK(entities(table, query("B/IPlanner")) == Names{"two"});
 
-  table.on_withdrawn(guid(1));
+  table.on_withdrawn(guid(1), kWriter);
   CHECK(entities(table, query("IPlanner")) == Names{"two"});
 }
 
@@ -168,12 +170,12 @@ TEST_CASE("where nothing is found the reason is given", "[R9]") {
 TEST_CASE("a withdrawn description goes at once", "[R10]") {
   Table table;
   table.on_description(description(1, "A/I", "one"), kWriter);
-  const auto changes = table.on_withdrawn(guid(1));
+  const auto changes = table.on_withdrawn(guid(1), kWriter);
   REQUIRE(changes.size() == 1);
   CHECK(changes[0].kind == Change::Kind::Removed);
   CHECK(changes[0].departure == Departure::Left);
   CHECK(table.find(query("A/I")).empty());
-  CHECK(table.on_withdrawn(guid(1)).empty());
+  CHECK(table.on_withdrawn(guid(1), kWriter).empty());
 }
 
 TEST_CASE("a provider whose lease expired is kept but not offered", "[R11]") {
@@ -310,6 +312,235 @@ TEST_CASE("providers on the preferred host come first, others follow", "[R19]") 
 
 namespace {
 
+/// Whether the table refuses an event, for that reason.
+template <class Event>
+bool refused(Refusal why, Event event) {
+  try {
+    event();
+  } catch (const Refused& refusal) {
+    return refusal.why == why;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("who is no part of a provider's participant neither describes nor withdraws it",
+          "[R23]") {
+  Table table;
+  const auto forged = description(1, "A/I", "forged");
+
+  CHECK(refused(Refusal::Forged, [&] { table.on_description(forged, kStranger); }));
+  CHECK(table.all().empty());  // the first to claim it gains nothing
+
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  CHECK(refused(Refusal::Forged, [&] { table.on_description(forged, kStranger); }));
+  CHECK(refused(Refusal::Forged, [&] { table.on_withdrawn(guid(1), kStranger); }));
+  CHECK(table.on_writer_gone(kStranger).empty());
+  CHECK(table.on_writer_alive(kStranger, false).empty());
+  CHECK(entities(table, query("A/I")) == Names{"one"});
+}
+
+TEST_CASE("a participant's new writer takes over what its earlier one described", "[R13][R23]") {
+  Table table;
+  table.on_description(description(1, "A/I", "one"), kWriter);
+  table.on_description(description(1, "A/I", "one"), kOtherWriter);
+  CHECK(table.on_writer_gone(kWriter).empty());
+  CHECK(entities(table, query("A/I")) == Names{"one"});
+  CHECK(table.on_writer_gone(kOtherWriter).size() == 1);
+}
+
+TEST_CASE("a peer knows its own services by itself, and notes what others are told otherwise",
+          "[R24]") {
+  const Guid itself;
+  Table table;
+  table.on_description(description(1, "A/I", "own"), itself);
+
+  CHECK(table.on_description(description(1, "A/I", "own"), kWriter).empty());
+  CHECK(table.take_contradicted().empty());
+
+  SECTION("withdrawn") { CHECK(table.on_withdrawn(guid(1), kWriter).empty()); }
+  SECTION("described otherwise") {
+    CHECK(table.on_description(description(1, "A/I", "other"), kWriter).empty());
+  }
+  CHECK(entities(table, query("A/I")) == Names{"own"});
+  CHECK(table.take_contradicted() == std::set<Guid>{guid(1)});
+  CHECK(table.take_contradicted().empty());
+  CHECK(table.on_withdrawn(guid(1), itself).size() == 1);
+}
+
+TEST_CASE("what no participant may say of a service is refused with the reason", "[R25]") {
+  const Guid participant = guid(0);
+  const auto good = description(1, "A/I", "one");
+  auto bad = good;
+  bad.process = "";
+  CHECK_NOTHROW(check_description(bad, participant));
+  const auto refuses = [&](Refusal why) {
+    return refused(why, [&] { check_description(bad, participant); });
+  };
+  SECTION("another's provider") {
+    bad.provider = guid(1, kStranger).bytes;
+    CHECK(refuses(Refusal::Forged));
+  }
+  SECTION("another's process") {
+    bad.process = "skein/" + kStranger.hex();
+    CHECK(refuses(Refusal::Forged));
+  }
+  SECTION("what is no process's address") {
+    bad.process = "/run/dbus/system_bus_socket";
+    CHECK(refuses(Refusal::Forged));
+  }
+  SECTION("a name that is none") {
+    bad.entity = GENERATE("", "two words", "\x1b[2J", "a/b", "*");
+    CHECK(refuses(Refusal::Malformed));
+  }
+  SECTION("a system that is none") {
+    bad.system = "uav 1";
+    CHECK(refuses(Refusal::Malformed));
+  }
+  SECTION("an owner that is none") {
+    bad.owner = GENERATE("navigator", "uav-1/", "/navigator", "uav-1/navi*");
+    CHECK(refuses(Refusal::Malformed));
+  }
+  SECTION("control characters") {
+    const std::string control = GENERATE("\x1b[31m", "\n", "\x7f", "\xc2\x9b");
+    switch (GENERATE(0, 1, 2, 3, 4)) {
+      case 0:
+        bad.host = "here" + control;
+        break;
+      case 1:
+        bad.vendor = control;
+        break;
+      case 2:
+        bad.attributes = {{"kind", control}};
+        break;
+      case 3:
+        bad.attributes = {{control, "kind"}};
+        break;
+      case 4:
+        bad.operations = {{control, 1, 2}};
+        break;
+    }
+    CHECK(refuses(Refusal::Malformed));
+  }
+  SECTION("a name of a megabyte") {
+    bad.entity = std::string(1 << 20, 'a');
+    CHECK(refuses(Refusal::Oversized));
+  }
+  SECTION("too many bases") {
+    bad.bases.assign(kMostBases + 1, "A/IBase");
+    CHECK(refuses(Refusal::Oversized));
+  }
+  SECTION("too many operations") {
+    bad.operations.resize(kMostOperations + 1);
+    CHECK(refuses(Refusal::Oversized));
+  }
+  SECTION("too many attributes") {
+    bad.attributes.resize(kMostAttributes + 1);
+    CHECK(refuses(Refusal::Oversized));
+  }
+  SECTION("too much XML") {
+    bad.component.assign(kMostDescriptionBytes + 1, ' ');
+    CHECK(refuses(Refusal::Oversized));
+  }
+}
+
+TEST_CASE("a description may hold what people write", "[R25]") {
+  auto good = description(1, "A/I", "one");
+  good.process = "";
+  good.component = "<component>\r\n\t<note>Größe</note>\n</component>";
+  good.attributes = {{"note", "schnell, für kurze Wege"}};
+  CHECK_NOTHROW(check_description(good, guid(0)));
+}
+
+namespace {
+
+/// The n-th provider of a participant.
+Guid numbered(std::size_t number, Guid participant = {}) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    participant.bytes[12 + i] = static_cast<std::uint8_t>(number >> 8 * i);
+  }
+  return participant;
+}
+
+/// How many descriptions by a writer the table takes before it refuses the first.
+std::size_t fill(Table& table, const Guid& writer, const std::string& xml = {}) {
+  for (std::size_t count = 0;; ++count) {
+    auto one = description(1, "A/I" + std::to_string(count), "one");
+    one.provider = numbered(count, writer.participant()).bytes;
+    one.component = xml;
+    if (refused(Refusal::NoRoom, [&] { table.on_description(one, writer); })) return count;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a participant has room for so many descriptions, and what goes makes room", "[R26]") {
+  Table table;
+  CHECK(fill(table, kWriter) == Room::kEntriesOfOne);
+  CHECK_FALSE(table.take_room_again());
+
+  auto other = description(1, "B/I", "other");
+  other.provider = guid(1, kStranger).bytes;
+  table.on_description(other, kStranger);
+  CHECK(entities(table, query("B/I")) == Names{"other"});
+
+  table.on_withdrawn(numbered(7), kWriter);
+  CHECK(table.take_room_again());
+  CHECK_FALSE(table.take_room_again());
+  auto last = description(1, "C/I", "last");
+  last.provider = numbered(5000).bytes;
+  CHECK_NOTHROW(table.on_description(last, kWriter));
+}
+
+TEST_CASE("a participant has room for so many bytes", "[R26]") {
+  Table table;
+  const std::string xml(kMostDescriptionBytes, ' ');
+  const std::size_t count = fill(table, kWriter, xml);
+  CHECK(count < Room::kEntriesOfOne);
+  CHECK(count * xml.size() <= Room::kBytesOfOne);
+}
+
+TEST_CASE("a full table changes what it has", "[R4][R26]") {
+  Table table;
+  fill(table, kWriter);
+  auto changed = description(1, "A/I0", "changed");
+  changed.provider = numbered(0).bytes;
+  CHECK_NOTHROW(table.on_description(changed, kWriter));
+  CHECK(entities(table, query("A/I0")) == Names{"changed"});
+  CHECK(table.all().size() == Room::kEntriesOfOne);
+}
+
+TEST_CASE("all participants together have room for so many descriptions, and this peer for its own",
+          "[R26]") {
+  Table table;
+  std::size_t count = 0;
+  for (std::uint8_t number = 1; number <= 20; ++number) {
+    Guid participant;
+    participant.bytes[0] = number;
+    count += fill(table, participant);
+  }
+  CHECK(count == Room::kEntriesOfAll);
+  CHECK_NOTHROW(table.on_description(description(1, "B/I", "own"), Guid{}));
+  CHECK(entities(table, query("B/I")) == Names{"own"});
+  Guid first;
+  first.bytes[0] = 1;
+  CHECK(table.on_writer_gone(first).size() == Room::kEntriesOfOne);
+  CHECK(table.take_room_again());
+}
+
+TEST_CASE("so many processes that have ended are remembered, the oldest are forgotten first",
+          "[R15][R27]") {
+  Table table;
+  for (std::size_t i = 0; i <= Table::kMostEnded; ++i) {
+    table.on_process_ended("skein/process-of-" + std::to_string(i));
+  }
+  CHECK(table.on_description(description(1, "A/I", "1"), kWriter).empty());
+  CHECK(table.on_description(description(2, "A/I", "0"), kWriter).size() == 1);
+}
+
+namespace {
+
 /// Descriptions and queries by chance, out of few words, so that they often have something in
 /// common.
 class Lottery {
@@ -357,7 +588,7 @@ TEST_CASE("constraints find what a look at each description would find", "[R5][R
   for (int round = 0; round < 2000; ++round) {
     const auto number = static_cast<std::uint8_t>(lottery.chance(60));
     if (lottery.chance(4) == 0) {
-      table.on_withdrawn(guid(number));
+      table.on_withdrawn(guid(number), kWriter);
     } else {
       table.on_description(lottery.draw_description(number), kWriter);
     }

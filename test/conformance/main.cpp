@@ -1,7 +1,9 @@
+#define CATCH_CONFIG_NO_POSIX_SIGNALS
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 #include <cstdio>
 
+#include "../tools/dying_test.hpp"
 #include "wire.hpp"
 
 namespace {

@@ -1,8 +1,13 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 
 #include "../../src/dds/keyed_queue.hpp"
 #include "../../src/dds/sample_format.hpp"
+#include "../../src/dds/topic_table.hpp"
 #include "skein/core/error.hpp"
 #include "skein/dds/port.hpp"
 
@@ -93,4 +98,26 @@ TEST_CASE("a keyed queue with a capacity gives up its oldest item, of whichever 
   CHECK(queue.pop() == 3);
   CHECK(queue.pop() == 4);
   CHECK(queue.pop() == 5);
+}
+
+TEST_CASE("a participant destroyed before its endpoints ends the program, and names a topic") {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGABRT, SIG_DFL);
+    dup2(ends[1], STDERR_FILENO);
+    TopicTable<int> topics;
+    topics.acquire({"radar", "Echo"}, [] { return 0; });
+    topics.expect_unused("alpha");
+    _exit(0);
+  }
+  close(ends[1]);
+  char said[500] = {};
+  CHECK(read(ends[0], said, sizeof said - 1) > 0);
+  close(ends[0]);
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK((WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT));
+  CHECK_THAT(said, Contains("'alpha'") && Contains("'radar'"));
 }

@@ -4,8 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
+#include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -44,6 +46,8 @@ class Heard {
     for (const CallEvent& event : call) steps.push_back(event.step);
     return steps;
   }
+
+  std::uint64_t refused() const { return reader_.refused(); }
 
   std::vector<CallEvent> all() const {
     std::lock_guard lock(mutex_);
@@ -122,4 +126,25 @@ TEST_CASE("a journal is on while it is read, bounded, and counts what it drops")
   }
   CHECK(eventually([&] { return !journal->on(); }));
   journal->close();
+}
+
+TEST_CASE("malformed events are counted, and the first alone is logged") {
+  const auto entity = make_server();
+  const auto other = make_client();
+  const Heard heard(other->participant());
+  const Log log;
+  dds::Qos qos;
+  qos.reliable = false;
+  const auto writer = entity->participant().create_writer(
+      {"skein/calls", "skein::introspection::CallEvent", false}, qos);
+  Bytes malformed = idl::encode_message(CallEvent{});
+  malformed.resize(malformed.size() / 2);
+  // Best effort: the first ones may come before the reader is known.
+  CHECK(eventually([&] {
+    writer->write(malformed);
+    return heard.refused() >= 10;
+  }));
+  CHECK(log.count("dropped a malformed sample of participant " +
+                  entity->participant().guid().hex().substr(0, 24)) == 1);
+  CHECK(heard.all().empty());
 }

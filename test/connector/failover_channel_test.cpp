@@ -6,6 +6,7 @@
 #include "fake_provider.hpp"
 
 using namespace skein;
+using namespace skein::connector;
 using namespace skein::test;
 using namespace std::chrono_literals;
 

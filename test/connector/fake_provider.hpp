@@ -1,8 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <deque>
 
-#include "link.hpp"
+#include "skein/core/channel.hpp"
 #include "skein/core/error.hpp"
 
 namespace skein::test {

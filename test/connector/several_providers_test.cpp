@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "../tools/eventually.hpp"
 #include "echo_service.hpp"
+#include "fake_provider.hpp"
 #include "pairing.hpp"
 
 using namespace skein;
@@ -56,18 +58,54 @@ const auto who = [](Echo::Proxy& echo) { return echo.within(10min).async_who(0);
 
 }  // namespace
 
-TEST_CASE("a call to all gathers their answers in the order in which they come") {
-  Crowd crowd({{"a", 1500}, {"b", 0}, {"c", 500}});
+TEST_CASE("a call to all gathers the answer of each") {
+  Crowd crowd({{"a", 100}, {"b", 0}, {"c", 50}});
   auto all = crowd.client->connect_all<Echo>();
   REQUIRE(all.size() == 3);
   const auto answers = gather(all, all.size(), who);
   REQUIRE(answers.size() == 3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string expected = std::vector{"b", "c", "a"}[i];
-    CHECK(answers[i].result == expected);
-    CHECK(answers[i].entity == expected);
-    CHECK(answers[i].error == nullptr);
+  std::set<std::string> names;
+  for (const auto& answer : answers) {
+    CHECK(answer.result == answer.entity);
+    CHECK(answer.error == nullptr);
+    names.insert(answer.entity);
   }
+  CHECK(names == std::set<std::string>{"a", "b", "c"});
+}
+
+TEST_CASE("what was gathered stands in the order in which it came") {
+  struct Numbers {
+    using Proxy = std::shared_ptr<FakeChannel>;
+  };
+  struct NumberCall final : PendingCall {
+    NumberCall(const OperationInfo& operation, Instant deadline)
+        : PendingCall(operation, &value, deadline, false) {}
+    int value = 0;
+  };
+  ManualClock clock;
+  ManualExecutor continuations;
+  const OperationInfo operation = number_operation(true);
+  std::vector<Connected<Numbers>> all;
+  for (const char* name : {"a", "b", "c"})
+    all.push_back({Guid::random(), name, std::make_shared<FakeChannel>(clock, continuations)});
+  const auto answers = gather(all, 3, [&](const std::shared_ptr<FakeChannel>& provider) {
+    const auto call = std::make_shared<NumberCall>(operation, clock.now() + 1s);
+    const int in = 0;
+    provider->start(call, &in);
+    if (provider == all.back().proxy) {
+      all[1].proxy->answer(0, 20);
+      all[0].proxy->lose();
+      provider->answer(0, 30);
+    }
+    return Call<int>(call, provider, &call->value);
+  });
+  REQUIRE(answers.size() == 3);
+  CHECK(answers[0].entity == "b");
+  CHECK(answers[0].result == 20);
+  CHECK(answers[1].entity == "a");
+  CHECK_THROWS_AS(std::rethrow_exception(answers[1].error), Disconnected);
+  CHECK(answers[2].entity == "c");
+  CHECK(answers[2].result == 30);
 }
 
 TEST_CASE(
@@ -84,9 +122,11 @@ TEST_CASE(
     "who does not answer by the deadline, or fails, stands among the answers with his error") {
   Crowd crowd({{"a", kForEver}, {"b", 0}});
   auto all = crowd.client->connect_all<Echo>();
-  const auto late =
-      gather(all, 2, [](Echo::Proxy& echo) { return echo.within(500ms).async_who(0); });
-  REQUIRE(late.size() == 2);
+  std::vector<Answer<std::string>> late;
+  REQUIRE(with_enough_time(500ms, [&](auto limit) {
+    late = gather(all, 2, [&](Echo::Proxy& echo) { return echo.within(limit).async_who(0); });
+    return late.size() == 2 && late[0].result;
+  }));
   CHECK(late[0].result == std::string("b"));
   CHECK_FALSE(late[1].result);
   CHECK_THROWS_AS(std::rethrow_exception(late[1].error), TimedOut);

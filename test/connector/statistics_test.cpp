@@ -4,6 +4,7 @@
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "skein/entity/statistics_topic.hpp"
+#include "skein/idl/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -25,6 +26,36 @@ OperationStatistics of(const std::vector<ServiceStatistics>& services,
   }
   return {};
 }
+
+/// Tells statistics as that entity, of whichever service.
+class Teller {
+ public:
+  explicit Teller(Entity& entity)
+      : writer_(entity.participant().create_writer(
+            {"skein/statistics", "skein::introspection::ServiceStatistics", true}, qos())) {}
+
+  void tell(const Guid& provider, const std::string& service) {
+    ServiceStatistics statistics;
+    statistics.provider = provider.bytes;
+    statistics.service = service;
+    writer_->write(idl::encode_message(statistics), key_hash(statistics));
+  }
+  void babble(const Guid& provider) {
+    ServiceStatistics statistics;
+    statistics.provider = provider.bytes;
+    Bytes message = idl::encode_message(statistics);
+    message.resize(message.size() / 2);
+    writer_->write(message, key_hash(statistics));
+  }
+
+ private:
+  static dds::Qos qos() {
+    dds::Qos qos;
+    qos.reliable = false;
+    return qos;
+  }
+  std::unique_ptr<dds::Writer> writer_;
+};
 
 }  // namespace
 
@@ -94,4 +125,46 @@ TEST_CASE(
   echo.echo("x");
   CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 2; }));
   CHECK(reader.latest().at(0).entity == "server");
+}
+
+TEST_CASE("a reader takes from each peer the statistics of that peer's own services alone") {
+  const auto onlooker = make_client();
+  const introspection::StatisticsReader reader(onlooker->participant());
+  const auto peer = make_server("peer");
+  const auto rogue = make_server("rogue");
+  const Guid service = peer->broker().new_provider();
+  const Guid other = rogue->broker().new_provider();
+  const auto told = [&] {
+    std::vector<std::string> services;
+    for (const auto& statistics : reader.latest()) services.push_back(statistics.service);
+    return services;
+  };
+  using Services = std::vector<std::string>;
+  // Best effort: the first ones may come before the reader is known.
+  auto speaker = std::make_optional<Teller>(*peer);
+  REQUIRE(eventually([&] {
+    speaker->tell(service, "true");
+    return told() == Services{"true"};
+  }));
+  CHECK(reader.refused() == 0);
+
+  Teller forger(*rogue);
+  CHECK(eventually([&] {
+    forger.tell(service, "forged");
+    return reader.refused() > 0;
+  }));
+  CHECK(told() == Services{"true"});
+  const auto before = reader.refused();
+  CHECK(eventually([&] {
+    forger.babble(other);
+    return reader.refused() > before + 2;
+  }));
+  CHECK(told() == Services{"true"});
+  CHECK(eventually([&] {
+    forger.tell(other, "its own");
+    return told() == Services{"its own", "true"};
+  }));
+
+  speaker.reset();
+  CHECK(eventually([&] { return told() == Services{"its own"}; }));
 }

@@ -8,14 +8,14 @@
 
 #include <catch2/catch.hpp>
 #include <future>
-#include <mutex>
 
 #include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/executor.hpp"
-#include "skein/core/log.hpp"
 
 using namespace skein;
+using skein::test::Log;
 using namespace std::chrono_literals;
 using Scheduling = ThreadSettings::Scheduling;
 
@@ -49,26 +49,6 @@ Seen seen_by_thread_with(const ThreadSettings& settings) {
   executor.post([&] { seen.set_value(Seen::here()); });
   return seen.get_future().get();
 }
-
-/// What is logged while it lives.
-class Log {
- public:
-  Log() {
-    set_log_sink([this](LogLevel, std::string_view place, std::string_view text) {
-      std::lock_guard lock(mutex_);
-      text_.append(place).append(": ").append(text).append("\n");
-    });
-  }
-  ~Log() { set_log_sink({}); }
-  std::string text() const {
-    std::lock_guard lock(mutex_);
-    return text_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::string text_;
-};
 
 /// Either the thread runs as asked, or the log says why not and what to do.
 void check_obeyed_or_explained(bool obeyed, const Log& log, const std::string& what) {

@@ -116,8 +116,15 @@ TEST_CASE("a CSP that has shown to be quick runs on the thread of the Body that 
     CHECK_FALSE(open.ran_on_the_bodys_thread());
   }
   SECTION("not where little time is left") {
-    open.desk->within(90ms).ask("it");
-    CHECK(open.csp_thread.load() != open.body->thread.load());
+    // On a loaded machine so little may be too little.
+    CHECK(eventually([&] {
+      try {
+        return !open.desk->within(90ms).ask("it").empty();
+      } catch (const TimedOut&) {
+        return false;
+      }
+    }));
+    CHECK_FALSE(open.runs_on_the_bodys_thread());
   }
   SECTION("not on a thread that nobody could replace") {
     WorkTask task = Office::task();

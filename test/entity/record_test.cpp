@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <mutex>
 
@@ -146,6 +147,28 @@ TEST_CASE("each decision is a line of the log that the entity names") {
   const auto last = record_of(idl::from_json<Decision>(lines.back()));
   CHECK(last.number == 5);
   CHECK(report_of(last) == report_of(mixed.office.owner->head().decisions().back()));
+}
+
+TEST_CASE("a report with an outcome that nobody knows is refused, and names the word") {
+  Mixed mixed({});
+  mixed.perform(1);
+  Decision report = report_of(mixed.office.owner->head().decisions().back());
+  REQUIRE(report.attempts.size() > 1);
+  report.attempts.back().outcome = "exploded";
+  CHECK_THROWS_WITH(record_of(report), Catch::Contains("exploded"));
+
+  SECTION("as a line of a log, with its place, by the command that reads it") {
+    const File log("log");
+    std::ofstream(log.path) << idl::to_json(report) << '\n';
+    const File said("said");
+    const std::string command =
+        "'" SKEIN_COMMAND "' decisions --log " + log.path + " > " + said.path + " 2>&1";
+    const int status = std::system(command.c_str());
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) != 0);
+    REQUIRE(said.lines().size() == 1);
+    CHECK_THAT(said.lines()[0], Catch::Contains(log.path + ":1: ") && Catch::Contains("exploded"));
+  }
 }
 
 TEST_CASE(

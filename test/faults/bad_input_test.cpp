@@ -14,6 +14,7 @@
 using namespace skein;
 using namespace skein::test;
 using namespace std::chrono_literals;
+using brokerless_discovery::Refusal;
 using ::test::LouderEcho;
 
 namespace {
@@ -134,17 +135,27 @@ TEST_CASE(
   const auto writer = matched_writer(
       *attacked.stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
   REQUIRE(eventually([&] { return writer->matched_readers().size() == 3; }));
+  const std::vector<Entity*> all{attacked.server.get(), attacked.client.get(),
+                                 attacked.stranger.get()};
+  for (Entity* entity : all)
+    REQUIRE(eventually([&] { return entity->broker().knows(attacked.service.id()); }));
   auto random = seeded_random();
 
   Bytes good{std::span<const std::byte>(idl::kEncapsulation)};
-  auto description = describe_echo(Guid::random(), "stranger");
+  auto description = describe_echo(attacked.stranger->broker().new_provider(), "stranger");
   description.system = "uav-1";
   idl::type_support<brokerless_discovery::ServiceDescription>().encode(&description, good);
   const auto messages = broken_copies(good, random);
-  for (const Message& message : messages) writer->write(message.bytes, Guid::random());
+  for (const Message& message : messages) {
+    writer->write(message.bytes, attacked.stranger->broker().new_provider());
+  }
 
-  for (Entity* entity : {attacked.server.get(), attacked.client.get(), attacked.stranger.get()}) {
-    CHECK(eventually([&] { return entity->broker().malformed() == messages.size(); }));
+  for (Entity* entity : all) {
+    const auto& broker = entity->broker();
+    CHECK(eventually([&] {
+      return broker.refused(Refusal::Malformed) + broker.refused(Refusal::Oversized) ==
+             messages.size();
+    }));
     CHECK(entity->broker().all().size() == 1);
   }
   CHECK(attacked.unharmed());
@@ -156,7 +167,7 @@ namespace {
 /// A provider that answers `open` as it should, and each call with the next of its bad replies.
 class RogueServer {
  public:
-  explicit RogueServer(Entity& entity) : entity_(entity), id_(Guid::random()) {
+  explicit RogueServer(Entity& entity) : entity_(entity), id_(entity.broker().new_provider()) {
     dds::Qos qos;
     qos.partitions = {id_.hex()};
     dds::ReaderListener listener;

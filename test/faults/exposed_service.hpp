@@ -43,7 +43,7 @@ class ExposedService {
       : executor_("exposed", 1, queue),
         service_(std::make_shared<rpc::Service>(
             std::make_shared<typename Implementation::Skeleton>(std::move(implementation)),
-            executor_, entity.clock(), service_options())),
+            executor_, entity.clock(), service_options(entity.broker().new_provider()))),
         server_(entity.participant(), control_, entity.clock(), service_, {}),
         registration_(entity.broker().add_service(
             describe(service_->interface_info(), id(), entity.options().name))) {}
@@ -61,8 +61,9 @@ class ExposedService {
   }
 
  private:
-  rpc::Service::Options service_options() {
+  rpc::Service::Options service_options(const Guid& id) {
     rpc::Service::Options options;
+    options.id = id;
     options.open = [this](const rpc::OpenRequest&) {
       auto session = std::make_shared<Session>();
       std::lock_guard lock(mutex_);

@@ -143,9 +143,9 @@ std::vector<BadReply> bad_replies(std::mt19937_64& random) {
   using Head = wire::RequestHead;
   std::vector<BadReply> replies;
   const std::size_t good_size = good_reply({}).size();
-  constexpr std::size_t kReadableHead = 4 + 24 + 4 + 4;
+  constexpr std::size_t kReadableId = 4 + 24;
   for (std::size_t size = kHeader; size < good_size; ++size) {
-    replies.push_back({"cut off after " + std::to_string(size), size >= kReadableHead,
+    replies.push_back({"cut off after " + std::to_string(size), size >= kReadableId,
                        [size](const Head& head) { return copy(good_reply(head), size); }});
   }
   replies.push_back({"a text of 4 GB", true, [](const Head& head) {

@@ -1,11 +1,16 @@
 // The other process of these tests: an entity that obeys the lines it reads and answers each with
 // one line. It ends with its standard input. Arguments are `name=value`; commands stand in main().
+#include <algorithm>
 #include <iostream>
+#include <mutex>
+#include <semaphore>
 #include <sstream>
 
 #include "../connector/echo_service.hpp"
 #include "peer_arguments.hpp"
 #include "skein/core/error.hpp"
+#include "skein/core/log.hpp"
+#include "skein/discovery.idl.hpp"
 #include "skein/entity/entity.hpp"
 
 using namespace skein;
@@ -17,15 +22,45 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
+/// What the library has logged, where a test asked for it; it is then not on standard error.
+class KeptLog {
+ public:
+  explicit KeptLog(const PeerArguments& arguments) {
+    if (!arguments.contains("keep_log")) return;
+    set_log_sink([lines = lines_](LogLevel, std::string_view place, std::string_view text) {
+      std::lock_guard lock(lines->mutex);
+      if (lines->text.size() < kMost) lines->text.append(place).append(": ").append(text) += "; ";
+    });
+  }
+
+  std::string text() const {
+    std::lock_guard lock(lines_->mutex);
+    std::string line = lines_->text;
+    std::ranges::replace(line, '\n', ' ');
+    return line.empty() ? "nothing" : line;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4096;
+  /// Vendors' threads may still log when the peer has ended.
+  struct Lines {
+    std::mutex mutex;
+    std::string text;
+  };
+  const std::shared_ptr<Lines> lines_ = std::make_shared<Lines>();
+};
+
 class Peer {
  public:
   Peer(const PeerArguments& arguments, SteadyClock::time_point start)
-      : start_(start), entity_(entity_options(arguments)) {}
+      : start_(start), log_(arguments), entity_(entity_options(arguments)) {}
 
   std::string obey(const std::string& command, std::istringstream& rest) {
     if (command == "provide") return provide();
     if (command == "calls") return "calls " + std::to_string(service_->calls);
     if (command == "services") return services();
+    if (command == "gather") return gather(rest);
+    if (command == "logged") return "logged " + log_.text();
     if (command == "connect") return connect({.name = word(rest), .timeout = 20s});
     if (command == "echo") return echo(rest);
     if (command == "octets") return octets(rest);
@@ -52,6 +87,24 @@ class Peer {
   std::string services() {
     const auto& broker = entity_.broker();
     return "services " + std::to_string(broker.find_service(broker.query("test::Echo")).size());
+  }
+
+  // Waits for so many providers, for so many seconds: tells whose services it knows then.
+  std::string gather(std::istringstream& rest) {
+    std::size_t wanted = 0;
+    int seconds = 0;
+    rest >> wanted >> seconds;
+    const auto& broker = entity_.broker();
+    const auto find = [&] { return broker.find_service(broker.query("test::Echo")); };
+    const auto news = std::make_shared<std::counting_semaphore<>>(0);
+    const auto observation =
+        entity_.broker().observe([news](const brokerless_discovery::Change&) { news->release(); });
+    const auto end = SteadyClock::now() + std::chrono::seconds(seconds);
+    while (find().size() < wanted && news->try_acquire_until(end)) {
+    }
+    std::string known = "known";
+    for (const auto& description : find()) known += " " + description->entity;
+    return known;
   }
 
   std::string connect(const ConnectOptions& options) {
@@ -98,6 +151,7 @@ class Peer {
   }
 
   const SteadyClock::time_point start_;
+  const KeptLog log_;
   const std::shared_ptr<EchoService> service_ = std::make_shared<EchoService>();
   Entity entity_;
   std::optional<LouderEcho::Proxy> echo_;

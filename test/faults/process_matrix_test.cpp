@@ -29,10 +29,10 @@ void stop_a_provider_for(std::chrono::seconds pause, std::chrono::milliseconds l
   stage.check("provider stopped for " + std::to_string(pause.count()) + " s", kLostProvider);
 }
 
-void stop_clients_for(std::chrono::seconds pause) {
+void stop_clients_for(std::chrono::seconds pause, std::chrono::milliseconds lease) {
   FaultStage stage;
-  stage.add_server();
-  stage.add_clients(4);
+  stage.add_server({}, 4096, lease);
+  stage.add_clients(4, {}, lease);
   stage.connect();
   stage.start("timeout 300 bytes 2000");
   stage.run_for_calls(200);
@@ -101,10 +101,13 @@ TEST_CASE("matrix: a provider is stopped for 10 s under load, beyond its lease, 
   stop_a_provider_for(10s, FaultStage::kLease);
 }
 
-TEST_CASE("matrix: clients are stopped for 1 s under load, and go on") { stop_clients_for(1s); }
+TEST_CASE("matrix: clients are stopped for 1 s under load, within their lease, and go on") {
+  stop_clients_for(1s, FaultStage::kLongLease);
+}
 
-TEST_CASE("matrix: clients are stopped for 10 s under load, and go on", "[long]") {
-  stop_clients_for(10s);
+TEST_CASE("matrix: clients are stopped for 10 s under load, beyond their lease, and go on",
+          "[long]") {
+  stop_clients_for(10s, FaultStage::kLease);
 }
 
 TEST_CASE("matrix: a hundred clients join at once", "[long]") {

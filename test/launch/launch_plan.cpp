@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "profile_folder.hpp"
+#include "skein/core/host.hpp"
 
 using namespace skein::launch;
 using namespace skein::profile;
@@ -42,6 +43,31 @@ TEST_CASE("Peers of other hosts are named, not started") {
   const auto plan = make_launch_plan(mission, argv_of, "alpha");
   CHECK(names_of(plan) == std::vector<std::string>{"a", "c", "d"});
   CHECK(plan.elsewhere == std::vector<std::string>{"b on beta"});
+}
+
+TEST_CASE(
+    "A launcher that was not told where it is goes by the machine's own names and addresses") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="a" component="f.xml" host=")" + skein::name_of_this_host() + R"("/>
+         <peer name="b" component="f.xml" host="127.0.0.1"/>
+         <peer name="c" component="f.xml" host="192.0.2.7" role="mission"/>)"));
+  const auto plan = make_launch_plan(mission, argv_of);
+  CHECK(names_of(plan) == std::vector<std::string>{"a", "b"});
+  CHECK(plan.elsewhere == std::vector<std::string>{"c on 192.0.2.7"});
+  CHECK(plan.mission_elsewhere == "c on 192.0.2.7");
+}
+
+TEST_CASE("Who has nothing to start is told the hosts of the mission, and the nearest name") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="a" component="f.xml" host="alpha"/><peer name="b" component="f.xml" host="beta"/>
+         <peer name="c" component="f.xml" host="alpha"/>)"));
+  CHECK(
+      nobody_here(mission, "betta") ==
+      "no peer of mission 'm' is of this host, which is 'betta' (did you mean 'beta'?); its hosts "
+      "are alpha (a, c); beta (b); say by --host which of them this is");
+  CHECK_THAT(nobody_here(mission, ""), Catch::Contains(skein::name_of_this_host()));
 }
 
 TEST_CASE("The text of a plan shows commands that a shell would run, and every rule") {

@@ -23,3 +23,35 @@ TEST_CASE("What a profile says of a peer's Head is how its entity decides") {
   CHECK(options.head.breaker.first_quarantine == 300ms);
   CHECK(options.head.breaker.longest_quarantine == 5s);
 }
+
+TEST_CASE("Where a peer speaks and whom it asks follows from the profile") {
+  ProfileFolder folder;
+  const auto network_of = [&](const std::string& attributes) {
+    const auto mission = profile::read_mission_profile(
+        folder.mission(R"(<peer name="a" component="f.xml" host="10.0.0.1" )" + attributes +
+                       R"(/><peer name="b" component="f.xml" host="10.0.0.2"/>
+           <peer name="c" component="f.xml" host="10.0.0.2"/>
+           <peer name="d" component="f.xml" host="localhost"/>
+           <peer name="e" component="f.xml" host="10.0.0.1"/>)"));
+    return launch::network_of(mission, mission.peers.at(0));
+  };
+  using Hosts = std::vector<std::string>;
+  SECTION("without an interface: on this host alone") {
+    CHECK(network_of("").interfaces.empty());
+    CHECK(network_of("").peers.empty());
+  }
+  SECTION("with an interface alone: the mission's other hosts") {
+    const auto network = network_of("interface='eth0'");
+    CHECK(network.interfaces == Hosts{"eth0"});
+    CHECK(network.peers == Hosts{"10.0.0.2"});
+    CHECK_FALSE(network.multicast_discovery);
+  }
+  SECTION("with peers: those") {
+    CHECK(network_of("interface='eth0' peers='10.0.0.7, far'").peers == Hosts{"10.0.0.7", "far"});
+  }
+  SECTION("with multicast: nobody in particular") {
+    const auto network = network_of("interface='eth0' multicast='true'");
+    CHECK(network.multicast_discovery);
+    CHECK(network.peers.empty());
+  }
+}

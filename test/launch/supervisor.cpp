@@ -85,6 +85,44 @@ TEST_CASE("A required process that never becomes ready fails the start") {
   CHECK(result.reason == "a did not become ready");
 }
 
+TEST_CASE("What a process said it waits for is part of the reason why it did not become ready") {
+  auto child = shell_child("a",
+                           "echo '?for b' >&$SKEIN_READY_FD; echo '?for \033c' >&$SKEIN_READY_FD; "
+                           "while :; do sleep 1000; done");
+  child.rules.ready_timeout = 500ms;
+  RecordedMission hung({child});
+  const auto result = hung.run();
+  CHECK(result.exit_code == kStartFailed);
+  CHECK(result.reason == "a did not become ready (last it said: for \\x1bc)");
+  CHECK(hung.saw("a: is not ready after 0.50 s (last it said: for \\x1bc): killed"));
+
+  RecordedMission gave_up({shell_child("a", "echo '?for b' >&$SKEIN_READY_FD; exit 3")});
+  CHECK(gave_up.run().reason == "a ended with exit code 3 (last it said: for b)");
+}
+
+TEST_CASE("A process that has waited and is ready has no reason any more") {
+  RecordedMission mission({shell_child("a", "printf '?for b\\n\\n' >&$SKEIN_READY_FD; exit 3")});
+  const auto result = mission.run();
+  CHECK(result.outcome == Outcome::PeerLost);
+  CHECK(result.reason == "a ended with exit code 3");
+}
+
+TEST_CASE("A launcher whose mission runs on another host says so, and ends with its processes") {
+  RecordedMission ending({shell_child("a", "ready; exit 0")});
+  ending.plan.mission_elsewhere = "client on beta";
+  CHECK(ending.run().exit_code == 0);
+  RecordedMission waiting({shell_child("a", kWait)});
+  waiting.plan.mission_elsewhere = "client on beta";
+  Supervisor* running = nullptr;
+  waiting.on_event = [&](const ChildEvent& event) {
+    if (event.text.find("the mission runs on another host") != std::string::npos)
+      running->request_stop();
+  };
+  Supervisor supervisor(waiting.plan, waiting.options());
+  running = &supervisor;
+  CHECK(supervisor.run().outcome == Outcome::Interrupted);
+}
+
 TEST_CASE(
     "A required process that is lost after it was ready is another outcome than a failed start") {
   const auto [script, outcome, code] = GENERATE(table<std::string, Outcome, int>({

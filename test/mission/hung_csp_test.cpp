@@ -73,8 +73,7 @@ bool installed(const std::string& vendor) {
 
 TEST_CASE(
     "a CSP that hangs, or was stopped, is killed by its owner's peer, brought back by the "
-    "launcher, "
-    "and works again") {
+    "launcher, and works again") {
   const std::string owner = GENERATE("fastdds", "cyclonedds");
   const std::string csp = GENERATE("fastdds", "cyclonedds");
   if (!installed(owner) || !installed(csp)) return;
@@ -83,11 +82,12 @@ TEST_CASE(
   const MissionRun run(profile.file());
   INFO(run.output());
   CHECK(run.exit_code() == 0);
-  for (const std::string trouble : {"hang", "stop"}) {
+  for (const std::string trouble : {"hang", "stop", "stop beyond its lease"}) {
     CHECK_THAT(run.output(), Contains("sound did " + trouble));
     CHECK_THAT(run.output(), Contains("after " + trouble + " moody works again"));
   }
   CHECK_THAT(run.output(), Contains("hangs and was killed, for the launcher to start it again"));
+  CHECK_THAT(run.output(), Contains("is stopped, was not heard of for its lease and was killed"));
   CHECK_THAT(run.output(), Contains("office/moody: ended by signal 9"));
 }
 

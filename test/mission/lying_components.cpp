@@ -1,12 +1,17 @@
-// A planner and a navigator that return a straight line, whatever is in its way, and praise it.
+// A planner and a navigator that return a straight line, whatever is in its way, and praise it; and
+// a client that brings a planner which nobody can reach.
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "navigator.idl.hpp"
 #include "skein/core/abi.hpp"
+#include "skein/core/error.hpp"
 #include "skein/entity/component_registry.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/navigation/demo_problem.hpp"
 
 namespace {
 
@@ -45,6 +50,24 @@ class CarelessNavigator final : public AE_navigatorI::INavigator {
   }
 };
 
+int bring_unreachable_planner(skein::Entity& entity, const skein::ParameterValues&) {
+  auto navigator = entity.connect<AE_navigatorI::INavigator>().within(std::chrono::seconds(20));
+  AE_navigatorI::RouteRequest request;
+  request.request_id = "unreachable";
+  request.problem = skein::navigation::demo_problem(skein::navigation::make_synthetic_terrain(7));
+  request.problem.time_limit_ms = 300;
+  request.own_planner = skein::Reference<AE_navigator::IPlanner>(
+      {"IDL:AE_navigator/IPlanner", skein::Guid::random(), ""});
+  try {
+    navigator.request_route(request);
+    return 1;
+  } catch (const skein::Error& error) {
+    std::printf("refused: %s\n", error.what());
+  }
+  std::printf("reported: %s\n", navigator.report(request.request_id).failure.c_str());
+  return 0;
+}
+
 }  // namespace
 
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
@@ -58,4 +81,5 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
                                               std::make_shared<CarelessNavigator>()),
                                           2};
   });
+  registry.add_mission("Stranger", bring_unreachable_planner);
 }

@@ -119,6 +119,14 @@ TEST_CASE("a navigator that passes on a route through a no-fly zone fails the mi
   CHECK_THAT(run.output(), Contains("a route to the unreachable goal was returned"));
 }
 
+TEST_CASE("a client's own planner that nobody can reach is refused, and the navigator lives on") {
+  const MissionRun run(kTestProfiles / "unreachable_planner.xml");
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  CHECK_THAT(run.output(), Contains("refused: ") && Contains("reported: "));
+  CHECK_THAT(run.output(), !Contains("ended by signal"));
+}
+
 TEST_CASE("a plugin that is missing is named, with where it was looked for and what to do") {
   const MissionRun run(kTestProfiles / "missing_plugin.xml");
   INFO(run.output());

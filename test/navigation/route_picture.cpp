@@ -1,5 +1,6 @@
 #include "skein/navigation/route_picture.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <pugixml.hpp>
@@ -50,6 +51,46 @@ TEST_CASE("A picture names routes, zones, threats, both ends and the figures of 
   CHECK_THAT(svg,
              Contains(fmt::format("{:.1f} km, exposure {:.1f} km", routes[0].route.length_m / 1000,
                                   routes[0].route.radar_exposure / 1000)));
+}
+
+TEST_CASE("Routes that run together take turns, so that each is seen; one alone is drawn whole") {
+  const Demo demo;
+  const auto pieces_of_each_colour = [&](const std::vector<PicturedRoute>& routes) {
+    pugi::xml_document document;
+    const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
+    REQUIRE(document.load_string(svg.c_str()));
+    std::vector<std::size_t> pieces;
+    for (const auto& match :
+         document.select_nodes("/svg/g[@clip-path]/path[@stroke-width='3']/@d")) {
+      const std::string path = match.attribute().value();
+      pieces.push_back(static_cast<std::size_t>(std::count(path.begin(), path.end(), 'M')));
+    }
+    return pieces;
+  };
+  const PicturedRoute route = two_routes(demo)[0];
+  CHECK(pieces_of_each_colour({route}) == std::vector<std::size_t>{1});
+  for (const std::size_t count : {2u, 3u}) {
+    const auto pieces = pieces_of_each_colour(std::vector<PicturedRoute>(count, route));
+    REQUIRE(pieces.size() == count);
+    for (const std::size_t piece : pieces) CHECK(piece > 5);
+    CHECK(*std::max_element(pieces.begin(), pieces.end()) -
+              *std::min_element(pieces.begin(), pieces.end()) <=
+          1);
+  }
+}
+
+TEST_CASE("A height profile has distances below it") {
+  const Demo demo;
+  const auto distances = [&](const std::vector<PicturedRoute>& routes) {
+    pugi::xml_document document;
+    const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
+    REQUIRE(document.load_string(svg.c_str()));
+    return document.select_nodes("//text[@class='tick' and contains(., ' km')]").size();
+  };
+  const auto of_the_map = distances({});
+  const auto routes = two_routes(demo);
+  CHECK(distances({routes[0]}) >= of_the_map + 4);
+  CHECK(distances(routes) >= of_the_map + 8);
 }
 
 TEST_CASE("Names that look like XML stay names") {

@@ -42,6 +42,37 @@ TEST_CASE("A peer without settings speaks on this host alone, is required, and i
   CHECK(mission.domain == 0);
 }
 
+TEST_CASE("Whom a peer asks for others is the mission's to say, unless it says otherwise") {
+  ProfileFolder folder;
+  const auto file = folder.mission("");
+  folder.write("m.xml", R"(<mission name="m" interface="eth0" peers=" 10.0.0.1,far-1.example  near "
+       multicast="true">
+<peer name="a" component="f.xml"/><peer name="b" component="f.xml" peers="10.0.0.3"
+  multicast="false"/><peer name="c" component="f.xml" peers=""/></mission>)");
+  const auto mission = read_mission_profile(file);
+  using Hosts = std::vector<std::string>;
+  CHECK(mission.peers.at(0).peers == Hosts{"10.0.0.1", "far-1.example", "near"});
+  CHECK(mission.peers.at(0).multicast);
+  CHECK(mission.peers.at(1).peers == Hosts{"10.0.0.3"});
+  CHECK_FALSE(mission.peers.at(1).multicast);
+  CHECK(mission.peers.at(2).peers.empty());
+}
+
+TEST_CASE("What is no list of hosts is refused, and so are hosts that a peer could not reach") {
+  ProfileFolder folder;
+  CHECK(
+      folder.check(R"(<peer name="f" component="f.xml" interface="eth0" peers="10.0.0.1;b"/>)") ==
+      "m.xml:2:51: error: peers is \"10.0.0.1;b\", no list of hosts; write names or addresses, as "
+      "in \"10.0.0.2 10.0.0.3\", at most 64\n");
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" multicast="yes"/>)") ==
+        "m.xml:2:34: error: multicast is \"yes\"; write true or false\n");
+  const std::string unreachable =
+      "m.xml:2:1: error: \"f\" is to look for peers of other hosts, but speaks on 127.0.0.1 alone; "
+      "name its network interface: interface=\"...\"\n";
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" peers="10.0.0.1"/>)") == unreachable);
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" multicast="true"/>)") == unreachable);
+}
+
 TEST_CASE("Restart rules are read with their units") {
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(
@@ -172,6 +203,26 @@ TEST_CASE("What the mission says holds for every peer that does not say otherwis
   CHECK(mission.peers.at(1).vendor == "fastdds");
   CHECK(mission.peers.at(1).system == "station");
   CHECK(mission.peers.at(1).interface == "lan0");
+}
+
+TEST_CASE("Allowed sources are the mission's, or the peer's own") {
+  ProfileFolder folder;
+  folder.write("m.xml", R"(<mission name="m" allowed_sources="10.0.0.0/24  10.1.0.7">
+    <peer name="plain" component="n.xml"/>
+    <peer name="own" component="n.xml" allowed_sources="10.2.0.9"/>
+  </mission>)");
+  const auto mission = read_mission_profile(folder.path() / "m.xml");
+  CHECK(mission.peers.at(0).allowed_sources == std::vector<std::string>{"10.0.0.0/24", "10.1.0.7"});
+  CHECK(mission.peers.at(1).allowed_sources == std::vector<std::string>{"10.2.0.9"});
+}
+
+TEST_CASE("Allowed sources that are no addresses are found, with their place and the remedy") {
+  ProfileFolder folder;
+  const auto text = folder.check(R"(<peer name="n" component="n.xml" allowed_sources="10.0.0.300"/>
+    <peer name="o" component="n.xml" allowed_sources=" "/>)");
+  CHECK_THAT(text, Catch::Contains("m.xml:2:") && Catch::Contains("'10.0.0.300'") &&
+                       Catch::Contains("10.0.0.0/24"));
+  CHECK_THAT(text, Catch::Contains("m.xml:3:") && Catch::Contains("names none"));
 }
 
 TEST_CASE("Shared memory is the peer's word, and holds for its CSPs on the same vendor") {

@@ -105,6 +105,32 @@ TEST_CASE("however many connections take all the room they get, there is room fo
   CHECK(drain(queue).size() == 64);
 }
 
+TEST_CASE("a peer with many connections has one peer's room and one peer's turns") {
+  FairQueue queue(64);
+  const auto connection = [](char peer, std::uint8_t number) {
+    auto invocation = call_of(peer);
+    invocation->connection.bytes[15] = number;
+    return invocation;
+  };
+  std::size_t taken = 0;
+  for (std::uint8_t i = 0; i < 100; ++i) {
+    auto call = connection('a', i);
+    if (!queue.has_room(call->connection)) continue;
+    queue.push(std::move(call));
+    ++taken;
+  }
+  CHECK(taken == 32);
+  for (int i = 0; i < 3; ++i) queue.push(connection('b', 1));
+  queue.push(connection('b', 2));
+  std::string order;
+  for (int i = 0; i < 8; ++i) {
+    const auto next = queue.pop();
+    order += static_cast<char>(next->connection.bytes[0]);
+    order += std::to_string(next->connection.bytes[15]);
+  }
+  CHECK(order == "a0b1a1b2a2b1a3b1");
+}
+
 TEST_CASE("ten thousand waiting invocations go without harm to the stack") {
   FairQueue queue(100'000);
   for (int i = 0; i < 10'000; ++i) queue.push(call_of('a'));

@@ -154,3 +154,29 @@ TEST_CASE("a length of 4 GB is refused before anything is allocated") {
   std::memcpy(message.data() + 28, &huge, 4);
   CHECK_THROWS_AS(wire::read_request_head(message), InvalidArgument);
 }
+
+TEST_CASE("whether a trailer ends a message is seen without knowing its body") {
+  Bytes message = a_request();
+  CHECK(wire::ends_with_trailer(message));
+  for (int padding = 0; padding < 3; ++padding) {
+    message.append(std::as_bytes(std::span("")));
+    CHECK(wire::ends_with_trailer(message));
+  }
+  Bytes none;
+  for (int size = 0; size < 200; ++size) {
+    CHECK_FALSE(wire::ends_with_trailer(none));
+    none.append(std::as_bytes(std::span("")));
+  }
+  message = a_request();
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    CHECK_FALSE(wire::ends_with_trailer(std::span<const std::byte>(message).first(size)));
+  }
+}
+
+TEST_CASE("a message's identity is read where the rest of its head is damaged") {
+  const Bytes message = a_request();
+  const std::span<const std::byte> bytes = message;
+  for (std::size_t size = 0; size < 28; ++size)
+    CHECK_FALSE(wire::read_request_id(bytes.first(size)));
+  CHECK(wire::read_request_id(bytes.first(28)) == kId);
+}

@@ -54,6 +54,7 @@ ChildProcess::ChildProcess(const std::string& program, const Options& options) :
     if (options.network >= 0 && setns(options.network, CLONE_NEWNET) != 0) _exit(126);
     dup2(to_child[0], STDIN_FILENO);
     dup2(from_child[1], STDOUT_FILENO);
+    close_range(STDERR_FILENO + 1, ~0u, 0);  // the vendors' sockets, with their ports
     execve(argument_list[0], argument_list.data(), environment_list.data());
     _exit(127);
   }
@@ -120,7 +121,8 @@ std::string ChildProcess::expect(const std::string& first, Clock::duration patie
 void ChildProcess::signal(int number) {
   if (pid_ <= 0) return;
   kill(pid_, number);
-  if (number == SIGSTOP) waitid(P_PID, static_cast<id_t>(pid_), nullptr, WSTOPPED | WNOWAIT);
+  siginfo_t stopped;  // valgrind does not know that it may be left out
+  if (number == SIGSTOP) waitid(P_PID, static_cast<id_t>(pid_), &stopped, WSTOPPED | WNOWAIT);
 }
 
 int ChildProcess::finish() {

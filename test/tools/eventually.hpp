@@ -20,4 +20,15 @@ bool eventually(Condition&& condition, std::chrono::steady_clock::duration limit
   return true;
 }
 
+/// Calls `attempt(limit)` with longer and longer limits until it returns true. For calls that are
+/// to run out of time only after something has happened: how long that takes a loaded machine is
+/// not known beforehand.
+template <class Attempt>
+bool with_enough_time(std::chrono::milliseconds limit, Attempt&& attempt) {
+  for (; limit < kPatience; limit *= 2) {
+    if (attempt(limit)) return true;
+  }
+  return false;
+}
+
 }  // namespace skein::test

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,12 @@ class Broker {
 
   const Options& options() const noexcept;
 
+  /// An identity for a provider of this participant, which no other participant can speak for.
+  Guid new_provider();
+
   /// Registers a service of this process with everybody (or, with an `owner`, with that entity).
-  /// Fills host, process, pid and vendor, and system where empty.
+  /// Fills host, process, pid and vendor, and system where empty. Throws InvalidArgument for what
+  /// others would refuse: a provider that is not by new_provider() (R23), or too much (R25).
   Registration add_service(ServiceDescription description);
 
   /// A query as this entity asks it: own system, own managed services.
@@ -80,8 +85,13 @@ class Broker {
   /// Whether a description of that provider stands, suspect or not.
   bool knows(const Guid& provider) const;
 
-  /// Descriptions dropped because they could not be read, since the start.
-  std::uint64_t malformed() const;
+  /// The participant that describes that provider, and so the one that serves it; nothing where no
+  /// description stands.
+  std::optional<Guid> participant_of(const Guid& provider) const;
+
+  /// Descriptions and withdrawals that were not believed, since the start. The log names the first
+  /// of each kind.
+  std::uint64_t refused(Refusal why) const;
 
   /// Everything known, suspects included.
   Table::Found all() const;

@@ -10,4 +10,7 @@ namespace skein::brokerless_discovery {
 /// any more, or this one may not.
 bool kill_process(const std::string& address);
 
+/// The same, only where that process is stopped, as by SIGSTOP; one that a debugger holds is not.
+bool kill_stopped_process(const std::string& address);
+
 }  // namespace skein::brokerless_discovery

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -31,6 +32,10 @@ class LoadBoard {
 
   /// What the provider told last; 0 where it told nothing.
   std::size_t load_of(const Guid& provider) const;
+
+  /// Loads that were not believed, since the start: malformed, of another participant's provider
+  /// (R23), or without room (R26).
+  std::uint64_t refused() const;
 
  private:
   struct State;

@@ -17,8 +17,9 @@ namespace skein::brokerless_discovery {
 /// What the Table keeps of one description.
 struct Entry {
   std::shared_ptr<const discovery::ServiceDescription> description;
-  Guid writer;
+  Guid writer;  ///< Nil for this peer's own.
   bool suspect = false;
+  std::size_t weight = 0;  ///< What it takes of its participant's room.
 };
 
 /// The Table's entries of one name: in the order of R8, and by the values of their attributes, so

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -7,8 +8,10 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "skein/brokerless_discovery/admission.hpp"
 #include "skein/brokerless_discovery/constraint.hpp"
 #include "skein/brokerless_discovery/shelf.hpp"
 #include "skein/core/guid.hpp"
@@ -56,9 +59,15 @@ class Table {
   using Found = std::vector<std::shared_ptr<const ServiceDescription>>;
   using Changes = std::vector<Change>;
 
-  /// A description arrived from `writer`. Throws InvalidArgument where its names are malformed.
+  /// How many processes that have ended are remembered; the oldest are forgotten first.
+  static constexpr std::size_t kMostEnded = 1024;
+
+  /// A description arrived from `writer`; nil: it is this peer's own. Throws Refused where the
+  /// provider is another participant's (R23) or where there is no room (R26), InvalidArgument where
+  /// its names are malformed.
   Changes on_description(ServiceDescription description, const Guid& writer);
-  Changes on_withdrawn(const Guid& provider);
+  /// Throws Refused as on_description().
+  Changes on_withdrawn(const Guid& provider, const Guid& writer);
   Changes on_writer_alive(const Guid& writer, bool alive);
   Changes on_writer_gone(const Guid& writer);
   Changes on_process_ended(const std::string& process);
@@ -76,11 +85,21 @@ class Table {
   /// Whether a description of that provider stands.
   bool knows(const Guid& provider) const { return entries_.contains(provider); }
 
+  /// Who wrote the description that stands: nil for one of this peer's own.
+  std::optional<Guid> writer_of(const Guid& provider) const;
+
   /// Whether some provider is kept, but not offered.
   bool has_suspects() const;
 
   /// Whether some description names this process as its own.
-  bool knows_process(const std::string& process) const;
+  bool knows_process(const std::string& process) const { return processes_.contains(process); }
+
+  /// Those of this peer's own services that others were told about otherwise since the last call
+  /// (R24).
+  std::set<Guid> take_contradicted() { return std::exchange(contradicted_, {}); }
+
+  /// Whether, since the last call, something went after something had found no room (R26).
+  bool take_room_again();
 
  private:
   using Entries = std::map<Guid, Entry>;
@@ -115,6 +134,11 @@ class Table {
   const Shelf* find_shelf(const PlaceView& place) const;
   const Shelf* shelf_of(const std::string& name, const std::optional<std::string>& system) const;
   Changes remove_if(auto predicate, Departure departure);
+  Entries::iterator remove(Entries::iterator position);
+  bool get_room(const Guid& writer, std::size_t weight);
+  void take_room(const Guid& writer, std::size_t weight);
+  void give_back_room(const Entry& entry);
+  void exchange_room(const Entry& entry, const Guid& writer, std::size_t weight);
   void index(const Entry& entry);
   void unindex(const Entry& entry);
   void take_from_shelf(const Place& place, const Entry& entry);
@@ -124,7 +148,13 @@ class Table {
   std::unordered_map<Place, Shelf, PlaceHash, PlaceEqual> shelves_;
   /// Last part of an interface's name to the canonical names that end so.
   std::unordered_map<std::string, std::map<std::string, std::size_t>> short_names_;
+  std::unordered_map<std::string, std::size_t> processes_;  // with how many descriptions each
   std::set<std::string> ended_processes_;
+  std::deque<std::string> ended_in_order_;
+  std::set<Guid> contradicted_;
+  Room room_;
+  bool refused_for_room_ = false;
+  bool room_again_ = false;
 };
 
 /// The client's first operation that `provider` lacks or has with another signature; null where it

@@ -15,9 +15,12 @@
 
 namespace skein {
 
+namespace connector {
 class Connections;
 struct Link;
 struct Wanted;
+}  // namespace connector
+
 using brokerless_discovery::Constraint;
 using brokerless_discovery::Relation;
 
@@ -132,13 +135,13 @@ class Connector {
                                         const ConnectOptions& options) const;
   brokerless_discovery::Query query(const InterfaceInfo& interface,
                                     const ConnectOptions& options) const;
-  Link open_link(const brokerless_discovery::ServiceDescription& provider,
-                 const std::string& strategy, Duration timeout) const;
-  Link open_next(const brokerless_discovery::Query& query, const std::string& strategy,
-                 const Wanted& wanted) const;
+  connector::Link open_link(const brokerless_discovery::ServiceDescription& provider,
+                            const std::string& strategy, Duration timeout) const;
+  connector::Link open_next(const brokerless_discovery::Query& query, const std::string& strategy,
+                            const connector::Wanted& wanted) const;
 
   Parts parts_;
-  std::shared_ptr<Connections> connections_;
+  std::shared_ptr<connector::Connections> connections_;
 };
 
 }  // namespace skein

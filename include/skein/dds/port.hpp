@@ -199,6 +199,10 @@ struct Network {
   /// memory; discovery, and all else, does not. Fast DDS alone has it: others throw
   /// InvalidArgument. Who is killed leaves its segments in /dev/shm.
   bool shared_memory = false;
+  /// From which IPv4 addresses packets are taken, this host's own ones among them always: addresses
+  /// (`10.0.0.7`) and prefixes (`10.0.0.0/24`). Empty: from all. The sender's address is forged
+  /// easily on a shared network. Shared memory is not looked at.
+  std::vector<std::string> allowed_sources;
 };
 
 struct ParticipantOptions {

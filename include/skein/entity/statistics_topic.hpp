@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -36,6 +37,10 @@ class StatisticsReader {
 
   /// The last word of each service, by system, entity and service.
   std::vector<ServiceStatistics> latest() const;
+
+  /// Samples that were not believed, since the start: malformed, of another participant's service,
+  /// or without room. The log names the first.
+  std::uint64_t refused() const;
 
  private:
   struct State;

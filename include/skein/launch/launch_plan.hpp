@@ -24,14 +24,27 @@ struct LaunchPlan {
   std::string mission;
   std::vector<ChildPlan> children;
   std::vector<std::string> elsewhere;  ///< Processes of other hosts, which are not started here.
+  /// The peer that runs the mission, where it is one of those: this launcher does not see its end,
+  /// and runs until it is interrupted or its own processes have ended.
+  std::string mission_elsewhere{};
 };
+
+/// Why a launcher of `host` has nothing to start: who it is, and which hosts the peers name.
+std::string nobody_here(const profile::MissionProfile& mission, const std::string& host);
 
 /// Makes the command line of one process. `csp` is null for the peer's own process.
 using MakeArgv = std::function<std::vector<std::string>(const profile::PeerProfile& peer,
                                                         const profile::CspProfile* csp)>;
 
-/// The processes of a mission that belong to `host`: those whose profile names it, and those whose
-/// profile names no host. One for each peer, one for each CSP with process="own".
+/// Whether a peer with host=`wanted` belongs to a launcher that was told to be on the host `self`.
+/// Nothing and `localhost` do always. Where `self` is empty the machine tells: see is_this_host().
+bool is_here(const std::string& wanted, const std::string& self);
+
+/// The hosts that the mission's peers name, each once, without `localhost`.
+std::vector<std::string> hosts_of(const profile::MissionProfile& mission);
+
+/// The processes of a mission that belong to `host`, as is_here() says. One for each peer, one for
+/// each CSP with process="own".
 LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeArgv& make_argv,
                             const std::string& host = {});
 

@@ -19,10 +19,12 @@ enum class Outcome {
 
 /// Exit codes of a launcher. They are those of sysexits.h and of the shell, so that they do not
 /// meet the small numbers that missions end with.
-inline constexpr int kConfigurationError = 78;  ///< For the caller: the profile was refused.
+inline constexpr int kConfigurationError = 78;  ///< For the caller: nothing was started.
 inline constexpr int kPeerLost = 70;
 inline constexpr int kStartFailed = 71;
-inline constexpr int kInterrupted = 128;  ///< Plus the signal's number.
+inline constexpr int kOutputLost = 74;     ///< For the caller: stdout could not be written.
+inline constexpr int kMissionFailed = 76;  ///< Of a peer: its mission ended by an exception.
+inline constexpr int kInterrupted = 128;   ///< Plus the signal's number.
 
 struct LaunchResult {
   Outcome outcome = Outcome::MissionEnded;

@@ -18,8 +18,10 @@ namespace skein::profile {
 /// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
 /// - a service reference to something that the mission does not have
 /// - more than one peer that runs the mission, or one that would be restarted
+/// - a peer that is to look for others beyond this host, but names no network interface
 ///
-/// Components that could not be read (null) are passed over. A pure function.
+/// Components that could not be read (null) are passed over. A pure function; what only a machine
+/// can tell is in launch/machine_check.hpp.
 std::vector<Finding> check(const MissionProfile& profile);
 
 /// Reads a profile and checks it: the findings of reading and those of check() together. Throws

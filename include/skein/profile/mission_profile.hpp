@@ -53,14 +53,18 @@ struct PeerProfile {
   std::string component_file;  ///< As the profile names it, relative to the profile.
   /// Null only where a profile with findings was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
-  std::string vendor;          ///< `fastdds`, `cyclonedds` or `loopback`.
-  std::string system;          ///< The vehicle or station it belongs to.
-  std::string host;            ///< Empty for the host of the launcher.
-  std::string interface;       ///< Network interface; empty for this host alone (127.0.0.1).
-  bool shared_memory = false;  ///< Fast DDS's, between the processes of one host.
-  std::string plugin;          ///< Library with its providers; empty where main() registers them.
-  bool runs_mission = false;   ///< Its end is the mission's, its exit code too.
-  bool required = true;        ///< Whether its loss ends the mission.
+  std::string vendor;              ///< `fastdds`, `cyclonedds` or `loopback`.
+  std::string system;              ///< The vehicle or station it belongs to.
+  std::string host;                ///< Empty for the host of the launcher.
+  std::string interface;           ///< Network interface; empty for this host alone (127.0.0.1).
+  std::vector<std::string> peers;  ///< Hosts that it asks for others; see launch::network_of().
+  bool multicast = false;          ///< Whether it finds others by multicast.
+  bool shared_memory = false;      ///< Fast DDS's, between the processes of one host.
+  /// From which addresses it takes packets: of dds::Network.
+  std::vector<std::string> allowed_sources;
+  std::string plugin;         ///< Library with its providers; empty where main() registers them.
+  bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
+  bool required = true;       ///< Whether its loss ends the mission.
   ProcessRules rules;
   ThreadRules threads;  ///< Of its public service.
   HeadOptions head;     ///< How it chooses among its CSPs.

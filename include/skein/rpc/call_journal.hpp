@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
 #include "skein/dds/port.hpp"
+#include "skein/rpc/shared_writers.hpp"
 
 namespace skein::introspection {
 struct CallEvent;
@@ -34,7 +36,8 @@ class CallJournal : public std::enable_shared_from_this<CallJournal> {
                                            std::string entity);
   ~CallJournal();
 
-  /// Nothing is noted from now on. Not from a listener.
+  /// Nothing is noted from now on, and nothing of the participant is in use any more. Not from a
+  /// listener, nor from a task of `control`.
   void close();
 
   bool on() const noexcept { return on_.load(std::memory_order_relaxed); }
@@ -68,6 +71,7 @@ class CallJournal : public std::enable_shared_from_this<CallJournal> {
   bool writing_ = false;
   std::vector<introspection::CallEvent> events_;
   std::shared_ptr<dds::Writer> writer_;
+  SharedWriters writers_;
 };
 
 /// Reads that topic, of all entities of the domain whatever their vendor. Its existence switches
@@ -78,8 +82,12 @@ class CallJournalReader {
   CallJournalReader(dds::Participant& participant,
                     std::function<void(const introspection::CallEvent&)> consumer);
 
+  /// Malformed samples, since the start. The log names the first.
+  std::uint64_t refused() const noexcept { return refused_; }
+
  private:
-  std::unique_ptr<dds::Reader> reader_;
+  std::atomic<std::uint64_t> refused_{0};
+  std::unique_ptr<dds::Reader> reader_;  // last: goes first
 };
 
 }  // namespace skein::rpc

@@ -19,6 +19,8 @@ class DdsChannel final : public Channel {
   struct Options {
     std::string strategy;  ///< See OpenRequest.
     std::string peer;      ///< For messages.
+    /// The provider's participant, which alone is believed. Nil: whoever serves the address is.
+    Guid participant;
     Duration timeout = std::chrono::seconds(5);
     /// How long a thread that waits for an answer looks for it before it sleeps.
     std::chrono::microseconds spin{0};
@@ -56,6 +58,9 @@ class DdsChannel final : public Channel {
 
   /// Replies dropped, or calls failed, because what came could not be read.
   std::uint64_t malformed() const;
+
+  /// Replies dropped because another than the provider wrote them.
+  std::uint64_t forged() const;
 
  private:
   struct State;

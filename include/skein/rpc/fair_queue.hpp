@@ -2,19 +2,20 @@
 
 #include <cstddef>
 #include <memory>
-#include <vector>
 
 #include "skein/core/guid.hpp"
+#include "skein/rpc/turns.hpp"
 
 namespace skein::rpc {
 
 struct Invocation;
 
-/// Invocations that wait for a thread: first in, first out within a connection, and the connections
-/// in turn, so that one with thousands waiting holds up another by one call. Bounded: a connection
-/// may have no more waiting than there is room left, so that even a full house has room for a
-/// newcomer (dynamic thresholds, Choudhury and Hahne 1998). A lone connection gets half of the
-/// capacity. Not thread-safe; each operation takes time in the number of connections that wait.
+/// Invocations that wait for a thread: first in, first out within a connection. Peers take turns,
+/// and so do the connections of each, so that one with thousands waiting holds up another by one
+/// call. Bounded: a peer may have no more waiting than there is room left, however many connections
+/// it has, so that even a full house has room for a newcomer (dynamic thresholds, Choudhury and
+/// Hahne 1998). A lone peer gets half of the capacity. Not thread-safe; each operation takes time
+/// in the number of peers that wait and of connections that each has.
 class FairQueue {
  public:
   explicit FairQueue(std::size_t capacity) : capacity_(capacity) {}
@@ -22,7 +23,8 @@ class FairQueue {
   FairQueue& operator=(const FairQueue&) = delete;
   ~FairQueue();
 
-  /// Whether one more of that connection may wait.
+  /// Whether one more of that connection may wait. Connections with the same participant() are of
+  /// one peer.
   bool has_room(const Guid& connection) const noexcept;
 
   /// Puts it last of its connection, without regard to has_room().
@@ -38,13 +40,16 @@ class FairQueue {
     Guid connection;
     std::shared_ptr<Invocation> first;
     Invocation* last = nullptr;
+  };
+  struct Peer {
+    Guid participant;
+    Turns<Line> lines;  // none is empty
     std::size_t size = 0;
   };
 
   const std::size_t capacity_;
   std::size_t size_ = 0;
-  std::vector<Line> lines_;  // none is empty
-  std::size_t turn_ = 0;
+  Turns<Peer> peers_;  // each has lines
 };
 
 }  // namespace skein::rpc

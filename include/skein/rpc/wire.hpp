@@ -97,6 +97,9 @@ void append_default_branch(Bytes& message);
 void append_trailer(Bytes& message, const RequestTrailer& trailer);
 void append_trailer(Bytes& message, const ReplyTrailer& trailer);
 
+/// Whose message it is, or answers: what can be read even where the rest of the head cannot.
+std::optional<RequestId> read_request_id(std::span<const std::byte> message) noexcept;
+
 /// Throw InvalidArgument, with the offset, where the bytes are no such message.
 RequestHead read_request_head(std::span<const std::byte> message);
 ReplyHead read_reply_head(std::span<const std::byte> message);
@@ -108,6 +111,9 @@ std::uint32_t read_discriminator(std::span<const std::byte> message, std::size_t
 std::optional<RequestTrailer> read_request_trailer(std::span<const std::byte> message,
                                                    std::size_t end);
 std::optional<ReplyTrailer> read_reply_trailer(std::span<const std::byte> message, std::size_t end);
+
+/// Whether a message's last bytes are a trailer: found from its end, without knowing the body.
+bool ends_with_trailer(std::span<const std::byte> message) noexcept;
 
 RemoteException remote_exception_of(ErrorCode code) noexcept;
 ErrorCode error_code_of(RemoteException exception) noexcept;

@@ -2,8 +2,10 @@
 
 #include <dds/ddsi/q_radmin.h>
 
+#include <array>
 #include <cstring>
 #include <new>
+#include <random>
 
 #include "../sample_format.hpp"
 #include "blob_memory.hpp"
@@ -24,6 +26,24 @@ KeyHash to_key(const ddsi_keyhash* hash) {
   KeyHash key;
   std::memcpy(key.bytes.data(), hash->value, key.bytes.size());
   return key;
+}
+
+/// Cyclone's table of instances grows without end where some 32 of one hash stand in it, and
+/// anybody may choose his keys; so nobody may know beforehand which keys have equal hashes.
+/// Multilinear hashing with random factors: of any two keys with a probability of 2^-32 (Lemire and
+/// Kaser, "Strongly universal string hashing is fast", 2014).
+std::uint32_t instance_hash(const KeyHash& key) noexcept {
+  static const std::array<std::uint64_t, 5> kFactors = [] {
+    std::array<std::uint64_t, 5> factors;
+    std::random_device random;
+    for (std::uint64_t& factor : factors) factor = std::uint64_t{random()} << 32 | random();
+    return factors;
+  }();
+  std::array<std::uint32_t, 4> words;
+  std::memcpy(words.data(), key.bytes.data(), sizeof words);
+  std::uint64_t sum = kFactors[4];
+  for (std::size_t i = 0; i < words.size(); ++i) sum += kFactors[i] * words[i];
+  return static_cast<std::uint32_t>(sum >> 32);
 }
 
 /// Puts a received sample together. Fragments come in order and may overlap.
@@ -107,6 +127,7 @@ ddsi_serdata* key_alone(const ddsi_serdata* data) {
 
 void free_blob(ddsi_serdata* data) {
   Blob* blob = as_blob(data);
+  all_are_done_with(*blob);
   const std::size_t size = sizeof(Blob) + padded(blob->size);
   blob->~Blob();
   free_blob_memory(blob, size);
@@ -205,7 +226,7 @@ Blob* Blob::copy_incoming() const {
 
 void Blob::set_key(const KeyHash& key) noexcept {
   key_hash = key;
-  hash = static_cast<std::uint32_t>(std::hash<Guid>{}(key));
+  hash = instance_hash(key);
 }
 
 ddsi_sertype* make_blob_type(const Topic& topic) {

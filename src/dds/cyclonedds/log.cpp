@@ -4,12 +4,20 @@
 
 #include <string_view>
 
+#include "../repeated_messages.hpp"
 #include "skein/core/log.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {
 
+constexpr const char* kPlace = "dds/cyclonedds";
+
 thread_local std::string* captured = nullptr;
+
+void warn(std::string_view text) {
+  static auto* repeated = new RepeatedMessages;  // Cyclone's threads may warn until the very end
+  if (const auto message = repeated->next(text)) log(LogLevel::Warning, kPlace, *message);
+}
 
 void take_message(void*, const dds_log_data_t* data) {
   std::string_view text(data->message, data->size);
@@ -17,8 +25,10 @@ void take_message(void*, const dds_log_data_t* data) {
   const bool error = (data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0;
   if (error && captured != nullptr) {
     captured->append(captured->empty() ? "" : "; ").append(text);
-  } else if (error || (data->priority & DDS_LC_WARNING) != 0) {
-    log(error ? LogLevel::Error : LogLevel::Warning, "dds/cyclonedds", text);
+  } else if (error) {
+    log(LogLevel::Error, kPlace, text);
+  } else if ((data->priority & DDS_LC_WARNING) != 0) {
+    warn(text);
   }
 }
 

@@ -39,14 +39,26 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
   participant_ = Entity(
       check(dds_create_participant(id, qos.get(), nullptr), "a participant cannot be created"));
   guid_ = participant_.guid().participant();
-  if (options_.on_participant) watch_participants();
+  ddsi_domaingv& internals = find_internals();
+  guard_ = std::make_unique<PacketGuard>(internals, options_);
+  absences_.emplace(internals);
+  watch_participants();
 }
 
 CycloneParticipant::~CycloneParticipant() {
+  topics_.expect_unused(options_.name);
   watcher_.reset();
   publications_.reset();
   subscriptions_.reset();
   participant_.reset();
+}
+
+// A topic's type leads to the domain's internals.
+ddsi_domaingv& CycloneParticipant::find_internals() {
+  const TopicHandle topic = acquire_topic({"skein/guard", "skein/guard", false});
+  auto* internals = static_cast<ddsi_domaingv*>(ddsrt_atomic_ldvoidp(&topic.type->gv));
+  release_topic("skein/guard");
+  return *internals;
 }
 
 void CycloneParticipant::watch_participants() {
@@ -74,6 +86,8 @@ void CycloneParticipant::take_presence() {
     dds_return_loan(watcher, samples, 1);
     samples[0] = nullptr;
     if (guid == guid_) continue;
+    present ? absences_->found(guid) : absences_->lost(guid);
+    if (!options_.on_participant) continue;
     const bool news = present ? present_.insert(guid).second : present_.erase(guid) > 0;
     if (news) options_.on_participant(guid, present);
   }

@@ -2,10 +2,13 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "../topic_table.hpp"
+#include "absence_watch.hpp"
 #include "entity.hpp"
+#include "packet_guard.hpp"
 
 struct ddsi_sertype;
 
@@ -40,11 +43,13 @@ class CycloneParticipant final : public Participant {
   dds_entity_t subscriptions();
 
  private:
+  ddsi_domaingv& find_internals();
   dds_entity_t make_once(Entity& reader, dds_entity_t builtin_topic);
   void watch_participants();
   void take_presence();
 
   ParticipantOptions options_;
+  std::unique_ptr<PacketGuard> guard_;  // outlives the domain, whose threads use it
   Entity domain_;
   Entity participant_;
   Guid guid_;
@@ -56,6 +61,7 @@ class CycloneParticipant final : public Participant {
   std::set<Guid> present_;
   std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first
+  std::optional<AbsenceWatch> absences_;
 };
 
 }  // namespace skein::dds::cyclonedds

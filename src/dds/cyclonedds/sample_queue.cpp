@@ -45,7 +45,14 @@ class Owner final : public SampleOwner {
 
 const dds_rhc_ops& SampleQueue::operations() {
   static const dds_rhc_ops kOperations{
-      .rhc_ops = {.store = &SampleQueue::store,
+      .rhc_ops = {.store =
+                      [](ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
+                         ddsi_tkmap_instance*) {
+                        auto& blob = *static_cast<Blob*>(data);
+                        to_queue(cache)->store(*writer, blob);
+                        done_with(blob);
+                        return true;
+                      },
                   .unregister_wr = &SampleQueue::writer_gone,
                   .relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {},
                   .set_qos = [](ddsi_rhc*, const dds_qos*) {},
@@ -82,29 +89,25 @@ SampleQueue::SampleQueue(const Qos& qos, const ReaderListener& listener)
       });
 }
 
-bool SampleQueue::store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
-                        ddsi_tkmap_instance*) {
-  auto* self = to_queue(cache);
-  auto* blob = static_cast<Blob*>(data);
-  const bool disposed = (data->statusinfo & kDisposed) != 0;
-  if (data->kind != SDK_DATA && !disposed) {
-    self->let_go(blob->key_hash, to_guid(writer->guid));
-    return true;
+void SampleQueue::store(const ddsi_writer_info& writer, Blob& blob) {
+  const bool disposed = (blob.statusinfo & kDisposed) != 0;
+  if (blob.kind != SDK_DATA && !disposed) {
+    let_go(blob.key_hash, to_guid(writer.guid));
+    return;
   }
-  const bool sound = disposed || is_plain_cdr({blob->bytes(), blob->size});
-  const auto key = sound ? self->key_of(*blob) : std::nullopt;
+  const bool sound = disposed || is_plain_cdr({blob.bytes(), blob.size});
+  const auto key = sound ? key_of(blob) : std::nullopt;
   if (!key) {
-    self->malformed_.fetch_add(1, std::memory_order_relaxed);
-    return true;
+    malformed_.fetch_add(1, std::memory_order_relaxed);
+    return;
   }
   // A writer of the same participant hands over what it also sends.
-  const bool as_sent = blob->outgoing && blob->length != blob->size;
+  const bool as_sent = blob.outgoing && blob.length != blob.size;
   const bool stored =
-      self->push({as_sent ? BlobReference::adopt(blob->copy_incoming()) : BlobReference(blob), *key,
-                  to_guid(writer->guid), disposed ? InstanceState::Disposed : InstanceState::Alive},
-                 *writer);
-  if (stored) dds_reader_data_available_cb(self->reader_);
-  return true;
+      push({as_sent ? BlobReference::adopt(blob.copy_incoming()) : BlobReference(&blob), *key,
+            to_guid(writer.guid), disposed ? InstanceState::Disposed : InstanceState::Alive},
+           writer);
+  if (stored) dds_reader_data_available_cb(reader_);
 }
 
 std::optional<KeyHash> SampleQueue::key_of(const Blob& blob) const {

@@ -40,8 +40,7 @@ class SampleQueue : public dds_rhc {
   };
 
   static const dds_rhc_ops& operations();
-  static bool store(ddsi_rhc* cache, const ddsi_writer_info* writer, ddsi_serdata* data,
-                    ddsi_tkmap_instance* instance);
+  void store(const ddsi_writer_info& writer, Blob& blob);
   static void writer_gone(ddsi_rhc* cache, const ddsi_writer_info* writer);
   std::optional<KeyHash> key_of(const Blob& blob) const;
   bool push(Item item, const ddsi_writer_info& writer);

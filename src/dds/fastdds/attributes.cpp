@@ -9,6 +9,7 @@
 #include <random>
 
 #include "../options_check.hpp"
+#include "skein/core/host.hpp"
 
 namespace skein::dds::fastdds {
 namespace {
@@ -38,6 +39,12 @@ rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
   rtps::IPLocator::setIPv4(result, address);
   result.port = port;
   return result;
+}
+
+/// An announcement may be lost: it is repeated before the lease is half over, and often enough for
+/// a peer that was not listening yet.
+std::chrono::milliseconds announcement_period(std::chrono::milliseconds lease) {
+  return std::min<std::chrono::milliseconds>(kAnnouncementPeriod, lease * 2 / 5);
 }
 
 // RTPS 9.6.1: where a domain's participants listen.
@@ -119,7 +126,8 @@ std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOpti
   udp->sendBufferSize = kSendBuffer;
   udp->receiveBufferSize = kReceiveBuffer;
   udp->maxInitialPeersRange = std::clamp(network.max_participants, 1u, kMaxParticipants);
-  return std::make_shared<StartupTransportDescriptor>(std::move(udp), options.lease);
+  return std::make_shared<StartupTransportDescriptor>(
+      std::move(udp), options.lease, announcement_period(options.lease), allowed_sources(network));
 }
 
 rtps::RTPSParticipantAttributes participant_attributes(
@@ -133,10 +141,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
   auto& builtin = attributes.builtin;
   auto& discovery = builtin.discovery_config;
   discovery.leaseDuration = duration(options.lease);
-  // An announcement may be lost: it is repeated before the lease is half over, and often enough for
-  // a peer that was not listening yet.
-  discovery.leaseDuration_announcementperiod =
-      duration(std::min<std::chrono::milliseconds>(kAnnouncementPeriod, options.lease * 2 / 5));
+  discovery.leaseDuration_announcementperiod = duration(announcement_period(options.lease));
   discovery.initial_announcements = {5, duration(10ms)};
   builtin.avoid_builtin_multicast = true;
   builtin.mutation_tries = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;

@@ -9,6 +9,7 @@
 #include "../options_check.hpp"
 #include "attributes.hpp"
 #include "identity.hpp"
+#include "participant_leases.hpp"
 #include "reader.hpp"
 #include "skein/core/error.hpp"
 #include "writer.hpp"
@@ -26,7 +27,8 @@ namespace {
 FastParticipant::FastParticipant(const ParticipantOptions& options)
     : options_((check_options(options), options)),
       transport_(make_transport(options)),
-      events_([this] { check_liveliness(); }) {
+      events_([this] { tick(); }) {
+  transport_->state->watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
   const auto attributes = participant_attributes(options, transport_);
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
@@ -34,23 +36,41 @@ FastParticipant::FastParticipant(const ParticipantOptions& options)
   const auto needed = std::ranges::count(attributes.defaultUnicastLocatorList, LOCATOR_KIND_UDPv4,
                                          &rtps::Locator_t::kind);
   if (transport_->state->ports < 2 * needed) {  // each address has a port for discovery, too
-    rtps::RTPSDomain::removeRTPSParticipant(participant_);
+    end();
     throw_no_participant(options);
   }
   guid_ = to_guid(participant_->getGuid()).participant();
   transport_->state->open = true;
 }
 
-FastParticipant::~FastParticipant() { rtps::RTPSDomain::removeRTPSParticipant(participant_); }
+FastParticipant::~FastParticipant() {
+  topics_.expect_unused(options_.name);
+  end();
+}
+
+void FastParticipant::end() {
+  transport_->state->discovery.close();
+  rtps::RTPSDomain::removeRTPSParticipant(participant_);
+}
 
 void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
                                              rtps::ParticipantDiscoveryInfo&& info) {
   using Info = rtps::ParticipantDiscoveryInfo;
-  if (info.status == Info::CHANGED_QOS_PARTICIPANT) return;
-  const bool present = info.status == Info::DISCOVERED_PARTICIPANT;
+  const bool present =
+      info.status == Info::DISCOVERED_PARTICIPANT || info.status == Info::CHANGED_QOS_PARTICIPANT;
   const Guid guid = to_guid(info.info.m_guid).participant();
-  if (!present) signs().forget(guid);
-  if (!options_.on_participant) return;
+  if (info.status == Info::DISCOVERED_PARTICIPANT) {
+    for (const auto& locator : info.info.metatraffic_locators.unicast) {
+      transport_->state->pace.discovered(locator.port, std::chrono::steady_clock::now());
+    }
+  }
+  if (present) {
+    const auto& lease = info.info.m_leaseDuration;
+    follow(guid, announced_lease(lease.seconds, lease.nanosec));
+  } else {
+    signs().forget(guid);
+  }
+  if (info.status == Info::CHANGED_QOS_PARTICIPANT || !options_.on_participant) return;
   {
     std::lock_guard lock(mutex_);
     if (present ? !present_.insert(guid).second : present_.erase(guid) == 0) return;
@@ -72,14 +92,52 @@ void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDisc
                           info.info.typeName().to_string(), from_reader_qos(info.info.m_qos)});
 }
 
+void FastParticipant::follow(const Guid& participant,
+                             std::optional<std::chrono::nanoseconds> lease) {
+  signs().follow(participant, lease, std::chrono::steady_clock::now());
+  if (lease) watch_each(*lease);
+}
+
+/// Often enough to see in time that `lease` ran out.
+void FastParticipant::watch_each(std::chrono::nanoseconds lease) {
+  constexpr int kChecksInALease = 20;
+  constexpr std::chrono::nanoseconds kShortest = std::chrono::milliseconds(2);
+  const auto period = std::max(lease / kChecksInALease, kShortest);
+  {
+    std::lock_guard lock(mutex_);
+    watch_period_ = std::min(watch_period_, period);
+  }
+  events_.tick_every(period);
+}
+
 void FastParticipant::watch_liveliness(std::weak_ptr<EndpointEvents> reader,
                                        std::chrono::nanoseconds lease) {
-  constexpr int kChecksInALease = 8;
   {
     std::lock_guard lock(mutex_);
     watched_.push_back({std::move(reader), lease});
   }
-  events_.tick_every(lease / kChecksInALease);
+  watch_each(lease);
+}
+
+void FastParticipant::tick() {
+  check_leases();
+  check_liveliness();
+}
+
+void FastParticipant::check_leases() {
+  std::chrono::nanoseconds period;
+  {
+    std::lock_guard lock(mutex_);
+    period = watch_period_;
+  }
+  for (const Guid& gone : signs().watch(std::chrono::steady_clock::now(), period)) {
+    transport_->state->discovery.say_farewell(gone);
+  }
+}
+
+void FastParticipant::forget_all() {
+  for (const Guid& each : signs().drop_all()) transport_->state->discovery.say_farewell(each);
+  transport_->state->watch.awake(std::chrono::steady_clock::now());
 }
 
 void FastParticipant::check_liveliness() {
@@ -89,11 +147,12 @@ void FastParticipant::check_liveliness() {
     std::erase_if(watched_, [](const Watched& each) { return each.reader.expired(); });
     watched = watched_;
   }
+  const auto now = std::chrono::steady_clock::now();
   for (const Watched& each : watched) {
     const auto reader = each.reader.lock();
     if (!reader) continue;
     for (const Guid& writer : reader->peers()) {
-      reader->alive(writer, signs().alive(writer.participant(), each.lease));
+      reader->alive(writer, signs().alive(writer.participant(), each.lease, now));
     }
   }
 }

@@ -55,7 +55,13 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
                          rtps::WriterDiscoveryInfo&& info) override;
   void onReaderDiscovery(rtps::RTPSParticipant* participant,
                          rtps::ReaderDiscoveryInfo&& info) override;
+  void end();
+  void follow(const Guid& participant, std::optional<std::chrono::nanoseconds> lease);
+  void watch_each(std::chrono::nanoseconds lease);
+  void tick();
+  void check_leases();
   void check_liveliness();
+  void forget_all();
 
   struct Watched {
     std::weak_ptr<EndpointEvents> reader;
@@ -70,6 +76,8 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   std::mutex mutex_;
   std::set<Guid> present_;
   std::vector<Watched> watched_;
+  /// How often leases are looked at; the shortest needed so far.
+  std::chrono::nanoseconds watch_period_{std::chrono::seconds(1)};
   EventThread events_;
   rtps::RTPSParticipant* participant_ = nullptr;
   Guid guid_;

@@ -31,7 +31,6 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
       find_key_(std::move(listener.find_key)),
       tells_incompatible_(listener.on_incompatible != nullptr),
       events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
-      watches_liveliness_(qos.liveliness_lease.has_value()),
       history_(history_attributes(0)),
       queue_(qos.history_depth, qos.max_waiting),
       gate_(qos),
@@ -47,7 +46,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
   }
   guid_ = to_guid(reader_->getGuid());
-  if (watches_liveliness_) participant_.watch_liveliness(events_, *qos.liveliness_lease);
+  if (qos.liveliness_lease) participant_.watch_liveliness(events_, *qos.liveliness_lease);
   if (tells_incompatible_) {
     participant_.endpoints().watch({Side::Reader, topic.name, topic.type_name, qos}, events_);
   }
@@ -55,18 +54,14 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
                                                   reader_qos(qos));
 }
 
+/// The listener stays until the RTPS reader is gone: other threads of Fast DDS's look whether there
+/// is one, and call it, without a lock. When the reader has been removed none of them is left.
 FastReader::~FastReader() {
-  reader_->setListener(nullptr);            // waits for on_data
-  std::unique_ptr<DeadlineTimer> deadline;  // ended outside the lock: it waits for its listener
-  {
-    std::lock_guard lock(mutex_);
-    deadline = std::move(deadline_);
-  }
-  deadline.reset();
   {
     std::lock_guard lock(participant_.readers());
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
+  deadline_.reset();
   events_->close();
   participant_.release_topic(topic_.name);
 }
@@ -74,10 +69,7 @@ FastReader::~FastReader() {
 void FastReader::onReaderMatched(rtps::RTPSReader*,
                                  const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
   const Guid writer = to_guid(status.last_publication_handle);
-  const bool now = status.current_count_change > 0;
-  const bool own = writer.participant() == participant_.guid();
-  if (now && watches_liveliness_ && !own) participant_.signs().follow(writer.participant());
-  events_->matched(writer, now);
+  events_->matched(writer, status.current_count_change > 0);
 }
 
 EndpointListener FastReader::endpoint_listener(dds::ReaderListener& listener) {
@@ -135,14 +127,15 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
     gate_.release(to_guid(change.instanceHandle), to_guid(change.writerGUID));
     return false;
   }
+  // Fast DDS also hands on what its writer has withdrawn with a GAP, replaced by a newer one or
+  // from before this reader's time, when some of its fragments had come: it looks for it under the
+  // wrong number (StatefulReader::processGapMsg). The rest will never come.
+  if (!const_cast<rtps::CacheChange_t&>(change).is_fully_assembled()) return false;
   const bool alive = change.kind == rtps::ALIVE;
   const auto& payload = change.serializedPayload;
   const std::span received(reinterpret_cast<const std::byte*>(payload.data), payload.length);
   const auto found = alive && !is_plain_cdr(received) ? std::nullopt : key_of(change, received);
-  // Where packets overtake each other Fast DDS hands on some of Cyclone's samples when only their
-  // first fragment has come; the rest would be an earlier sample's.
-  const bool whole = const_cast<rtps::CacheChange_t&>(change).is_fully_assembled();
-  if (!found || !whole) {
+  if (!found) {
     malformed_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }

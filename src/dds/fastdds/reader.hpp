@@ -63,7 +63,6 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   const decltype(dds::ReaderListener::find_key) find_key_;
   const bool tells_incompatible_;
   const std::shared_ptr<EndpointEvents> events_;
-  const bool watches_liveliness_;
   const std::shared_ptr<ReceivedPayloads> payloads_ = std::make_shared<ReceivedPayloads>();
   rtps::ReaderHistory history_;
   std::mutex mutex_;

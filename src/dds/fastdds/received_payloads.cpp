@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace skein::dds::fastdds {
+namespace {
+
+/// Fast DDS keeps its list of missing fragments where these will lie: at the beginning of each,
+/// rounded up, so that the last entry may begin at the payload's end.
+constexpr std::size_t kListEntry = sizeof(std::uint32_t);
+
+}  // namespace
 
 bool ReceivedPayloads::get_payload(std::uint32_t size, rtps::CacheChange_t& change) {
   std::lock_guard lock(mutex_);
@@ -14,7 +21,7 @@ bool ReceivedPayloads::get_payload(std::uint32_t size, rtps::CacheChange_t& chan
     spare_.pop_back();
   }
   memory.clear();
-  memory.resize(std::max<std::size_t>(size, 1));
+  memory.resize(kListEntry + (size + kListEntry - 1) / kListEntry * kListEntry);
   auto& payload = change.serializedPayload;
   payload.data = reinterpret_cast<rtps::octet*>(memory.data());
   payload.max_size = size;

@@ -63,6 +63,9 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
 FastWriter::~FastWriter() {
   deadline_.reset();
   lifespan_.reset();
+  // Fast DDS gives back the samples of a writer that goes while its timer still looks at them, and
+  // may then count holes among them without end.
+  history_.remove_all_changes();
   rtps::RTPSDomain::removeRTPSWriter(writer_);
   events_->close();
   participant_.release_topic(topic_.name);
@@ -108,8 +111,12 @@ rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_
 }
 
 void FastWriter::wait_for_room(Lock& lock) {
+  drop_acknowledged();
   if (!bounded()) return;
-  const auto has_room = [&] { return history_.getHistorySize() < qos_.max_samples; };
+  const auto has_room = [&] {
+    drop_acknowledged();
+    return history_.getHistorySize() < qos_.max_samples;
+  };
   if (room_.wait_for(lock, qos_.max_blocking, has_room)) return;
   throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +
                    std::to_string(qos_.max_blocking.count()) + " ms; " +
@@ -198,7 +205,8 @@ void FastWriter::onWriterMatched(rtps::RTPSWriter*,
   events_->matched(to_guid(status.last_subscription_handle), matched);
 }
 
-/// Called with the writer's mutex held.
+/// Called with the writer's mutex held, and perhaps with its locators locked. Then what waits to be
+/// sent again must not be dropped (forgetting.hpp), which the writer's mutex keeps as it is.
 void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChange_t* change) {
   if (!qos_.reliable) return;
   if (static_cast<std::int64_t>(change->sequenceNumber.to64long()) > new_reader_at_) {
@@ -206,8 +214,20 @@ void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChang
   }
   // Late joiners need what is alive; that an instance has ended, they need not know.
   if (qos_.transient_local && change->kind == rtps::ALIVE) return;
-  drop(change);
+  if (change->writer_info.is_linked) {
+    acknowledged_.push_back(change->sequenceNumber);
+  } else {
+    drop(change);
+  }
   room_.notify_all();
+}
+
+void FastWriter::drop_acknowledged() {
+  for (const rtps::SequenceNumber_t& number : acknowledged_) {
+    rtps::CacheChange_t* change = nullptr;
+    if (history_.get_change(number, writer_->getGuid(), &change)) drop(change);
+  }
+  acknowledged_.clear();
 }
 
 bool FastWriter::wait_for_acknowledgments(std::chrono::milliseconds timeout) {

@@ -46,6 +46,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   void remember(rtps::CacheChange_t* change, const KeyHash& key);
   void send(rtps::CacheChange_t* change);
   void drop(rtps::CacheChange_t* change);
+  void drop_acknowledged();
   void drop_all(const KeyHash& key);
   void drop_expired(const KeyHash& key);
 
@@ -56,6 +57,8 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   rtps::WriterHistory history_;
   /// Of each instance, oldest first, where a depth bounds them or late joiners get them.
   std::unordered_map<Guid, Changes> instances_;
+  /// What is acknowledged by all and could not be dropped at once.
+  std::vector<rtps::SequenceNumber_t> acknowledged_;
   std::condition_variable_any room_;
   std::atomic<std::int64_t> last_sent_{0};
   /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace skein::dds {
+
+/// From which IPv4 addresses packets are taken. A value.
+class AllowedSources {
+ public:
+  /// All.
+  AllowedSources() = default;
+
+  /// Each is an address (`10.0.0.7`) or a prefix (`10.0.0.0/24`); none means all. 127.0.0.0/8 is
+  /// always among them. Throws InvalidArgument for anything else.
+  explicit AllowedSources(const std::vector<std::string>& texts);
+
+  /// Takes packets of that address, too.
+  void add(const std::string& text);
+
+  /// `address` in host order.
+  bool allows(std::uint32_t address) const noexcept;
+
+ private:
+  struct Prefix {
+    std::uint32_t bits;
+    std::uint32_t mask;
+  };
+  std::vector<Prefix> prefixes_;
+};
+
+}  // namespace skein::dds

@@ -1,0 +1,101 @@
+#include "absence_watch.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "identity.hpp"
+#include "proxy_leases.h"
+
+namespace skein::dds::cyclonedds {
+namespace {
+
+using std::chrono::nanoseconds;
+using namespace std::chrono_literals;
+
+constexpr nanoseconds kLongestSleep = 250ms;
+/// Silence that is forgiven for each moment that this process came late.
+constexpr int kForgiveness = 6;
+/// Cyclone itself gives up a participant after so many of its leases.
+constexpr int kBackstop = 16;
+
+constexpr std::uint32_t kParticipantEntity = 0x1c1;
+
+ddsi_guid_t participant_guid(const Guid& participant) {
+  ddsi_guid_t guid = to_internal(participant);
+  guid.entityid.u = kParticipantEntity;
+  return guid;
+}
+
+}  // namespace
+
+AbsenceWatch::AbsenceWatch(ddsi_domaingv& domain) : domain_(domain), thread_([this] { run(); }) {
+  pthread_setname_np(thread_.native_handle(), "skein-dds-lease");
+}
+
+AbsenceWatch::~AbsenceWatch() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void AbsenceWatch::found(const Guid& participant) {
+  const ddsi_guid_t guid = participant_guid(participant);
+  std::lock_guard lock(mutex_);
+  // One that Cyclone watches already it goes on watching.
+  const nanoseconds announced(skein_lengthen_lease(&domain_, &guid, kBackstop));
+  if (announced != 0ns) leases_[participant] = announced;
+}
+
+void AbsenceWatch::lost(const Guid& participant) {
+  std::lock_guard lock(mutex_);
+  leases_.erase(participant);
+}
+
+nanoseconds AbsenceWatch::silence_of(const Guid& participant) {
+  const ddsi_guid_t guid = participant_guid(participant);
+  // One that was lost may just be found again, and its lease be lengthened.
+  std::lock_guard lock(mutex_);
+  return nanoseconds(skein_silence(&domain_, &guid));
+}
+
+nanoseconds AbsenceWatch::check(nanoseconds forgiven) {
+  std::map<Guid, nanoseconds> leases;
+  {
+    std::lock_guard lock(mutex_);
+    if (leases_.empty()) return kLongestSleep;
+    leases = leases_;
+  }
+  nanoseconds next = kLongestSleep;
+  for (const auto& [participant, announced] : leases) {
+    const nanoseconds left = announced + forgiven - silence_of(participant);
+    if (left > 0ns) {
+      next = std::min(next, left);
+    } else {
+      const ddsi_guid_t guid = participant_guid(participant);
+      skein_give_up(&domain_, &guid);
+    }
+  }
+  return std::max<nanoseconds>(next, 1ms);
+}
+
+void AbsenceWatch::run() {
+  nanoseconds late{};
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    lock.unlock();
+    const nanoseconds sleep = check(kForgiveness * late);
+    const auto due = Clock::now() + sleep;
+    lock.lock();
+    changed_.wait_until(lock, due, [this] { return stopping_; });
+    // What was late is remembered for some seconds.
+    late = std::max<nanoseconds>(Clock::now() - due, late * 15 / 16);
+  }
+}
+
+}  // namespace skein::dds::cyclonedds

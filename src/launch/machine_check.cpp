@@ -1,0 +1,240 @@
+#include "skein/launch/machine_check.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "skein/core/error.hpp"
+#include "skein/core/host.hpp"
+#include "skein/core/suggestion.hpp"
+#include "skein/entity/component_registry.hpp"
+#include "skein/launch/launch_plan.hpp"
+#include "skein/launch/peer.hpp"
+
+namespace skein::launch {
+namespace {
+
+using profile::CspProcess;
+using profile::CspProfile;
+using profile::Finding;
+using profile::MissionProfile;
+using profile::PeerProfile;
+using profile::Severity;
+
+/// What stands against a host's name; empty where it has an address.
+std::string obstacle(const std::string& host) {
+  try {
+    host_addresses(host);
+    return {};
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+}
+
+class MachineCheck {
+ public:
+  MachineCheck(const MissionProfile& mission, const std::string& host)
+      : mission_(mission), interfaces_(interfaces_of_this_host()) {
+    for (const std::string& name : hosts_of(mission)) here_[name] = launch::is_here(name, host);
+  }
+
+  std::vector<Finding> run() {
+    for (const PeerProfile& peer : mission_.peers) {
+      if (!is_here(peer)) continue;
+      check_interface(peer);
+      check_meeting(peer);
+      check_threads(peer.threads, peer.where, peer.name);
+      for (const CspProfile& csp : peer.csps)
+        check_threads(csp.threads, csp.where, peer.name + "/" + csp.name);
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  using SourcePosition = profile::SourcePosition;
+
+  void add(Severity severity, const SourcePosition& where, std::string problem,
+           std::string remedy) {
+    findings_.push_back({severity, where, std::move(problem), std::move(remedy)});
+  }
+
+  bool is_here(const PeerProfile& peer) const {
+    const auto found = here_.find(peer.host);
+    return found == here_.end() || found->second;
+  }
+
+  void check_interface(const PeerProfile& peer) {
+    const std::string& wanted = peer.interface;
+    const bool known = wanted.empty() || wanted.starts_with("127.") ||
+                       std::ranges::any_of(interfaces_, [&](const HostInterface& interface) {
+                         return wanted == interface.name || wanted == interface.address;
+                       });
+    if (known) return;
+    std::vector<std::string> names;
+    for (const HostInterface& interface : interfaces_) names.push_back(interface.name);
+    add(Severity::Error, peer.where,
+        "'" + peer.name + "' speaks on '" + wanted +
+            "', but this host has no such interface with an IPv4 address" +
+            suggestion(wanted, names),
+        "it has " + to_text(interfaces_));
+  }
+
+  /// Whether the peer can meet those of other hosts.
+  void check_meeting(const PeerProfile& peer) {
+    const auto elsewhere =
+        std::ranges::find(here_, false, &std::pair<const std::string, bool>::second);
+    if (elsewhere != here_.end()) {
+      if (peer.interface.empty() && peer.vendor != "loopback") {
+        add(Severity::Error, peer.where,
+            "'" + peer.name + "' speaks on 127.0.0.1 alone, and the mission has peers on '" +
+                elsewhere->first + "'",
+            "name the network interface on which it meets them: interface=\"...\" (this host has " +
+                to_text(interfaces_) + "), or interface=\"lo\" where it need not");
+      }
+      if (peer.host.empty()) {
+        add(Severity::Warning, peer.where,
+            "'" + peer.name + "' names no host, though others do: each launcher would start it",
+            "write host=\"...\"");
+      }
+    }
+    for (const std::string& host : network_of(mission_, peer).peers) {
+      const std::string problem = obstacle(host);
+      if (problem.empty() || !asked_.insert(host).second) continue;
+      add(Severity::Error, peer.where,
+          "'" + peer.name + "' is to look for peers there, but " + problem,
+          peer.peers.empty() ? "write host=\"...\" as an address, add the name to /etc/hosts, or "
+                               "say where to look: "
+                               "peers=\"...\" or multicast=\"true\""
+                             : "write an address in peers=\"...\", or add the name to /etc/hosts");
+    }
+  }
+
+  void check_threads(const profile::ThreadRules& rules, const SourcePosition& where,
+                     const std::string& owner) {
+    try {
+      check(rules.settings, "'" + owner + "'");
+    } catch (const InvalidArgument& error) {
+      add(Severity::Error, where, error.what(), "");
+    }
+  }
+
+  const MissionProfile& mission_;
+  const std::vector<HostInterface> interfaces_;
+  std::map<std::string, bool> here_;  // each host that the profile names
+  std::set<std::string> asked_;       // those of them that have no address, and are an error
+  std::vector<Finding> findings_;
+};
+
+class PluginCheck {
+ public:
+  std::vector<Finding> run(const MissionProfile& mission, const std::string& host) {
+    for (const PeerProfile& peer : mission.peers) {
+      if (!is_here(peer.host, host)) continue;
+      check_process(peer);
+      for (const CspProfile& csp : peer.csps) {
+        if (csp.process == CspProcess::Own) check_own(csp);
+      }
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  void add(const profile::SourcePosition& where, std::string problem, std::string remedy) {
+    const bool known = std::ranges::any_of(
+        findings_, [&](const Finding& finding) { return finding.problem == problem; });
+    if (known) return;  // many peers may name one plugin
+    findings_.push_back({Severity::Error, where, std::move(problem), std::move(remedy)});
+  }
+
+  /// False, with a finding, where it cannot be loaded.
+  bool load(ComponentRegistry& registry, const std::string& plugin,
+            const profile::SourcePosition& where) {
+    try {
+      if (!plugin.empty()) registry.load_plugin(plugin);
+      return true;
+    } catch (const Error& error) {
+      add(where, "the plugin '" + plugin + "': " + error.what(), "");
+      return false;
+    }
+  }
+
+  /// A peer with the CSPs in its process, as it would be started.
+  void check_process(const PeerProfile& peer) {
+    ComponentRegistry registry;
+    std::map<std::string, profile::SourcePosition> plugins{{peer.plugin, peer.where}};
+    for (const CspProfile& csp : peer.csps) {
+      if (csp.process == CspProcess::InOwner) plugins.insert({csp.plugin, csp.where});
+    }
+    for (const auto& [plugin, where] : plugins) {
+      if (!load(registry, plugin, where)) return;
+    }
+    for (const CspProfile& csp : peer.csps) {
+      if (csp.process == CspProcess::InOwner && !csp.plugin.empty())
+        demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
+               csp.where, registry);
+    }
+    if (peer.plugin.empty()) return;
+    const std::string& component = peer.component->name;
+    if (!peer.component->interfaces.empty()) {
+      demand(registry.find_body(component), component, "component", peer.plugin, peer.where,
+             registry);
+    }
+    if (peer.runs_mission) {
+      demand(registry.find_mission(component), component, "mission", peer.plugin, peer.where,
+             registry);
+    }
+  }
+
+  void check_own(const CspProfile& csp) {
+    ComponentRegistry registry;
+    if (csp.plugin.empty() || !load(registry, csp.plugin, csp.where)) return;
+    demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
+           csp.where, registry);
+  }
+
+  void demand(bool found, const std::string& component, const std::string& kind,
+              const std::string& plugin, const profile::SourcePosition& where,
+              const ComponentRegistry& registry) {
+    if (found) return;
+    const auto known = registry.names();
+    const bool other_kind = std::ranges::count(known, component) > 0;
+    std::string names;
+    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+    add(where,
+        "the plugin '" + plugin + "' has no implementation of the " + kind + " '" + component +
+            "'" + (other_kind ? "" : suggestion(component, known)),
+        names.empty() ? "it has none at all" : "it implements " + names);
+  }
+
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+std::vector<Finding> check_machine(const MissionProfile& mission, const std::string& host) {
+  return MachineCheck(mission, host).run();
+}
+
+std::vector<Finding> check_hosts(const MissionProfile& mission, const std::string& host) {
+  std::vector<Finding> findings;
+  for (const std::string& name : hosts_of(mission)) {
+    if (is_here(name, host) || obstacle(name).empty()) continue;
+    const bool asked = std::ranges::any_of(mission.peers, [&](const PeerProfile& peer) {
+      return is_here(peer.host, host) &&
+             std::ranges::count(network_of(mission, peer).peers, name) > 0;
+    });
+    if (asked) continue;  // which is an error of check_machine()
+    const auto peer = std::ranges::find(mission.peers, name, &PeerProfile::host);
+    findings.push_back(
+        {Severity::Warning, peer->where,
+         "the host '" + name + "' of '" + peer->name + "' has no address that is known here",
+         "there, 'skein launch --host " + name + "' starts its peers"});
+  }
+  return findings;
+}
+
+std::vector<Finding> check_plugins(const MissionProfile& mission, const std::string& host) {
+  return PluginCheck().run(mission, host);
+}
+
+}  // namespace skein::launch

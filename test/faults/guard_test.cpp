@@ -1,0 +1,438 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
+#include "../../src/dds/repeated_messages.hpp"
+#include "../../src/dds/rtps_guard.hpp"
+#include "../tools/rtps_packet.hpp"
+#include "skein/core/error.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using dds::RtpsGuard;
+using dds::WriterLedger;
+using Refusal = RtpsGuard::Refusal;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr unsigned kHeartbeat = 0x07;
+constexpr unsigned kGap = 0x08;
+constexpr unsigned kData = 0x15;
+constexpr unsigned kDataFrag = 0x16;
+constexpr unsigned kPad = 0x01;
+constexpr std::uint32_t kSomewhere = 10u << 24 | 7;
+
+Guid writer_of(unsigned number, unsigned char kind = 0x03) {
+  Guid guid;
+  guid.bytes = {1, 15, 7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+  guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
+  guid.bytes[14] = static_cast<std::uint8_t>(number);
+  guid.bytes[15] = kind;
+  return guid;
+}
+
+/// A guard on its own, whose time the test tells.
+struct Stage {
+  explicit Stage(dds::AllowedSources sources = {}) : guard(std::move(sources), "test") {}
+
+  /// What is handed on.
+  Octets pass(Octets message, std::uint32_t source = kSomewhere) {
+    message.resize(guard.pass(message.data(), message.size(), source, now).size);
+    return message;
+  }
+  bool passes(const RtpsPacket& packet) { return pass(packet.octets()) == packet.octets(); }
+  bool refuses(const RtpsPacket& packet, Refusal why) {
+    const auto before = guard.refused(why);
+    return pass(packet.octets()).empty() && guard.refused(why) == before + 1;
+  }
+
+  RtpsGuard guard;
+  RtpsGuard::Clock::time_point now{};
+};
+
+const Guid kWriter = writer_of(1);
+const Octets kPayload{0, 1, 0, 0, 1, 2, 3, 4};
+
+RtpsPacket from(const Guid& sender, unsigned kind, unsigned flags, const OctetWriter& body,
+                int claimed = -1) {
+  return RtpsPacket(sender).submessage(kind, flags, body, claimed);
+}
+
+}  // namespace
+
+TEST_CASE("a message that is no RTPS of version 2, or has no sender, is refused") {
+  Stage stage;
+  const auto good = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5));
+  CHECK(stage.passes(good));
+  for (const std::size_t broken : {0u, 1u, 2u, 3u, 4u}) {
+    Octets octets = good.octets();
+    octets[broken] ^= 0x20;
+    CHECK(stage.pass(octets).empty());
+  }
+  CHECK(stage.pass({good.octets().begin(), good.octets().begin() + 19}).empty());
+  CHECK(stage.refuses(from(Guid{}, kHeartbeat, 0, heartbeat(kWriter, 1, 5)), Refusal::Form));
+}
+
+TEST_CASE("what follows a submessage that does not lie within its message is cut off") {
+  Stage stage;
+  RtpsPacket packet(kWriter);
+  packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
+  const Octets good = packet.octets();
+  packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5), 2000);
+  CHECK(stage.pass(packet.octets()) == good);
+  CHECK(stage.guard.refused(Refusal::Form) == 1);
+}
+
+TEST_CASE("every submessage's body must hold its fields") {
+  const auto acknack = entities({}, kWriter).number(1).u32(1).u32(0).u32(7);
+  const auto nack_frag = entities({}, kWriter).number(1).u32(1).u32(1).u32(0).u32(7);
+  const auto heartbeat_frag = entities({}, kWriter).number(1).u32(4).u32(7);
+  const std::pair<unsigned, OctetWriter> kinds[] = {
+      {0x06, acknack},
+      {kHeartbeat, heartbeat(kWriter, 1, 5)},
+      {kGap, gap(kWriter, 1, 3)},
+      {0x09, OctetWriter().zeros(8)},
+      {0x0e, OctetWriter().zeros(12)},
+      {0x12, nack_frag},
+      {0x13, heartbeat_frag},
+      {kData, data(kWriter, 1, kPayload)},
+      {kDataFrag, data_frag(kWriter, 2, {1, 1, 1024, 1024}, 1024)},
+  };
+  for (const auto& [kind, body] : kinds) {
+    INFO("submessage " << kind);
+    const unsigned flags = kind == kData ? kHasPayload : 0;
+    Stage stage;
+    CHECK(stage.passes(from(kWriter, kind, flags, body)));
+    // The last number of a DATA's payload is not a field.
+    const std::size_t needed = kind == kData ? 24 : body.octets().size();
+    for (std::size_t size = 4; size < needed; size += 4) {
+      const OctetWriter part = OctetWriter().append(std::span(body.octets()).first(size));
+      INFO("cut off after " << size);
+      CHECK(stage.refuses(from(kWriter, kind, flags, part), Refusal::Form));
+    }
+  }
+}
+
+TEST_CASE("sets of numbers have at most 256 bits, which are there, and numbers that exist") {
+  Stage stage;
+  const auto acknack = [&](std::int64_t base, std::uint32_t bits, std::size_t words) {
+    return from(kWriter, 0x06, 0,
+                entities({}, kWriter).number(base).u32(bits).zeros(4 * words).u32(7));
+  };
+  CHECK(stage.passes(acknack(1, 256, 8)));
+  CHECK(stage.passes(acknack(0, 0, 0)));
+  CHECK(stage.refuses(acknack(1, 257, 9), Refusal::Form));
+  CHECK(stage.refuses(acknack(1, 33, 1), Refusal::Form));
+  CHECK(stage.refuses(acknack(0, 1, 1), Refusal::Form));
+  CHECK(stage.refuses(acknack(-1, 1, 1), Refusal::Form));
+  CHECK(stage.refuses(acknack(INT64_MAX, 1, 1), Refusal::Form));
+}
+
+TEST_CASE("a heartbeat names an order of samples that exist") {
+  Stage stage;
+  const auto beat = [&](std::int64_t first, std::int64_t last) {
+    return from(kWriter, kHeartbeat, 0, heartbeat(kWriter, first, last));
+  };
+  CHECK(stage.passes(beat(1, 0)));
+  CHECK(stage.passes(beat(9, 8)));
+  CHECK(stage.refuses(beat(0, 0), Refusal::Form));
+  CHECK(stage.refuses(beat(-3, 8), Refusal::Form));
+  CHECK(stage.refuses(beat(9, 7), Refusal::Form));
+}
+
+TEST_CASE("a heartbeat that leaps by 2^52 is refused, of a writer known or unknown") {
+  Stage stage;
+  const auto leap = [](const Guid& writer) {
+    const std::int64_t far = std::int64_t{1} << 52;
+    return from(writer, kHeartbeat, 0, heartbeat(writer, far, far));
+  };
+  CHECK(stage.refuses(leap(writer_of(2)), Refusal::Leap));
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  CHECK(stage.refuses(leap(kWriter), Refusal::Leap));
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 6))));
+}
+
+TEST_CASE("a late joiner hears of a writer that has written a billion samples") {
+  Stage stage;
+  const std::int64_t billion = 1'000'000'000;
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, billion, billion))));
+  CHECK(stage.passes(from(kWriter, kData, kHasPayload, data(kWriter, billion + 1, kPayload))));
+}
+
+TEST_CASE("who was cut off may have missed a million samples a second") {
+  Stage stage;
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  const std::int64_t missed = 60'000'000;
+  const auto beat = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, missed, missed));
+  CHECK(stage.refuses(beat, Refusal::Leap));
+  stage.now += 60s;
+  CHECK(stage.passes(beat));
+  CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 2 * missed)),
+                      Refusal::Leap));
+}
+
+TEST_CASE("a gap is within what was announced, and no longer than a reader can count through") {
+  Stage stage;
+  const std::int64_t last = 900'000;
+  REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, last))));
+  CHECK(stage.passes(from(kWriter, kGap, 0, gap(kWriter, 3, 4000))));
+  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 1'000'000, std::int64_t{1} << 40)),
+                      Refusal::Leap));
+  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 0, 5)), Refusal::Form));
+  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 5, 4)), Refusal::Form));
+  // The reader asks again for the rest.
+  CHECK(stage.pass(from(kWriter, kGap, 0, gap(kWriter, 2, last)).octets()) ==
+        from(kWriter, kGap, 0, gap(kWriter, 2, 2 + 65536)).octets());
+}
+
+TEST_CASE("fragments exist in their sample, and are there") {
+  Stage stage;
+  const auto fragment = [&](const FragmentClaim& claim, std::size_t payload) {
+    return from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, claim, payload));
+  };
+  CHECK(stage.passes(fragment({1, 1, 1024, 2500}, 1024)));
+  CHECK(stage.passes(fragment({2, 2, 1024, 2500}, 1476)));
+  CHECK(stage.refuses(fragment({2, 2, 1024, 2500}, 1472), Refusal::Form));
+  CHECK(stage.refuses(fragment({0, 1, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(stage.refuses(fragment({4, 1, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(stage.refuses(fragment({3, 2, 1024, 2500}, 2048), Refusal::Form));
+  CHECK(stage.refuses(fragment({1, 0, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(stage.refuses(fragment({1, 1, 0, 2500}, 1024), Refusal::Form));
+  CHECK(stage.refuses(fragment({1, 1, 1024, 0}, 1024), Refusal::Form));
+  // 120 bytes that claim to be 100 MB in 1539 fragments.
+  CHECK(stage.refuses(fragment({1, 1539, 65000, 100'000'000}, 64), Refusal::Form));
+}
+
+TEST_CASE("fragments too small for Fast DDS's list of those that are missing are refused") {
+  Stage stage;
+  for (const unsigned size : {1u, 3u, 5u, 64u}) {
+    CHECK(
+        stage.refuses(from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, {1, 1, size, 60'000}, 64)),
+                      Refusal::Fragment));
+  }
+}
+
+TEST_CASE("all fragments of a sample agree on its size and theirs") {
+  Stage stage;
+  const auto fragment = [&](const FragmentClaim& claim) {
+    return from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, claim, 4096));
+  };
+  CHECK(stage.passes(fragment({1, 1, 1024, 60'000})));
+  CHECK(stage.refuses(fragment({2, 1, 1024, 6'000}), Refusal::Fragment));
+  CHECK(stage.refuses(fragment({2, 1, 2048, 60'000}), Refusal::Fragment));
+  CHECK(stage.passes(fragment({2, 1, 1024, 60'000})));
+}
+
+TEST_CASE("samples in fragments claim a bounded memory, and those given up make room") {
+  Stage stage;
+  const auto fragment = [&](std::int64_t number, std::uint32_t size) {
+    return from(kWriter, kDataFrag, 0, data_frag(kWriter, number, {1, 1, 60'000, size}, 60'000));
+  };
+  CHECK(stage.refuses(fragment(1, WriterLedger::kLargestSample + 1), Refusal::Room));
+  for (int i = 1; i <= 4; ++i) CHECK(stage.passes(fragment(i, WriterLedger::kLargestSample)));
+  CHECK(stage.refuses(fragment(5, WriterLedger::kLargestSample), Refusal::Room));
+  CHECK(stage.passes(fragment(4, WriterLedger::kLargestSample)));
+  stage.now += 6s;
+  CHECK(stage.passes(fragment(5, WriterLedger::kLargestSample)));
+  CHECK(stage.refuses(fragment(1, 60'001), Refusal::Room));
+}
+
+TEST_CASE("samples that are complete claim nothing") {
+  Stage stage;
+  for (int i = 1; i <= 20'000; ++i) {
+    REQUIRE(stage.passes(
+        from(kWriter, kDataFrag, 0, data_frag(kWriter, i, {1, 1, 60'000, 60'000}, 60'000))));
+  }
+}
+
+TEST_CASE("a flood of unknown writers does not make the guard forget those that speak") {
+  Stage stage;
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  for (unsigned i = 0; i < 100'000; ++i) {
+    Guid stranger = writer_of(i);
+    stranger.bytes[4] = static_cast<std::uint8_t>(1 + i / 65536);
+    stranger.bytes[5] = 1;
+    REQUIRE(stage.passes(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))));
+    if (i % 1000 == 0) {
+      REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+    }
+  }
+  const std::int64_t far = WriterLedger::kMostBefore - 1;
+  CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)), Refusal::Leap));
+}
+
+TEST_CASE("vendors' own submessages are passed over in silence, the message's others go on") {
+  Stage stage;
+  RtpsPacket packet(kWriter);
+  packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
+  const Octets good = packet.octets();
+  // As Fast DDS appends its statistics, and with four bytes behind, at which it aborts.
+  packet.submessage(0x80, 0, OctetWriter().zeros(56));
+  CHECK(stage.pass(packet.octets()) == good);
+  CHECK(stage.guard.refused(Refusal::Unused) == 0);
+  CHECK(stage.pass(RtpsPacket(packet).append(OctetWriter().zeros(4)).octets()) == good);
+  RtpsPacket alone(kWriter);
+  alone.submessage(0x80, 0, OctetWriter().zeros(56)).append(OctetWriter().zeros(4));
+  REQUIRE(alone.octets().size() == 84);
+  CHECK(stage.pass(alone.octets()).empty());
+}
+
+TEST_CASE("submessages of security, of replies to elsewhere and in another's name are dropped") {
+  Stage stage;
+  const auto beat = heartbeat(kWriter, 1, 5);
+  for (const unsigned kind : {0x0du, 0x0fu, 0x30u, 0x31u, 0x32u, 0x33u, 0x34u, 0x02u}) {
+    RtpsPacket packet(kWriter);
+    packet.submessage(kind, 0, OctetWriter().zeros(24)).submessage(kHeartbeat, 0, beat);
+    RtpsPacket padded(kWriter);
+    padded.submessage(kPad, 0, OctetWriter().zeros(24)).submessage(kHeartbeat, 0, beat);
+    CHECK(stage.pass(packet.octets()) == padded.octets());
+  }
+  RtpsPacket renamed(kWriter);
+  renamed.submessage(0x0c, 0, OctetWriter().zeros(20)).submessage(kHeartbeat, 0, beat);
+  CHECK(stage.pass(renamed.octets()).empty());
+}
+
+TEST_CASE("discovery's parameters, texts and lists lie within it") {
+  Stage stage;
+  Guid announcer = writer_of(0, 0xc2);
+  announcer.bytes[13] = 0x01;  // 0x000100c2: participants
+  const auto announcement = [&](const OctetWriter& parameters) {
+    const auto payload = OctetWriter().u8(0).u8(3).u16(0).append(parameters.octets());
+    return from(announcer, kData, kHasPayload, data(announcer, 1, payload.octets()));
+  };
+  const auto parameter = [](unsigned id, const OctetWriter& value) {
+    return OctetWriter()
+        .u16(id)
+        .u16(static_cast<unsigned>(value.octets().size()))
+        .append(value.octets())
+        .u16(1)
+        .u16(0);
+  };
+  const auto text = [](std::uint32_t claimed, bool ended = true) {
+    return OctetWriter().u32(claimed).u8('a').u8('b').u8('c').u8(ended ? 0 : 'd');
+  };
+  CHECK(stage.passes(announcement(parameter(0x62, text(4)))));
+  CHECK(stage.passes(announcement(
+      parameter(0x59, OctetWriter().u32(1).append(text(4).octets()).append(text(4).octets())))));
+  const OctetWriter bad[] = {
+      OctetWriter(),                            // no end
+      OctetWriter().u16(0x62).u16(400).u32(0),  // longer than all
+      OctetWriter().u16(0x62).u16(6).zeros(8),  // not aligned
+      parameter(0x62, text(5)),                 // a text longer than its parameter
+      parameter(0x62, text(4, false)),          // a text without an end
+      parameter(0x62, text(0)),                 // nor a beginning
+      parameter(0x59, OctetWriter().u32(2).append(text(4).octets()).append(text(4).octets())),
+      parameter(0x59, OctetWriter().u32(0xffffffff)),
+      parameter(0x29, OctetWriter().u32(0x40000000).append(text(4).octets())),
+      parameter(0x2c, OctetWriter().u32(400)),
+      parameter(0x73, OctetWriter().u32(0xffffffff)),
+      parameter(0x31, OctetWriter().zeros(20)),
+      parameter(0x02, OctetWriter().u32(0x80000000).u32(0)),
+  };
+  for (const OctetWriter& parameters : bad) {
+    CHECK(stage.refuses(announcement(parameters), Refusal::Parameters));
+  }
+  // A type's description is not looked at by anybody here.
+  CHECK(stage.pass(announcement(parameter(0x75, OctetWriter().zeros(16))).octets()) ==
+        announcement(parameter(0x00, OctetWriter().zeros(16))).octets());
+  CHECK(stage.refuses(
+      from(announcer, kDataFrag, 0, data_frag(announcer, 1, {1, 1, 1024, 1024}, 1024)),
+      Refusal::Unused));
+}
+
+TEST_CASE("the guard says whether it passed an announcement of a participant, and an ACKNACK") {
+  Stage stage;
+  Guid announcer = writer_of(0, 0xc2);
+  announcer.bytes[13] = 0x01;
+  const Octets parameters{0, 3, 0, 0, 0x01, 0, 0, 0};
+  const auto acknack = entities({}, kWriter).number(1).u32(0).u32(7);
+  const auto pass = [&](const RtpsPacket& packet) {
+    Octets message = packet.octets();
+    return stage.guard.pass(message.data(), message.size(), kSomewhere, stage.now);
+  };
+  auto passed = pass(from(announcer, kData, kHasPayload, data(announcer, 1, parameters)));
+  CHECK(passed.announces);
+  CHECK_FALSE(passed.acknowledges);
+  passed = pass(
+      from(kWriter, 0x06, 0, acknack).submessage(kData, kHasPayload, data(kWriter, 1, kPayload)));
+  CHECK_FALSE(passed.announces);
+  CHECK(passed.acknowledges);
+  // Refused: its parameters have no end.
+  const Octets endless{0, 3, 0, 0};
+  CHECK_FALSE(pass(from(announcer, kData, kHasPayload, data(announcer, 2, endless))).announces);
+}
+
+TEST_CASE("a message of liveliness holds what it says") {
+  Stage stage;
+  Guid participant = writer_of(0, 0xc2);
+  participant.bytes[13] = 0x02;  // 0x000200c2
+  const auto message = [&](unsigned encapsulation, std::uint32_t claimed) {
+    const auto payload =
+        OctetWriter().u8(0).u8(encapsulation).u16(0).zeros(16).u32(claimed).zeros(4);
+    return from(participant, kData, kHasPayload, data(participant, 1, payload.octets()));
+  };
+  CHECK(stage.passes(message(1, 4)));
+  CHECK(stage.passes(message(3, 0)));  // as Fast DDS writes it
+  CHECK(stage.refuses(message(1, 5), Refusal::Parameters));
+  CHECK(stage.refuses(message(7, 0), Refusal::Parameters));
+}
+
+TEST_CASE("packets come from allowed sources and this host only") {
+  Stage stage(dds::AllowedSources({"10.0.0.0/24", "10.1.2.3"}));
+  const Octets good = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)).octets();
+  CHECK(stage.pass(good, 0x0a000007) == good);
+  CHECK(stage.pass(good, 0x0a010203) == good);
+  CHECK(stage.pass(good, 0x7f000001) == good);
+  CHECK(stage.pass(good, 0x0a000107).empty());
+  CHECK(stage.pass(good, 0x0a010204).empty());
+  CHECK(stage.guard.refused(Refusal::Source) == 2);
+  for (const char* wrong : {"", "10.0.0", "10.0.0.1/33", "10.0.0.1/", "10.0.0.1/8x", "host"}) {
+    INFO(wrong);
+    CHECK_THROWS_AS(dds::AllowedSources({wrong}), InvalidArgument);
+  }
+}
+
+TEST_CASE("of a vendor's messages about like packets the 1st, the 10th, the 100th are told") {
+  dds::RepeatedMessages messages;
+  std::vector<std::string> told;
+  for (int i = 1; i <= 100; ++i) {
+    if (const auto text = messages.next("bad packet " + std::to_string(i))) told.push_back(*text);
+  }
+  CHECK(told == std::vector<std::string>{"bad packet 1",
+                                         "bad packet 10 (messages like this so far: 10)",
+                                         "bad packet 100 (messages like this so far: 100)"});
+  CHECK(messages.next("other packet") == "other packet");
+}
+
+TEST_CASE("what is told of a vendor's messages is bounded, however many kinds there are") {
+  dds::RepeatedMessages messages;
+  int told = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    told += messages.next(std::string(1 + i % 1000, 'x')).has_value();
+  }
+  CHECK(told < 1000);
+}
+
+TEST_CASE("what the guard costs a packet", "[.benchmark]") {
+  Stage stage;
+  const auto time = [&](const char* what, const RtpsPacket& packet) {
+    constexpr int kPackets = 1'000'000;
+    Octets message = packet.octets();
+    const std::clock_t start = std::clock();
+    for (int i = 0; i < kPackets; ++i) {
+      stage.guard.pass(message.data(), message.size(), kSomewhere, RtpsGuard::Clock::now());
+    }
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    std::printf("%-40s %6.0f ns of CPU time\n", what, seconds / kPackets * 1e9);
+  };
+  RtpsPacket call(kWriter);
+  call.submessage(0x0e, 0, OctetWriter().zeros(12))
+      .submessage(0x09, 0, OctetWriter().zeros(8))
+      .submessage(kData, kHasPayload, data(kWriter, 5, Octets(100)))
+      .submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
+  time("INFO_DST, INFO_TS, DATA and HEARTBEAT", call);
+  time("HEARTBEAT", from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)));
+  time("DATA_FRAG", from(kWriter, kDataFrag, 0, data_frag(kWriter, 5, {1, 1, 8192, 60'000}, 8192)));
+}

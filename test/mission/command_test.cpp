@@ -1,0 +1,220 @@
+// What the commands say and return where something is not as it should be.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <fstream>
+
+#include "command_run.hpp"
+#include "errand.hpp"
+#include "skein/core/error.hpp"
+#include "skein/entity/decision.hpp"
+#include "skein/entity/entity.hpp"
+#include "skein/idl/type_support.hpp"
+#include "skein/introspection.idl.hpp"
+#include "worker.idl.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using Catch::Contains;
+
+namespace {
+
+const std::string kOffice = "<peer name='office' component='office.xml'/>";
+const std::string kClient = "<peer name='client' component='client.xml' role='mission'/>";
+
+bool installed(const std::string& vendor) {
+  try {
+    dds::load_vendor(vendor);
+    return true;
+  } catch (const Unavailable&) {
+    WARN(vendor << " skipped: it is not installed");
+    return false;
+  }
+}
+
+class Desk final : public crew::Desk {
+ public:
+  std::string ask(const std::string& text) override { return text; }
+};
+
+}  // namespace
+
+TEST_CASE("a command that is none is named, with the nearest") {
+  CommandRun run({"lanuch", "x.xml"});
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(), Contains("there is no command 'lanuch' (did you mean 'launch'?)"));
+  CommandRun nested({"bench", "latncy"});
+  CHECK(nested.wait() == 78);
+  CHECK_THAT(nested.output(),
+             Contains("there is no command 'bench latncy' (did you mean 'latency'?)"));
+}
+
+TEST_CASE("output that cannot be written is no success") {
+  const Errand errand;
+  const std::string profile = errand.profile("", kOffice + kClient);
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"check", profile},
+                                                {"launch", "--dry-run", profile},
+                                                {"--help"},
+                                                {"services", "--wait", "0.1"}}) {
+    CAPTURE(words.front());
+    CommandRun run(words, {.output = "/dev/full"});
+    CHECK(run.wait() == 74);
+    CHECK_THAT(run.output(), Contains("the output could not be written: No space left on device"));
+  }
+}
+
+TEST_CASE("commands that watch end in order when they are interrupted") {
+  const std::string command = GENERATE("calls", "decisions", "services");
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  CAPTURE(command, signal);
+  CommandRun run({command, command == "services" ? "--wait" : "--for", "600"});
+  const std::string status = "/proc/" + std::to_string(run.pid()) + "/status";
+  REQUIRE(eventually([&] {  // until it blocks the signals, they would end it as they do any program
+    std::ifstream file(status);
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with("SigBlk:")) return std::stoull(line.substr(7), nullptr, 16) != 0;
+    }
+    return false;
+  }));
+  run.signal(signal);
+  CHECK(run.wait() == 0);
+  if (command == "services") CHECK_THAT(run.output(), Contains("0 services on domain 0"));
+}
+
+TEST_CASE("what a peer says of itself cannot drive a terminal, nor fill it") {
+  if (!installed("cyclonedds")) return;
+  Entity rogue({.name = "rogue", .vendor = dds::load_vendor("cyclonedds"), .domain = 49});
+  ServiceOptions options;
+  options.attributes = {{"colour\x1b[2J", "red"}};
+  CHECK_THROWS_WITH(rogue.provide<crew::Desk>(std::make_shared<Desk>(), options),
+                    Contains("control characters"));
+  options.attributes = {{"long", std::string(4096, 'x')}};
+  rogue.provide<crew::Desk>(std::make_shared<Desk>(), options);
+  std::string output;
+  REQUIRE(eventually([&] {
+    CommandRun run({"services", "--domain", "49"});
+    output = run.wait() == 0 ? run.output() : "";
+    return output.find("1 services on domain 49") != std::string::npos;
+  }));
+  CHECK_THAT(output, Contains("xxx... (4096 bytes)"));
+  CHECK(output.size() < 4096);
+}
+
+TEST_CASE("decisions from a log cannot drive a terminal either") {
+  DecisionRecord record;
+  record.entity = "uav\x1b[2J";
+  record.strategy = "declared";
+  record.execution = "one";
+  record.failure = "no\nanswer";
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("skein-decisions-" + std::to_string(getpid()) + ".jsonl");
+  std::ofstream(file) << idl::to_json(report_of(record)) << '\n';
+  CommandRun run({"decisions", "--log", file});
+  CHECK(run.wait() == 0);
+  std::filesystem::remove(file);
+  CHECK_THAT(run.output(), Contains("of uav\\x1b[2J") && Contains("no\\x0aanswer"));
+}
+
+TEST_CASE("the mission's own text reaches the terminal without control characters") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"launch", errand.profile("", kOffice + kClient)});
+  CHECK(run.wait() == 0);
+  CHECK_THAT(run.output(), Contains("the desk says: yes, dear \\x1b[31mclient"));
+}
+
+TEST_CASE("a missing dependency is told at once, and is the reason when the peer gives up") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string client =
+      "<peer name='client' component='client.xml' role='mission' ready_timeout='10 s'/>";
+  // The office's process is there; it is in another domain of discovery.
+  const std::string office = "<peer name='office' component='office.xml' vendor='loopback'/>";
+  CommandRun run({"launch", errand.profile("", office + client)});
+  CHECK(run.writes("waits for its dependency: no provider of 'crew/Desk'"));
+  CHECK(run.wait() == 71);
+  CHECK_THAT(run.output(), Contains("uav-1/client has waited in vain for its dependency"));
+  CHECK_THAT(run.output(), Contains("client, which runs the mission, ended with exit code 71 (last "
+                                    "it said: waits for its dependency: no provider of"));
+}
+
+TEST_CASE("too little address space is told at once with its limit") {
+  const Errand errand;
+  const CommandOptions options{.prepare = [] {
+    const rlimit limit{200'000 << 10, 200'000 << 10};
+    setrlimit(RLIMIT_AS, &limit);
+  }};
+  const std::vector<std::string> ways[] = {
+      {"launch", errand.profile("", kOffice + kClient)},
+      {"services"},
+      {"peer", errand.profile("", kOffice), "office"},
+  };
+  for (const auto& words : ways) {
+    CAPTURE(words.front());
+    CommandRun run(words, options);
+    CHECK(run.wait() == 71);
+    CHECK_THAT(run.output(), Contains("limited to 195 MiB here (ulimit -v)"));
+  }
+}
+
+TEST_CASE("a mission that ends by an exception has an exit code of its own, and its text is told") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run(
+      {"launch",
+       errand.profile("", "<peer name='clumsy' component='clumsy.xml' role='mission'/>")});
+  CHECK(run.wait() == 76);
+  CHECK_THAT(run.output(), Contains("ended by an exception: the client stumbled"));
+}
+
+TEST_CASE("a second launcher of a mission is refused and names the first") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string profile = errand.profile("", kOffice);
+  CommandRun first({"launch", profile});
+  REQUIRE(first.writes("all 1 processes are ready"));
+  CommandRun second({"launch", profile});
+  CHECK(second.wait() == 78);
+  CHECK_THAT(second.output(), Contains("is flown here already, on domain 48, by process " +
+                                       std::to_string(first.pid())));
+  first.signal(SIGTERM);
+  CHECK(first.wait() == 128 + SIGTERM);
+  CommandRun third({"launch", profile});
+  CHECK(third.writes("all 1 processes are ready"));
+}
+
+TEST_CASE("what a profile names and this machine does not have is a finding with its place") {
+  const Errand errand;
+  const auto [attributes, peer, part] = GENERATE(table<std::string, std::string, std::string>({
+      {"", "plugin='skein_nothing'", "the plugin 'skein_nothing': no libskein_nothing.so"},
+      {"", "cpus='0,1000'", "the threads of 'office': there is no CPU 1000; this machine has 0 to"},
+      {"interface='eth77'", "", "but this host has no such interface"},
+      {"interface='lo' peers='nowhere.invalid'", "", "host 'nowhere.invalid' has no IPv4 address"},
+      {"interface='lo' multicast='true'", "host='nowhere.invalid'", ""},
+  }));
+  CAPTURE(attributes, peer);
+  CommandRun run(
+      {"check",
+       errand.profile(attributes, "<peer name='office' component='office.xml' " + peer + "/>")});
+  CHECK(run.wait() == (part.empty() ? 0 : 78));
+  if (part.empty()) {
+    CHECK_THAT(run.output(), Contains("warning: the host 'nowhere.invalid' of 'office' has no") &&
+                                 Contains("complete"));
+  } else {
+    CHECK_THAT(run.output(), Contains("errand.xml:1:") && Contains(part));
+  }
+}
+
+TEST_CASE("a component that its plugin does not implement is a finding with what it implements") {
+  const Errand errand;
+  CommandRun run(
+      {"check", errand.profile("",
+                               "<peer name='client' component='client.xml'/>"
+                               "<peer name='o' component='office.xml' role='mission'/>")});
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(),
+             Contains("the plugin 'skein_errand_components' has no implementation of the mission "
+                      "'office'; it implements client, clumsy, office"));
+}

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+namespace skein::test {
+
+/// A folder with the small mission's components, for profiles around them; it goes with this
+/// object. `office` answers, `client` asks it and ends, `clumsy` ends by an exception.
+class Errand {
+ public:
+  Errand() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "skein-errand-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for a profile");
+    folder_ = pattern;
+    write("office.xml",
+          "<component name='office'><interfaces><implements>IDL:crew/Desk</implements>"
+          "</interfaces></component>");
+    write("client.xml",
+          "<component name='client'><dependencies><depends>IDL:crew/Desk</depends>"
+          "</dependencies></component>");
+    write("clumsy.xml", "<component name='clumsy'/>");
+  }
+  ~Errand() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Errand(const Errand&) = delete;
+  Errand& operator=(const Errand&) = delete;
+
+  /// A profile with these attributes of <mission> and these peers.
+  std::string profile(const std::string& attributes, const std::string& peers) const {
+    return write("errand.xml",
+                 "<mission name='errand' domain='48' system='uav-1' dictionary='" DICTIONARY
+                 "' plugin='skein_errand_components' " +
+                     attributes + ">" + peers + "</mission>");
+  }
+
+ private:
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace skein::test

@@ -1,0 +1,176 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <map>
+#include <thread>
+
+#include "../connector/echo_service.hpp"
+#include "../tools/eventually.hpp"
+#include "skein/rpc/dds_server.hpp"
+#include "skein/rpc/wire.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::Echo;
+
+namespace {
+
+/// The provider's participant, played by the test: it says which requests come and who matches, on
+/// whichever thread, and takes no notice of replies.
+class PlayedParticipant final : public dds::Participant {
+ public:
+  std::unique_ptr<dds::Writer> create_writer(const dds::Topic&, const dds::Qos& qos,
+                                             dds::WriterListener listener) override {
+    std::lock_guard lock(mutex_);
+    writers_[qos.partitions.front()] = std::move(listener);
+    ++writers_made_[qos.partitions.front()];
+    return std::make_unique<DeafWriter>();
+  }
+  std::unique_ptr<dds::Reader> create_reader(const dds::Topic&, const dds::Qos&,
+                                             dds::ReaderListener listener) override {
+    reader_ = std::move(listener);
+    return std::make_unique<OneSample>();
+  }
+  Guid guid() const override { return {}; }
+
+  void request(const Guid& client, const Bytes& message) {
+    OneSample reader;
+    reader.sample = {message, dds::InstanceState::Alive, {}, client};
+    reader_.on_data(reader);
+  }
+  bool answers(const Guid& client) const {
+    std::lock_guard lock(mutex_);
+    return writers_.contains(client.hex());
+  }
+  /// How often its client was met by a writer of its own.
+  int writers_made(const Guid& client) const {
+    std::lock_guard lock(mutex_);
+    const auto found = writers_made_.find(client.hex());
+    return found == writers_made_.end() ? 0 : found->second;
+  }
+  void match_request_writer(const Guid& client) const { reader_.on_matched(client, true); }
+  void match(const Guid& client, bool matched) const {
+    std::unique_lock lock(mutex_);
+    const auto told = writers_.at(client.hex()).on_matched;
+    lock.unlock();
+    told(client, matched);
+  }
+
+ private:
+  struct DeafWriter final : dds::Writer {
+    void write(std::span<const std::byte>, const dds::KeyHash&) override {}
+    void dispose(const dds::KeyHash&) override {}
+    bool wait_for_acknowledgments(std::chrono::milliseconds) override { return true; }
+    Guid guid() const override { return {}; }
+    std::vector<Guid> matched_readers() const override { return {}; }
+  };
+  struct OneSample final : dds::Reader {
+    std::size_t take(const std::function<void(const dds::Sample&)>& consumer,
+                     std::size_t) override {
+      consumer(sample);
+      return 1;
+    }
+    Guid guid() const override { return {}; }
+    std::vector<Guid> matched_writers() const override { return {}; }
+    std::uint64_t malformed() const override { return 0; }
+    std::uint64_t expired() const override { return 0; }
+    std::uint64_t replaced() const override { return 0; }
+    dds::Sample sample;
+  };
+
+  mutable std::mutex mutex_;
+  std::map<std::string, dds::WriterListener> writers_;
+  std::map<std::string, int> writers_made_;
+  dds::ReaderListener reader_;
+};
+
+Bytes request(const Guid& client, std::uint64_t number, std::uint32_t operation) {
+  Bytes message;
+  rpc::wire::begin_request(message, {client, number}, operation);
+  return message;
+}
+
+Bytes open_request(const Guid& client) {
+  Bytes message = request(client, 0, rpc::wire::kOpen);
+  rpc::wire::append_default_branch(message);
+  rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{20s});
+  return message;
+}
+
+/// One for an hour's work.
+Bytes long_request(const Guid& client, std::uint64_t number) {
+  for (const OperationInfo& operation : Echo::interface_info().operations) {
+    if (operation.name != "wait") continue;
+    const ::test::Echo_wait_In in{3'600'000};
+    Bytes message = request(client, number, operation.hash);
+    operation.in->encode(&in, message);
+    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1h});
+    return message;
+  }
+  throw std::logic_error("the interface has no operation 'wait'");
+}
+
+}  // namespace
+
+TEST_CASE("a request that comes at the moment in which its client leaves keeps nobody busy") {
+  PlayedParticipant participant;
+  SystemClock clock;
+  ThreadExecutor control("control");
+  constexpr std::size_t kNeverFull = 1 << 24;
+  ThreadExecutor executor("worker", 1, kNeverFull);
+  rpc::Service::Options options;
+  options.queue = kNeverFull;
+  const auto service = std::make_shared<rpc::Service>(
+      std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock, options);
+  rpc::DdsServer server(participant, control, clock, service, {});
+  for (int round = 0; round < 100; ++round) {
+    const Guid client = Guid::random();
+    participant.request(client, open_request(client));
+    REQUIRE(eventually([&] { return participant.answers(client); }));
+    participant.match(client, true);
+    std::atomic<bool> left = false;
+    std::thread sender([&] {
+      for (std::uint64_t number = 1; !left; ++number)
+        participant.request(client, long_request(client, number));
+    });
+    const bool working = eventually([&] { return server.counters().active > 0; });
+    participant.match(client, false);
+    const bool gone = eventually([&] { return server.counters().clients == 0; });
+    left = true;
+    sender.join();
+    REQUIRE(working);
+    REQUIRE(gone);
+    REQUIRE(eventually([&] { return server.counters().active == 0; }));
+  }
+}
+
+TEST_CASE("of the clients that have left, the one that left longest ago is forgotten first") {
+  PlayedParticipant participant;
+  SystemClock clock;
+  ThreadExecutor control("control");
+  ThreadExecutor executor("worker");
+  const auto service = std::make_shared<rpc::Service>(
+      std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock,
+      rpc::Service::Options{});
+  rpc::DdsServer server(participant, control, clock, service, {});
+  const auto come_and_go = [&](const Guid& client) {
+    participant.request(client, open_request(client));
+    REQUIRE(eventually([&] { return participant.answers(client); }));
+    participant.match(client, true);
+    participant.match(client, false);
+    REQUIRE(eventually([&] { return server.counters().clients == 0; }));
+  };
+  Guid greatest;
+  greatest.bytes.fill(0xff);
+  Guid smallest;
+  smallest.bytes[15] = 1;
+  come_and_go(greatest);
+  for (int i = 0; i < 1024; ++i) come_and_go(Guid::random());
+  come_and_go(smallest);
+  come_and_go(Guid::random());
+  // Whoever is remembered hears, when it comes back, that its session has ended.
+  participant.match_request_writer(greatest);
+  participant.match_request_writer(smallest);
+  CHECK(eventually([&] { return participant.writers_made(smallest) == 2; }));
+  CHECK(participant.writers_made(greatest) == 1);
+}

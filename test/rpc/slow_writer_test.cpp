@@ -1,0 +1,236 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <condition_variable>
+#include <future>
+#include <mutex>
+
+#include "../connector/echo_service.hpp"
+#include "../tools/eventually.hpp"
+#include "skein/core/error.hpp"
+#include "skein/dds/loopback.hpp"
+#include "skein/introspection.idl.hpp"
+#include "skein/rpc/call_journal.hpp"
+#include "skein/rpc/dds_channel.hpp"
+#include "skein/rpc/dds_server.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::LouderEcho;
+
+namespace {
+
+/// How the writers of a SlowParticipant fare.
+class Valve {
+ public:
+  enum class Mode { Open, Holding, Full };
+
+  void set(Mode mode) {
+    std::lock_guard lock(mutex_);
+    mode_ = mode;
+    changed_.notify_all();
+  }
+
+  /// Inside write(): waits while the valve holds; throws while there is no room.
+  void pass() {
+    std::unique_lock lock(mutex_);
+    ++inside_;
+    changed_.wait(lock, [&] { return mode_ != Mode::Holding; });
+    --inside_;
+    if (mode_ == Mode::Full) {
+      ++refused_;
+      throw Overloaded("no room");
+    }
+  }
+  bool full() const {
+    std::lock_guard lock(mutex_);
+    return mode_ == Mode::Full;
+  }
+  int inside() const {
+    std::lock_guard lock(mutex_);
+    return inside_;
+  }
+  int refused() const {
+    std::lock_guard lock(mutex_);
+    return refused_;
+  }
+
+  std::atomic<int> writers{0};  // that have not been destroyed
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  Mode mode_ = Mode::Open;
+  int inside_ = 0;
+  int refused_ = 0;
+};
+
+class SlowWriter final : public dds::Writer {
+ public:
+  SlowWriter(std::unique_ptr<dds::Writer> writer, Valve& valve)
+      : writer_(std::move(writer)), valve_(valve) {
+    ++valve_.writers;
+  }
+  ~SlowWriter() override {
+    writer_.reset();
+    --valve_.writers;
+  }
+  void write(std::span<const std::byte> cdr, const dds::KeyHash& key) override {
+    valve_.pass();
+    writer_->write(cdr, key);
+  }
+  void dispose(const dds::KeyHash& key) override { writer_->dispose(key); }
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
+    return !valve_.full() && writer_->wait_for_acknowledgments(timeout);
+  }
+  Guid guid() const override { return writer_->guid(); }
+  std::vector<Guid> matched_readers() const override { return writer_->matched_readers(); }
+
+ private:
+  std::unique_ptr<dds::Writer> writer_;
+  Valve& valve_;
+};
+
+/// A participant whose writers go through a valve.
+class SlowParticipant final : public dds::Participant {
+ public:
+  explicit SlowParticipant(dds::Vendor& vendor) : participant_(vendor.create_participant({})) {}
+
+  std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
+                                             dds::WriterListener listener) override {
+    return std::make_unique<SlowWriter>(
+        participant_->create_writer(topic, qos, std::move(listener)), valve);
+  }
+  std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
+                                             dds::ReaderListener listener) override {
+    return participant_->create_reader(topic, qos, std::move(listener));
+  }
+  Guid guid() const override { return participant_->guid(); }
+
+  Valve valve;
+
+ private:
+  std::unique_ptr<dds::Participant> participant_;
+};
+
+/// A server and a client of it, each with a valve of its own.
+struct Pair {
+  Pair() {
+    rpc::DdsChannel::Options options;
+    options.peer = "the server";
+    options.timeout = 20s;
+    channel = rpc::DdsChannel::open(calling, control, continuations, clock,
+                                    {"test/LouderEcho", service->id()}, options);
+  }
+  ~Pair() {
+    serving.valve.set(Valve::Mode::Open);
+    calling.valve.set(Valve::Mode::Open);
+  }
+
+  LouderEcho::Proxy echo(Duration deadline = 10min) { return LouderEcho::Proxy(channel, deadline); }
+
+  const std::shared_ptr<SystemClock> clock = std::make_shared<SystemClock>();
+  dds::LoopbackNetwork network{*clock};
+  const std::shared_ptr<dds::Vendor> vendor = network.vendor();
+  SlowParticipant serving{*vendor};
+  SlowParticipant calling{*vendor};
+  const std::shared_ptr<ThreadExecutor> continuations =
+      std::make_shared<ThreadExecutor>("continue");
+  ThreadExecutor control{"control"};
+  ThreadExecutor executor{"echo"};
+  const std::shared_ptr<EchoService> implementation = std::make_shared<EchoService>();
+  const std::shared_ptr<rpc::Service> service =
+      std::make_shared<rpc::Service>(std::make_shared<LouderEcho::Skeleton>(implementation),
+                                     executor, *clock, rpc::Service::Options{});
+  std::unique_ptr<rpc::DdsServer> server = std::make_unique<rpc::DdsServer>(
+      serving, control, *clock, service, rpc::DdsServer::Options{});
+  std::shared_ptr<rpc::DdsChannel> channel;
+};
+
+/// Runs what must not end while a thread is inside a writer, and lets that thread go on then.
+template <class End>
+void check_that_it_waits(Valve& valve, End end) {
+  REQUIRE(eventually([&] { return valve.inside() > 0; }));
+  int left_behind = -1;
+  auto ending = std::async(std::launch::async, [&] {
+    end();
+    left_behind = valve.writers;
+  });
+  // What does not wait has ended by then; what waits is not hurt by it.
+  CHECK(ending.wait_for(200ms) == std::future_status::timeout);
+  valve.set(Valve::Mode::Open);
+  ending.get();
+  CHECK(left_behind == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a server that ends waits for who is inside one of its writers") {
+  Pair pair;
+  pair.serving.valve.set(Valve::Mode::Holding);
+  auto call = pair.echo().async_echo("x");
+  check_that_it_waits(pair.serving.valve, [&] { pair.server.reset(); });
+}
+
+TEST_CASE("a connection that ends waits for who is inside its writer") {
+  Pair pair;
+  pair.calling.valve.set(Valve::Mode::Holding);
+  auto calling =
+      std::async(std::launch::async, [&] { CHECK_THROWS_AS(pair.echo().echo("x"), Error); });
+  check_that_it_waits(pair.calling.valve, [&] { pair.channel->disconnect(); });
+}
+
+TEST_CASE("a journal that ends waits for who is inside its writer") {
+  SystemClock clock;
+  dds::LoopbackNetwork network(clock);
+  const auto vendor = network.vendor();
+  SlowParticipant participant(*vendor);
+  ThreadExecutor control("control");
+  const auto journal = rpc::CallJournal::open(participant, control, "uav-1/test");
+  const rpc::CallJournalReader reader(participant, [](const introspection::CallEvent&) {});
+  REQUIRE(eventually([&] { return journal->on(); }));
+  participant.valve.set(Valve::Mode::Holding);
+  journal->note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",
+                LouderEcho::interface_info().operations[0]);
+  check_that_it_waits(participant.valve, [&] { journal->close(); });
+}
+
+TEST_CASE("answers for which there is no room arrive once there is some, within their deadlines") {
+  Pair pair;
+  pair.serving.valve.set(Valve::Mode::Full);
+  std::vector<Call<std::string>> calls;
+  for (int i = 0; i < 50; ++i) calls.push_back(pair.echo().async_echo(std::to_string(i)));
+  auto numbers = pair.echo().count_up(5, -1);
+  REQUIRE(eventually([&] { return pair.implementation->stream_ended.load(); }));
+  REQUIRE(pair.serving.valve.refused() > 0);
+  pair.serving.valve.set(Valve::Mode::Open);
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(eventually([&] { return calls[static_cast<std::size_t>(i)].ready(); }));
+    CHECK(calls[static_cast<std::size_t>(i)].get() == std::to_string(i));
+  }
+  for (int i = 0; i < 5; ++i) CHECK(numbers.next() == i);
+  CHECK(numbers.next() == std::nullopt);
+  CHECK(pair.server->counters().lost == 0);
+  CHECK(pair.echo().echo("again") == "again");
+}
+
+TEST_CASE("an answer for which there is no room until its deadline is given up, and counted") {
+  Pair pair;
+  pair.serving.valve.set(Valve::Mode::Full);
+  CHECK_THROWS_AS(pair.echo(200ms).echo("x"), TimedOut);
+  CHECK(eventually([&] { return pair.server->counters().lost == 1; }));
+  pair.serving.valve.set(Valve::Mode::Open);
+  CHECK(pair.echo().echo("y") == "y");
+}
+
+TEST_CASE("what waits for room is bounded: a client may have half of it, and the rest is counted") {
+  Pair pair;
+  pair.serving.valve.set(Valve::Mode::Full);
+  constexpr std::size_t kSize = 16 << 20;
+  constexpr std::size_t kFit = rpc::DdsServer::kMostUnsent / 2 / kSize;
+  const std::vector<std::uint8_t> content(kSize);
+  std::vector<Call<std::vector<std::uint8_t>>> calls;
+  for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(pair.echo().async_echo_octets(content));
+  CHECK(eventually([&] { return pair.server->counters().lost == 1; }));
+  CHECK(pair.implementation->calls == kFit + 1);
+}
