@@ -40,10 +40,11 @@ enum Kind : unsigned char {
   kFirstOfVendors = 0x80,
 };
 
-/// Of each submessage, and of DATA.
+/// Of each submessage, of DATA, and of ACKNACK.
 enum Flag : unsigned char {
   kLittleEndian = 0x01,
   kInlineQos = 0x02,
+  kFinal = 0x02,
   kHasData = 0x04,
   kHasKey = 0x08,
 };
@@ -56,6 +57,11 @@ inline std::uint32_t get32(const unsigned char* at, bool little) {
   const std::uint32_t first = get16(at, little);
   const std::uint32_t second = get16(at + 2, little);
   return little ? first | second << 16 : first << 16 | second;
+}
+
+inline void put16(unsigned char* at, std::uint16_t value, bool little) {
+  at[little ? 0 : 1] = static_cast<unsigned char>(value);
+  at[little ? 1 : 0] = static_cast<unsigned char>(value >> 8);
 }
 
 inline void put32(unsigned char* at, std::uint32_t value, bool little) {
@@ -116,6 +122,13 @@ inline Guid sender(const unsigned char* message) {
   Guid result;
   std::memcpy(result.bytes.data(), message + kPrefix, kPrefixSize);
   return result;
+}
+
+/// The header of a message from a participant on Fast DDS 2.9, which writes RTPS 2.3.
+inline void put_header(unsigned char* message, const Guid& sender) {
+  constexpr unsigned char kStart[kPrefix] = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  std::memcpy(message, kStart, sizeof kStart);
+  std::memcpy(message + kPrefix, sender.bytes.data(), kPrefixSize);
 }
 
 /// A set of sequence or fragment numbers: its base, the number of its bits, and where it ends.

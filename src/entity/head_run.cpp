@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "slice.hpp"
 #include "skein/core/call_context.hpp"
 #include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
@@ -15,9 +16,6 @@ using task_run::Verdict;
 // A CSP whose connection is not open by then is passed over: it is about to leave, or was not
 // found.
 constexpr std::chrono::seconds kOpeningPatience{2};
-
-// A CSP that takes so many times as long as was expected of it hangs.
-constexpr int kHangs = 4;
 
 }  // namespace
 

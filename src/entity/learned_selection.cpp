@@ -2,6 +2,7 @@
 
 #include "selection_text.hpp"
 #include "skein/entity/selection.hpp"
+#include "slice.hpp"
 
 namespace skein {
 namespace {
@@ -13,8 +14,6 @@ using selection_text::percent;
 
 // Utilities this near to each other are taken for equal: they rest on few samples.
 constexpr double kEqual = 0.95;
-// A CSP that takes so many times as long as was expected of it hangs.
-constexpr int kHangs = 4;
 // So that reliability counts where neither declares nor measures a quality.
 constexpr double kLeastQuality = 1e-9;
 
@@ -129,7 +128,7 @@ class Choice {
   }
 
   Selection take(std::size_t best) const {
-    const Duration slice = slice_beside(best, reserve_beside(best));
+    const Duration slice = slice_beside(outlooks_[best].safe, reserve_beside(best), situation_.remaining);
     const Duration kept = situation_.remaining - slice;
     const bool keeps = kept > Duration::zero();
     std::string reason =
@@ -141,14 +140,6 @@ class Choice {
 
   static std::string runs_text(std::size_t count) {
     return count == 1 ? "like run " : std::to_string(count) + " like runs ";
-  }
-
-  // All of the time but the reserve; of plenty of time half: who has not answered by then and has
-  // had so many times its 95 % latency will hardly do so.
-  Duration slice_beside(std::size_t best, Duration reserve) const {
-    if (reserve == Duration::zero()) return situation_.remaining;
-    const Duration enough = std::max(kHangs * outlooks_[best].safe, situation_.remaining / 2);
-    return std::min(enough, situation_.remaining - reserve);
   }
 
   std::string outlook_text(std::size_t index) const {

@@ -5,6 +5,7 @@
 #include "selection_text.hpp"
 #include "skein/core/error.hpp"
 #include "skein/core/suggestion.hpp"
+#include "slice.hpp"
 
 namespace skein {
 namespace {
@@ -31,14 +32,16 @@ class DeclaredSelection final : public SelectionStrategy {
       if (!best || better(candidate, *best)) best = &candidate;
     }
     if (!best) return fastest_anyway(candidates, remaining);
-    const Duration reserve = reserve_beside(*best, candidates, remaining);
-    const bool keeps = reserve > Duration::zero();
+    const Duration slice =
+        slice_beside(latency_of(*best), reserve_beside(*best, candidates, remaining), remaining);
+    const Duration kept = remaining - slice;
+    const bool keeps = kept > Duration::zero();
     std::string reason =
         joined({best->name, " has the best declared quality (", number(best->quality),
                 ") of those whose latency fits into ", in_ms(remaining),
                 " (its own: ", in_ms(latency_of(*best)), keeps ? "); " : ")",
-                keeps ? in_ms(reserve) : "", keeps ? " are kept for a fall-back" : ""});
-    return {index_of(*best, candidates), remaining - reserve, std::move(reason), latency_of(*best)};
+                keeps ? in_ms(kept) : "", keeps ? " are kept for a fall-back" : ""});
+    return {index_of(*best, candidates), slice, std::move(reason), latency_of(*best)};
   }
 
  private:

@@ -12,7 +12,6 @@ SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
     "test/launch/shell_mission.hpp": "looks again at a condition",
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
-    "test/conformance/suite_discovery.cpp": "how far two participants have come with finding each other, which is what the tests vary",
     "test/conformance/fastdds_forgetting_test.cpp": "the age of what is requested: Fast DDS sends nothing again that it has just sent",
     "test/conformance/suite_lifetime.cpp": "the pace of a writer that never rests",
     "test/faults/churn.hpp": "how long participants and endpoints live, which is what the churn varies",

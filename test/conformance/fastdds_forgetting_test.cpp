@@ -16,6 +16,7 @@
 
 using namespace skein;
 using namespace skein::test;
+using namespace skein::test::entity_id;
 using namespace std::chrono_literals;
 
 namespace {
@@ -25,11 +26,6 @@ constexpr std::uint16_t kDiscoveryPort = 7410 + 250 * kDomain;  // RTPS 9.6.1, p
 constexpr std::uint16_t kUserPort = kDiscoveryPort + 1;
 constexpr int kLeavers = 200;
 constexpr int kRequested = 240;
-
-Guid with_entity(Guid guid, std::uint32_t entity) {
-  for (int i = 0; i < 4; ++i) guid.bytes[15 - i] = static_cast<std::uint8_t>(entity >> (8 * i));
-  return guid;
-}
 
 /// A list of parameters, with its encapsulation.
 class Parameters {
@@ -76,26 +72,28 @@ class Leaver {
     const auto payload = Parameters()
                              .add(0x15, OctetWriter().u8(2).u8(3).u16(0))
                              .add(0x16, OctetWriter().u8(1).u8(15).u16(0))
-                             .add(0x50, entity(0x1c1))
+                             .add(0x50, entity(kParticipant))
                              .add(0x32, locator)
                              .add(0x31, locator)
                              .add(0x02, OctetWriter().u32(60).u32(0))
                              .add(0x58, OctetWriter().u32(0x3f))
                              .end();
     send(kDiscoveryPort, 0x15, kHasPayload,
-         data(with_entity(guid_, 0x100c2), 1, payload, with_entity(guid_, 0x100c7)));
+         data(with_entity(guid_, kParticipantAnnouncer), 1, payload,
+              with_entity(guid_, kParticipantDetector)));
   }
 
   void announce_reader(const dds::Topic& topic) {
     const auto payload = Parameters()
                              .add(0x5a, entity(kReader))
-                             .add(0x50, entity(0x1c1))
+                             .add(0x50, entity(kParticipant))
                              .text(0x05, topic.name)
                              .text(0x07, topic.type_name)
                              .add(0x1a, OctetWriter().u32(2).u32(0).u32(0))  // reliable
                              .end();
     send(kDiscoveryPort, 0x15, kHasPayload,
-         data(with_entity(guid_, 0x4c2), 1, payload, with_entity(guid_, 0x4c7)));
+         data(with_entity(guid_, kSubscriptionsAnnouncer), 1, payload,
+              with_entity(guid_, kSubscriptionsDetector)));
   }
 
   /// Asks for kRequested samples of the writer.
@@ -107,19 +105,7 @@ class Leaver {
     send(port, 0x06, 0x02, body.u32(1));
   }
 
-  void leave() {
-    const auto qos = OctetWriter()
-                         .u16(0x70)
-                         .u16(16)
-                         .append(entity(0x1c1).octets())
-                         .u16(0x71)
-                         .u16(4)
-                         .u32(3u << 24)
-                         .u16(1)
-                         .u16(0);
-    send(kDiscoveryPort, 0x15, 0x02,
-         data(with_entity(guid_, 0x100c2), 2, qos.octets(), with_entity(guid_, 0x100c7)));
-  }
+  void leave() { send(kDiscoveryPort, farewell(guid_, 2)); }
 
   static constexpr std::uint32_t kReader = 0x104;
 
@@ -135,7 +121,10 @@ class Leaver {
     return OctetWriter().append(with_entity(guid_, id).bytes);
   }
   void send(std::uint16_t port, unsigned kind, unsigned flags, const OctetWriter& body) {
-    const Octets message = RtpsPacket(guid_).submessage(kind, flags, body).octets();
+    send(port, RtpsPacket(guid_).submessage(kind, flags, body));
+  }
+  void send(std::uint16_t port, const RtpsPacket& packet) {
+    const Octets& message = packet.octets();
     const sockaddr_in to = loopback(port);
     sendto(socket_, message.data(), message.size(), 0, reinterpret_cast<const sockaddr*>(&to),
            sizeof to);
@@ -199,7 +188,7 @@ class Stage {
 
 TEST_CASE("who leaves may just have asked again for withdrawals of endpoints") {
   Stage stage;
-  const Guid announcer = with_entity(stage.participant().guid(), 0x4c2);
+  const Guid announcer = with_entity(stage.participant().guid(), kSubscriptionsAnnouncer);
   for (int i = 0; i < kLeavers; ++i) {
     Leaver leaver(static_cast<unsigned>(i));
     stage.meet(leaver);
@@ -208,7 +197,7 @@ TEST_CASE("who leaves may just have asked again for withdrawals of endpoints") {
       stage.participant().create_reader({"topic", "Type", false}, {}, {});
     }
     stage.see_off(leaver, i,
-                  [&] { leaver.request(kDiscoveryPort, 0x4c7, announcer, i * kRequested + 1); });
+                  [&] { leaver.request(kDiscoveryPort, kSubscriptionsDetector, announcer, i * kRequested + 1); });
   }
 }
 

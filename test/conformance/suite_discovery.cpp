@@ -4,16 +4,18 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <thread>
+#include <cstring>
 
+#include "../../src/dds/rtps_message.hpp"
 #include "../tools/rtps_packet.hpp"
+#include "../tools/wire_tap.hpp"
 #include "wire.hpp"
 
 using namespace skein;
 using namespace skein::dds;
 using namespace skein::dds::conformance;
 using namespace skein::test;
-using namespace std::chrono_literals;
+using namespace skein::test::entity_id;
 
 namespace {
 
@@ -43,30 +45,43 @@ class Forger {
   const std::uint32_t first_port_;
 };
 
-Guid builtin(const Guid& participant, unsigned number, unsigned kind) {
-  Guid guid = participant;
-  guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
-  guid.bytes[14] = static_cast<std::uint8_t>(number);
-  guid.bytes[15] = static_cast<std::uint8_t>(kind);
-  return guid;
-}
-
-/// The participant's word that it has gone.
-RtpsPacket farewell(const Guid& participant) {
-  const Guid self = builtin(participant, 1, 0xc1);
-  const auto announcer = builtin(participant, 0x100, 0xc2);
-  const auto detector = builtin({}, 0x100, 0xc7);
-  OctetWriter gone = OctetWriter().u16(0).u16(16).append(entities(detector, announcer).octets());
-  gone.number(1000).u16(0x70).u16(16).append(self.bytes);
-  gone.u16(0x71).u16(4).u8(0).u8(0).u8(0).u8(3).u16(1).u16(0);
-  return RtpsPacket(participant).submessage(0x15, 0x02, gone);
-}
-
 /// The participant's word that it has written about one writer.
 RtpsPacket heartbeat_of_publications(const Guid& participant) {
-  const Guid writer = builtin(participant, 3, 0xc2);
-  return RtpsPacket(participant)
-      .submessage(0x07, 0, heartbeat(writer, 1, 1, 1, builtin({}, 3, 0xc7)));
+  const Guid writer = with_entity(participant, kPublicationsAnnouncer);
+  const Guid reader = with_entity(participant, kPublicationsDetector);
+  return RtpsPacket(participant).submessage(0x07, 0, heartbeat(writer, 1, 1, 1, reader));
+}
+
+/// Each submessage of a packet, if it is one of RTPS.
+template <class Visit>
+void for_each_submessage_of(const Packet& packet, Visit&& visit) {
+  auto octets = packet.content;
+  auto* message = reinterpret_cast<unsigned char*>(octets.data());
+  if (octets.size() < rtps_message::kHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return;
+  rtps_message::for_each_submessage(message, octets.size(), visit);
+}
+
+/// Whether the participant acknowledges that it has heard of a writer.
+bool acknowledges_a_writer(const Packet& packet, const Guid& participant) {
+  constexpr unsigned char kWriter[] = {0, 0, 3, 0xc2};  // that announces writers
+  bool found = false;
+  for_each_submessage_of(packet, [&](const rtps_message::Submessage& each) {
+    if (each.kind() != rtps_message::kAckNack || each.size < 16) return;
+    const auto* sender = packet.content.data() + rtps_message::kPrefix;
+    found |= std::memcmp(sender, participant.bytes.data(), rtps_message::kPrefixSize) == 0 &&
+             std::memcmp(each.body() + 4, kWriter, sizeof kWriter) == 0 &&
+             rtps_message::get_sequence_number(each.body() + 8, each.little()) > 1;
+  });
+  return found;
+}
+
+/// Whether it is for one participant alone.
+bool is_directed(const Packet& packet) {
+  bool found = false;
+  for_each_submessage_of(packet, [&](const rtps_message::Submessage& each) {
+    found |= each.kind() == rtps_message::kInfoDestination;
+  });
+  return found;
 }
 
 bool forgot(const Inbox& inbox) {
@@ -79,17 +94,20 @@ bool forgot(const Inbox& inbox) {
 }  // namespace
 
 TEST_CASE("who forgets a participant that has not forgotten it finds all its endpoints again") {
+  const WireTap tap;
   Wire wire;
   Outbox outbox(*wire.writing, keyed(), last_state());
   Inbox inbox(*wire.reading, keyed(), last_state());
   REQUIRE(matched(outbox, inbox));
   const Guid writing = wire.writing->guid();
-  // Input: they know each other for longer than the period of discovery's heartbeats. By then what
-  // was said is acknowledged.
-  std::this_thread::sleep_for(1200ms);
+  const Guid reading = wire.reading->guid();
+  // What was acknowledged is not sent again by itself.
+  REQUIRE(eventually([&] {
+    return tap.count([&](const Packet& each) { return acknowledges_a_writer(each, reading); }) > 0;
+  }));
   const Forger forger(wire.domain);
   REQUIRE(eventually([&] {
-    forger.send(farewell(writing));
+    forger.send(farewell(writing, 1000));
     return forgot(inbox);
   }));
   // Of all that the forgotten one may say, a heartbeat comes first.
@@ -105,11 +123,12 @@ TEST_CASE("endpoints that are made while participants find each other are found"
   constexpr int kRounds = 10;
   for (int round = 0; round < kRounds; ++round) {
     INFO("round " << round);
+    const WireTap tap;
     const std::uint32_t domain = fresh_domain();
     const auto early = make_participant(kPairing.reading, domain);
     const auto late = make_participant(kPairing.writing, domain);
-    // Input: how far they have come with finding each other, from nowhere to all the way.
-    std::this_thread::sleep_for(round * 4ms);
+    // How far they have come with finding each other, from nowhere to all the way.
+    REQUIRE(eventually([&] { return tap.count(is_directed) >= round; }));
     Inbox inbox(*early, keyed(), last_state());
     Outbox outbox(*late, keyed(), last_state());
     Inbox managed(*early, keyed("conformance_managed"), last_state());

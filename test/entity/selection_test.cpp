@@ -49,6 +49,11 @@ TEST_CASE("time for the fastest other candidate is kept in reserve where that le
   CHECK(declared(1510ms).slice == 1510ms);
 }
 
+TEST_CASE("of plenty of time half is kept in reserve: who needs more than that hangs") {
+  CHECK(declared(100s).slice == 50s);
+  CHECK(declared(8s).slice == 6s);  // four times its latency
+}
+
 TEST_CASE("equal quality is decided by latency") {
   CHECK(chosen({candidate("slow", 30ms, 0.5), candidate("fast", 10ms, 0.5)}, 1s) == "fast");
 }

@@ -66,6 +66,23 @@ class RtpsPacket {
   OctetWriter message_;
 };
 
+/// Entity ids of RTPS 9.3.1.5.
+namespace entity_id {
+inline constexpr std::uint32_t kParticipant = 0x1c1;
+inline constexpr std::uint32_t kParticipantAnnouncer = 0x100c2;
+inline constexpr std::uint32_t kParticipantDetector = 0x100c7;
+inline constexpr std::uint32_t kPublicationsAnnouncer = 0x3c2;
+inline constexpr std::uint32_t kPublicationsDetector = 0x3c7;
+inline constexpr std::uint32_t kSubscriptionsAnnouncer = 0x4c2;
+inline constexpr std::uint32_t kSubscriptionsDetector = 0x4c7;
+}  // namespace entity_id
+
+/// An endpoint of the participant to which a GUID belongs.
+inline Guid with_entity(Guid guid, std::uint32_t entity) {
+  for (int i = 0; i < 4; ++i) guid.bytes[15 - i] = static_cast<std::uint8_t>(entity >> (8 * i));
+  return guid;
+}
+
 /// The reader to which a submessage speaks, or nobody in particular, and its writer: entity ids.
 inline OctetWriter entities(const Guid& reader, const Guid& writer) {
   return OctetWriter()
@@ -115,7 +132,26 @@ inline OctetWriter data_frag(const Guid& writer, std::int64_t number, const Frag
       .zeros(payload);
 }
 
-/// For `data_frag` and `data`.
+/// Flags: the latter for `data_frag` and `data`.
+inline constexpr unsigned kHasInlineQos = 0x02;
 inline constexpr unsigned kHasPayload = 0x04;
+
+/// A participant's word that it has gone: the disposal of its announcement.
+inline RtpsPacket farewell(const Guid& participant, std::int64_t number) {
+  using namespace entity_id;
+  const OctetWriter qos = OctetWriter()
+                              .u16(0x70)  // whose
+                              .u16(16)
+                              .append(with_entity(participant, kParticipant).bytes)
+                              .u16(0x71)  // disposed and unregistered
+                              .u16(4)
+                              .u32(3u << 24)
+                              .u16(1)  // the list's end
+                              .u16(0);
+  return RtpsPacket(participant)
+      .submessage(0x15, kHasInlineQos,
+                  data(with_entity(participant, kParticipantAnnouncer), number, qos.octets(),
+                       with_entity(participant, kParticipantDetector)));
+}
 
 }  // namespace skein::test

@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -92,11 +93,17 @@ void WireTap::run() {
       const bool counts =
           from.sll_pkttype == PACKET_OUTGOING && ntohs(from.sll_protocol) == ETH_P_IP;
       if (counts && size >= static_cast<ssize_t>(kIpHeader)) {
+        std::lock_guard lock(mutex_);
         packets_.push_back(parse(buffer, static_cast<std::size_t>(size)));
       }
     }
     if (waited[1].revents != 0) return;
   }
+}
+
+int WireTap::count(const std::function<bool(const Packet&)>& such) const {
+  std::lock_guard lock(mutex_);
+  return static_cast<int>(std::ranges::count_if(packets_, such));
 }
 
 std::vector<Packet> WireTap::stop() {

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -40,6 +42,9 @@ class WireTap {
   WireTap(const WireTap&) = delete;
   WireTap& operator=(const WireTap&) = delete;
 
+  /// How many packets so far are such. Any thread.
+  int count(const std::function<bool(const Packet&)>& such) const;
+
   /// Ends the capture and returns it. Throws std::runtime_error where the kernel had to drop some.
   std::vector<Packet> stop();
 
@@ -49,6 +54,7 @@ class WireTap {
 
   int socket_ = -1;
   int wake_ = -1;
+  mutable std::mutex mutex_;
   std::vector<Packet> packets_;
   std::thread thread_;
 };

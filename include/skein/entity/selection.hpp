@@ -66,9 +66,9 @@ class SelectionStrategy {
                            const Situation& situation) const = 0;
 };
 
-/// The best declared quality whose declared latency fits into the time left, with the fastest other
-/// candidate's latency kept in reserve where that still leaves enough; the fastest where none fits.
-/// Name: `declared`.
+/// The best declared quality whose declared latency fits into the time left; the fastest where none
+/// fits. Where that still leaves enough, the fastest other candidate's latency is kept in reserve,
+/// and half of the time where the other half is four times the declared latency. Name: `declared`.
 std::shared_ptr<const SelectionStrategy> make_declared_selection();
 
 /// In the Broker's order, whatever is declared; the time left is shared evenly. Name:
@@ -77,12 +77,11 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 
 /// By what each CSP's history predicts for such a request (what it declares, until it has run): the
 /// greatest utility, reliability times quality, among those whose 95 % latency fits into the time
-/// left; of those within 5 % of it the quickest. A reserve is kept as by `declared`, and half of
-/// the time where the other half is four times that latency. Another may have a try of no more than
-/// its 95 % latency before it: one whose quality is no less, where the time suffices for both and
-/// it is expected to take less time per accepted result (Smith's rule). Within the budget for
-/// exploration the CSP that has not run for longest goes first, where the time suffices for the
-/// best one after it. Name: `learned`.
+/// left; of those within 5 % of it the quickest. A reserve is kept as by `declared`. Another may have
+/// a try of no more than its 95 % latency before it: one whose quality is no less, where the time
+/// suffices for both and it is expected to take less time per accepted result (Smith's rule).
+/// Within the budget for exploration the CSP that has not run for longest goes first, where the
+/// time suffices for the best one after it. Name: `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 
 /// The strategies that there are, by name; the three above from the start.

@@ -8,8 +8,6 @@ namespace {
 
 using namespace rtps_message;
 
-constexpr unsigned char kFinal = 0x02;
-
 /// Where an ACKNACK's set begins: behind the reader's and the writer's entity id.
 constexpr std::size_t kSet = 8;
 
@@ -24,15 +22,12 @@ void begin_anew(const Submessage& submessage, std::uint32_t count) {
   put32(body + kSet + 8, 0, little);
   put32(body + kSet + kEmptySet, count, little);
   if (submessage.size == kSize) return;
-  const auto put_size = [little](unsigned char* header, std::size_t size) {
-    header[little ? 2 : 3] = static_cast<unsigned char>(size);
-    header[little ? 3 : 2] = static_cast<unsigned char>(size >> 8);
-  };
-  put_size(submessage.header, kSize);
+  put16(submessage.header + 2, kSize, little);
   unsigned char* rest = body + kSize;
   rest[0] = kPad;
   rest[1] = little ? 1 : 0;
-  put_size(rest, submessage.size - kSize - kSubmessageHeaderSize);
+  const std::size_t padding = submessage.size - kSize - kSubmessageHeaderSize;
+  put16(rest + 2, static_cast<std::uint16_t>(padding), little);
 }
 
 }  // namespace

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 
-#include "../rtps_message.hpp"
-
 namespace skein::dds::fastdds {
 
 using namespace rtps_message;
 
-std::optional<std::int64_t> announcement_number(const unsigned char* message, std::size_t size) {
+std::optional<std::int64_t> announcement_number(const Submessage& submessage) {
   constexpr std::size_t kNumberAt = 12;
-  std::optional<std::int64_t> number;
-  auto* unchanged = const_cast<unsigned char*>(message);
-  for_each_submessage(unchanged, size, [&](const Submessage& submessage) {
-    // A farewell has inline QoS, which says that it is one.
-    if (is_announcement(submessage) && submessage.flag(kHasData) && !submessage.flag(kInlineQos)) {
-      number = get_sequence_number(submessage.body() + kNumberAt, submessage.little());
-    }
-  });
-  return number;
+  // A farewell has inline QoS, which says that it is one.
+  if (!is_announcement(submessage) || !submessage.flag(kHasData) || submessage.flag(kInlineQos)) {
+    return std::nullopt;
+  }
+  return get_sequence_number(submessage.body() + kNumberAt, submessage.little());
 }
 
 void AnnouncementPace::discovered(std::uint32_t port, Time now) {

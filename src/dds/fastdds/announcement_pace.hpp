@@ -8,11 +8,13 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "../rtps_message.hpp"
+
 namespace skein::dds::fastdds {
 
-/// The number of a participant's announcement in an RTPS message that this participant sends;
-/// nothing of other messages, and of farewells.
-std::optional<std::int64_t> announcement_number(const unsigned char* message, std::size_t size);
+/// The number of a participant's announcement that this participant sends; nothing of other
+/// submessages, and of farewells.
+std::optional<std::int64_t> announcement_number(const rtps_message::Submessage& submessage);
 
 /// Decides which announcements are sent where.
 ///

@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "../rtps_message.hpp"
-
 namespace skein::dds::fastdds {
 namespace {
 
@@ -49,7 +47,6 @@ std::optional<Guid> leaving(const Submessage& submessage, const Guid& sender) {
 unsigned char* append_acknack(unsigned char* at, const unsigned char* reader,
                               const unsigned char* writer, std::int64_t last) {
   constexpr bool kLittle = true;
-  constexpr unsigned char kFinal = 0x02;
   constexpr unsigned char kStart[] = {kAckNack, kLittleEndian | kFinal, 24, 0};
   std::memcpy(at, kStart, sizeof kStart);
   std::memcpy(at + 4, reader, kEntityIdSize);
@@ -62,28 +59,23 @@ unsigned char* append_acknack(unsigned char* at, const unsigned char* reader,
 
 }  // namespace
 
-void SentAnnouncements::note(const unsigned char* message, std::size_t size) {
-  auto* unchanged = const_cast<unsigned char*>(message);
-  for_each_submessage(unchanged, size, [this](const Submessage& submessage) {
-    // DATA: flags, place of the inline QoS, reader, writer, number. HEARTBEAT: reader, writer,
-    // first and last number.
-    const bool heartbeat = submessage.kind() == kHeartbeat;
-    if (!heartbeat && submessage.kind() != kData) return;
-    if (submessage.size < 24 - (heartbeat ? 0u : 4u)) return;
-    const unsigned char* writer = submessage.body() + (heartbeat ? 4 : 8);
-    const bool writers = is(writer, kWriterAnnouncer);
-    if (!writers && !is(writer, kReaderAnnouncer)) return;
-    const auto number = get_sequence_number(writer + (heartbeat ? 12 : 4), submessage.little());
-    raise(writers ? last_writer_ : last_reader_, number);
-  });
+void SentAnnouncements::note(const Submessage& submessage) {
+  // DATA: flags, place of the inline QoS, reader, writer, number. HEARTBEAT: reader, writer,
+  // first and last number.
+  const bool heartbeat = submessage.kind() == kHeartbeat;
+  if (!heartbeat && submessage.kind() != kData) return;
+  if (submessage.size < 24 - (heartbeat ? 0u : 4u)) return;
+  const unsigned char* writer = submessage.body() + (heartbeat ? 4 : 8);
+  const bool writers = is(writer, kWriterAnnouncer);
+  if (!writers && !is(writer, kReaderAnnouncer)) return;
+  const auto number = get_sequence_number(writer + (heartbeat ? 12 : 4), submessage.little());
+  raise(writers ? last_writer_ : last_reader_, number);
 }
 
 SentAnnouncements::Acknowledgment SentAnnouncements::acknowledged_by(
     const Guid& participant) const {
-  constexpr unsigned char kHeader[] = {'R', 'T', 'P', 'S', 2, 3, 1, 15};  // Fast DDS 2.3
   Acknowledgment message{};
-  std::memcpy(message.data(), kHeader, sizeof kHeader);
-  std::memcpy(message.data() + kPrefix, participant.bytes.data(), kPrefixSize);
+  put_header(message.data(), participant);
   unsigned char* at = message.data() + kHeaderSize;
   at = append_acknack(at, kWriterDetector, kWriterAnnouncer, last_writer_);
   append_acknack(at, kReaderDetector, kReaderAnnouncer, last_reader_);

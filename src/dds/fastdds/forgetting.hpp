@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "skein/core/guid.hpp"
+#include "../rtps_message.hpp"
 
 /// The parts of RTPS by which Fast DDS is kept from a deadlock when it forgets a participant.
 ///
@@ -29,8 +29,8 @@ namespace skein::dds::fastdds {
 /// How far the two writers that announce endpoints have come. Thread-safe.
 class SentAnnouncements {
  public:
-  /// Notes what a message announces; to be called before it is sent.
-  void note(const unsigned char* message, std::size_t size);
+  /// Notes what a submessage announces; to be called before it is sent.
+  void note(const rtps_message::Submessage& submessage);
 
   /// The message by which a participant acknowledges all that was noted.
   using Acknowledgment = std::array<unsigned char, 20 + 2 * 28>;

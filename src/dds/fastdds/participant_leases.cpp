@@ -40,7 +40,6 @@ std::optional<std::chrono::nanoseconds> announced_lease(std::int32_t seconds,
 }
 
 Farewell make_farewell(const Guid& participant) {
-  constexpr unsigned char kHeader[] = {'R', 'T', 'P', 'S', 2, 3, 1, 15};  // Fast DDS 2.3
   constexpr unsigned char kDisposal[] = {kData, kLittleEndian | kInlineQos,
                                          52,    0,  // as long as the rest
                                          0,     0,
@@ -53,23 +52,18 @@ Farewell make_farewell(const Guid& participant) {
   constexpr unsigned char kEnd[] = {0x01, 0, 0, 0};
 
   Farewell message{};
-  unsigned char* at = message.data();
+  put_header(message.data(), participant);
+  unsigned char* at = message.data() + kHeaderSize;
   const auto append = [&](const unsigned char* bytes, std::size_t size) {
     std::memcpy(at, bytes, size);
     at += size;
   };
-  const auto append_prefix = [&] {
-    std::memcpy(at, participant.bytes.data(), kPrefixSize);
-    at += kPrefixSize;
-  };
-  append(kHeader, sizeof kHeader);
-  append_prefix();
   append(kDisposal, sizeof kDisposal);
   append(kAnnouncementReader, sizeof kAnnouncementReader);
   append(kAnnouncer, sizeof kAnnouncer);
   append(kNumber, sizeof kNumber);
   append(kKey, sizeof kKey);
-  append_prefix();
+  append(participant.bytes.data(), kPrefixSize);
   append(kParticipant, sizeof kParticipant);
   append(kDisposedAndGone, sizeof kDisposedAndGone);
   append(kEnd, sizeof kEnd);

@@ -40,11 +40,12 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
     const auto now = std::chrono::steady_clock::now();
     if (!descriptor_.state->watch.may_send(now)) return true;
-    const auto number = announcement_number(message, size);
-    if (!number) {
-      descriptor_.state->discovery.sent.note(message, size);
-      return sender->send(message, size, first, last, limit);
-    }
+    std::optional<std::int64_t> number;
+    for_each_submessage(const_cast<rtps::octet*>(message), size, [&](const Submessage& submessage) {
+      if (const auto announced = announcement_number(submessage)) number = announced;
+      descriptor_.state->discovery.sent.note(submessage);
+    });
+    if (!number) return sender->send(message, size, first, last, limit);
     std::vector<rtps::Locator_t> due;
     for (; *first != *last; ++*first) {
       const rtps::Locator_t& locator = **first;
