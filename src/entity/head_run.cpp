@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "slice.hpp"
 #include "skein/core/call_context.hpp"
 #include "skein/core/call_memory.hpp"
 #include "skein/core/error.hpp"
+#include "slice.hpp"
 
 namespace skein {
 namespace {

@@ -128,7 +128,8 @@ class Choice {
   }
 
   Selection take(std::size_t best) const {
-    const Duration slice = slice_beside(outlooks_[best].safe, reserve_beside(best), situation_.remaining);
+    const Duration slice =
+        slice_beside(outlooks_[best].safe, reserve_beside(best), situation_.remaining);
     const Duration kept = situation_.remaining - slice;
     const bool keeps = kept > Duration::zero();
     std::string reason =

@@ -167,7 +167,9 @@ TEST_CASE("while a provider stays suspect, each request for all descriptions wai
           "[R17]") {
   World world;
   Peer ground(world, "ground");
-  const auto stranger = world.network.vendor()->create_participant({.lease = 10min});
+  dds::ParticipantOptions options;
+  options.lease = 10min;
+  const auto stranger = world.network.vendor()->create_participant(options);
   const auto writer = world.services_writer(*stranger);
   auto service = description(1, "A/INavigator", "stranger");
   service.provider = guid(1, stranger->guid()).bytes;

@@ -196,8 +196,9 @@ TEST_CASE("who leaves may just have asked again for withdrawals of endpoints") {
     for (int reader = 0; reader < kRequested / 2; ++reader) {
       stage.participant().create_reader({"topic", "Type", false}, {}, {});
     }
-    stage.see_off(leaver, i,
-                  [&] { leaver.request(kDiscoveryPort, kSubscriptionsDetector, announcer, i * kRequested + 1); });
+    stage.see_off(leaver, i, [&] {
+      leaver.request(kDiscoveryPort, kSubscriptionsDetector, announcer, i * kRequested + 1);
+    });
   }
 }
 

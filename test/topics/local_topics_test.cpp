@@ -9,8 +9,8 @@
 
 using namespace skein;
 using namespace std::chrono_literals;
-using skein::test::Log;
 using Catch::Contains;
+using skein::test::Log;
 using streams::Depth;
 using streams::Rudder;
 

@@ -77,9 +77,9 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 
 /// By what each CSP's history predicts for such a request (what it declares, until it has run): the
 /// greatest utility, reliability times quality, among those whose 95 % latency fits into the time
-/// left; of those within 5 % of it the quickest. A reserve is kept as by `declared`. Another may have
-/// a try of no more than its 95 % latency before it: one whose quality is no less, where the time
-/// suffices for both and it is expected to take less time per accepted result (Smith's rule).
+/// left; of those within 5 % of it the quickest. A reserve is kept as by `declared`. Another may
+/// have a try of no more than its 95 % latency before it: one whose quality is no less, where the
+/// time suffices for both and it is expected to take less time per accepted result (Smith's rule).
 /// Within the budget for exploration the CSP that has not run for longest goes first, where the
 /// time suffices for the best one after it. Name: `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
