@@ -186,7 +186,9 @@ TEST_CASE("F4: planners that lie: no wrong route is passed on, and none of them 
   stage.add("not_a_number", "not_a_number", {50, 0.98});
   stage.add("slow", "slow", {400, 0.9});
   constexpr int kRequests = 30;
+  constexpr int kLearned = 20;  // from then on; one in quarantine may be tried again now and then
   int accepted_wrong = 0;
+  int honest_first = 0;
   std::vector<Duration> took;
   PlanningStage::Answer last;
   for (int i = 0; i < kRequests; ++i) {
@@ -195,11 +197,12 @@ TEST_CASE("F4: planners that lie: no wrong route is passed on, and none of them 
     CHECK(last.outcome_of("short_cut") != "accepted");
     CHECK(last.outcome_of("not_a_number") != "accepted");
     took.push_back(last.took);
+    REQUIRE_FALSE(last.report.attempts.empty());
+    if (i >= kLearned && last.report.attempts.front().planner == "honest") ++honest_first;
   }
   CHECK(accepted_wrong == 0);
-  REQUIRE(stage.valid(last));
-  REQUIRE_FALSE(last.report.attempts.empty());
-  CHECK(last.report.attempts.front().planner == "honest");
+  CHECK(stage.valid(last));
+  CHECK(honest_first > (kRequests - kLearned) / 2);
   CHECK(last.candidate("short_cut").accepted < 0.6);
   CHECK(last.candidate("not_a_number").accepted < 0.6);
   CHECK(last.candidate("slow").median_ms >= 3 * last.candidate("slow").declared_ms);
