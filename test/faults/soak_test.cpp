@@ -31,12 +31,14 @@ constexpr int kRoundsToKill = 3;
 class Soak {
  public:
   explicit Soak(std::chrono::seconds length) : length_(length), stage_(length + kMargin) {
-    observe("the provider", stage_.add_server());
+    // The callers find the one that is going to be killed, and nobody else.
     mortal_ = &stage_.add_server();
     observe("the callers", stage_.add_clients(4));
+    stage_.connect();
+    observe("the provider", stage_.add_server());
     visitor_ = &stage_.add_clients(0);
     observe("the visitor", *visitor_);
-    stage_.connect();
+    visitor_->expect("connected", kPatient);
   }
 
   void run() {
