@@ -29,7 +29,8 @@ void check_calls(const Journal& journal, const std::string& cell,
   INFO(line);
   CHECK(strange == 0);
   CHECK(twice == 0);
-  CHECK(late == 0);
+  // A provider that is stopped just after it has looked at the deadline executes that one call.
+  CHECK(late <= 1);
   CHECK(unexecuted == 0);
   CHECK(refused_and_executed == 0);
 }
