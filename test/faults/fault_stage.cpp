@@ -123,14 +123,15 @@ void FaultStage::check_healed() {
   CHECK(eventually([&] { return nothing_left(); }));
 }
 
-void FaultStage::check(const std::string& cell, const std::set<std::string>& outcomes) {
+void FaultStage::check(const std::string& cell, const std::set<std::string>& outcomes,
+                       int most_late) {
   INFO(cell);
   check_healed();
   for (const auto& [peer, before] : threads_) {
     CHECK(eventually(
         [&, peer = peer, before = before] { return footprint_of(*peer).threads <= before; }));
   }
-  check_calls(journal_, cell, outcomes);
+  check_calls(journal_, cell, outcomes, most_late);
 }
 
 CableStage::CableStage(std::uint64_t seed, int clients)
