@@ -2,9 +2,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "installed.hpp"
 #include "mission_run.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
 
 using namespace skein::test;
 using Catch::Contains;
@@ -58,16 +57,6 @@ class Profile {
   }
   const std::filesystem::path folder_ = std::filesystem::current_path() / "hung_csp_profile";
 };
-
-bool installed(const std::string& vendor) {
-  try {
-    skein::dds::load_vendor(vendor);
-    return true;
-  } catch (const skein::Unavailable&) {
-    WARN(vendor << " skipped: it is not installed");
-    return false;
-  }
-}
 
 }  // namespace
 

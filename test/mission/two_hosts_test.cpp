@@ -8,8 +8,7 @@
 #include "../tools/network_space.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "installed.hpp"
 
 using namespace skein::test;
 using Catch::Contains;
@@ -32,16 +31,6 @@ struct TwoHosts {
   NetworkSpace alpha;
   NetworkSpace beta;
 };
-
-bool installed(const std::string& vendor) {
-  try {
-    skein::dds::load_vendor(vendor);
-    return true;
-  } catch (const skein::Unavailable&) {
-    WARN(vendor << " skipped: it is not installed");
-    return false;
-  }
-}
 
 std::string peers_on(const std::string& office_host, const std::string& client_host,
                      const std::string& office_vendor, const std::string& client_vendor) {

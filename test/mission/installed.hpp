@@ -1,0 +1,22 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "skein/core/error.hpp"
+#include "skein/dds/port.hpp"
+
+namespace skein::test {
+
+/// Whether a vendor's module can be loaded; says so where it cannot.
+inline bool installed(const std::string& vendor) {
+  try {
+    dds::load_vendor(vendor);
+    return true;
+  } catch (const Unavailable&) {
+    WARN(vendor << " skipped: it is not installed");
+    return false;
+  }
+}
+
+}  // namespace skein::test
