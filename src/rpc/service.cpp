@@ -47,6 +47,8 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clo
 }
 
 std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
+  std::lock_guard lock(owner_mutex_);
+  if (closed_) throw being_withdrawn();
   return options_.open ? options_.open(request) : nullptr;
 }
 
@@ -85,7 +87,7 @@ void Service::answer(Invocation& invocation, const void* out, std::exception_ptr
 
 void Service::enqueue(std::shared_ptr<Invocation> invocation) {
   std::lock_guard lock(queue_mutex_);  // until the invocation is there, the task finds nothing
-  if (closed_) throw Unavailable(std::string(interface_info().name) + " is being withdrawn");
+  if (closed_) throw being_withdrawn();
   if (!queue_.has_room(invocation->connection) ||
       !executor_.post([self = shared_from_this()] { self->execute_next(); })) {
     throw Overloaded("the queue of " + std::string(interface_info().name) +
@@ -144,17 +146,23 @@ void Service::refuse_too_late(const OperationInfo& operation, const Invocation& 
 // From where the chain first enters this service, back to it.
 std::string Service::circle(const std::vector<Guid>& chain) const {
   std::string text;
+  std::lock_guard lock(owner_mutex_);
   const auto first = std::find(chain.begin(), chain.end(), options_.strand);
   for (auto strand = first; strand != chain.end(); ++strand) {
-    const std::string name = options_.name_of ? options_.name_of(*strand) : std::string();
+    const bool ask = options_.name_of && !closed_;
+    const std::string name = ask ? options_.name_of(*strand) : std::string();
     text += (name.empty() ? "service " + strand->hex() : name) + " -> ";
   }
   return text + "the first again";
 }
 
+Unavailable Service::being_withdrawn() const {
+  return Unavailable(std::string(interface_info().name) + " is being withdrawn");
+}
+
 void Service::close() {
   {
-    std::lock_guard lock(mutex_);
+    std::scoped_lock lock(owner_mutex_, mutex_);
     closed_ = true;
     for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
   }
@@ -171,8 +179,7 @@ std::shared_ptr<Invocation> Service::take_next() {
 void Service::withdraw(Invocation& invocation) {
   OperationMeter::count(meter_.of(*invocation.operation).refused);
   answer(invocation, nullptr,
-         std::make_exception_ptr(
-             Unavailable(std::string(interface_info().name) + " is being withdrawn")));
+         std::make_exception_ptr(being_withdrawn()));
 }
 
 void Service::stop(Invocation& invocation) const {

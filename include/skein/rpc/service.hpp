@@ -9,6 +9,7 @@
 
 #include "skein/core/call_context.hpp"
 #include "skein/core/clock.hpp"
+#include "skein/core/error.hpp"
 #include "skein/core/executor.hpp"
 #include "skein/core/guid.hpp"
 #include "skein/core/operation.hpp"
@@ -99,7 +100,8 @@ class Service : public std::enable_shared_from_this<Service> {
   Executor& executor() const noexcept { return executor_; }
   const Clock& clock() const noexcept { return clock_; }
 
-  /// A session for a new client (nullptr where the service has no Head).
+  /// A session for a new client (nullptr where the service has no Head). Throws Unavailable once
+  /// the service is closed.
   std::shared_ptr<Session> open(const OpenRequest& request) const;
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
@@ -129,7 +131,8 @@ class Service : public std::enable_shared_from_this<Service> {
   introspection::ServiceStatistics statistics() const;
 
   /// Invocations that have not begun are refused, now and from now on; those that run are told to
-  /// stop.
+  /// stop. When it returns, Options::open and name_of are not running and will not run: whoever
+  /// they ask may go.
   void close();
 
  private:
@@ -146,6 +149,7 @@ class Service : public std::enable_shared_from_this<Service> {
   std::string circle(const std::vector<Guid>& chain) const;
   void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
   void stop(Invocation& invocation) const;
+  Unavailable being_withdrawn() const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
 
   std::shared_ptr<Servant> servant_;
@@ -153,6 +157,7 @@ class Service : public std::enable_shared_from_this<Service> {
   const Clock& clock_;
   Options options_;
   std::atomic<bool> closed_{false};
+  mutable std::mutex owner_mutex_;  // held while `open` or `name_of` runs
   ServiceMeter meter_;
   mutable std::mutex queue_mutex_;
   FairQueue queue_;

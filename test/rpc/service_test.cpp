@@ -1,0 +1,89 @@
+#include "skein/rpc/service.hpp"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "../connector/echo_service.hpp"
+#include "skein/core/error.hpp"
+
+using namespace skein;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// What a service asks, and what may go once the service is closed.
+struct Owner {
+  std::promise<void> asked;
+  std::atomic<bool> answered{false};
+
+  /// Takes long enough for a close() that does not wait to be done first.
+  void answer() {
+    asked.set_value();
+    std::this_thread::sleep_for(50ms);
+    answered = true;
+  }
+};
+
+std::shared_ptr<rpc::Service> make_service(const rpc::Service::Options& options) {
+  static ManualClock clock;
+  static ManualExecutor executor;
+  return std::make_shared<rpc::Service>(
+      std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()),
+      executor, clock, options);
+}
+
+void refuse_self_wait(const rpc::Service& service) {
+  rpc::Invocation invocation;
+  invocation.chain = {service.id()};
+  CHECK_THROWS_AS(service.refuse_self_wait(invocation), Unavailable);
+}
+
+}  // namespace
+
+TEST_CASE("close() waits for what asks the service's owner") {
+  Owner owner;
+  rpc::Service::Options options;
+  options.open = [&](const rpc::OpenRequest&) -> std::shared_ptr<Session> {
+    owner.answer();
+    return nullptr;
+  };
+  options.name_of = [&](const Guid&) {
+    owner.answer();
+    return std::string("owner");
+  };
+  const auto service = make_service(options);
+  std::function<void()> ask;
+  SECTION("for a session") {
+    ask = [&] { service->open({}); };
+  }
+  SECTION("for a name") {
+    ask = [&] { refuse_self_wait(*service); };
+  }
+  std::thread client(ask);
+  owner.asked.get_future().wait();
+  service->close();
+  CHECK(owner.answered);
+  client.join();
+}
+
+TEST_CASE("a closed service asks its owner nothing") {
+  rpc::Service::Options options;
+  options.open = [&](const rpc::OpenRequest&) -> std::shared_ptr<Session> {
+    FAIL("it was asked for a session");
+    return nullptr;
+  };
+  options.name_of = [&](const Guid&) -> std::string {
+    FAIL("it was asked for a name");
+    return "";
+  };
+  const auto service = make_service(options);
+  service->close();
+  CHECK_THROWS_AS(service->open({}), Unavailable);
+  refuse_self_wait(*service);
+}
