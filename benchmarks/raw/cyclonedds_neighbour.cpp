@@ -26,7 +26,9 @@ void cyclonedds_neighbour(const RawOptions& options) {
   participant.reader(topic, Delivery::LatestOfTheLiving, listener);
   participant.reader(participant.topic(kLoadTopic), Delivery::Latest);
   participant.writer(participant.topic(kStatisticsTopic), Delivery::BestEffort);
+  participant.writer(participant.topic(kDecisionsTopic), Delivery::BestEffort);
   participant.reader(participant.topic(kRequestTopic));
+  participant.writer(participant.topic(kReplyTopic));
   dds_delete_listener(listener);
   const dds_entity_t own = participant.writer(topic, Delivery::LatestOfTheLiving);
   dds_guid_t guid;

@@ -31,7 +31,9 @@ void fastdds_neighbour(const RawOptions& options) {
   participant.reader(kAnnouncementTopic, Delivery::LatestOfTheLiving, &listener);
   participant.reader(kLoadTopic, Delivery::Latest);
   participant.writer(kStatisticsTopic, Delivery::BestEffort);
+  participant.writer(kDecisionsTopic, Delivery::BestEffort);
   participant.reader(kRequestTopic);
+  participant.writer(kReplyTopic);
   dds::DataWriter* own = participant.writer(kAnnouncementTopic, Delivery::LatestOfTheLiving);
   const Content content(kAnnouncementBytes);
   Outgoing announcement{{}, &content};

@@ -18,6 +18,7 @@ inline constexpr std::size_t kAnnouncementBytes = 400;
 inline constexpr const char* kAnnouncementTopic = "benchmark_raw_Announcement";
 inline constexpr const char* kLoadTopic = "benchmark_raw_Load";
 inline constexpr const char* kStatisticsTopic = "benchmark_raw_Statistics";
+inline constexpr const char* kDecisionsTopic = "benchmark_raw_Decisions";
 inline constexpr const char* kCallsTopic = "benchmark_raw_Calls";
 
 /// The peers that have been heard of, oneself among them. Thread-safe.

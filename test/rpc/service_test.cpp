@@ -20,13 +20,12 @@ namespace {
 /// What a service asks, and what may go once the service is closed.
 struct Owner {
   std::promise<void> asked;
-  std::atomic<bool> answered{false};
+  std::promise<void> closed;
+  std::atomic<bool> awaited{false};
 
-  /// Takes long enough for a close() that does not wait to be done first.
   void answer() {
     asked.set_value();
-    std::this_thread::sleep_for(50ms);
-    answered = true;
+    awaited = closed.get_future().wait_for(50ms) == std::future_status::timeout;
   }
 };
 
@@ -68,8 +67,9 @@ TEST_CASE("close() waits for what asks the service's owner") {
   std::thread client(ask);
   owner.asked.get_future().wait();
   service->close();
-  CHECK(owner.answered);
+  owner.closed.set_value();
   client.join();
+  CHECK(owner.awaited);
 }
 
 TEST_CASE("a closed service asks its owner nothing") {
