@@ -11,6 +11,10 @@ std::string element(const std::string& name, const std::string& value) {
   return "<" + name + ">" + value + "</" + name + ">";
 }
 
+std::string milliseconds(std::chrono::milliseconds time) {
+  return std::to_string(time.count()) + " ms";
+}
+
 /// "best effort": a `min` would refuse to start on a stock host, which caps buffers at 208 KiB.
 constexpr const char* kSocketBuffers =
     "<SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>";
@@ -42,35 +46,40 @@ std::string discovery(const ParticipantOptions& options,
   }
   // One more than the highest index: Cyclone 0.10 reports the last one as taken after taking it.
   const auto highest = std::clamp(options.network.max_participants, 1u, kMaxParticipants);
-  return element("Discovery",
-                 element("ExternalDomainId", std::to_string(options.domain)) +
-                     element("ParticipantIndex", "auto") +
-                     element("MaxAutoParticipantIndex", std::to_string(highest)) +
-                     element("LeaseDuration", std::to_string(options.lease.count()) + " ms") +
-                     element("Peers", peers));
+  return element("Discovery", element("ExternalDomainId", std::to_string(options.domain)) +
+                                  element("ParticipantIndex", "auto") +
+                                  element("MaxAutoParticipantIndex", std::to_string(highest)) +
+                                  element("LeaseDuration", milliseconds(options.lease)) +
+                                  element("Peers", peers));
 }
 
 /// GenerateKeyhash: Fast DDS cannot tell an instance's identity otherwise.
 /// Watermarks: as much may wait for acknowledgment as the sockets hold; the default of 500 kB stops
-/// a writer in the middle of a mebibyte. HeartbeatInterval: a lost last sample is noticed, and an
-/// acknowledgment asked for, after so long. The interval doubles up to `max`; a Fast DDS reader
-/// that found this writer anew begins to count its acknowledgments at 1, and Cyclone ignores each
-/// one until the count has passed the old one. NackDelay: for so long what was asked for is not
+/// a writer in the middle of a mebibyte. NackDelay: for so long what was asked for is not
 /// asked for again. A reader that has just found its writer asks before the writer listens: with
 /// 100 ms, the default, a first request waits as long in one start of three. WriterLingerDuration:
 /// so long a writer's destruction waits for what has not been acknowledged. Who lives does so in a
 /// heartbeat or two; with 1 s, the default, whoever leaves a provider that has died for another is
 /// held up as long.
 std::string internal() {
+  const HeartbeatIntervals heartbeats = heartbeat_intervals(0);
   return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
                                  element("Watermarks", element("WhcHigh", "4 MiB") +
                                                            element("WhcHighInit", "1 MiB")) +
-                                 "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval>"
+                                 "<HeartbeatInterval max=\"" + milliseconds(heartbeats.longest) +
+                                 "\">" + milliseconds(heartbeats.first) + "</HeartbeatInterval>" +
                                  "<NackDelay>10 ms</NackDelay>"
                                  "<WriterLingerDuration>100 ms</WriterLingerDuration>");
 }
 
 }  // namespace
+
+HeartbeatIntervals heartbeat_intervals(std::size_t participants) {
+  constexpr std::chrono::milliseconds kFirst{25};
+  constexpr std::size_t kParticipants = 8;
+  const auto first = kFirst * std::max(participants, kParticipants) / kParticipants;
+  return {first, 8 * first};
+}
 
 std::string configuration(const ParticipantOptions& options) {
   const auto addresses = interface_addresses(options.network);

@@ -1,10 +1,27 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <string>
 
 #include "skein/dds/port.hpp"
 
 namespace skein::dds::cyclonedds {
+
+/// When a writer asks for the acknowledgments that are missing: after `first`, and after twice as
+/// long each time, up to `longest`.
+struct HeartbeatIntervals {
+  std::chrono::milliseconds first;
+  std::chrono::milliseconds longest;
+};
+
+/// For a participant that has found so many others. A lost last sample is noticed after `first`.
+/// After `longest` at most a Fast DDS reader that found a writer anew is heard: it begins to count
+/// its acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
+/// But each heartbeat goes to all readers, and each reader answers: of 50 participants that start
+/// at once, each with the intervals of a few, none gets around to anything else. So a writer sends
+/// about 320 heartbeats a second in all, however many they are for.
+HeartbeatIntervals heartbeat_intervals(std::size_t participants);
 
 /// Cyclone's configuration of one participant's domain, as XML. Everything that must not come from
 /// the environment is in it: a domain that is made with a configuration of its own reads no

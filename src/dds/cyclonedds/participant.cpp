@@ -3,6 +3,7 @@
 #include "../options_check.hpp"
 #include "blob.hpp"
 #include "configuration.hpp"
+#include "heartbeats.h"
 #include "identity.hpp"
 #include "log.hpp"
 #include "reader.hpp"
@@ -39,9 +40,9 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
   participant_ = Entity(
       check(dds_create_participant(id, qos.get(), nullptr), "a participant cannot be created"));
   guid_ = participant_.guid().participant();
-  ddsi_domaingv& internals = find_internals();
-  guard_ = std::make_unique<PacketGuard>(internals, options_);
-  absences_.emplace(internals);
+  internals_ = &find_internals();
+  guard_ = std::make_unique<PacketGuard>(*internals_, options_);
+  absences_.emplace(*internals_);
   watch_participants();
 }
 
@@ -87,10 +88,17 @@ void CycloneParticipant::take_presence() {
     samples[0] = nullptr;
     if (guid == guid_) continue;
     present ? absences_->found(guid) : absences_->lost(guid);
-    if (!options_.on_participant) continue;
     const bool news = present ? present_.insert(guid).second : present_.erase(guid) > 0;
-    if (news) options_.on_participant(guid, present);
+    if (!news) continue;
+    adapt_heartbeats();
+    if (options_.on_participant) options_.on_participant(guid, present);
   }
+}
+
+void CycloneParticipant::adapt_heartbeats() const {
+  const HeartbeatIntervals intervals = heartbeat_intervals(present_.size());
+  skein_set_heartbeat_intervals(internals_, std::chrono::nanoseconds(intervals.first).count(),
+                                std::chrono::nanoseconds(intervals.longest).count());
 }
 
 dds_entity_t CycloneParticipant::make_once(Entity& reader, dds_entity_t builtin_topic) {

@@ -47,12 +47,14 @@ class CycloneParticipant final : public Participant {
   dds_entity_t make_once(Entity& reader, dds_entity_t builtin_topic);
   void watch_participants();
   void take_presence();
+  void adapt_heartbeats() const;
 
   ParticipantOptions options_;
   std::unique_ptr<PacketGuard> guard_;  // outlives the domain, whose threads use it
   Entity domain_;
   Entity participant_;
   Guid guid_;
+  ddsi_domaingv* internals_ = nullptr;
   TopicTable<TopicHandle> topics_;
   std::mutex builtin_;
   Entity publications_;
