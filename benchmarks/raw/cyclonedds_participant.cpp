@@ -18,8 +18,7 @@ std::string configuration(std::uint32_t greatest_number) {
          "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
          "<Internal><SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>"
          "<Watermarks><WhcHigh>4 MiB</WhcHigh><WhcHighInit>1 MiB</WhcHighInit></Watermarks>"
-         "<HeartbeatInterval max=\"200 ms\">25 ms</HeartbeatInterval><NackDelay>10 "
-         "ms</NackDelay><WriterLingerDuration>100 "
+         "<NackDelay>10 ms</NackDelay><WriterLingerDuration>100 "
          "ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
 }
 

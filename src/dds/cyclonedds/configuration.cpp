@@ -76,7 +76,7 @@ std::string internal() {
 
 HeartbeatIntervals heartbeat_intervals(std::size_t participants) {
   constexpr std::chrono::milliseconds kFirst{25};
-  constexpr std::size_t kParticipants = 8;
+  constexpr std::size_t kParticipants = 4;
   const auto first = kFirst * std::max(participants, kParticipants) / kParticipants;
   return {first, 8 * first};
 }

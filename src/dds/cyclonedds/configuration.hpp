@@ -20,7 +20,7 @@ struct HeartbeatIntervals {
 /// its acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
 /// But each heartbeat goes to all readers, and each reader answers: of 50 participants that start
 /// at once, each with the intervals of a few, none gets around to anything else. So a writer sends
-/// about 320 heartbeats a second in all, however many they are for.
+/// about 160 heartbeats a second in all, however many they are for.
 HeartbeatIntervals heartbeat_intervals(std::size_t participants);
 
 /// Cyclone's configuration of one participant's domain, as XML. Everything that must not come from
