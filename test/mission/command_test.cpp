@@ -8,7 +8,7 @@
 
 #include "command_run.hpp"
 #include "errand.hpp"
-#include "skein/core/error.hpp"
+#include "installed.hpp"
 #include "skein/entity/decision.hpp"
 #include "skein/entity/entity.hpp"
 #include "skein/idl/type_support.hpp"
@@ -23,16 +23,6 @@ namespace {
 
 const std::string kOffice = "<peer name='office' component='office.xml'/>";
 const std::string kClient = "<peer name='client' component='client.xml' role='mission'/>";
-
-bool installed(const std::string& vendor) {
-  try {
-    dds::load_vendor(vendor);
-    return true;
-  } catch (const Unavailable&) {
-    WARN(vendor << " skipped: it is not installed");
-    return false;
-  }
-}
 
 class Desk final : public crew::Desk {
  public:
