@@ -178,8 +178,7 @@ std::shared_ptr<Invocation> Service::take_next() {
 
 void Service::withdraw(Invocation& invocation) {
   OperationMeter::count(meter_.of(*invocation.operation).refused);
-  answer(invocation, nullptr,
-         std::make_exception_ptr(being_withdrawn()));
+  answer(invocation, nullptr, std::make_exception_ptr(being_withdrawn()));
 }
 
 void Service::stop(Invocation& invocation) const {

@@ -15,12 +15,12 @@ struct HeartbeatIntervals {
   std::chrono::milliseconds longest;
 };
 
-/// For a participant that has found so many others. A lost last sample is noticed after `first`.
-/// After `longest` at most a Fast DDS reader that found a writer anew is heard: it begins to count
-/// its acknowledgments at 1, and Cyclone ignores each one until the count has passed the old one.
-/// But each heartbeat goes to all readers, and each reader answers: of 50 participants that start
-/// at once, each with the intervals of a few, none gets around to anything else. So a writer sends
-/// about 160 heartbeats a second in all, however many they are for.
+/// For a participant that has found so many others. A lost last sample is noticed after `first`. A
+/// Fast DDS reader that found a writer anew counts its acknowledgments from 1, and Cyclone ignores
+/// each one that is not above the last: the longer `longest`, the later it is heard. But each
+/// heartbeat goes to all readers, and all answer: 50 participants that start at once, with the
+/// intervals of a few, do little else. So a writer sends at most 160 heartbeats a second, to
+/// however many readers.
 HeartbeatIntervals heartbeat_intervals(std::size_t participants);
 
 /// Cyclone's configuration of one participant's domain, as XML. Everything that must not come from

@@ -80,7 +80,7 @@ Endpoints::Endpoints(TypeSupport written_type, const std::string& written_topic,
 
 Endpoints::~Endpoints() {
   // A writer that Fast DDS 2.9 deletes with samples may count holes among them without end
-  // (corrected in 2.12, pull request 4076).
+  // (corrected by its pull request 4076).
   std::size_t removed;
   writer_->clear_history(&removed);
   participant_->delete_contained_entities();
