@@ -362,6 +362,19 @@ TEST_CASE(
   CHECK(written == 1);
 }
 
+TEST_CASE("what a peer has withdrawn does not come back by its own message that arrives late",
+          "[R24]") {
+  World world;
+  Peer navigator(world, "navigator");
+  auto registration =
+      navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  const auto description = navigator.broker.all().at(0);
+  registration.withdraw();
+  const auto late = world.services_writer(*navigator.participant);
+  late->write(idl::encode_message(*description), {description->provider});
+  CHECK_FALSE(navigator.finds("A/INavigator"));
+}
+
 TEST_CASE("what found no room is asked for again when something goes", "[R26]") {
   World world;
   Peer ground(world, "ground");

@@ -17,7 +17,7 @@ TEST_CASE(
   office.add("new", place, answer_as("new"), declared("10", "0.9"));
   CHECK(office.perform(Office::task(), 10s) == "new did it");
   office.remove("new");
-  REQUIRE(eventually([&] { return !office.stands_by("new"); }));
+  REQUIRE(eventually([&] { return !office.knows("new"); }));
   CHECK(office.perform(Office::task(), 10s) == "old did it");
   CHECK(office.attempts() == Lines{"old accepted"});
 }

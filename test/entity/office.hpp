@@ -63,6 +63,9 @@ class Office {
     return false;
   }
 
+  /// Stands by, or is suspect and may stand by again.
+  bool knows(const std::string& name) const { return owner->broker().knows(ids.at(name).second); }
+
   /// A task that hands `text` to the CSP, accepts what begins with a name, and never blocks on a
   /// CSP in the process.
   static WorkTask task(const std::string& text = "it") {
