@@ -25,7 +25,12 @@ constexpr std::uint32_t kSendBuffer = 64u << 20;
 /// Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
 constexpr std::uint32_t kSharedMemory = 16u << 20;
 constexpr auto kAnnouncementPeriod = 250ms;
+/// While a sample is not acknowledged. With 3 s, the default, a late joiner on Cyclone waits that
+/// long for the past.
 constexpr auto kHeartbeatPeriod = 100ms;
+/// Of writers without a past, calls' among them: Cyclone's reader of a large sample asks for what
+/// it lacks of it when a heartbeat comes, not before.
+constexpr auto kVolatileHeartbeatPeriod = 25ms;
 constexpr auto kNackSuppression = 10ms;
 
 eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
@@ -171,8 +176,8 @@ rtps::RTPSParticipantAttributes participant_attributes(
 rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
   rtps::WriterAttributes attributes;
   fill_endpoint(attributes.endpoint, topic, qos);
-  // With 3 s, the default, a late joiner on Cyclone waits that long for the past.
-  attributes.times.heartbeatPeriod = duration(kHeartbeatPeriod);
+  attributes.times.heartbeatPeriod =
+      duration(qos.transient_local ? kHeartbeatPeriod : kVolatileHeartbeatPeriod);
   // Cyclone ignores a volatile writer until its first heartbeat.
   attributes.times.initialHeartbeatDelay = duration(0ms);
   attributes.times.nackResponseDelay = duration(0ms);
