@@ -52,6 +52,16 @@ RtpsPacket heartbeat_of_publications(const Guid& participant) {
   return RtpsPacket(participant).submessage(0x07, 0, heartbeat(writer, 1, 1, 1, reader));
 }
 
+/// The participant's word that it has heard of another's one writer.
+RtpsPacket acknowledgment_of_publications(const Guid& participant, const Guid& other,
+                                          std::uint32_t count) {
+  OctetWriter body = entities(with_entity(participant, kPublicationsDetector),
+                              with_entity(other, kPublicationsAnnouncer));
+  body.number(2).u32(0).u32(count);
+  constexpr std::uint8_t kFinal = 0x02;
+  return RtpsPacket(participant).submessage(0x06, kFinal, body);
+}
+
 /// Each submessage of a packet, if it is one of RTPS.
 template <class Visit>
 void for_each_submessage_of(const Packet& packet, Visit&& visit) {
@@ -106,6 +116,10 @@ TEST_CASE("who forgets a participant that has not forgotten it finds all its end
     return tap.count([&](const Packet& each) { return acknowledges_a_writer(each, reading); }) > 0;
   }));
   const Forger forger(wire.domain);
+  SECTION("after a short acquaintance") {}
+  SECTION("after a long one, in which it acknowledged often") {
+    forger.send(acknowledgment_of_publications(reading, writing, 1000));
+  }
   REQUIRE(eventually([&] {
     forger.send(farewell(writing, 1000));
     return forgot(inbox);

@@ -58,7 +58,7 @@ void AckNackRepair::repair_submessage(const unsigned char* sender, const Submess
   }
   const bool little = submessage.little();
   unsigned char* body = submessage.body();
-  std::uint32_t count = get32(body + set->end, little);
+  const std::uint32_t said = get32(body + set->end, little);
   Endpoints endpoints;
   std::memcpy(endpoints.data(), sender, kPrefixSize);
   std::memcpy(endpoints.data() + kPrefixSize, body, kSet);
@@ -66,14 +66,15 @@ void AckNackRepair::repair_submessage(const unsigned char* sender, const Submess
   std::lock_guard lock(mutex_);
   if (progress_.size() > kMany) progress_.clear();
   Progress& progress = progress_[endpoints];
-  const bool restarted = cyclone && count == 0;
-  const bool first = restarted && set->bits == 0 && set->base == 1;
-  if (restarted) progress.offset = progress.count + 1;
-  if (cyclone) put32(body + set->end, count += progress.offset, little);
-  if (count <= progress.count) return;  // an old one, which Fast DDS passes over
+  const bool first_of_cyclone = cyclone && said == 0;
   const bool forgot = set->base < progress.base;
-  progress.count = count;
-  progress.base = set->base;
+  const bool restarted = forgot && set->base <= 1 && said <= progress.said;
+  if (first_of_cyclone || restarted) progress.offset = progress.count + 1;
+  const std::uint32_t count = said + progress.offset;
+  put32(body + set->end, count, little);
+  if (count <= progress.count) return;  // an old one, which Fast DDS passes over
+  const bool first = first_of_cyclone && set->bits == 0 && set->base == 1;
+  progress = {progress.offset, said, count, set->base};
   if (first || (forgot && set->base > 0)) begin_anew(submessage, count);
 }
 

@@ -21,8 +21,13 @@ namespace skein::dds::fastdds {
 ///
 /// The count of Cyclone's first ACKNACK is 0, which Fast DDS takes for an old one: discovery would
 /// then wait a second for the next heartbeat. So Cyclone's counts are raised by one, and the first
-/// ACKNACK is given the form above, too. A Cyclone participant that had forgotten this one begins
-/// at 0 again, and would be ignored for good: so the counts go on where they were.
+/// ACKNACK is given the form above, too.
+///
+/// A reader that begins anew counts anew, and would be ignored until it has counted as far as
+/// before: on both vendors that is one ACKNACK for each heartbeat, and no heartbeat comes while all
+/// seems acknowledged. So the counts go on where they were. Whether or not its first ACKNACK was
+/// lost, a reader that has begun anew is known by this: it lacks the first sample, which it had
+/// acknowledged, and has counted less far.
 ///
 /// Who wakes from a stop beyond its lease may still acknowledge from memory, to a Fast DDS that has
 /// just found it anew, and forget in the next moment. So a Cyclone participant that has just come
@@ -42,8 +47,9 @@ class AckNackRepair {
     std::size_t operator()(const Endpoints& endpoints) const noexcept;
   };
   struct Progress {
-    std::uint32_t offset = 1;  // of Cyclone's counts
-    std::uint32_t count = 0;   // the last, as handed on
+    std::uint32_t offset = 0;  // what the reader's counts are raised by
+    std::uint32_t said = 0;    // the last count, as the reader said it
+    std::uint32_t count = 0;   // and as handed on
     std::int64_t base = 0;     // what is below is acknowledged
   };
 
