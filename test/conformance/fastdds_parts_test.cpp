@@ -3,11 +3,13 @@
 
 #include "../../src/dds/fastdds/acknack_repair.hpp"
 #include "../../src/dds/fastdds/announcement_pace.hpp"
+#include "../../src/dds/fastdds/events.hpp"
 #include "../../src/dds/fastdds/forgetting.hpp"
 #include "../../src/dds/fastdds/participant_leases.hpp"
 #include "../../src/dds/fastdds/received_payloads.hpp"
 #include "../../src/dds/fastdds/signs_of_life.hpp"
 #include "../../src/dds/fastdds/wake_watch.hpp"
+#include "../tools/eventually.hpp"
 #include "../tools/rtps_packet.hpp"
 
 using namespace skein;
@@ -396,4 +398,17 @@ TEST_CASE("a payload has room for Fast DDS's list of fragments, whatever their s
       CHECK(payloads.take(change).capacity() >= end);
     }
   }
+}
+
+TEST_CASE("events are told although each tick takes longer than the time to the next one") {
+  std::atomic<int> ticks{0};
+  std::atomic<int> told{0};
+  EventThread thread([&] {
+    const int before = ticks++;
+    test::eventually([&] { return told > before; }, 10ms);
+  });
+  thread.tick_every(1ms);
+  REQUIRE(test::eventually([&] { return ticks > 0; }));
+  for (int i = 0; i < 10; ++i) thread.post([&] { ++told; });
+  CHECK(test::eventually([&] { return told == 10; }));
 }

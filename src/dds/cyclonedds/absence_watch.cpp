@@ -77,11 +77,32 @@ nanoseconds AbsenceWatch::check(nanoseconds forgiven) {
     if (left > 0ns) {
       next = std::min(next, left);
     } else {
-      const ddsi_guid_t guid = participant_guid(participant);
-      skein_give_up(&domain_, &guid);
+      give_up(participant);
     }
   }
   return std::max<nanoseconds>(next, 1ms);
+}
+
+void AbsenceWatch::give_up(const Guid& participant) {
+  constexpr auto kPatience = 10s;
+  const ddsi_guid_t guid = participant_guid(participant);
+  GivenUp given_up{{}, Clock::now() + kPatience};
+  skein_give_up(
+      &domain_, &guid,
+      [](void* endpoints, const ddsi_guid_t* endpoint) {
+        static_cast<std::vector<ddsi_guid_t>*>(endpoints)->push_back(*endpoint);
+      },
+      &given_up.endpoints);
+  given_up_[participant] = std::move(given_up);
+}
+
+void AbsenceWatch::delete_left_over() {
+  for (const auto& [participant, given_up] : given_up_) {
+    for (const ddsi_guid_t& endpoint : given_up.endpoints)
+      skein_delete_left_over(&domain_, &endpoint);
+  }
+  const auto now = Clock::now();
+  std::erase_if(given_up_, [&](const auto& each) { return each.second.until < now; });
 }
 
 void AbsenceWatch::run() {
@@ -90,6 +111,7 @@ void AbsenceWatch::run() {
   while (!stopping_) {
     lock.unlock();
     const nanoseconds sleep = check(kForgiveness * late);
+    delete_left_over();
     const auto due = Clock::now() + sleep;
     lock.lock();
     changed_.wait_until(lock, due, [this] { return stopping_; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dds/dds.h>
+#include <dds/ddsi/ddsi_guid.h>
 
 #include <atomic>
 #include <chrono>
@@ -8,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "skein/core/guid.hpp"
 
@@ -35,7 +37,15 @@ class AbsenceWatch {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// Endpoints of a participant that was given up; some may be left over for a while.
+  struct GivenUp {
+    std::vector<ddsi_guid_t> endpoints;
+    Clock::time_point until;
+  };
+
   void run();
+  void give_up(const Guid& participant);
+  void delete_left_over();
   std::chrono::nanoseconds silence_of(const Guid& participant);
   /// When the next one may be due.
   std::chrono::nanoseconds check(std::chrono::nanoseconds forgiven);
@@ -45,6 +55,7 @@ class AbsenceWatch {
   std::condition_variable changed_;
   bool stopping_ = false;
   std::map<Guid, std::chrono::nanoseconds> leases_;
+  std::map<Guid, GivenUp> given_up_;  // the thread's
   std::thread thread_;
 };
 

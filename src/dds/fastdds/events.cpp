@@ -53,16 +53,17 @@ void EventThread::run() {
       changed_.wait(lock, due);
     }
     if (stopping_) return;
-    std::function<void()> event;
+    // In turn: on a busy machine a tick may be due again as soon as one ends, and the events too
+    // must get on.
     if (const auto now = std::chrono::steady_clock::now(); now >= next_tick()) {
       last_tick_ = now;
-      event = tick_;
-    } else if (!events_.empty()) {
-      event = std::move(events_.front());
-      events_.pop_front();
-    } else {
-      continue;
+      lock.unlock();
+      tick_();
+      lock.lock();
     }
+    if (stopping_ || events_.empty()) continue;
+    auto event = std::move(events_.front());
+    events_.pop_front();
     lock.unlock();
     event();
     event = nullptr;
