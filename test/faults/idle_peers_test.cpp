@@ -20,14 +20,17 @@ struct Idle {
 // RTPS 9.3.1.2: the kind of an application's writer without a key, in the last octet of its GUID.
 constexpr std::uint8_t kKeylessWriter = 0x03;
 
-/// DATA and DATA_FRAG submessages of calls to these ports. Calls travel on topics without a key;
-/// services' descriptions and loads, which go to everybody, on topics with one.
-std::size_t data_to(const Idle& idle, const std::vector<Packet>& packets) {
+/// DATA and DATA_FRAG submessages of calls to these ports in which `text` stands. Calls travel on
+/// topics without a key; services' descriptions and loads, which go to everybody, on topics with
+/// one.
+std::size_t data_to(const Idle& idle, const std::vector<Packet>& packets,
+                    std::string_view text = "") {
   std::size_t count = 0;
   for (const Packet& packet : packets) {
     if (!idle.ports.contains(packet.destination_port)) continue;
     for (const DataSubmessage& data : user_data(packet)) {
-      count += data.writer.bytes.back() == kKeylessWriter ? 1 : 0;
+      const bool is_call = data.writer.bytes.back() == kKeylessWriter;
+      count += is_call && data.payload.find(text) != std::string_view::npos ? 1 : 0;
     }
   }
   return count;
@@ -69,10 +72,10 @@ struct Neighbours {
     return idle;
   }
 
-  void work() {
-    busy_client->send("echo 100 hello");
+  void work(const std::string& text) {
+    busy_client->send("echo 100 " + text);
     busy_client->expect("echoed", 60s);
-    busy_client->send("octets 200000 hello");
+    busy_client->send("octets 200000 " + text);
     busy_client->expect("echoed", 60s);
   }
 
@@ -96,14 +99,16 @@ TEST_CASE(
   for (const Idle& server : Neighbours::ports(neighbours.idle_servers, "idle provider"))
     all.push_back(server);
 
+  // Only that is theirs: what an idle client was told when it connected may be told once more.
+  const std::string said = "said-between-two";
   WireTap tap;
-  neighbours.work();
+  neighbours.work(said);
   const auto packets = tap.stop();
-  CHECK(data_to(busy, packets) > 100);
+  CHECK(data_to(busy, packets, said) > 100);
   for (const Idle& idle : all) {
     INFO(idle.name);
     CHECK(idle.ports.size() >= 2);
-    CHECK(data_to(idle, packets) == 0);
+    CHECK(data_to(idle, packets, said) == 0);
   }
 }
 
