@@ -21,6 +21,9 @@ inline constexpr std::size_t kSubmessageHeaderSize = 4;
 inline constexpr unsigned char kAnnouncer[] = {0x00, 0x01, 0x00, 0xc2};
 inline constexpr unsigned char kAnnouncementReader[] = {0x00, 0x01, 0x00, 0xc7};
 
+/// The entity id of the writer that says that its participant's writers live.
+inline constexpr unsigned char kLivelinessWriter[] = {0x00, 0x02, 0x00, 0xc2};
+
 /// Ids of parameters.
 inline constexpr std::uint16_t kSentinel = 0x0001;
 inline constexpr std::uint16_t kParticipantLease = 0x0002;
@@ -162,6 +165,24 @@ inline bool is_announcement(const Submessage& submessage) {
   constexpr std::size_t kWriter = 8;
   return submessage.kind() == kData &&
          std::memcmp(submessage.body() + kWriter, kAnnouncer, sizeof kAnnouncer) == 0;
+}
+
+/// Whether a submessage that the guard has passed comes from a participant's liveliness writer.
+inline bool is_of_liveliness_writer(const Submessage& submessage) {
+  std::size_t writer = 0;
+  switch (submessage.kind()) {
+    case kHeartbeat:
+    case kGap:
+      writer = 4;
+      break;
+    case kData:
+    case kDataFrag:
+      writer = 8;
+      break;
+    default:
+      return false;
+  }
+  return std::memcmp(submessage.body() + writer, kLivelinessWriter, sizeof kLivelinessWriter) == 0;
 }
 
 /// What a DATA_FRAG submessage says beside that.

@@ -67,7 +67,8 @@ void fill_common(EndpointQos& endpoint, const Qos& qos) {
   for (const std::string& name : qos.partitions) endpoint.m_partition.push_back(name.c_str());
   if (qos.liveliness_lease) {
     endpoint.m_liveliness.lease_duration = duration(*qos.liveliness_lease);
-    endpoint.m_liveliness.announcement_period = duration(*qos.liveliness_lease * 2 / 5);
+    // Never by Fast DDS itself (liveliness.hpp).
+    endpoint.m_liveliness.announcement_period = eprosima::fastrtps::c_TimeInfinite;
   }
   if (qos.deadline) endpoint.m_deadline.period = duration(*qos.deadline);
   if (qos.exclusive) endpoint.m_ownership.kind = policies::EXCLUSIVE_OWNERSHIP_QOS;
@@ -189,7 +190,6 @@ rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
       rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
   if (qos.liveliness_lease) {
     attributes.liveliness_lease_duration = duration(*qos.liveliness_lease);
-    attributes.liveliness_announcement_period = duration(*qos.liveliness_lease * 2 / 5);
   }
   return attributes;
 }

@@ -9,6 +9,7 @@
 #include "../options_check.hpp"
 #include "attributes.hpp"
 #include "identity.hpp"
+#include "liveliness.hpp"
 #include "participant_leases.hpp"
 #include "reader.hpp"
 #include "skein/core/error.hpp"
@@ -40,6 +41,7 @@ FastParticipant::FastParticipant(const ParticipantOptions& options)
     throw_no_participant(options);
   }
   guid_ = to_guid(participant_->getGuid()).participant();
+  transport_->state->discovery.opened(discovery_mutex(*participant_));
   transport_->state->open = true;
 }
 
@@ -49,6 +51,10 @@ FastParticipant::~FastParticipant() {
 }
 
 void FastParticipant::end() {
+  {
+    std::lock_guard lock(asserting_);
+    assertion_period_.reset();
+  }
   transport_->state->discovery.close();
   rtps::RTPSDomain::removeRTPSParticipant(participant_);
 }
@@ -119,7 +125,25 @@ void FastParticipant::watch_liveliness(std::weak_ptr<EndpointEvents> reader,
   watch_each(lease);
 }
 
+void FastParticipant::assert_liveliness_for(std::chrono::nanoseconds lease) {
+  const auto period = lease * 2 / 5;
+  {
+    std::lock_guard lock(asserting_);
+    assertion_period_ = std::min(assertion_period_.value_or(period), period);
+  }
+  events_.tick_every(period / 4);
+}
+
+void FastParticipant::assert_liveliness_if_due() {
+  const auto now = std::chrono::steady_clock::now();
+  std::lock_guard lock(asserting_);
+  if (!assertion_period_ || now - last_assertion_ < *assertion_period_) return;
+  last_assertion_ = now;
+  assert_liveliness(*participant_);
+}
+
 void FastParticipant::tick() {
+  assert_liveliness_if_due();
   check_leases();
   check_liveliness();
 }

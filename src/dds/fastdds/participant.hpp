@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "../topic_table.hpp"
@@ -43,6 +44,8 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
 
   /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
   void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);
+  /// Tells others, often enough for `lease`, that this participant's writers live.
+  void assert_liveliness_for(std::chrono::nanoseconds lease);
   SignsOfLife& signs() noexcept { return transport_->state->signs; }
   Endpoints& endpoints() noexcept { return endpoints_; }
   void acquire_topic(const Topic& topic);
@@ -59,6 +62,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void follow(const Guid& participant, std::optional<std::chrono::nanoseconds> lease);
   void watch_each(std::chrono::nanoseconds lease);
   void tick();
+  void assert_liveliness_if_due();
   void check_leases();
   void check_liveliness();
   void forget_all();
@@ -78,6 +82,9 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   std::vector<Watched> watched_;
   /// How often leases are looked at; the shortest needed so far.
   std::chrono::nanoseconds watch_period_{std::chrono::seconds(1)};
+  std::mutex asserting_;  // held while an assertion is sent
+  std::optional<std::chrono::nanoseconds> assertion_period_;
+  std::chrono::steady_clock::time_point last_assertion_;
   EventThread events_;
   rtps::RTPSParticipant* participant_ = nullptr;
   Guid guid_;

@@ -27,6 +27,10 @@ class DiscoveryInput {
  public:
   using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
 
+  /// Fast DDS's own lock is taken before it receives what somebody's writers live by
+  /// (liveliness.hpp). Before this call nobody knows the participant, and no such message is read.
+  void opened(std::recursive_mutex& lock_of_discovery);
+
   /// An announcement comes in here.
   void announced_at(Receiver* receiver) { receiver_.store(receiver, std::memory_order_relaxed); }
 
@@ -48,7 +52,8 @@ class DiscoveryInput {
 
   std::atomic<Receiver*> receiver_{nullptr};
   std::mutex mutex_;
-  bool closed_ = false;  // under mutex_
+  std::recursive_mutex* vendors_ = nullptr;  // under mutex_
+  bool closed_ = false;                      // under mutex_
 };
 
 /// A transport before Fast DDS's UDP that guards its parser, repairs what is received, notes who is

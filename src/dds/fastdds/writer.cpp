@@ -58,6 +58,7 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
   }
   participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
                                                   writer_qos(qos));
+  if (qos.liveliness_lease) participant_.assert_liveliness_for(*qos.liveliness_lease);
 }
 
 FastWriter::~FastWriter() {
