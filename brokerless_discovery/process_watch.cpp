@@ -52,6 +52,7 @@ struct ProcessWatch::State {
     std::uint64_t id = 0;
     FileDescriptor socket;
     bool greeted = false;
+    bool second = false;  // whether the first connection ended without a greeting
     std::map<const void*, Action> actions;
   };
 
@@ -244,10 +245,23 @@ struct ProcessWatch::State {
       control(EPOLL_CTL_MOD, other.socket, other.id, EPOLLRDHUP);
     }
     if ((events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) == 0) return;
-    // Who was not greeted may have been turned away, or the process ended before it greeted.
-    if (other.greeted || connect_to(local_socket(), position->first) == Connected::Nobody) {
-      for (auto& [watcher, action] : other.actions) ended.push_back(std::move(action));
+    if (!other.greeted) {
+      // The process turned this connection away, or is ending, and closed it before its listener.
+      // Then nobody takes the next one, which ends with the listener.
+      FileDescriptor socket = local_socket();
+      const Connected connected = connect_to(socket, position->first);
+      if (connected == Connected::Yes && !other.second &&
+          control(EPOLL_CTL_ADD, socket, other.id, EPOLLIN | EPOLLRDHUP)) {
+        other.socket = std::move(socket);
+        other.second = true;
+        return;
+      }
+      if (connected != Connected::Nobody) {
+        drop(position);
+        return;
+      }
     }
+    for (auto& [watcher, action] : other.actions) ended.push_back(std::move(action));
     drop(position);
   }
 

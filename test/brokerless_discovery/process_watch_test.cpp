@@ -242,8 +242,23 @@ TEST_CASE("who is turned away does not take it for the process's end", "[R27]") 
   std::atomic<int> ended = 0;
   watch.watch(door.address, kWatcher, [&] { ++ended; });
   { const FileDescriptor turned_away = door.let_in(); }
+  { const FileDescriptor turned_away_again = door.let_in(); }
   CHECK(eventually([&] { return watch.counters().watched == 0; }));
   CHECK(ended == 0);
+}
+
+TEST_CASE("who was let in by a process that ends before it greets hears of the end", "[R27]") {
+  auto door = std::make_unique<Doorman>();
+  ProcessWatch watch;
+  std::atomic<int> ended = 0;
+  watch.watch(door->address, kWatcher, [&] { ++ended; });
+  // The kernel closes an ending process's connections and listener in any order.
+  { const FileDescriptor closed_first = door->let_in(); }
+  pollfd look{door->socket.get(), POLLIN, 0};
+  REQUIRE(eventually([&] { return poll(&look, 1, 0) == 1; }));
+  CHECK(ended == 0);
+  door.reset();
+  CHECK(eventually([&] { return ended == 1; }));
 }
 
 TEST_CASE("who was not let in yet hears of the process's end, too", "[R27]") {
