@@ -57,13 +57,20 @@ bool is_user_endpoint(std::byte kind) { return (kind & std::byte{0xC0}) == std::
 }  // namespace
 
 WireTap::WireTap()
-    : socket_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, htons(ETH_P_ALL))),
+    : socket_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)),
       wake_(eventfd(0, EFD_CLOEXEC)) {
   if (socket_ < 0) {
     std::fprintf(stderr, "skipped: packets may not be captured here\n");
     std::_Exit(77);
   }
   setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &kRoom, sizeof kRoom);
+  // Only now: what comes before there is room would be lost.
+  sockaddr_ll all{};
+  all.sll_family = AF_PACKET;
+  all.sll_protocol = htons(ETH_P_ALL);
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&all), sizeof all) != 0) {
+    throw std::runtime_error(std::string("packets cannot be captured: ") + std::strerror(errno));
+  }
   thread_ = std::thread([this] { run(); });
 }
 
@@ -111,7 +118,14 @@ std::vector<Packet> WireTap::stop() {
   tpacket_stats statistics{};
   socklen_t length = sizeof statistics;
   getsockopt(socket_, SOL_PACKET, PACKET_STATISTICS, &statistics, &length);
-  if (statistics.tp_drops > 0) throw std::runtime_error("the capture is not complete");
+  if (statistics.tp_drops > 0) {
+    int room = 0;
+    socklen_t room_size = sizeof room;
+    getsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &room, &room_size);
+    throw std::runtime_error("the capture is not complete: " + std::to_string(statistics.tp_drops) +
+                             " packets lost beside " + std::to_string(packets_.size()) +
+                             " written down, with room for " + std::to_string(room) + " bytes");
+  }
   return std::move(packets_);
 }
 
