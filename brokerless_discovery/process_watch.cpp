@@ -14,6 +14,7 @@
 #include <mutex>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "abstract_socket.hpp"
@@ -210,22 +211,31 @@ struct ProcessWatch::State {
     }
     if (watched.size() >= kMostWatched) return;
     Watched other;
-    other.socket = local_socket();
-    const Connected connected = connect_to(other.socket, address);
+    const Connected connected = join(other, address);
     if (connected == Connected::Nobody) {
       lock.unlock();
       action();
     }
     if (connected != Connected::Yes) return;
-    const auto owner = other_end(other.socket);
-    other.id = ++last_id;
-    if (!owner || owner->uid != geteuid() ||
-        !control(EPOLL_CTL_ADD, other.socket, other.id, EPOLLIN | EPOLLRDHUP)) {
-      return;
-    }
     other.actions.emplace(watcher, std::move(action));
-    watched_addresses.emplace(other.id, address);
     watched.emplace(address, std::move(other));
+  }
+
+  /// Unknown, too, where another user listens.
+  Connected join(Watched& other, const std::string& address) {
+    FileDescriptor socket = local_socket();
+    const Connected connected = connect_to(socket, address);
+    if (connected != Connected::Yes) return connected;
+    const auto owner = other_end(socket);
+    const std::uint64_t id = ++last_id;
+    if (!owner || owner->uid != geteuid() ||
+        !control(EPOLL_CTL_ADD, socket, id, EPOLLIN | EPOLLRDHUP)) {
+      return Connected::Unknown;
+    }
+    other.id = id;
+    other.socket = std::move(socket);
+    watched_addresses.emplace(id, address);
+    return Connected::Yes;
   }
 
   bool is_own(const std::string& address) const {
@@ -245,28 +255,31 @@ struct ProcessWatch::State {
       control(EPOLL_CTL_MOD, other.socket, other.id, EPOLLRDHUP);
     }
     if ((events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) == 0) return;
+    leave(other);
     if (!other.greeted) {
       // The process turned this connection away, or is ending, and closed it before its listener.
       // Then nobody takes the next one, which ends with the listener.
-      FileDescriptor socket = local_socket();
-      const Connected connected = connect_to(socket, position->first);
-      if (connected == Connected::Yes && !other.second &&
-          control(EPOLL_CTL_ADD, socket, other.id, EPOLLIN | EPOLLRDHUP)) {
-        other.socket = std::move(socket);
-        other.second = true;
-        return;
-      }
-      if (connected != Connected::Nobody) {
-        drop(position);
+      const bool first = !std::exchange(other.second, true);
+      const Connected again =
+          first ? join(other, position->first) : connect_to(local_socket(), position->first);
+      if (first && again == Connected::Yes) return;
+      if (again != Connected::Nobody) {
+        watched.erase(position);
         return;
       }
     }
     for (auto& [watcher, action] : other.actions) ended.push_back(std::move(action));
-    drop(position);
+    watched.erase(position);
+  }
+
+  /// A copy of the descriptor, in a child, must not tell of it for ever.
+  void leave(const Watched& other) {
+    control(EPOLL_CTL_DEL, other.socket, other.id, 0);
+    watched_addresses.erase(other.id);
   }
 
   Position drop(Position position) {
-    watched_addresses.erase(position->second.id);
+    leave(position->second);
     return watched.erase(position);
   }
 

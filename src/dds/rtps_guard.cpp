@@ -62,6 +62,8 @@ const char* describe(RtpsGuard::Refusal why) {
       return "its sample in fragments is too large, or one too many";
     case RtpsGuard::Refusal::Parameters:
       return "its discovery parameters reach beyond it";
+    case RtpsGuard::Refusal::Lease:
+      return "it announces a participant without its lease (PID_PARTICIPANT_LEASE_DURATION)";
   }
   return "";
 }
@@ -192,6 +194,9 @@ RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const uns
                           ? check_liveliness(found->payload, found->payload_size)
                           : check_discovery(found->payload, found->payload_size);
     if (!good) return Refusal::Parameters;
+    if (service == Builtin::Participants && !names_lease(found->payload, found->payload_size)) {
+      return Refusal::Lease;
+    }
   }
   return announce(prefix, found->writer, found->number, now) ? kGood : Verdict(Refusal::Leap);
 }

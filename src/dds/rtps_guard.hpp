@@ -28,8 +28,9 @@ class RtpsGuard {
     Fragment,    ///< A fragment that contradicts others of its sample, or is too small.
     Room,        ///< A sample in fragments that is too large, or one too many.
     Parameters,  ///< Discovery whose parameters do not lie within it.
+    Lease,       ///< A participant that does not say when it counts as gone.
   };
-  static constexpr std::size_t kRefusals = 7;
+  static constexpr std::size_t kRefusals = 8;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.

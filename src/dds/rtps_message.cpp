@@ -178,6 +178,15 @@ bool check_discovery(unsigned char* payload, std::size_t size) {
   return for_each_parameter_of(payload, size, check_parameter).has_value();
 }
 
+bool names_lease(unsigned char* payload, std::size_t size) {
+  bool found = false;
+  for_each_parameter_of(payload, size, [&](const Parameter& parameter) {
+    found |= parameter.id == kParticipantLease;
+    return true;
+  });
+  return found;
+}
+
 bool check_liveliness(const unsigned char* payload, std::size_t size) {
   constexpr std::size_t kBeforeData = 4 + kPrefixSize + 4;  // encapsulation, participant, kind
   // Fast DDS calls it a list of parameters (2, 3), which it is not.

@@ -240,6 +240,10 @@ std::optional<std::size_t> for_each_parameter_of(unsigned char* payload, std::si
 /// little care (descriptions of types, shared memory, security's tokens) is made padding.
 bool check_discovery(unsigned char* payload, std::size_t size);
 
+/// Whether a payload of participant discovery that is good says for how long its participant lives
+/// on unheard. Without it Fast DDS reads a lease of 0 s instead of RTPS's default.
+bool names_lease(unsigned char* payload, std::size_t size);
+
 /// The payload of a participant's message of liveliness.
 bool check_liveliness(const unsigned char* payload, std::size_t size);
 

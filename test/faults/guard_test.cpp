@@ -54,6 +54,14 @@ struct Stage {
 
 const Guid kWriter = writer_of(1);
 const Octets kPayload{0, 1, 0, 0, 1, 2, 3, 4};
+/// A list of parameters, without its end: a lease of 60 s.
+const Octets kListWithLease{0, 3, 0, 0, 0x02, 0, 8, 0, 60, 0, 0, 0, 0, 0, 0, 0};
+
+Guid announcer_of_participants() {
+  Guid announcer = writer_of(0, 0xc2);
+  announcer.bytes[13] = 0x01;  // 0x000100c2
+  return announcer;
+}
 
 RtpsPacket from(const Guid& sender, unsigned kind, unsigned flags, const OctetWriter& body,
                 int claimed = -1) {
@@ -296,10 +304,9 @@ TEST_CASE("submessages of security, of replies to elsewhere and in another's nam
 
 TEST_CASE("discovery's parameters, texts and lists lie within it") {
   Stage stage;
-  Guid announcer = writer_of(0, 0xc2);
-  announcer.bytes[13] = 0x01;  // 0x000100c2: participants
+  const Guid announcer = announcer_of_participants();
   const auto announcement = [&](const OctetWriter& parameters) {
-    const auto payload = OctetWriter().u8(0).u8(3).u16(0).append(parameters.octets());
+    const auto payload = OctetWriter().append(kListWithLease).append(parameters.octets());
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload.octets()));
   };
   const auto parameter = [](unsigned id, const OctetWriter& value) {
@@ -342,11 +349,24 @@ TEST_CASE("discovery's parameters, texts and lists lie within it") {
       Refusal::Unused));
 }
 
+TEST_CASE("a participant says when it counts as gone") {
+  Stage stage;
+  const Guid announcer = announcer_of_participants();
+  const auto announcement = [&](const Octets& payload) {
+    return from(announcer, kData, kHasPayload, data(announcer, 1, payload));
+  };
+  const Octets sentinel{0x01, 0, 0, 0};
+  CHECK(stage.passes(announcement(OctetWriter().append(kListWithLease).append(sentinel).octets())));
+  CHECK(stage.refuses(announcement({0, 3, 0, 0, 0x01, 0, 0, 0}), Refusal::Lease));
+  const auto half = OctetWriter().u32(0x300).u16(0x02).u16(4).u32(60).append(sentinel);
+  CHECK(stage.refuses(announcement(half.octets()), Refusal::Parameters));
+}
+
 TEST_CASE("the guard says whether it passed an announcement of a participant, and an ACKNACK") {
   Stage stage;
-  Guid announcer = writer_of(0, 0xc2);
-  announcer.bytes[13] = 0x01;
-  const Octets parameters{0, 3, 0, 0, 0x01, 0, 0, 0};
+  const Guid announcer = announcer_of_participants();
+  const Octets parameters =
+      OctetWriter().append(kListWithLease).append(Octets{0x01, 0, 0, 0}).octets();
   const auto acknack = entities({}, kWriter).number(1).u32(0).u32(7);
   const auto pass = [&](const RtpsPacket& packet) {
     Octets message = packet.octets();

@@ -111,8 +111,9 @@ class Reader;
 
 /// Called on the vendor's threads; on_data also inside write(), where writer and reader are of one
 /// participant (Cyclone DDS) or on loopback: hold no lock there that it takes. Listeners must
-/// return soon, must not write, create or destroy entities. Taking samples is allowed. Calls of one
-/// listener function do not overlap. Matches and data come in no promised order.
+/// return soon (others take the participant for dead while one keeps its thread for long), must not
+/// write, create or destroy entities, nor wait for who does. Taking samples is allowed. Calls of
+/// one listener function do not overlap. Matches and data come in no promised order.
 struct ReaderListener {
   /// There are new samples; take all: it is not called again for those that were left.
   std::function<void(Reader&)> on_data;

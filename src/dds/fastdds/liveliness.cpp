@@ -49,7 +49,7 @@ void assert_liveliness(rtps::RTPSParticipant& participant) {
   std::memcpy(payload + sizeof kEncapsulation, &key.value[0], 16);
   change->serializedPayload.length = kSize;
   if (history.getHistorySize() > 0) history.remove_min_change();
-  history.add_change(change);
+  if (!history.add_change(change)) writer.release_change(change);
 }
 
 std::recursive_mutex& discovery_mutex(rtps::RTPSParticipant& participant) {

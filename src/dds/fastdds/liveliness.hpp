@@ -10,11 +10,10 @@ class RTPSParticipant;
 
 namespace skein::dds::fastdds {
 
-// Fast DDS 2.9.1 may lock itself up where its liveliness protocol is at work: whoever forgets a
-// writer holds the lock of discovery and waits for the timer thread; the timer thread waits for
-// that lock, to assert liveliness, or for the lock of the protocol's reader, whose holder waits for
-// the lock of discovery. So the timer thread asserts nothing, and the lock of discovery is taken
-// first.
+// Fast DDS 2.9.1 may lock itself up where its liveliness protocol is at work. Who forgets a writer
+// may hold the lock of discovery and wait for the timer thread. The timer thread waits for that
+// lock, to assert liveliness, or for the lock of the protocol's reader, whose holder waits for the
+// lock of discovery. So the timer thread asserts nothing, and the lock of discovery is taken first.
 
 /// Says, as Fast DDS's timer would, that all of a participant's writers live (RTPS 8.4.13). Not on
 /// a thread that Fast DDS calls.

@@ -18,6 +18,8 @@
 namespace skein::dds::fastdds {
 namespace {
 
+constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
+
 [[noreturn]] void throw_no_participant(const ParticipantOptions& options) {
   throw Unavailable("no participant in domain " + std::to_string(options.domain) +
                     ": Fast DDS found no free port; end other participants or use another domain");
@@ -107,8 +109,7 @@ void FastParticipant::follow(const Guid& participant,
 /// Often enough to see in time that `lease` ran out.
 void FastParticipant::watch_each(std::chrono::nanoseconds lease) {
   constexpr int kChecksInALease = 20;
-  constexpr std::chrono::nanoseconds kShortest = std::chrono::milliseconds(2);
-  const auto period = std::max(lease / kChecksInALease, kShortest);
+  const auto period = std::max(lease / kChecksInALease, kShortestTick);
   {
     std::lock_guard lock(mutex_);
     watch_period_ = std::min(watch_period_, period);
@@ -131,7 +132,7 @@ void FastParticipant::assert_liveliness_for(std::chrono::nanoseconds lease) {
     std::lock_guard lock(asserting_);
     assertion_period_ = std::min(assertion_period_.value_or(period), period);
   }
-  events_.tick_every(period / 4);
+  events_.tick_every(std::max(period / 4, kShortestTick));
 }
 
 void FastParticipant::assert_liveliness_if_due() {

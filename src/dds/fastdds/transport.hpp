@@ -28,7 +28,8 @@ class DiscoveryInput {
   using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
 
   /// Fast DDS's own lock is taken before it receives what somebody's writers live by
-  /// (liveliness.hpp). Before this call nobody knows the participant, and no such message is read.
+  /// (liveliness.hpp). Before this call the participant has sent nothing, so that hardly anybody
+  /// sends it such a message, and it has no writer to forget.
   void opened(std::recursive_mutex& lock_of_discovery);
 
   /// An announcement comes in here.
