@@ -13,6 +13,8 @@ namespace {
 
 // How long an opened client may take to match its reply reader before it is forgotten.
 constexpr std::chrono::seconds kOpenPatience{10};
+constexpr std::chrono::milliseconds kFirstReminder{20};
+constexpr std::chrono::milliseconds kLastReminder{2000};
 // How many clients beyond its share are told so: of each peer, and in all.
 constexpr std::size_t kRefusedOfPeer = 16;
 constexpr std::size_t kRefused = 128;
@@ -144,6 +146,25 @@ void DdsServer::State::dismiss(const RequestId& id) {
   client->refusal = std::make_exception_ptr(
       Disconnected("the session has ended, as the client was not heard of for its lease"));
   admit(id, client);
+  remind(id.client, client, kFirstReminder);
+}
+
+// A reader that has found a writer only just may miss what that writes, and who waits for a call's
+// end asks for nothing again.
+void DdsServer::State::remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
+                              std::chrono::milliseconds after) {
+  if (after > kLastReminder) return;
+  clock.call_after(after, [state = weak_from_this(), key, dismissed, after] {
+    const auto self = state.lock();
+    if (!self) return;
+    self->control.post_or_run([state, key, dismissed, after] {
+      const auto self = state.lock();
+      const auto client = dismissed.lock();
+      if (!self || !client || !self->is_current(key, client)) return;
+      self->answer_open(key);
+      self->remind(key, dismissed, 2 * after);
+    });
+  });
 }
 
 void DdsServer::State::admit(const RequestId& id, const std::shared_ptr<Client>& client) {

@@ -133,6 +133,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   bool is_current(const Guid& key, const std::shared_ptr<Client>& client) const;
   bool is_known(const Guid& key, const std::shared_ptr<Client>& client) const;
   void on_request_writer(const Guid& key, bool matched);
+  void remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
+              std::chrono::milliseconds after);
   void drop_unless_matched(const Guid& key);
   void drop(const Guid& key);
   void send_unsent(const std::shared_ptr<Client>& client);

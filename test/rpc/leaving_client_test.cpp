@@ -24,7 +24,7 @@ class PlayedParticipant final : public dds::Participant {
     std::lock_guard lock(mutex_);
     writers_[qos.partitions.front()] = std::move(listener);
     ++writers_made_[qos.partitions.front()];
-    return std::make_unique<DeafWriter>();
+    return std::make_unique<CountingWriter>(written_[qos.partitions.front()]);
   }
   std::unique_ptr<dds::Reader> create_reader(const dds::Topic&, const dds::Qos&,
                                              dds::ReaderListener listener) override {
@@ -48,6 +48,12 @@ class PlayedParticipant final : public dds::Participant {
     const auto found = writers_made_.find(client.hex());
     return found == writers_made_.end() ? 0 : found->second;
   }
+  /// How many replies were written to its client.
+  int written(const Guid& client) const {
+    std::lock_guard lock(mutex_);
+    const auto found = written_.find(client.hex());
+    return found == written_.end() ? 0 : found->second.load();
+  }
   void match_request_writer(const Guid& client) const { reader_.on_matched(client, true); }
   void match(const Guid& client, bool matched) const {
     std::unique_lock lock(mutex_);
@@ -57,12 +63,14 @@ class PlayedParticipant final : public dds::Participant {
   }
 
  private:
-  struct DeafWriter final : dds::Writer {
-    void write(std::span<const std::byte>, const dds::KeyHash&) override {}
+  struct CountingWriter final : dds::Writer {
+    explicit CountingWriter(std::atomic<int>& count) : count_(count) {}
+    void write(std::span<const std::byte>, const dds::KeyHash&) override { ++count_; }
     void dispose(const dds::KeyHash&) override {}
     bool wait_for_acknowledgments(std::chrono::milliseconds) override { return true; }
     Guid guid() const override { return {}; }
     std::vector<Guid> matched_readers() const override { return {}; }
+    std::atomic<int>& count_;
   };
   struct OneSample final : dds::Reader {
     std::size_t take(const std::function<void(const dds::Sample&)>& consumer,
@@ -81,6 +89,7 @@ class PlayedParticipant final : public dds::Participant {
   mutable std::mutex mutex_;
   std::map<std::string, dds::WriterListener> writers_;
   std::map<std::string, int> writers_made_;
+  std::map<std::string, std::atomic<int>> written_;
   dds::ReaderListener reader_;
 };
 
@@ -142,6 +151,33 @@ TEST_CASE("a request that comes at the moment in which its client leaves keeps n
     REQUIRE(gone);
     REQUIRE(eventually([&] { return server.counters().active == 0; }));
   }
+}
+
+TEST_CASE(
+    "who comes back to a session that has ended is told so again and again, as it may miss it") {
+  PlayedParticipant participant;
+  SystemClock clock;
+  ThreadExecutor control("control");
+  ThreadExecutor executor("worker");
+  const auto service = std::make_shared<rpc::Service>(
+      std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock,
+      rpc::Service::Options{});
+  rpc::DdsServer server(participant, control, clock, service, {});
+  const Guid client = Guid::random();
+  participant.request(client, open_request(client));
+  REQUIRE(eventually([&] { return participant.answers(client); }));
+  participant.match(client, true);
+  participant.match(client, false);
+  REQUIRE(eventually([&] { return server.counters().clients == 0; }));
+
+  participant.match_request_writer(client);
+  REQUIRE(eventually([&] { return participant.writers_made(client) == 2; }));
+  const int before = participant.written(client);
+  participant.match(client, true);
+  CHECK(eventually([&] { return participant.written(client) >= before + 4; }));
+
+  participant.match(client, false);
+  CHECK(eventually([&] { return server.counters().clients == 0; }));
 }
 
 TEST_CASE("of the clients that have left, the one that left longest ago is forgotten first") {
