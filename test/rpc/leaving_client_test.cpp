@@ -119,6 +119,21 @@ Bytes long_request(const Guid& client, std::uint64_t number) {
   throw std::logic_error("the interface has no operation 'wait'");
 }
 
+/// An echo service for clients that the test plays.
+struct Provider {
+  PlayedParticipant participant;
+  SystemClock clock;
+  ThreadExecutor control{"control"};
+  ThreadExecutor executor{"worker"};
+  rpc::DdsServer server{participant,
+                        control,
+                        clock,
+                        std::make_shared<rpc::Service>(
+                            std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()),
+                            executor, clock, rpc::Service::Options{}),
+                        {}};
+};
+
 }  // namespace
 
 TEST_CASE("a request that comes at the moment in which its client leaves keeps nobody busy") {
@@ -155,14 +170,9 @@ TEST_CASE("a request that comes at the moment in which its client leaves keeps n
 
 TEST_CASE(
     "who comes back to a session that has ended is told so again and again, as it may miss it") {
-  PlayedParticipant participant;
-  SystemClock clock;
-  ThreadExecutor control("control");
-  ThreadExecutor executor("worker");
-  const auto service = std::make_shared<rpc::Service>(
-      std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock,
-      rpc::Service::Options{});
-  rpc::DdsServer server(participant, control, clock, service, {});
+  Provider provider;
+  PlayedParticipant& participant = provider.participant;
+  rpc::DdsServer& server = provider.server;
   const Guid client = Guid::random();
   participant.request(client, open_request(client));
   REQUIRE(eventually([&] { return participant.answers(client); }));
@@ -181,14 +191,9 @@ TEST_CASE(
 }
 
 TEST_CASE("of the clients that have left, the one that left longest ago is forgotten first") {
-  PlayedParticipant participant;
-  SystemClock clock;
-  ThreadExecutor control("control");
-  ThreadExecutor executor("worker");
-  const auto service = std::make_shared<rpc::Service>(
-      std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock,
-      rpc::Service::Options{});
-  rpc::DdsServer server(participant, control, clock, service, {});
+  Provider provider;
+  PlayedParticipant& participant = provider.participant;
+  rpc::DdsServer& server = provider.server;
   const auto come_and_go = [&](const Guid& client) {
     participant.request(client, open_request(client));
     REQUIRE(eventually([&] { return participant.answers(client); }));
