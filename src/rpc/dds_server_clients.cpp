@@ -63,7 +63,9 @@ void DdsServer::State::admit_next() {
       return;
     }
   }
-  if (next->opens) {
+  if (next->left) {
+    // Whatever it asked for, a session would be nobody's.
+  } else if (next->opens) {
     open(*next);
   } else {
     dismiss(next->id);
@@ -178,7 +180,11 @@ void DdsServer::State::admit(const RequestId& id, const std::shared_ptr<Client>&
   answer_open(id.client);
   const TimerId patience =
       clock.call_after(kOpenPatience, [state = weak_from_this(), key = id.client] {
-        if (const auto self = state.lock()) self->drop_unless_matched(key);
+        const auto self = state.lock();
+        if (!self) return;
+        self->control.post_or_run([state, key] {
+          if (const auto self = state.lock()) self->drop_unless_matched(key);
+        });
       });
   std::lock_guard lock(mutex);
   client->patience = patience;
@@ -262,20 +268,22 @@ bool DdsServer::State::is_known(const Guid& key, const std::shared_ptr<Client>& 
   return found != clients.end() && found->second == client;
 }
 
-// A client that comes back after it was forgotten may not know that it was, and may wait for an
-// answer to what was lost meanwhile.
+// A client that leaves before it is admitted takes no session with it. One that comes back after it
+// was forgotten may not know that it was, and may wait for an answer to what was lost meanwhile.
 void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
   {
     std::lock_guard lock(mutex);
-    if (!matched) {
+    if (matched) {
+      if (!forgotten.erase(key)) return;
+    } else {
+      newcomers.note_left(key);
       if (clients.contains(key)) forgotten.insert(key);
-      return;
     }
-    if (!forgotten.erase(key)) return;
   }
-  control.post_or_run([state = weak_from_this(), key] {
+  control.post_or_run([state = weak_from_this(), key, matched] {
     const auto self = state.lock();
     if (!self) return;
+    if (!matched) return self->drop_unless_matched(key);
     self->drop(key);
     self->dismiss({key, 0});
   });
@@ -287,9 +295,7 @@ void DdsServer::State::drop_unless_matched(const Guid& key) {
     const auto found = clients.find(key);
     if (found == clients.end() || found->second->matched) return;
   }
-  control.post_or_run([state = weak_from_this(), key] {
-    if (const auto self = state.lock()) self->drop(key);
-  });
+  drop(key);
 }
 
 // The client has gone: its session ends, and nobody waits for its calls any more.

@@ -16,6 +16,7 @@ struct Newcomer {
   bool opens = false;  ///< Otherwise it called without a session.
   std::string strategy{};
   TransitDelay transit{};
+  bool left = false;  ///< Meanwhile.
 };
 
 /// The clients that wait for that. Peers (participants) take turns, and each has but so much room,
@@ -28,6 +29,9 @@ class Newcomers {
   /// False where there is no room. Who waits already is not put in again.
   bool push(Newcomer newcomer);
 
+  /// Who waits no longer; it keeps its place, and is marked.
+  void note_left(const Guid& client);
+
   std::optional<Newcomer> pop();
 
   bool empty() const noexcept { return peers_.empty(); }
@@ -37,6 +41,9 @@ class Newcomers {
     Guid participant;
     std::deque<Newcomer> line{};  // never empty
   };
+
+  Peer* peer_of(const Guid& client);
+  static Newcomer* find(Peer& peer, const Guid& client);
 
   Turns<Peer> peers_;
   std::size_t size_ = 0;

@@ -1,5 +1,6 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <future>
 #include <map>
 #include <thread>
 
@@ -54,7 +55,9 @@ class PlayedParticipant final : public dds::Participant {
     const auto found = written_.find(client.hex());
     return found == written_.end() ? 0 : found->second.load();
   }
-  void match_request_writer(const Guid& client) const { reader_.on_matched(client, true); }
+  void match_request_writer(const Guid& client, bool matched = true) const {
+    reader_.on_matched(client, matched);
+  }
   void match(const Guid& client, bool matched) const {
     std::unique_lock lock(mutex_);
     const auto told = writers_.at(client.hex()).on_matched;
@@ -166,6 +169,35 @@ TEST_CASE("a request that comes at the moment in which its client leaves keeps n
     REQUIRE(gone);
     REQUIRE(eventually([&] { return server.counters().active == 0; }));
   }
+}
+
+TEST_CASE("a client that leaves before it is admitted takes no session with it") {
+  Provider provider;
+  PlayedParticipant& participant = provider.participant;
+  rpc::DdsServer& server = provider.server;
+  std::promise<void> idle;
+  REQUIRE(provider.control.post([until = idle.get_future().share()] { until.wait(); }));
+  const Guid client = Guid::random();
+  participant.request(client, open_request(client));
+  participant.match_request_writer(client, false);
+  const Guid next = Guid::random();
+  participant.request(next, open_request(next));
+  idle.set_value();
+  REQUIRE(eventually([&] { return participant.answers(next); }));
+  CHECK_FALSE(participant.answers(client));
+  CHECK(server.counters().clients == 1);
+}
+
+TEST_CASE("a client that leaves before its reader was found keeps no session for long") {
+  Provider provider;
+  PlayedParticipant& participant = provider.participant;
+  const Guid client = Guid::random();
+  participant.request(client, open_request(client));
+  REQUIRE(eventually([&] { return participant.answers(client); }));
+  REQUIRE(provider.server.counters().clients == 1);
+  participant.match_request_writer(client, false);
+  // Half as long as it would be waited for otherwise.
+  CHECK(eventually([&] { return provider.server.counters().clients == 0; }, 5s));
 }
 
 TEST_CASE(

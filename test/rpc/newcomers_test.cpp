@@ -44,6 +44,21 @@ TEST_CASE("a client that asks again before its turn waits once, and opens if it 
   CHECK_FALSE(newcomers.pop());
 }
 
+TEST_CASE("a client that left keeps its place, and is as new if it comes back") {
+  Newcomers newcomers;
+  CHECK(newcomers.push(client(0, 0, true)));
+  CHECK(newcomers.push(client(0, 1, true)));
+  newcomers.note_left(client(0, 0).id.client);
+  newcomers.note_left(client(0, 1).id.client);
+  newcomers.note_left(client(0, 2).id.client);
+  CHECK(newcomers.push(client(0, 1, false)));
+  CHECK(newcomers.pop()->left);
+  const auto back = newcomers.pop();
+  CHECK_FALSE(back->left);
+  CHECK_FALSE(back->opens);
+  CHECK_FALSE(newcomers.pop());
+}
+
 TEST_CASE("a peer with thousands of clients has its room, and others have theirs") {
   Newcomers newcomers;
   std::size_t taken = 0;
