@@ -56,6 +56,7 @@ class GroundStation {
   skein::navigation::HeightGrid ground_;
   NavigatorLink navigator_;
   AE_flightControllerI::FlightLimits limits_;
+  std::chrono::milliseconds hurry_{};
   std::vector<skein::navigation::PicturedRoute> routes_;
   std::vector<AE_navigator::MissileSite> missiles_;  // found on the way
   std::vector<std::string> failures_;
