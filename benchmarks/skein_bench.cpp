@@ -16,7 +16,7 @@
 #include "report/goals.hpp"
 #include "report/report.hpp"
 #include "report/sections.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

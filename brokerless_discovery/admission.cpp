@@ -1,16 +1,16 @@
-#include "skein/brokerless_discovery/admission.hpp"
+#include "brokerless_discovery/admission.hpp"
 
 #include <algorithm>
 #include <string_view>
 
-#include "skein/brokerless_discovery/process_watch.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 #include "skein/discovery.idl.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
-constexpr std::size_t kMostName = 256;
-constexpr std::size_t kMostValue = 4096;
+constexpr std::size_t kMaxName = 256;
+constexpr std::size_t kMaxValue = 4096;
 
 // Control characters reach people's terminals. Those that UTF-8 writes with two bytes count, too.
 bool is_control(std::string_view text, std::size_t place) {
@@ -32,7 +32,7 @@ void check_count(const char* what, std::size_t count, std::size_t most) {
                                         ", more than " + std::to_string(most));
 }
 
-void check_text(const char* what, const std::string& text, std::size_t most = kMostName) {
+void check_text(const char* what, const std::string& text, std::size_t most = kMaxName) {
   if (text.size() > most) {
     throw Refused(Refusal::Oversized, std::string(what) + " has " + std::to_string(text.size()) +
                                           " characters, more than " + std::to_string(most));
@@ -72,10 +72,10 @@ void check_description(const discovery::ServiceDescription& description, const G
       !ProcessWatch::is_address_of(participant, description.process)) {
     throw Refused(Refusal::Forged, "the process that it names is another participant's");
   }
-  check_count("bases", description.bases.size(), kMostBases);
-  check_count("operations", description.operations.size(), kMostOperations);
-  check_count("subcomponents", description.subcomponents.size(), kMostBases);
-  check_count("attributes", description.attributes.size(), kMostAttributes);
+  check_count("bases", description.bases.size(), kMaxBases);
+  check_count("operations", description.operations.size(), kMaxOperations);
+  check_count("subcomponents", description.subcomponents.size(), kMaxBases);
+  check_count("attributes", description.attributes.size(), kMaxAttributes);
   check_name("its system", description.system);
   check_name("its entity", description.entity);
   check_owner(description.owner);
@@ -85,11 +85,11 @@ void check_description(const discovery::ServiceDescription& description, const G
   for (const auto& operation : description.operations) check_text("an operation", operation.name);
   for (const auto& attribute : description.attributes) {
     check_text("an attribute's name", attribute.name);
-    check_text("an attribute's value", attribute.value, kMostValue);
+    check_text("an attribute's value", attribute.value, kMaxValue);
   }
   check_text("its host", description.host);
   check_text("its vendor", description.vendor);
-  check_count("characters of XML", description.component.size(), kMostDescriptionBytes);
+  check_count("characters of XML", description.component.size(), kMaxDescriptionBytes);
   if (has_control(description.component, "\t\r\n")) {
     throw Refused(Refusal::Malformed, "its XML holds control characters");
   }

@@ -1,11 +1,12 @@
-#include "skein/brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/broker.hpp"
 
 #include <unistd.h>
 
 #include "broker_state.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/sole_owner.hpp"
-#include "skein/idl/codec.hpp"
+#include "core/clock_wait.hpp"
+#include "core/sole_owner.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -21,10 +22,10 @@ void check_own(const ServiceDescription& description, const Guid& participant) {
   try {
     check_description(description, participant);
     const std::size_t size = idl::encode_message(description).size();
-    if (size <= kMostDescriptionBytes) return;
+    if (size <= kMaxDescriptionBytes) return;
     throw Refused(Refusal::Oversized, "it would have " + std::to_string(size) +
                                           " bytes, more than " +
-                                          std::to_string(kMostDescriptionBytes));
+                                          std::to_string(kMaxDescriptionBytes));
   } catch (const Refused& refusal) {
     throw InvalidArgument("the service " + description.service + " of " + description.entity +
                           " cannot be described to others: " + refusal.what());
@@ -152,32 +153,14 @@ Table::Found Broker::find_service(const Query& query) const {
 
 Table::Found Broker::await_service(const Query& query, Instant deadline) const {
   std::unique_lock lock(state_->mutex);
-  bool late = false;
-  const TimerId timer = state_->clock.call_at(deadline, [state = state_, &late] {
-    std::lock_guard lock(state->mutex);
-    late = true;
-    state->changed.notify_all();
-  });
   Table::Found found;
-  std::string reason;
-  try {
-    state_->changed.wait(lock, [&] {
-      found = state_->table.find(query);
-      return late || state_->leaving || !found.empty() || state_->clock.now() >= deadline;
-    });
-    if (found.empty()) {
-      reason = state_->leaving ? "the entity that looked for it has ended"
-                               : state_->table.explain(query);
-    }
-  } catch (...) {
-    lock.unlock();
-    state_->clock.cancel(timer);
-    throw;
-  }
-  lock.unlock();
-  state_->clock.cancel(timer);
-  if (found.empty()) throw Unavailable(reason);
-  return found;
+  wait_until(state_->clock, deadline, lock, state_->changed, [&] {
+    found = state_->table.find(query);
+    return state_->leaving || !found.empty();
+  });
+  if (!found.empty()) return found;
+  throw Unavailable(state_->leaving ? "the entity that looked for it has ended"
+                                    : state_->table.explain(query));
 }
 
 void Broker::end_waits() {

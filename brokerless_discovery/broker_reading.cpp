@@ -1,13 +1,13 @@
 #include "broker_state.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
-#include "skein/idl/codec.hpp"
+#include "core/log.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
 // How many samples may wait while the reader is being made; later each is taken as it comes.
-constexpr std::uint32_t kMostWaiting = 4 * Room::kEntriesOfAll;
+constexpr std::uint32_t kMaxWaiting = 4 * Room::kEntriesOfAll;
 
 }  // namespace
 
@@ -44,10 +44,10 @@ ServiceDescription Broker::State::read(const dds::Sample& sample) {
   if (!speaks_for(sample.writer, sample.key)) {
     throw Refused(Refusal::Forged, "its provider is another participant's");
   }
-  if (sample.cdr.size() > kMostDescriptionBytes) {
+  if (sample.cdr.size() > kMaxDescriptionBytes) {
     throw Refused(Refusal::Oversized, "it has " + std::to_string(sample.cdr.size()) +
                                           " bytes, more than " +
-                                          std::to_string(kMostDescriptionBytes));
+                                          std::to_string(kMaxDescriptionBytes));
   }
   auto description = idl::decode_message<ServiceDescription>(sample.cdr);
   if (sample.key.bytes != description.provider) {
@@ -113,7 +113,7 @@ std::unique_ptr<dds::Reader> Broker::State::make_reader() {
   // of the provider's own.
   dds::Qos qos = description_qos({"", owner_partition(asker)}, options.lease);
   qos.history_depth = std::nullopt;
-  qos.max_waiting = kMostWaiting;
+  qos.max_waiting = kMaxWaiting;
   return participant.create_reader(topic(), qos, std::move(listener));
 }
 

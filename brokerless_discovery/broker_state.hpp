@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
+#include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 #include "renewals.hpp"
-#include "skein/brokerless_discovery/broker.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
 #include "skein/discovery.idl.hpp"
 
 namespace skein::brokerless_discovery {

@@ -1,7 +1,7 @@
 #include "broker_state.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
-#include "skein/idl/codec.hpp"
+#include "core/log.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 
@@ -80,7 +80,8 @@ void Broker::State::arm() {
   tick_timer = clock.call_after(options.lease / 4, [state = weak_from_this()] {
     const auto self = state.lock();
     if (!self) return;
-    self->control.post([state] {
+    // One at a time, and to be lost never: whoever ticks sets the next.
+    self->control.post_or_run([state] {
       if (const auto self = state.lock()) self->tick();
     });
   });

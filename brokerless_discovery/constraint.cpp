@@ -1,4 +1,4 @@
-#include "skein/brokerless_discovery/constraint.hpp"
+#include "skein/constraint.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "skein/core/error.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

@@ -1,4 +1,4 @@
-#include "skein/brokerless_discovery/kill_process.hpp"
+#include "brokerless_discovery/kill_process.hpp"
 
 #include <sys/syscall.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "abstract_socket.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

@@ -1,15 +1,15 @@
-#include "skein/brokerless_discovery/load_board.hpp"
+#include "brokerless_discovery/load_board.hpp"
 
 #include <atomic>
 #include <map>
 #include <mutex>
 
-#include "skein/brokerless_discovery/admission.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
-#include "skein/core/sole_owner.hpp"
+#include "brokerless_discovery/admission.hpp"
+#include "core/log.hpp"
+#include "core/sole_owner.hpp"
+#include "skein/detail/codec.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/idl/codec.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

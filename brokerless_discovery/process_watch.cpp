@@ -1,4 +1,4 @@
-#include "skein/brokerless_discovery/process_watch.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 
 #include <pthread.h>
 #include <sys/epoll.h>
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "abstract_socket.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -166,9 +166,9 @@ struct ProcessWatch::State {
 
   bool greet(FileDescriptor socket) {
     const auto owner = other_end(socket);
-    if (!owner || owner->uid != geteuid() || watchers.size() >= kMostWatchers) return false;
+    if (!owner || owner->uid != geteuid() || watchers.size() >= kMaxWatchers) return false;
     std::size_t& of_one = watchers_of[owner->pid];
-    if (of_one >= kMostWatchersOfOne) return false;
+    if (of_one >= kMaxWatchersOfOne) return false;
     const std::uint64_t id = ++last_id;
     if (!control(EPOLL_CTL_ADD, socket, id, EPOLLRDHUP) ||
         send(socket.get(), "!", 1, MSG_NOSIGNAL) != 1) {
@@ -209,7 +209,7 @@ struct ProcessWatch::State {
       found->second.actions.try_emplace(watcher, std::move(action));
       return;
     }
-    if (watched.size() >= kMostWatched) return;
+    if (watched.size() >= kMaxWatched) return;
     Watched other;
     const Connected connected = join(other, address);
     if (connected == Connected::Nobody) {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "../src/core/recent_set.hpp"
-#include "skein/core/clock.hpp"
-#include "skein/core/guid.hpp"
+#include "skein/clock.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::brokerless_discovery {
 

@@ -1,12 +1,12 @@
-#include "skein/brokerless_discovery/table.hpp"
+#include "brokerless_discovery/table.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/interface_name.hpp"
+#include "core/suggestion.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -120,7 +120,7 @@ Table::Changes Table::on_writer_gone(const Guid& writer) {
 
 Table::Changes Table::on_process_ended(const std::string& process) {
   if (ended_processes_.insert(process).second) ended_in_order_.push_back(process);
-  if (ended_in_order_.size() > kMostEnded) {
+  if (ended_in_order_.size() > kMaxEnded) {
     ended_processes_.erase(ended_in_order_.front());
     ended_in_order_.pop_front();
   }
@@ -200,18 +200,18 @@ bool Table::suits(const Entry& entry, const Query& query) {
 Table::Found Table::find(const Query& query) const {
   for (const Constraint& constraint : query.constraints) check(constraint);
   Found found;
-  const Shelf* const shelf = shelf_of(query.name, query.system);
-  if (!shelf) return found;
+  const AttributeIndex* const attribute_index = attribute_index_of(query.name, query.system);
+  if (!attribute_index) return found;
   const auto offer = [&](const Entry& entry) {
     if (suits(entry, query)) found.push_back(entry.description);
   };
   if (!query.provider.is_nil()) {
     const auto one = entries_.find(query.provider);
-    if (one != entries_.end() && shelf->contains(one->second)) offer(one->second);
+    if (one != entries_.end() && attribute_index->contains(one->second)) offer(one->second);
     return found;
   }
   std::vector<const Entry*> room;
-  for (const Entry* entry : shelf->candidates(query.constraints, room)) offer(*entry);
+  for (const Entry* entry : attribute_index->candidates(query.constraints, room)) offer(*entry);
   if (!query.preferred_host.empty()) {
     std::stable_partition(found.begin(), found.end(), [&](const auto& description) {
       return description->host == query.preferred_host;
@@ -246,10 +246,11 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
 
 std::string Table::explain(const Query& query) const {
   const std::string place = query.system ? " in system '" + *query.system + "'" : "";
-  const Shelf* const shelf = shelf_of(query.name, std::nullopt);
+  const AttributeIndex* const attribute_index = attribute_index_of(query.name, std::nullopt);
   std::string reasons;
   std::vector<const Entry*> room;
-  for (const Entry* entry : shelf ? shelf->candidates({}, room) : std::span<const Entry* const>()) {
+  for (const Entry* entry :
+       attribute_index ? attribute_index->candidates({}, room) : std::span<const Entry* const>()) {
     const std::string reason = obstacle(*entry, query);
     if (!reason.empty()) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
@@ -270,7 +271,7 @@ std::string Table::explain(const Query& query) const {
     }
   }
   std::vector<std::string> known;
-  for (const auto& [place, shelf] : shelves_) {
+  for (const auto& [place, attribute_index] : attribute_indexes_) {
     if (!place.system) known.push_back(place.name);
   }
   for (const auto& [name, list] : short_names_) known.push_back(name);
@@ -295,17 +296,18 @@ std::size_t Table::PlaceHash::operator()(const PlaceView& place) const noexcept 
   return hash(place.name) * 31 + (place.system ? hash(*place.system) : 0);
 }
 
-const Shelf* Table::find_shelf(const PlaceView& place) const {
-  const auto found = shelves_.find(place);
-  return found == shelves_.end() ? nullptr : &found->second;
+const AttributeIndex* Table::find_attribute_index(const PlaceView& place) const {
+  const auto found = attribute_indexes_.find(place);
+  return found == attribute_indexes_.end() ? nullptr : &found->second;
 }
 
 // Null where nothing of that name stands in that system.
-const Shelf* Table::shelf_of(const std::string& name,
-                             const std::optional<std::string>& system) const {
-  if (const Shelf* const shelf = find_shelf({name, system})) return shelf;
-  if (system && find_shelf({name, std::nullopt})) return nullptr;
-  return find_shelf({resolve(name), system});
+const AttributeIndex* Table::attribute_index_of(const std::string& name,
+                                                const std::optional<std::string>& system) const {
+  if (const AttributeIndex* const attribute_index = find_attribute_index({name, system}))
+    return attribute_index;
+  if (system && find_attribute_index({name, std::nullopt})) return nullptr;
+  return find_attribute_index({resolve(name), system});
 }
 
 std::string Table::resolve(const std::string& name) const {
@@ -323,24 +325,24 @@ std::string Table::resolve(const std::string& name) const {
 void Table::index(const Entry& entry) {
   ++processes_[entry.description->process];
   for (const std::string& name : names_of(*entry.description)) {
-    shelves_[{name, entry.description->system}].add(entry);
-    shelves_[{name, std::nullopt}].add(entry);
+    attribute_indexes_[{name, entry.description->system}].add(entry);
+    attribute_indexes_[{name, std::nullopt}].add(entry);
     if (name != entry.description->entity) ++short_names_[short_interface_name(name)][name];
   }
 }
 
-void Table::take_from_shelf(const Place& place, const Entry& entry) {
-  const auto shelf = shelves_.find(place);
-  shelf->second.remove(entry);
-  if (shelf->second.empty()) shelves_.erase(shelf);
+void Table::take_from_attribute_index(const Place& place, const Entry& entry) {
+  const auto attribute_index = attribute_indexes_.find(place);
+  attribute_index->second.remove(entry);
+  if (attribute_index->second.empty()) attribute_indexes_.erase(attribute_index);
 }
 
 void Table::unindex(const Entry& entry) {
   const auto process = processes_.find(entry.description->process);
   if (--process->second == 0) processes_.erase(process);
   for (const std::string& name : names_of(*entry.description)) {
-    take_from_shelf({name, entry.description->system}, entry);
-    take_from_shelf({name, std::nullopt}, entry);
+    take_from_attribute_index({name, entry.description->system}, entry);
+    take_from_attribute_index({name, std::nullopt}, entry);
     if (name == entry.description->entity) continue;
     const auto shorts = short_names_.find(short_interface_name(name));
     if (--shorts->second[name] == 0) shorts->second.erase(name);

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "skein/core/clock.hpp"
-#include "skein/dds/loopback.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/clock.hpp"
+#include "skein/entity.hpp"
+#include "skein/loopback.hpp"
 
 namespace skein::benchmarks {
 

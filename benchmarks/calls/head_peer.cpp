@@ -6,7 +6,8 @@
 
 #include "calls/alone.hpp"
 #include "calls/plain_echo.hpp"
-#include "skein/rpc/local_channel.hpp"
+#include "rpc/local_channel.hpp"
+#include "skein/head.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -30,7 +31,7 @@ Times timed(std::uint32_t count, Run run) {
   return times;
 }
 
-/// A service that is no CSP, so that a blocking call of it runs on the caller's thread.
+/// The same implementation without a Head, on the caller's thread, too.
 class DirectEcho {
  public:
   Echo::Proxy proxy() const {
@@ -42,7 +43,7 @@ class DirectEcho {
   const std::shared_ptr<ThreadExecutor> executor_ = std::make_shared<ThreadExecutor>("direct");
   const std::shared_ptr<rpc::Service> service_ = std::make_shared<rpc::Service>(
       std::make_shared<Echo::Skeleton>(std::make_shared<PlainEcho>()), *executor_, *clock_,
-      rpc::Service::Options{});
+      rpc::Service::Options{.thread = CallThread::Caller});
 };
 
 class StopwatchBody final : public Stopwatch {
@@ -77,6 +78,7 @@ class Crew {
     while (csps_ < count) {
       ServiceOptions options;
       options.attributes = {{"latency", "1"}, {"quality", "0.5"}};
+      options.thread = CallThread::Caller;
       alone_.entity->provide_csp<Echo>("csp" + std::to_string(++csps_), alone_.entity->id(),
                                        std::make_shared<PlainEcho>(), options);
     }

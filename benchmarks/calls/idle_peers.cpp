@@ -36,13 +36,13 @@ constexpr std::array<Figure, 3> kFigures{{
 /// What discovery and leases cost grows with the number's square. On two cores 50 peers take half
 /// of the processor while they are idle, and 100 did not find each other within a minute, raw ones
 /// neither.
-constexpr std::size_t kMostOnACore = 25;
+constexpr std::size_t kMaxOnACore = 25;
 
 void refuse_too_many(std::size_t peers) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  if (peers <= kMostOnACore * cores) return;
+  if (peers <= kMaxOnACore * cores) return;
   throw Skipped(std::to_string(peers) + " peers are too many for " + std::to_string(cores) +
-                " cores: at most " + std::to_string(kMostOnACore) + " a core find each other");
+                " cores: at most " + std::to_string(kMaxOnACore) + " a core find each other");
 }
 
 struct Idler {

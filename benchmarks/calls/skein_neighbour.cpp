@@ -7,11 +7,11 @@
 #include <mutex>
 #include <set>
 
+#include "brokerless_discovery/broker.hpp"
 #include "calls/plain_echo.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
-#include "skein/brokerless_discovery/broker.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "calls/skein_peer.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 namespace skein::benchmarks {
 

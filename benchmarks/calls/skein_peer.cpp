@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "brokerless_discovery/broker.hpp"
 #include "calls/alone.hpp"
 #include "calls/head_peer.hpp"
 #include "calls/skein_neighbour.hpp"
@@ -11,9 +12,8 @@
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
-#include "skein/brokerless_discovery/broker.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -108,10 +108,10 @@ void call(const SkeinPeer& peer) {
   run_client(client);
 }
 
-/// Both ends in one process: the lane without DDS.
+/// Both ends in one process: the transport without DDS.
 void call_in_process() {
   Alone alone;
-  alone.entity->provide<Echo>(std::make_shared<EchoBody>());
+  alone.entity->provide<Echo>(std::make_shared<EchoBody>(), {.thread = CallThread::Caller});
   run_client(client_of(*alone.entity, connected(*alone.entity)));
 }
 

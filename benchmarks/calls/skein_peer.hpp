@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::benchmarks {
 

@@ -2,9 +2,9 @@
 
 #include <thread>
 
+#include "brokerless_discovery/broker.hpp"
 #include "calls/plain_echo.hpp"
-#include "skein/brokerless_discovery/broker.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

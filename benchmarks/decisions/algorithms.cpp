@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "decisions/worlds.hpp"
-#include "skein/core/call_context.hpp"
-#include "skein/navigation/grid/grid_planner.hpp"
-#include "skein/navigation/planners.hpp"
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/grid/grid_planner.hpp"
+#include "navigation/planners/planners.hpp"
+#include "navigation/threats/radar_exposure.hpp"
+#include "skein/call_context.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -45,16 +45,8 @@ Cell cell_at(const AE_navigator::Position& position) {
   return {static_cast<int>(position.east_m / kCellM), static_cast<int>(position.north_m / kCellM)};
 }
 
-/// Brings the one route that it finds.
-class OneRoutePlanner : public IPlanner {
- public:
-  void improve(const Problem& problem, StreamSink<Route>& routes) override {
-    routes.push(plan(problem));
-  }
-};
-
 /// A planner on grids, over flat land.
-class GridPlanner final : public OneRoutePlanner {
+class GridPlanner final : public IPlanner {
  public:
   GridPlanner(std::string planner, std::shared_ptr<TerrainProvider> terrains)
       : planner_(std::move(planner)), terrains_(std::move(terrains)) {}
@@ -80,7 +72,7 @@ class GridPlanner final : public OneRoutePlanner {
 };
 
 /// An algorithm on a bad day: takes a multiple of its time, or for ever.
-class Staged final : public OneRoutePlanner {
+class Staged final : public IPlanner {
  public:
   Staged(std::string name, std::unique_ptr<IPlanner> planner, Stage& stage)
       : name_(std::move(name)), planner_(std::move(planner)), stage_(stage) {}

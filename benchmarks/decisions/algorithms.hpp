@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "navigation/terrain/terrain_provider.hpp"
 #include "navigator.idl.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::benchmarks {
 

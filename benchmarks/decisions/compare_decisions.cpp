@@ -6,7 +6,7 @@
 #include "decisions/scores.hpp"
 #include "harness/goals.hpp"
 #include "harness/turns.hpp"
-#include "skein/navigation/route_checker.hpp"
+#include "navigation/route_checker/route_checker.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -6,10 +6,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "skein/core/error.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "navigation/threats/keep_out.hpp"
+#include "navigation/threats/radar_exposure.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
-#include "skein/navigation/keep_out.hpp"
-#include "skein/navigation/radar_exposure.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -89,7 +91,7 @@ void await_all(Entity& entity, std::size_t count) {
 HeadOptions head_options(const std::string& strategy) {
   HeadOptions options;
   options.strategy = strategy;
-  options.most_stuck = SIZE_MAX;
+  options.max_stuck = SIZE_MAX;
   return options;
 }
 

@@ -7,6 +7,7 @@
 
 #include "decisions/algorithms.hpp"
 #include "decisions/requests.hpp"
+#include "skein/head.hpp"
 
 namespace skein::benchmarks {
 

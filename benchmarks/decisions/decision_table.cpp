@@ -5,7 +5,8 @@
 #include <fstream>
 #include <limits>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "skein/core/error.hpp"
-#include "skein/navigation/grid/grid_planner.hpp"
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/grid/grid_planner.hpp"
+#include "navigation/threats/radar_exposure.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "decisions/worlds.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
 #include "navigator.idl.hpp"
-#include "skein/core/clock.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "skein/clock.hpp"
 
 namespace skein::benchmarks {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

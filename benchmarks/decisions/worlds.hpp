@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "navigation/grid/grid_map.hpp"
+#include "navigation/terrain/terrain.hpp"
 #include "navigator.idl.hpp"
-#include "skein/navigation/grid/grid_map.hpp"
-#include "skein/navigation/terrain.hpp"
 
 namespace skein::benchmarks {
 

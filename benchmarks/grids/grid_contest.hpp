@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "skein/navigation/grid/grid_planner.hpp"
-#include "skein/navigation/grid/scenario.hpp"
+#include "navigation/grid/grid_planner.hpp"
+#include "navigation/grid/scenario.hpp"
 
 namespace skein::benchmarks {
 

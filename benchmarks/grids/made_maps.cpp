@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "skein/navigation/grid/grid_planner.hpp"
+#include "navigation/grid/grid_planner.hpp"
 
 namespace skein::benchmarks {
 namespace {

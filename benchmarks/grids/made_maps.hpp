@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "skein/navigation/grid/scenario.hpp"
+#include "navigation/grid/scenario.hpp"
 
 namespace skein::benchmarks {
 

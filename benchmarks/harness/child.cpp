@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

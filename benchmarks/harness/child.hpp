@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/skipped.hpp"
-#include "skein/core/clock.hpp"
+#include "skein/clock.hpp"
 
 namespace skein::benchmarks {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

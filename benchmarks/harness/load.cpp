@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "harness/skipped.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

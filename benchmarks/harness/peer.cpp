@@ -7,7 +7,7 @@
 #include "harness/load.hpp"
 #include "harness/placement.hpp"
 #include "harness/skipped.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 // There where harness/allocation_counter.cpp is preloaded.
 extern "C" [[gnu::weak]] std::uint64_t skein_benchmark_allocations();

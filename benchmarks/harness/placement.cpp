@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

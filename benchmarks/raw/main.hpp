@@ -12,7 +12,7 @@
 
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 /// The command line of a raw peer: `server DOMAIN [WAY]`, `client DOMAIN [WAY]`, or
 /// `neighbour DOMAIN PEERS`.

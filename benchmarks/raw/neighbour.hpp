@@ -6,7 +6,7 @@
 #include <set>
 
 #include "raw/message.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 /// A raw peer with the endpoints of a Skein entity that provides one service: it announces itself
 /// on a topic that all read, and is ready once it has read all others' announcements.

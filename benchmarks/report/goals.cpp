@@ -7,7 +7,7 @@
 #include "harness/goals.hpp"
 #include "report/plot.hpp"
 #include "report/sections.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

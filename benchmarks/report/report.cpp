@@ -9,7 +9,7 @@
 #include "report/plot.hpp"
 #include "report/rivals.hpp"
 #include "report/sections.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "harness/peer.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 /// The command line of a rival's peer: `server|client NUMBER TRANSPORT`. The number tells
 /// configurations that are alive at once from each other.

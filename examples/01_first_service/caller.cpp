@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "greeter.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 int main(int argc, char** argv) {
   const char* vendor = argc > 1 ? argv[1] : "fastdds";

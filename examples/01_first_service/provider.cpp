@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "greeter.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 class Greeter : public greeting::IGreeter {
   std::string greet(const std::string& name) override { return "Hello, " + name + "!"; }

@@ -3,8 +3,9 @@
 #include <cstdio>
 
 #include "estimators.hpp"
-#include "skein/core/error.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 
 using namespace std::chrono_literals;
 

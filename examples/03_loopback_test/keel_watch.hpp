@@ -1,7 +1,7 @@
 #pragma once
 
 #include "depth.idl.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 /// What is under test: tells from a sounder's answer, or its silence, how fast a boat may go.
 class KeelWatch {

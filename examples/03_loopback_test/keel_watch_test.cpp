@@ -5,8 +5,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "skein/dds/loopback.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/loopback.hpp"
 
 using namespace std::chrono_literals;
 
@@ -71,7 +71,7 @@ TEST_CASE("the boat stops where the sounder has died") {
   Boat boat;
   boat.network.judge_transfers([](const auto&) { return skein::dds::Fate::late(500ms); });
   auto answer = boat.watch.ask();
-  boat.network.kill(boat.mast->participant().guid().participant());
+  boat.network.kill(boat.mast->guid());
   boat.clock->advance(1500ms);
   CHECK(boat.watch.speed_m_s(std::move(answer)) == 0.0);
 }

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "boat.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 int main(int argc, char** argv) {
   using namespace std::chrono_literals;

@@ -4,7 +4,7 @@
 
 #include "boat.idl.hpp"
 #include "every.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 int main(int argc, char** argv) {
   using namespace std::chrono_literals;

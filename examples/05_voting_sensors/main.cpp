@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <functional>
 
-#include "skein/core/error.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 #include "warner.idl.hpp"
 
 using namespace std::chrono_literals;

@@ -2,10 +2,25 @@
 #include <cstdio>
 
 #include "navigator.idl.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/navigation/demo_problem.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/entity.hpp"
+
+namespace {
+
+/// Around a city, on terrain that everybody can make.
+AE_navigator::Problem across() {
+  AE_navigator::Problem problem;
+  problem.terrain = "synthetic:7";
+  problem.start = {5000, 5000, 2500};
+  problem.goal = {38000, 40000, 2500};
+  problem.no_fly_zones = {{"City", {{20000, 21000}}, 5000, 0, 20000}};
+  problem.minimum_height_above_ground_m = 120;
+  problem.limits = {60, 12, 30, 6000};
+  problem.exposure_weight = 1;
+  return problem;
+}
+
+}  // namespace
 
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
@@ -14,7 +29,7 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     auto navigator = entity.connect<AE_navigatorI::INavigator>();
     AE_navigatorI::RouteRequest request;
     request.request_id = "across";
-    request.problem = skein::navigation::demo_problem(skein::navigation::make_synthetic_terrain(7));
+    request.problem = across();
     const auto route = navigator.within(std::chrono::seconds(20)).request_route(request);
     for (const auto& attempt : navigator.report(request.request_id).attempts) {
       std::printf("%s\n  %s after %.1f ms %s\n", attempt.reason.c_str(), attempt.outcome.c_str(),

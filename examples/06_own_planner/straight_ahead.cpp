@@ -1,7 +1,6 @@
 // An algorithm from before Skein, wrapped as a planner of the navigator.
 #include "navigator.idl.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
+#include "skein/component_registry.hpp"
 
 /// The old algorithm: straight ahead, as high as its end that is higher. It knows no ground and no
 /// zones.
@@ -27,11 +26,6 @@ class StraightAhead : public AE_navigator::IPlanner {
     for (int i = 0; i < straight_ahead(from, to, way); ++i)
       route.waypoints.push_back({way[i][0], way[i][1], way[i][2]});
     return route;
-  }
-
-  void improve(const AE_navigator::Problem& task,
-               skein::StreamSink<AE_navigator::Route>& routes) override {
-    routes.push(plan(task));
   }
 };
 

@@ -10,10 +10,10 @@
 #include "ad_manager.idl.hpp"
 #include "flight_controller.idl.hpp"
 #include "mission_text.hpp"
-#include "skein/core/error.hpp"
-#include "skein/navigation/demo_problem.hpp"
-#include "skein/navigation/route_checker.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "navigation/route_checker/route_checker.hpp"
+#include "navigation/routes/demo_problem.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
+#include "skein/error.hpp"
 
 using namespace std::chrono_literals;
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "navigation/route_checker/height_grid.hpp"
+#include "navigation/routes/route_picture.hpp"
+#include "navigation/terrain/terrain.hpp"
 #include "navigator_link.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/entity/parameters.hpp"
-#include "skein/navigation/height_grid.hpp"
-#include "skein/navigation/route_picture.hpp"
-#include "skein/navigation/terrain.hpp"
+#include "skein/entity.hpp"
+#include "skein/parameters.hpp"
 
 namespace route_planning {
 

@@ -29,15 +29,15 @@ std::string role_of(const AE_navigatorI::PlannerCandidate& planner, const Answer
     if (attempt.planner == planner.planner) role = attempt.outcome;
   }
   if (!role.empty()) return role;
-  return planner.quarantined ? "in quarantine" : "stood by";
+  return planner.quarantined ? "in quarantine" : "available";
 }
 
 /// As wide as the columns under "measured".
 std::string measured(const AE_navigatorI::PlannerCandidate& planner) {
   if (planner.runs == 0) return fmt::format("   {:<36}", "has not run before");
-  if (planner.q95_ms == 0) return fmt::format("   no answer in {:<3} {:<20}", planner.runs, "runs");
+  if (planner.p95_ms == 0) return fmt::format("   no answer in {:<3} {:<20}", planner.runs, "runs");
   return fmt::format("{:>5.0f}{:>7.0f} ms{:>8.2f}{:>6}{:>8.0f} %", planner.median_ms,
-                     planner.q95_ms, planner.measured_quality, planner.runs,
+                     planner.p95_ms, planner.measured_quality, planner.runs,
                      100 * planner.accepted);
 }
 
@@ -70,8 +70,8 @@ void print_planners(const Answer& answer) {
   std::stable_sort(planners.begin(), planners.end(), [](const auto& a, const auto& b) {
     return a.declared_quality > b.declared_quality;
   });
-  print_line(
-      fmt::format("  {:<22}{:>17}   {:>31}", "planners", "declared", "measured on like requests"));
+  print_line(fmt::format("  {:<22}{:>17}   {:>31}", "planners", "declared",
+                         "measured on similar requests"));
   print_line(fmt::format("{:24}{:>9}{:>8}   {:>5}{:>7}{:>11}{:>6}{:>10}   {}", "", "latency",
                          "quality", "p50", "p95", "quality", "runs", "accepted", "here"));
   for (const auto& planner : planners) {

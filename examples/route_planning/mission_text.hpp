@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "navigation/route_checker/route_checker.hpp"
 #include "navigator_link.hpp"
-#include "skein/navigation/route_checker.hpp"
 
 namespace route_planning {
 
@@ -17,8 +17,8 @@ void print_heading(std::string_view title);
 /// A label and its text, which is wrapped and indented behind the label.
 void print_field(std::string_view label, std::string_view text);
 
-/// Which planners stood by, what their descriptions declare beside what they have shown on like
-/// requests, and what came of those that were tried.
+/// Which planners were available, what their descriptions declare beside what they have shown on
+/// similar requests, and what came of those that were tried.
 void print_planners(const Answer& answer);
 
 /// For each planner that was tried: why it was, and what came of it.

@@ -7,9 +7,10 @@
 #include <cstring>
 #include <thread>
 
-#include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/core/error.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 using namespace std::chrono_literals;
 
@@ -60,7 +61,7 @@ void NavigatorLink::brief(const std::string& planner, AE_navigator::Problem prob
   const Instant deadline = entity_.clock().now() + kPatience;
   while (!practise(planner, problem)) {
     if (entity_.clock().now() >= deadline)
-      throw skein::Unavailable(fmt::format("{} does not stand by at the navigator", planner));
+      throw skein::Unavailable(fmt::format("{} is not available at the navigator", planner));
     std::this_thread::sleep_for(20ms);
   }
 }

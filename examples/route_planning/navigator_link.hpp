@@ -5,7 +5,7 @@
 #include <string>
 
 #include "navigator.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace route_planning {
 
@@ -47,7 +47,7 @@ class NavigatorLink {
   void select_by(const std::string& strategy);
 
   /// Has that planner plan once without a hurry, so that it knows the terrain. Waits until the
-  /// planner stands by; throws Unavailable where it does not in 20 s.
+  /// planner is available; throws Unavailable where it is not in 20 s.
   void brief(const std::string& planner, AE_navigator::Problem problem);
 
   /// Briefs it, and has it plan once more, a quick one often, so that the navigator knows what it
@@ -64,7 +64,7 @@ class NavigatorLink {
 
  private:
   Answer ask_once(const Question& question);
-  /// Has it plan once; false where it does not stand by.
+  /// Has it plan once; false where it is not available.
   bool practise(const std::string& planner, const AE_navigator::Problem& problem);
   /// Waits for a planner that is at work for some time.
   AE_navigatorI::PlanningStatus await_planner(skein::Instant deadline);

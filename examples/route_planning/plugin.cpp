@@ -1,6 +1,5 @@
 #include "ground_station.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
+#include "skein/component_registry.hpp"
 
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 

@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "skein/core/call.hpp"
+#include "skein/call.hpp"
 
-/// Asynchronous calls for programs that are built on Asio (stand-alone, 1.22 or later). libskein
-/// itself does not know Asio: this header is all there is.
+/// Asynchronous calls for programs that use Asio (stand-alone, 1.22 or later). libskein itself does
+/// not depend on Asio; this header is the whole integration.
 namespace skein {
 namespace asio_detail {
 
@@ -26,7 +26,7 @@ struct Completion<void> {
   using Signature = void(std::exception_ptr);
 };
 
-/// Hands the outcome of a call that has ended to its handler.
+/// Passes the outcome of a finished call to its handler.
 template <class Result, class Handler>
 void complete(Call<Result>& call, Handler& handler) {
   std::exception_ptr error;
@@ -73,15 +73,14 @@ struct Wait {
 
 }  // namespace asio_detail
 
-/// Waits for a call as the completion token says: `asio::use_future`, `asio::use_awaitable`, a
-/// callback with `(std::exception_ptr, Result)`, or `(std::exception_ptr)` where the result is
-/// void, and any of them bound to an executor or a cancellation slot. What ended the call arrives
-/// as the exception.
+/// Waits for a call with any completion token: `asio::use_future`, `asio::use_awaitable`, or a
+/// callback with `(std::exception_ptr, Result)`, `(std::exception_ptr)` for void. The token may be
+/// bound to an executor or a cancellation slot. The exception is the error that ended the call; the
+/// result is then default-constructed.
 ///
-/// The handler runs on its associated executor, which is kept busy until then; where it has none,
-/// on the connection's executor for continuations. Emitting the associated cancellation slot's
-/// signal, whatever its type, is Call::cancel(): the call ends as Cancelled, and the server hears
-/// of it.
+/// The handler runs on its associated executor, which has outstanding work until then; without one,
+/// on the connection's continuation executor. Any signal of the associated cancellation slot calls
+/// Call::cancel(): the call ends as Cancelled, and the server is notified.
 template <class Result, class CompletionToken>
 auto async_wait(Call<Result> call, CompletionToken&& token) {
   using Signature = typename asio_detail::Completion<Result>::Signature;

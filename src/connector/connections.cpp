@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "skein/core/error.hpp"
+#include "core/clock_wait.hpp"
+#include "skein/error.hpp"
 
 namespace skein::connector {
 
@@ -35,12 +36,18 @@ void Connections::add(const std::shared_ptr<Channel>& channel) {
   end(*channel);
 }
 
+void Connections::pause(Clock& clock, Instant end) {
+  std::unique_lock lock(mutex_);
+  wait_until(clock, end, lock, changed_, [&] { return closed_.load(); });
+}
+
 void Connections::close() {
   std::vector<std::weak_ptr<Channel>> channels;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
     channels.swap(channels_);
+    changed_.notify_all();
   }
   for (const auto& weak : channels) {
     if (const auto channel = weak.lock()) end(*channel);

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "skein/core/channel.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/channel.hpp"
 
 namespace skein::connector {
 
@@ -28,12 +29,15 @@ class Connections {
     Connections& connections_;
   };
 
-  /// Ends the connection at once where the entity has ended.
+  /// One that stands, or is being opened. Ends it at once where the entity has ended.
   void add(const std::shared_ptr<Channel>& channel);
 
   bool closed() const noexcept { return closed_; }
   /// Throws Unavailable once the entity has ended.
   void refuse_if_closed() const;
+
+  /// Waits until `end`, or until the entity has ended.
+  void pause(Clock& clock, Instant end);
 
   /// Ends all connections, now and from now on. Pending calls end as Disconnected.
   void close();

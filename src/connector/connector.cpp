@@ -1,17 +1,20 @@
-#include "skein/connector/connector.hpp"
+#include "skein/connector.hpp"
 
 #include <algorithm>
 #include <random>
-#include <thread>
 
+#include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/load_board.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 #include "connections.hpp"
+#include "core/interface_name.hpp"
 #include "failover_channel.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
+#include "rpc/call_journal.hpp"
+#include "rpc/dds_channel.hpp"
+#include "rpc/local_channel.hpp"
+#include "rpc/local_directory.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/rpc/dds_channel.hpp"
-#include "skein/rpc/local_channel.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 namespace {
@@ -22,15 +25,15 @@ using brokerless_discovery::ServiceDescription;
 using brokerless_discovery::Table;
 using connector::Connections;
 using connector::FailoverChannel;
-using connector::Link;
-using connector::Wanted;
+using connector::ProviderConnection;
+using connector::ProviderQuery;
 
 std::string peer_name(const ServiceDescription& provider) {
   return scoped_interface_name(provider.service) + " of " + provider.entity + " (" +
          provider.system + ")";
 }
 
-// How long one provider may take to answer `open` while others stand by.
+// How long one provider may take to answer `open` while others are available.
 constexpr std::chrono::milliseconds kOpenPatience{1000};
 constexpr std::chrono::milliseconds kRetryPause{20};
 
@@ -48,11 +51,11 @@ const char* ending_of(brokerless_discovery::Departure departure) {
 
 // The kernel and the Broker know of a provider's end, or of its silence, before DDS does.
 void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::DdsChannel>& channel,
-            const Link& link) {
+            const ProviderConnection& connection) {
   using brokerless_discovery::Broker;
   auto registration = std::make_shared<Broker::Registration>(
-      broker.observe([weak = std::weak_ptr(channel), provider = link.provider,
-                      suspect = link.suspect](const Change& change) {
+      broker.observe([weak = std::weak_ptr(channel), provider = connection.provider,
+                      suspect = connection.suspect](const Change& change) {
         if (change.description->provider != provider.bytes) return;
         if (change.kind != Change::Kind::Removed) {
           *suspect = change.kind == Change::Kind::Suspect;
@@ -62,7 +65,7 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
       }));
   channel->attach(registration);
   // It may have gone between the answer to `open` and the first look.
-  if (!broker.knows(link.provider)) channel->lose("it ended while it was being connected");
+  if (!broker.knows(connection.provider)) channel->lose("it ended while it was being connected");
 }
 
 bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {
@@ -88,8 +91,8 @@ void put_less_loaded_first(Table::Found& providers, std::size_t equals,
   std::rotate(providers.begin(), chosen, chosen + 1);
 }
 
-void arrange(Table::Found& providers, const Wanted& wanted, const std::string& preferred_host,
-             const brokerless_discovery::LoadBoard& loads) {
+void arrange(Table::Found& providers, const ProviderQuery& wanted,
+             const std::string& preferred_host, const brokerless_discovery::LoadBoard& loads) {
   std::erase_if(providers,
                 [&](const auto& provider) { return contains(wanted.excluded, *provider); });
   const auto last = std::stable_partition(
@@ -115,17 +118,18 @@ void Connector::close() {
 std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
                                                   const std::string& strategy,
                                                   Duration timeout) const {
-  return open_link(provider, strategy, timeout).channel;
+  return open_connection(provider, strategy, timeout).channel;
 }
 
-Link Connector::open_link(const ServiceDescription& provider, const std::string& strategy,
-                          Duration timeout) const {
+ProviderConnection Connector::open_connection(const ServiceDescription& provider,
+                                              const std::string& strategy, Duration timeout) const {
   const Connections::Opening opening(*connections_);
   const Guid id{provider.provider};
   if (const auto service = parts_.directory->find(id)) {
-    Link link{id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
-    connections_->add(link.channel);
-    return link;
+    ProviderConnection connection{
+        id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
+    connections_->add(connection.channel);
+    return connection;
   }
   rpc::DdsChannel::Options options;
   options.strategy = strategy;
@@ -137,15 +141,15 @@ Link Connector::open_link(const ServiceDescription& provider, const std::string&
     connections->refuse_if_closed();
     return broker.knows(id);
   };
+  options.begun = [connections = connections_](const auto& channel) { connections->add(channel); };
   const auto participant = parts_.broker.participant_of(id);
   if (!participant) throw Unavailable(options.peer + " left before it was connected");
   options.participant = *participant;
   auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
                                        parts_.clock, {provider.service, id}, std::move(options));
-  Link link{id, channel};
-  follow(parts_.broker, channel, link);
-  connections_->add(channel);
-  return link;
+  ProviderConnection connection{id, channel};
+  follow(parts_.broker, channel, connection);
+  return connection;
 }
 
 Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& options) const {
@@ -167,7 +171,7 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
   if (options.foreign) return open_foreign(interface, options);
   const auto connect = [connector = *this, query = query(interface, options),
-                        strategy = options.strategy](const Wanted& wanted) {
+                        strategy = options.strategy](const ProviderQuery& wanted) {
     return connector.open_next(query, strategy, wanted);
   };
   const Instant deadline = parts_.clock->now() + options.timeout;
@@ -189,7 +193,8 @@ std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interfac
       all.push_back(
           {Guid{provider->provider}, provider->entity,
            open_provider(*provider, options.strategy, std::min<Duration>(left, kOpenPatience))});
-    } catch (const Unavailable&) {
+    } catch (const Error& error) {
+      if (!is_refusal(error.code())) throw;
       failure = std::current_exception();
     }
   }
@@ -221,22 +226,29 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
     connections->refuse_if_closed();
     return true;
   };
-  auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
-                                       parts_.clock, {service, Guid{}}, std::move(dds_options));
-  connections_->add(channel);
-  return channel;
+  dds_options.begun = [connections = connections_](const auto& channel) {
+    connections->add(channel);
+  };
+  return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
+                               parts_.clock, {service, Guid{}}, std::move(dds_options));
 }
 
-// The first provider that answers: in the Broker's order, those to be asked last at the end.
-Link Connector::open_next(const Query& query, const std::string& strategy,
-                          const Wanted& wanted) const {
+// The first provider that takes the session: in the Broker's order, those to be asked last at the
+// end. Where one has no room, and no other takes it, the caller is to back off: it is not asked
+// again and again.
+ProviderConnection Connector::open_next(const Query& query, const std::string& strategy,
+                                        const ProviderQuery& wanted) const {
   const Connections::Opening opening(*connections_);
   const auto left = [&] {
     return std::max(Duration::zero(), wanted.deadline - parts_.clock->now());
   };
   std::exception_ptr failure;
+  bool overloaded = false;
   do {
-    if (failure) std::this_thread::sleep_for(kRetryPause);
+    if (failure) {
+      connections_->pause(*parts_.clock,
+                          std::min(wanted.deadline, parts_.clock->now() + kRetryPause));
+    }
     auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
                                  : parts_.broker.find_service(query);
     arrange(providers, wanted, query.preferred_host, parts_.loads);
@@ -244,14 +256,17 @@ Link Connector::open_next(const Query& query, const std::string& strategy,
       try {
         const Duration patience =
             providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
-        return open_link(*provider, strategy, patience);
-      } catch (const Unavailable&) {
-        failure = std::current_exception();
+        return open_connection(*provider, strategy, patience);
+      } catch (const Error& error) {
+        if (!is_refusal(error.code())) throw;
+        const bool full = error.code() == ErrorCode::Overloaded;
+        if (full || !overloaded) failure = std::current_exception();
+        overloaded |= full;
       }
     }
-  } while (wanted.wait && left() > Duration::zero() && !connections_->closed());
+  } while (wanted.wait && !overloaded && left() > Duration::zero() && !connections_->closed());
   if (failure) std::rethrow_exception(failure);
-  throw Unavailable("no other provider of " + query.name + " stands by");
+  throw Unavailable("no other provider of " + query.name + " is available");
 }
 
 }  // namespace skein

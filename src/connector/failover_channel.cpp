@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "moving_call.hpp"
-#include "skein/core/call_memory.hpp"
-#include "skein/core/error.hpp"
+#include "retrying_call.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
 
 namespace skein::connector {
 namespace {
@@ -14,8 +14,8 @@ bool contains(const std::vector<Guid>& providers, const Guid& provider) {
   return std::find(providers.begin(), providers.end(), provider) != providers.end();
 }
 
-bool suits(const Link& link, const Wanted& wanted) {
-  return link.trusted() && !contains(wanted.excluded, link.provider);
+bool suits(const ProviderConnection& connection, const ProviderQuery& wanted) {
+  return connection.trusted() && !contains(wanted.excluded, connection.provider);
 }
 
 }  // namespace
@@ -27,7 +27,8 @@ std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
   return copy;
 }
 
-FailoverChannel::FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after)
+FailoverChannel::FailoverChannel(ProviderConnection first, Connect connect,
+                                 std::optional<Duration> hedge_after)
     : connect_(std::move(connect)),
       hedge_after_(hedge_after),
       clock_(first.channel->clock()),
@@ -37,10 +38,10 @@ FailoverChannel::FailoverChannel(Link first, Connect connect, std::optional<Dura
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   const OperationInfo& operation = call->operation();
   if (operation.idempotent && !operation.oneway) {
-    return call->attempt([&] { MovingCall::start(shared_from_this(), call, in); });
+    return call->attempt([&] { RetryingCall::start(shared_from_this(), call, in); });
   }
-  const Wanted wanted{call->deadline()};
-  if (const auto link = ready(wanted)) return link->channel->start(call, in);
+  const ProviderQuery wanted{call->deadline()};
+  if (const auto connection = ready(wanted)) return connection->channel->start(call, in);
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
   const auto copy = copy_of(*operation.in, in);
   const bool posted = continuations_.post([self = shared_from_this(), call, copy, wanted] {
@@ -71,20 +72,20 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
                                       const CallTime& time) {
   Retries retries(time.deadline);
   std::exception_ptr error;
-  std::optional<Link> link;
+  std::optional<ProviderConnection> connection;
   do {
     try {
-      link = acquire(retries.wanted());
+      connection = acquire(retries.wanted());
     } catch (...) {
       if (!error) error = std::current_exception();
       break;
     }
     try {
-      return link->channel->call(operation, in, out, time);
+      return connection->channel->call(operation, in, out, time);
     } catch (...) {
       error = std::current_exception();
     }
-  } while (retries.admit(error, link->provider, clock_.now()));
+  } while (retries.admit(error, connection->provider, clock_.now()));
   std::rethrow_exception(std::move(error));
 }
 
@@ -99,29 +100,30 @@ bool FailoverChannel::connected() const {
 }
 
 void FailoverChannel::disconnect() {
-  for (const Link& link : close()) link.channel->disconnect();
+  for (const ProviderConnection& connection : close()) connection.channel->disconnect();
 }
 
 void FailoverChannel::lose(const std::string& how) {
-  for (const Link& link : close()) link.channel->lose(how);
+  for (const ProviderConnection& connection : close()) connection.channel->lose(how);
 }
 
-std::vector<Link> FailoverChannel::close() {
+std::vector<ProviderConnection> FailoverChannel::close() {
   std::lock_guard lock(mutex_);
   closed_ = true;
-  std::vector<Link> links = others_;
-  links.push_back(main_);
-  return links;
+  std::vector<ProviderConnection> connections = others_;
+  connections.push_back(main_);
+  return connections;
 }
 
-std::optional<Link> FailoverChannel::ready(const Wanted& wanted) {
-  std::optional<Link> lost;  // destroyed outside the lock
+std::optional<ProviderConnection> FailoverChannel::ready(const ProviderQuery& wanted) {
+  std::optional<ProviderConnection> lost;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
   if (closed_ || suits(main_, wanted)) return main_;
-  const auto other = std::find_if(others_.begin(), others_.end(),
-                                  [&](const Link& link) { return suits(link, wanted); });
+  const auto other =
+      std::find_if(others_.begin(), others_.end(),
+                   [&](const ProviderConnection& connection) { return suits(connection, wanted); });
   if (other == others_.end()) return std::nullopt;
-  const Link link = *other;
+  const ProviderConnection connection = *other;
   if (!main_.trusted()) {
     std::swap(main_, *other);
     if (!other->channel->connected()) {
@@ -129,48 +131,49 @@ std::optional<Link> FailoverChannel::ready(const Wanted& wanted) {
       others_.erase(other);
     }
   }
-  return link;
+  return connection;
 }
 
-Link FailoverChannel::acquire(const Wanted& wanted) {
-  if (auto link = ready(wanted)) return *link;
+ProviderConnection FailoverChannel::acquire(const ProviderQuery& wanted) {
+  if (auto connection = ready(wanted)) return *connection;
   std::lock_guard one_at_a_time(connecting_);
-  if (auto link = ready(wanted)) return *link;
-  const Link main = [&] {
+  if (auto connection = ready(wanted)) return *connection;
+  const ProviderConnection main = [&] {
     std::lock_guard lock(mutex_);
     return main_;
   }();
   // A suspect provider is better than none, but not worth waiting for another.
   const bool fall_back = main.channel->connected() && !contains(wanted.excluded, main.provider);
-  Wanted next = wanted;
+  ProviderQuery next = wanted;
   if (fall_back) next.wait = false;
   if (!main.channel->connected()) next.last.push_back(main.provider);
   try {
-    const Link link = connect_(next);
-    keep(link);
-    return link;
-  } catch (const Unavailable&) {
-    if (!fall_back) throw;
+    const ProviderConnection connection = connect_(next);
+    keep(connection);
+    return connection;
+  } catch (const Error& error) {
+    if (!fall_back || !is_refusal(error.code())) throw;
     return main;
   }
 }
 
-// A main link that is lost or suspect is replaced by the new one; beside one that stands, the new
-// one is kept for the next call that needs it.
-void FailoverChannel::keep(const Link& link) {
-  std::vector<Link> ended;  // destroyed outside the lock
+// A main connection that is lost or suspect is replaced by the new one; beside one that stands, the
+// new one is kept for the next call that needs it.
+void FailoverChannel::keep(const ProviderConnection& connection) {
+  std::vector<ProviderConnection> ended;  // destroyed outside the lock
   std::lock_guard lock(mutex_);
   const auto lost = std::stable_partition(
-      others_.begin(), others_.end(), [](const Link& other) { return other.channel->connected(); });
+      others_.begin(), others_.end(),
+      [](const ProviderConnection& other) { return other.channel->connected(); });
   ended.assign(std::make_move_iterator(lost), std::make_move_iterator(others_.end()));
   others_.erase(lost, others_.end());
   if (main_.trusted()) {
-    others_.push_back(link);
+    others_.push_back(connection);
   } else {
-    const Link old = std::exchange(main_, link);
+    const ProviderConnection old = std::exchange(main_, connection);
     (old.channel->connected() ? others_ : ended).push_back(old);
   }
-  if (closed_) link.channel->disconnect();
+  if (closed_) connection.channel->disconnect();
 }
 
 }  // namespace skein::connector

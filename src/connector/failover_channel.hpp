@@ -6,27 +6,28 @@
 #include <optional>
 #include <vector>
 
-#include "link.hpp"
-#include "skein/core/channel.hpp"
-#include "skein/core/clock.hpp"
-#include "skein/core/executor.hpp"
+#include "provider_connection.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/channel.hpp"
+#include "skein/executor.hpp"
 
 namespace skein::connector {
 
-/// A connection that outlives its provider: `connect` is asked for a new link when the present one
-/// is found lost, or when its provider is suspect; a suspect provider has calls only where no other
-/// stands by. A call to an idempotent operation whose provider is lost or refuses it is made again
-/// at the next one, within its deadline. Any other that was on its way when its provider died ends
-/// as Disconnected; it is not repeated, since whether it ran is unknown.
+/// A connection that outlives its provider: `connect` is asked for a new connection when the
+/// present one is found lost, or when its provider is suspect; a suspect provider has calls only
+/// where no other is available. A call to an idempotent operation whose provider is lost or refuses
+/// it is made again at the next one, within its deadline. Any other that was on its way when its
+/// provider died ends as Disconnected; it is not repeated, since whether it ran is unknown.
 ///
 /// What that costs an idempotent call whose caller does not wait: one more object, and a copy of
 /// its in struct.
 class FailoverChannel final : public Channel, public std::enable_shared_from_this<FailoverChannel> {
  public:
-  /// Blocks until the deadline at most; throws Unavailable.
-  using Connect = std::function<Link(const Wanted& wanted)>;
+  /// Blocks until the deadline at most; throws Unavailable, or why the last one refused.
+  using Connect = std::function<ProviderConnection(const ProviderQuery& wanted)>;
 
-  FailoverChannel(Link first, Connect connect, std::optional<Duration> hedge_after = std::nullopt);
+  FailoverChannel(ProviderConnection first, Connect connect,
+                  std::optional<Duration> hedge_after = std::nullopt);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   void call(const OperationInfo& operation, const void* in, void* out,
@@ -41,28 +42,28 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   /// See ConnectOptions.
   const std::optional<Duration>& hedge_after() const noexcept { return hedge_after_; }
 
-  /// A link to a trusted provider that stands now, or nothing.
-  std::optional<Link> ready(const Wanted& wanted);
+  /// A connection to a trusted provider that stands now, or nothing.
+  std::optional<ProviderConnection> ready(const ProviderQuery& wanted);
 
-  /// A link, newly opened where none stands; a suspect one where that cannot be had. Blocks; throws
-  /// what `connect` throws.
-  Link acquire(const Wanted& wanted);
+  /// A connection, newly opened where none stands; a suspect one where that cannot be had. Blocks;
+  /// throws what `connect` throws.
+  ProviderConnection acquire(const ProviderQuery& wanted);
 
  private:
   std::shared_ptr<Channel> main_if_trusted() const;
   void call_idempotent(const OperationInfo& operation, const void* in, void* out,
                        const CallTime& time);
-  void keep(const Link& link);
-  std::vector<Link> close();
+  void keep(const ProviderConnection& connection);
+  std::vector<ProviderConnection> close();
 
   Connect connect_;
   const std::optional<Duration> hedge_after_;
   Clock& clock_;
   Executor& continuations_;
   std::mutex connecting_;
-  mutable std::mutex mutex_;  // guards what follows
-  Link main_;                 // where calls go as long as it stands
-  std::vector<Link> others_;  // opened for calls that the main one failed
+  mutable std::mutex mutex_;                // guards what follows
+  ProviderConnection main_;                 // where calls go as long as it stands
+  std::vector<ProviderConnection> others_;  // opened for calls that the main one failed
   bool closed_ = false;
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::connector {
 namespace {
@@ -25,8 +25,9 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
 
 bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Instant now) {
   const auto code = code_of(error);
-  const bool refused = code == ErrorCode::Unavailable || code == ErrorCode::Overloaded;
-  if (!refused && code != ErrorCode::Disconnected) return false;
+  if (!code) return false;
+  const bool refused = is_refusal(*code);
+  if (!refused && *code != ErrorCode::Disconnected) return false;
   wanted_.wait = false;
   const bool lost_before =
       std::find(wanted_.last.begin(), wanted_.last.end(), provider) != wanted_.last.end();

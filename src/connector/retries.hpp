@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "link.hpp"
+#include "provider_connection.hpp"
 
 namespace skein::connector {
 
@@ -12,14 +12,14 @@ class Retries {
   explicit Retries(Instant deadline) { wanted_.deadline = deadline; }
 
   /// Whether another provider may do what `provider` failed to do. Notes who failed: who refused is
-  /// not asked again; who was lost may be, once more, where nobody else stands by.
+  /// not asked again; who was lost may be, once more, where nobody else is available.
   bool admit(const std::exception_ptr& error, const Guid& provider, Instant now);
 
   /// Who is to be asked next; before the first failure, anybody who comes.
-  const Wanted& wanted() const noexcept { return wanted_; }
+  const ProviderQuery& wanted() const noexcept { return wanted_; }
 
  private:
-  Wanted wanted_;
+  ProviderQuery wanted_;
   int failures_ = 0;
 };
 

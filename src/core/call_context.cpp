@@ -1,4 +1,4 @@
-#include "skein/core/call_context.hpp"
+#include "skein/call_context.hpp"
 
 namespace skein {
 namespace {

@@ -1,4 +1,4 @@
-#include "skein/core/call_memory.hpp"
+#include "skein/detail/call_memory.hpp"
 
 #include <array>
 #include <mutex>
@@ -11,9 +11,9 @@ constexpr std::size_t kStep = 64;
 constexpr std::size_t kGreatest = 1024;
 #ifdef __SANITIZE_ADDRESS__  // it finds who uses a block after its end, unless the block is handed
                              // out again
-constexpr std::size_t kMostKept = 0;
+constexpr std::size_t kMaxKept = 0;
 #else
-constexpr std::size_t kMostKept = 256;
+constexpr std::size_t kMaxKept = 256;
 #endif
 
 /// Freed blocks by size, each a multiple of kStep, linked through themselves.
@@ -52,7 +52,7 @@ class Recycler final : public std::pmr::memory_resource {
     Kept& kept = kept_[index_of(size)];
     {
       std::lock_guard lock(kept.mutex);
-      if (kept.count < kMostKept) {
+      if (kept.count < kMaxKept) {
         kept.first = new (memory) Block{kept.first};
         ++kept.count;
         return;

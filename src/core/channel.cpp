@@ -1,17 +1,17 @@
-#include "skein/core/channel.hpp"
+#include "skein/detail/channel.hpp"
 
 #include <chrono>
 #include <thread>
 #include <utility>
 
-#include "skein/core/call_memory.hpp"
-#include "skein/core/error.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
 void PendingCall::finish(std::exception_ptr error) {
   Action action;
-  Action canceller;  // dropped outside the lock: it owns parts of the lane
+  Action canceller;  // dropped outside the lock: it owns parts of the transport
   {
     std::lock_guard lock(mutex_);
     error_ = std::move(error);

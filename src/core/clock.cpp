@@ -1,11 +1,12 @@
-#include "skein/core/clock.hpp"
+#include "skein/clock.hpp"
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <thread>
 #include <unordered_map>
 
-#include "skein/core/call_memory.hpp"
+#include "skein/detail/call_memory.hpp"
 
 namespace skein {
 
@@ -102,8 +103,19 @@ TimerId ManualClock::call_at(Instant when, Action action) {
 }
 
 void ManualClock::cancel(TimerId timer) {
-  std::lock_guard lock(mutex_);
-  std::erase_if(timers_, [&](const auto& entry) { return entry.first.second == timer; });
+  Action dropped;  // destroyed outside the lock: it may own what calls back here
+  std::unique_lock lock(mutex_);
+  const auto found = std::find_if(timers_.begin(), timers_.end(),
+                                  [&](const auto& entry) { return entry.first.second == timer; });
+  if (found != timers_.end()) {
+    dropped = std::move(found->second);
+    timers_.erase(found);
+    return;
+  }
+  finished_.wait(lock, [&] {
+    const auto running = running_.find(timer);
+    return running == running_.end() || running->second == std::this_thread::get_id();
+  });
 }
 
 void ManualClock::advance(Duration by) {
@@ -111,10 +123,15 @@ void ManualClock::advance(Duration by) {
   const Instant end = now_ + by;
   while (!timers_.empty() && timers_.begin()->first.first <= end) {
     auto node = timers_.extract(timers_.begin());
+    const TimerId timer = node.key().second;
     now_ = std::max(now_, node.key().first);
+    running_.emplace(timer, std::this_thread::get_id());
     lock.unlock();
     node.mapped()();
+    node.mapped() = nullptr;
     lock.lock();
+    running_.erase(timer);
+    finished_.notify_all();
   }
   now_ = end;
 }

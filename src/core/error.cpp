@@ -1,4 +1,4 @@
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
@@ -22,6 +22,10 @@ std::string_view to_string(ErrorCode code) noexcept {
       break;
   }
   return "Internal";
+}
+
+bool is_refusal(ErrorCode code) noexcept {
+  return code == ErrorCode::Unavailable || code == ErrorCode::Overloaded;
 }
 
 void throw_error(ErrorCode code, const std::string& text) {

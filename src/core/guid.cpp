@@ -1,4 +1,4 @@
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,4 +1,4 @@
-#include "skein/core/host.hpp"
+#include "core/host.hpp"
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -10,7 +10,7 @@
 #include <array>
 #include <memory>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 namespace {

@@ -1,10 +1,10 @@
-#include "skein/core/interface_name.hpp"
+#include "core/interface_name.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 namespace {

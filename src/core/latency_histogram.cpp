@@ -1,4 +1,4 @@
-#include "skein/core/latency_histogram.hpp"
+#include "core/latency_histogram.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -28,9 +28,9 @@ std::uint64_t LatencyHistogram::upper_edge(std::size_t bucket) noexcept {
 }
 
 void LatencyHistogram::record(Duration duration) noexcept {
-  constexpr std::int64_t kMost = (std::int64_t{1} << kBits) - 1;
+  constexpr std::int64_t kMax = (std::int64_t{1} << kBits) - 1;
   const auto count = std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
-  const auto nanoseconds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(count, 0, kMost));
+  const auto nanoseconds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(count, 0, kMax));
   buckets_[bucket_of(nanoseconds)].fetch_add(1, kRelaxed);
   sum_.fetch_add(nanoseconds, kRelaxed);
   std::uint64_t greatest = greatest_.load(kRelaxed);

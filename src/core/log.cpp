@@ -1,10 +1,10 @@
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
 
 #include <cstdio>
 #include <mutex>
 #include <string>
 
-#include "skein/core/printable.hpp"
+#include "core/printable.hpp"
 
 namespace skein {
 namespace {

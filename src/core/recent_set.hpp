@@ -12,12 +12,12 @@ namespace skein {
 template <class Value>
 class RecentSet {
  public:
-  explicit RecentSet(std::size_t most) : most_(most) {}
+  explicit RecentSet(std::size_t most) : max_(most) {}
 
   /// A value that is there already becomes the newest.
   void insert(const Value& value) {
     erase(value);
-    if (order_.size() >= most_) erase(Value(order_.front()));
+    if (order_.size() >= max_) erase(Value(order_.front()));
     places_.emplace(value, order_.insert(order_.end(), value));
   }
 
@@ -31,7 +31,7 @@ class RecentSet {
   }
 
  private:
-  const std::size_t most_;
+  const std::size_t max_;
   std::list<Value> order_;  // the oldest first
   std::unordered_map<Value, typename std::list<Value>::iterator> places_;
 };

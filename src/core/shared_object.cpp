@@ -1,4 +1,4 @@
-#include "skein/core/shared_object.hpp"
+#include "core/shared_object.hpp"
 
 #include <dlfcn.h>
 
@@ -7,8 +7,8 @@
 #include <sstream>
 #include <vector>
 
-#include "skein/core/abi.hpp"
-#include "skein/core/error.hpp"
+#include "skein/detail/abi.hpp"
+#include "skein/error.hpp"
 
 extern "C" std::uint32_t skein_abi() { return SKEIN_ABI; }
 

@@ -1,4 +1,4 @@
-#include "skein/core/stream.hpp"
+#include "skein/stream.hpp"
 
 namespace skein {
 

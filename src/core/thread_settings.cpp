@@ -1,4 +1,4 @@
-#include "skein/core/thread_settings.hpp"
+#include "core/thread_settings.hpp"
 
 #include <linux/capability.h>
 #include <pthread.h>
@@ -11,8 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 namespace {

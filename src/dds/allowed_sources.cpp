@@ -1,10 +1,10 @@
-#include "skein/dds/allowed_sources.hpp"
+#include "dds/allowed_sources.hpp"
 
 #include <arpa/inet.h>
 
 #include <charconv>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds {
 

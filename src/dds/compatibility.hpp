@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 namespace skein::dds {
 

@@ -1,16 +1,6 @@
 #include "deadline_watch.hpp"
 
 namespace skein::dds {
-namespace {
-
-/// One for both vendors and the whole process; never destroyed, as participants may be static
-/// objects.
-Clock& deadline_clock() {
-  static auto* clock = new SystemClock;
-  return *clock;
-}
-
-}  // namespace
 
 void DeadlineWatch::heard(const KeyHash& key, Instant now) {
   const Instant due = now + period_;
@@ -92,9 +82,15 @@ void DeadlineTimer::run() {
   schedule();
 }
 
-std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed) {
+Clock& deadline_clock() {
+  static auto* clock = new SystemClock;
+  return *clock;
+}
+
+std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed,
+                                                   Clock& clock) {
   if (!qos.deadline) return nullptr;
-  return std::make_unique<DeadlineTimer>(deadline_clock(), *qos.deadline, std::move(missed));
+  return std::make_unique<DeadlineTimer>(clock, *qos.deadline, std::move(missed));
 }
 
 }  // namespace skein::dds

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "skein/core/clock.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/clock.hpp"
 
 namespace skein::dds {
 
@@ -57,7 +57,12 @@ class DeadlineTimer {
   bool closed_ = false;
 };
 
+/// The machine's clock; one for all vendors and the whole process. Never destroyed, as participants
+/// may be static objects.
+Clock& deadline_clock();
+
 /// A timer where a deadline is wanted, or nothing.
-std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed);
+std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed,
+                                                   Clock& clock = deadline_clock());
 
 }  // namespace skein::dds

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "skein/core/call_memory.hpp"
-#include "skein/core/guid.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::dds {
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cctype>
 
-#include "skein/core/error.hpp"
-#include "skein/core/host.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/host.hpp"
+#include "core/suggestion.hpp"
+#include "skein/error.hpp"
+#include "vendor_names.hpp"
 
 namespace skein::dds {
 namespace {
@@ -68,8 +69,8 @@ void check_options(const ParticipantOptions& options) {
 
 void refuse_shared_memory(const ParticipantOptions& options, const std::string& vendor) {
   if (!options.network.shared_memory) return;
-  throw InvalidArgument(vendor +
-                        " has no shared memory here; leave it off, or use the vendor 'fastdds'");
+  throw InvalidArgument(vendor + " has no shared memory here; leave it off, or use the vendor '" +
+                        alternatives(shared_memory_vendors()) + "'");
 }
 
 std::vector<std::string> interface_addresses(const Network& network) {

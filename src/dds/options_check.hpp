@@ -1,7 +1,7 @@
 #pragma once
 
-#include "skein/dds/allowed_sources.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/allowed_sources.hpp"
+#include "dds/port.hpp"
 
 /// Checks that all back ends make alike, before a vendor sees anything. All throw InvalidArgument.
 namespace skein::dds {

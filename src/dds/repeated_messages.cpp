@@ -4,7 +4,7 @@ namespace skein::dds {
 namespace {
 
 /// Further kinds are counted as one.
-constexpr std::size_t kMostKinds = 100;
+constexpr std::size_t kMaxKinds = 100;
 
 }  // namespace
 
@@ -13,7 +13,7 @@ std::optional<std::string> RepeatedMessages::next(std::string_view text) {
   std::uint64_t count = 0;
   {
     std::lock_guard lock(mutex_);
-    if (!counts_.contains(kind) && counts_.size() >= kMostKinds) kind = "";
+    if (!counts_.contains(kind) && counts_.size() >= kMaxKinds) kind = "";
     count = ++counts_[std::string(kind)];
   }
   if (!is_told(count)) return std::nullopt;

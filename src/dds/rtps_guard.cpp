@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "core/log.hpp"
 #include "repeated_messages.hpp"
-#include "skein/core/log.hpp"
 
 namespace skein::dds {
 namespace {

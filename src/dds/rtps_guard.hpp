@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "dds/allowed_sources.hpp"
 #include "rtps_message.hpp"
-#include "skein/dds/allowed_sources.hpp"
 #include "writer_ledger.hpp"
 
 namespace skein::dds {

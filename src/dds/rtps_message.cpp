@@ -6,12 +6,12 @@
 namespace skein::dds::rtps_message {
 namespace {
 
-constexpr std::uint32_t kMostBits = 256;
-constexpr std::int64_t kLastNumber = std::numeric_limits<std::int64_t>::max() - kMostBits;
+constexpr std::uint32_t kMaxBits = 256;
+constexpr std::int64_t kLastNumber = std::numeric_limits<std::int64_t>::max() - kMaxBits;
 
 std::optional<NumberSet> with_bits(NumberSet set, const Submessage& submessage, std::size_t at) {
   set.bits = get32(submessage.body() + at, submessage.little());
-  if (set.bits > kMostBits) return std::nullopt;
+  if (set.bits > kMaxBits) return std::nullopt;
   set.end = at + 4 + (set.bits + 31) / 32 * 4;
   return set.end <= submessage.size ? std::optional(set) : std::nullopt;
 }
@@ -137,7 +137,7 @@ std::optional<NumberSet> fragment_number_set(const Submessage& submessage, std::
   const auto set =
       with_bits({get32(submessage.body() + at, submessage.little())}, submessage, at + 4);
   if (!set || set->base < 1) return std::nullopt;
-  return set->base <= std::numeric_limits<std::uint32_t>::max() - kMostBits ? set : std::nullopt;
+  return set->base <= std::numeric_limits<std::uint32_t>::max() - kMaxBits ? set : std::nullopt;
 }
 
 std::optional<Data> data(const Submessage& submessage) {

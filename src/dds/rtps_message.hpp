@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 /// The form of RTPS 2.3 messages (OMG formal/2019-04-03), as far as Skein looks at what it receives
 /// before a vendor does.

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds {
 
@@ -35,8 +35,9 @@ inline void copy_padded(std::span<const std::byte> cdr, std::byte* to) {
 
 /// The sample without padding and without the mark, as it was before copy_padded().
 inline std::span<const std::byte> without_padding(std::byte* message, std::size_t size) {
+  if (size % 4 != 0 || size < kHeaderSize) return {message, size};
   const auto padding = std::to_integer<std::size_t>(message[3] & std::byte{0x03});
-  if (size % 4 != 0 || size < kHeaderSize + padding) return {message, size};
+  if (size < kHeaderSize + padding) return {message, size};
   message[3] &= std::byte{0xFC};
   return {message, size - padding};
 }

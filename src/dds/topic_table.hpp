@@ -6,8 +6,8 @@
 #include <mutex>
 #include <string>
 
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds {
 

@@ -2,11 +2,12 @@
 #include <map>
 #include <mutex>
 
-#include "skein/core/error.hpp"
-#include "skein/core/shared_object.hpp"
-#include "skein/core/suggestion.hpp"
-#include "skein/dds/loopback.hpp"
-#include "skein/dds/module.hpp"
+#include "core/shared_object.hpp"
+#include "core/suggestion.hpp"
+#include "dds/module.hpp"
+#include "dds/vendor_names.hpp"
+#include "skein/error.hpp"
+#include "skein/loopback.hpp"
 
 namespace skein::dds {
 namespace {
@@ -14,12 +15,23 @@ namespace {
 struct Module {
   std::string vendor;
   std::string package;  // holds the vendor's own library
+  bool shared_memory;
 };
 
+// All that the library knows of its back ends, beside their modules.
 const std::vector<Module>& modules() {
-  static const std::vector<Module> known{{"fastdds", "libfastrtps2.9"},
-                                         {"cyclonedds", "libddsc0debian"}};
+  static const std::vector<Module> known{{"fastdds", "libfastrtps2.9", true},
+                                         {"cyclonedds", "libddsc0debian", false}};
   return known;
+}
+
+template <class Condition>
+std::vector<std::string> names_of_modules(Condition condition) {
+  std::vector<std::string> names;
+  for (const Module& module : modules()) {
+    if (condition(module)) names.push_back(module.vendor);
+  }
+  return names;
 }
 
 std::shared_ptr<Vendor> process_wide_loopback() {
@@ -43,13 +55,42 @@ std::shared_ptr<Vendor> load_module(const Module& module) {
 
 }  // namespace
 
+const std::vector<std::string>& networked_vendors() {
+  static const auto names = names_of_modules([](const Module&) { return true; });
+  return names;
+}
+
+const std::vector<std::string>& vendor_names() {
+  static const auto names = [] {
+    auto all = networked_vendors();
+    all.push_back(kLoopback);
+    return all;
+  }();
+  return names;
+}
+
+const std::vector<std::string>& shared_memory_vendors() {
+  static const auto names =
+      names_of_modules([](const Module& module) { return module.shared_memory; });
+  return names;
+}
+
+std::string alternatives(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
+    text += names[i];
+  }
+  return text;
+}
+
 std::shared_ptr<Vendor> load_vendor(const std::string& name) {
-  if (name == "loopback") return process_wide_loopback();
+  if (name == kLoopback) return process_wide_loopback();
   const auto module = std::ranges::find(modules(), name, &Module::vendor);
   if (module == modules().end()) {
-    const std::vector<std::string> known{"fastdds", "cyclonedds", "loopback"};
-    throw InvalidArgument("there is no DDS vendor '" + name + "'" + suggestion(name, known) +
-                          "; known are fastdds, cyclonedds and loopback");
+    throw InvalidArgument("there is no DDS vendor '" + name + "'" +
+                          suggestion(name, vendor_names()) + "; write " +
+                          alternatives(vendor_names()));
   }
   static std::mutex mutex;
   static std::map<std::string, std::shared_ptr<Vendor>> loaded;

@@ -14,8 +14,8 @@ WriterLedger::Writer* WriterLedger::find(const Guid& writer) {
 bool WriterLedger::announce(const Guid& writer, std::int64_t number, Clock::time_point now) {
   Writer* known = find(writer);
   if (known == nullptr) {
-    if (number > kMostBefore) return false;
-    if (recent_.size() >= kMostWriters / 2) {
+    if (number > kMaxBefore) return false;
+    if (recent_.size() >= kMaxWriters / 2) {
       older_ = std::move(recent_);
       recent_.clear();
     }
@@ -73,7 +73,7 @@ bool WriterLedger::make_room(std::uint32_t size, Clock::time_point now) {
   constexpr auto kGivenUpAfter = std::chrono::seconds(5);
   constexpr int kAskedAtATime = 8;
   const auto is_room = [&] {
-    return samples_.size() < kMostSamples && claimed_ + size <= kMostBytes;
+    return samples_.size() < kMaxSamples && claimed_ + size <= kMaxBytes;
   };
   if (size > kLargestSample) return false;
   for (int i = 0; i < kAskedAtATime && !is_room() && !order_.empty(); ++i) {

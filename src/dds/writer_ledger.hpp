@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rtps_message.hpp"
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::dds {
 
@@ -19,17 +19,17 @@ class WriterLedger {
   using Clock = std::chrono::steady_clock;
 
   /// A writer that is new here, as to a late joiner, may have written so many samples.
-  static constexpr std::int64_t kMostBefore = std::int64_t{1} << 32;
+  static constexpr std::int64_t kMaxBefore = std::int64_t{1} << 32;
   /// Afterwards it may be ahead of what was heard of it by this, and by one for each microsecond
   /// since, up to the second number.
   static constexpr std::int64_t kLeap = std::int64_t{1} << 20;
   static constexpr std::int64_t kGreatestLeap = std::int64_t{1} << 30;
-  static constexpr std::size_t kMostWriters = 16384;
+  static constexpr std::size_t kMaxWriters = 16384;
 
   /// Of one sample that comes in fragments, of all such that are not complete, and how many.
   static constexpr std::uint32_t kLargestSample = 256u << 20;
-  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
-  static constexpr std::size_t kMostSamples = 4096;
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
+  static constexpr std::size_t kMaxSamples = 4096;
   /// RTPS asks for 1024. Fast DDS keeps a list in the fragments that are missing, which smaller
   /// ones than 8 bytes would break.
   static constexpr std::uint16_t kSmallestFragment = 256;

@@ -1,4 +1,4 @@
-#include "skein/entity/circuit_breaker.hpp"
+#include "skein/detail/circuit_breaker.hpp"
 
 #include <algorithm>
 

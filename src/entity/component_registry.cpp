@@ -1,9 +1,11 @@
-#include "skein/entity/component_registry.hpp"
+#include "skein/component_registry.hpp"
 
+#include <algorithm>
 #include <set>
 
-#include "skein/core/error.hpp"
-#include "skein/core/shared_object.hpp"
+#include "core/shared_object.hpp"
+#include "skein/error.hpp"
+#include "skein/selection.hpp"
 
 namespace skein {
 namespace {
@@ -29,6 +31,20 @@ void ComponentRegistry::add_csp(const std::string& component, CspFactory factory
 void ComponentRegistry::add_mission(const std::string& component, Mission mission) {
   refuse_duplicate(component);
   missions_[component] = std::move(mission);
+}
+
+void ComponentRegistry::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
+  const std::string name = strategy->name();
+  if (std::ranges::count(StrategyFactory().names(), name) > 0) {
+    throw InvalidArgument("'" + name +
+                          "' is one of Skein's own selection strategies; give yours another name");
+  }
+  for (const auto& known : strategies_) {
+    if (known->name() != name) continue;
+    throw InvalidArgument("two selection strategies '" + name +
+                          "' are registered; load only one of the plugins that hold it");
+  }
+  strategies_.push_back(std::move(strategy));
 }
 
 const ComponentRegistry::BodyFactory* ComponentRegistry::find_body(

@@ -1,10 +1,10 @@
-#include "skein/entity/decision.hpp"
+#include "skein/decision.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 #include "wire_values.hpp"
 
@@ -32,7 +32,7 @@ Enumeration named(const std::array<Enumeration, kSize>& all, const std::string& 
 introspection::LearnedFigures figures_of(const Prediction& prediction) {
   return {static_cast<std::uint32_t>(prediction.samples),
           wire_values::list(prediction.median),
-          wire_values::list(prediction.q95),
+          wire_values::list(prediction.p95),
           wire_values::list(prediction.quality),
           prediction.reliability,
           prediction.idle};
@@ -41,7 +41,7 @@ introspection::LearnedFigures figures_of(const Prediction& prediction) {
 Prediction prediction_of(const introspection::LearnedFigures& figures) {
   return {figures.samples,
           wire_values::maybe(figures.median),
-          wire_values::maybe(figures.q95),
+          wire_values::maybe(figures.p95),
           wire_values::maybe(figures.quality),
           figures.reliability,
           figures.idle};

@@ -1,6 +1,6 @@
+#include "core/printable.hpp"
 #include "selection_text.hpp"
-#include "skein/core/printable.hpp"
-#include "skein/entity/decision.hpp"
+#include "skein/decision.hpp"
 
 namespace skein {
 namespace {
@@ -16,11 +16,12 @@ std::string shown(const std::string& text) {
 }
 
 std::string learned_text(const Prediction& learned) {
-  std::string text = "has shown over " + std::to_string(learned.samples) + " like runs";
-  if (learned.median) text += " a median of " + in_ms(*learned.median);
-  if (learned.q95) text += ", " + in_ms(*learned.q95) + " at 95 %";
-  if (learned.quality) text += ", quality " + number(*learned.quality);
-  return text + ", " + percent(learned.reliability) + " accepted";
+  std::string text = "over " + std::to_string(learned.samples) +
+                     (learned.samples == 1 ? " similar request:" : " similar requests:");
+  if (learned.median) text += " median " + in_ms(*learned.median) + ",";
+  if (learned.p95) text += " p95 " + in_ms(*learned.p95) + ",";
+  if (learned.quality) text += " quality " + number(*learned.quality) + ",";
+  return text + " " + percent(learned.reliability) + " accepted";
 }
 
 std::string line_of(const Features& features) {
@@ -70,7 +71,7 @@ std::string explain(const DecisionRecord& record) {
   for (const Attempt& attempt : record.attempts) text += line_of(attempt);
   if (record.stuck > 0)
     text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";
-  text += preselected ? "  selected" : record.failure.empty() ? "  answered" : "  failed";
+  text += !record.failure.empty() ? "  failed" : preselected ? "  selected" : "  answered";
   text += " after " + in_ms(record.took);
   if (!record.synthesis.empty()) text += ": " + shown(record.synthesis);
   if (!record.failure.empty()) text += ": " + shown(record.failure);

@@ -1,16 +1,28 @@
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 #include <map>
 #include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
-#include "skein/core/log.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/load_board.hpp"
+#include "brokerless_discovery/process_watch.hpp"
+#include "core/interface_name.hpp"
+#include "core/leave_behind.hpp"
+#include "core/log.hpp"
+#include "dds/port.hpp"
+#include "dds/vendor_names.hpp"
+#include "entity/statistics_topic.hpp"
+#include "rpc/call_journal.hpp"
+#include "rpc/dds_server.hpp"
+#include "rpc/local_directory.hpp"
+#include "rpc/service.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/entity/statistics_topic.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
-#include "skein/rpc/dds_server.hpp"
 
 namespace skein {
 namespace {
@@ -59,15 +71,32 @@ struct Entity::Provided {
   std::unique_ptr<rpc::DdsServer> server;
   Broker::Registration load;
   Broker::Registration registration;
+  bool is_body = false;
+  bool awaited = false;
 
   ~Provided() {
+    close();
+    await_end(std::chrono::steady_clock::now() + kStopPatience);
+  }
+
+  /// No more calls come, and those that run are told to stop. Twice is no error.
+  void close() {
     registration.withdraw();
     load.withdraw();
     server.reset();
-    service->close();
-    if (!executor->stop_or_abandon(kStopPatience, service)) {
-      log(LogLevel::Error, name, "a call did not return; its thread is left behind");
-    }
+    if (service) service->close();
+    executor->request_stop();
+  }
+
+  /// Once closed; false where a call did not return in time. The second time it does not wait.
+  bool await_end(std::chrono::steady_clock::time_point deadline) {
+    if (std::exchange(awaited, true)) return true;
+    const bool ended = !service || service->await_end(deadline);
+    const auto patience = std::chrono::ceil<std::chrono::milliseconds>(
+        std::max<Duration>(deadline - std::chrono::steady_clock::now(), Duration::zero()));
+    if (executor->stop_or_abandon(patience, service) && ended) return true;
+    log(LogLevel::Error, name, "a call did not return; its thread is left behind");
+    return false;
   }
 };
 
@@ -76,7 +105,8 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
-        journal(rpc::CallJournal::open(*participant, control, options.system + "/" + options.name)),
+        journal(std::make_shared<rpc::CallJournal>(*participant, control,
+                                                   options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
                {options.system, options.name, options.vendor->name(), options.lease}),
         loads(*participant, process->clock(), control),
@@ -89,7 +119,8 @@ struct Entity::State {
   std::unique_ptr<dds::Participant> make_participant() const {
     if (!options.vendor) {
       throw InvalidArgument("entity '" + options.name +
-                            "' has no vendor; pass dds::load_vendor(\"fastdds\") or another");
+                            "' has no vendor; pass dds::load_vendor(\"" +
+                            dds::vendor_names().front() + "\") or another");
     }
     dds::ParticipantOptions participant_options;
     participant_options.domain = options.domain;
@@ -143,13 +174,23 @@ Entity::~Entity() {
     provided.swap(state_->provided);
   }
   for (const auto& [id, service] : provided) state_->process->directory()->remove(id);
+  for (const auto& [id, service] : provided) service->close();
+  const auto deadline = std::chrono::steady_clock::now() + kStopPatience;  // of all together
+  bool stuck = false;
+  for (const auto& [id, service] : provided) {
+    if (!service->await_end(deadline) && service->is_body) stuck = true;
+  }
   provided.clear();
   state_->continuations->finish();
   state_->journal->close();
+  // A Body may use the Head, and all that this uses, should it ever come back.
+  if (stuck) leave_behind(std::shared_ptr<State>(std::move(state_)));
 }
 
 const EntityOptions& Entity::options() const noexcept { return state_->options; }
 std::string Entity::id() const { return state_->options.system + "/" + state_->options.name; }
+
+Guid Entity::guid() const { return state_->participant->guid().participant(); }
 Connector& Entity::connector() noexcept { return state_->connector; }
 Broker& Entity::broker() noexcept { return state_->broker; }
 Head& Entity::head() noexcept { return state_->head; }
@@ -183,6 +224,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
       std::make_shared<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
+  provided->is_body = owner.empty();
   provided->executor = std::move(executor);
   rpc::Service::Options service_options;
   service_options.id = state_->broker.new_provider();
@@ -195,7 +237,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   service_options.name_of = [&broker = state_->broker](const Guid& strand) {
     return name_of(broker, strand);
   };
-  service_options.inline_calls = owner.empty();
+  service_options.thread = options.thread;
   if (owner.empty()) {
     service_options.open = [&head = state_->head](const rpc::OpenRequest& request) {
       return head.initialize(request);
@@ -235,7 +277,7 @@ void Entity::withdraw(const Guid& provider) {
     std::lock_guard lock(state_->mutex);
     if (auto node = state_->provided.extract(provider)) provided = std::move(node.mapped());
   }
-  state_->process->directory()->remove(provider);
+  if (provided) state_->process->directory()->remove(provider);
 }
 
 }  // namespace skein

@@ -1,12 +1,15 @@
-#include "skein/entity/head.hpp"
+#include "skein/head.hpp"
 
 #include <algorithm>
 
+#include "core/log.hpp"
+#include "dds/port.hpp"
 #include "head_run.hpp"
 #include "head_session.hpp"
-#include "skein/core/call_context.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "rpc/local_directory.hpp"
+#include "rpc/service.hpp"
+#include "skein/call_context.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 namespace {
@@ -44,7 +47,6 @@ Head::Head(const Parts& parts, HeadOptions options)
     : state_(std::make_unique<State>(parts, std::move(options))) {}
 
 Head::~Head() {
-  state_->watch->close();
   const auto& file = state_->options.history;
   if (file.empty()) return;
   try {
@@ -85,19 +87,12 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   DecisionRecord record = open_record(interface, *strategy, options.features, begin, limit);
   record.request = options.request;
   record.execution = to_string(options.execution);
-  std::exception_ptr failure;
-  try {
+  state_->record(record, begin, wanted, [&] {
     record.candidates = state_->candidates(interface, options.only, options.features, begin);
     if (record.candidates.empty()) state_->refuse_without(interface, options.only);
     Run run(*state_, interface, *strategy, task, record, begin);
     if (!run.run()) run.fail();
-  } catch (...) {
-    failure = std::current_exception();
-    record.failure = task_run::verdict_of_current_exception().text;
-  }
-  record.took = state_->parts.clock.now() - begin;
-  state_->conclude(std::move(record), wanted);
-  if (failure) std::rethrow_exception(failure);
+  });
 }
 
 std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const Features& features,
@@ -106,24 +101,26 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
   const auto strategy = state_->strategy();
   DecisionRecord record = open_record(interface, *strategy, features, begin, limit);
   record.execution = "none";
-  record.candidates = state_->candidates(interface, {}, features, begin);
-  if (record.candidates.empty()) state_->refuse_without(interface, {});
-  CandidateIterator iterator(*strategy, record.candidates, record.situation);
-  auto next = iterator.next(record.available);
-  Attempt& attempt = record.attempts.emplace_back();
-  static_cast<Choice&>(attempt) = std::move(next.choice);
-  attempt.outcome = Attempt::Outcome::Preselected;
-  Instant reached = begin;
-  auto channel = state_->channel_to(next.candidate, record.available, reached);
-  record.took = state_->parts.clock.now() - begin;
-  state_->conclude(std::move(record));
+  std::shared_ptr<Channel> channel;
+  state_->record(record, begin, nullptr, [&] {
+    record.candidates = state_->candidates(interface, {}, features, begin);
+    if (record.candidates.empty()) state_->refuse_without(interface, {});
+    CandidateIterator iterator(*strategy, record.candidates, record.situation);
+    auto next = iterator.next(record.available);
+    Attempt& attempt = record.attempts.emplace_back();
+    static_cast<Choice&>(attempt) = std::move(next.choice);
+    Instant reached = begin;
+    channel = state_->channel_to(next.candidate, record.available, reached);
+    attempt.outcome = Attempt::Outcome::Preselected;
+  });
   return channel;
 }
 
 std::vector<Head::Current> Head::running() const {
   std::lock_guard lock(state_->mutex);
   std::vector<Current> running;
-  for (const auto& [run, csp, pid] : state_->running) running.push_back({csp, pid, state_->host});
+  for (const auto& each : state_->running)
+    running.push_back({each.csp, each.pid, each.host ? *each.host : std::string()});
   return running;
 }
 
@@ -137,6 +134,6 @@ History Head::history() const {
   return state_->history;
 }
 
-bool Head::degraded() const { return state_->count_stuck() >= state_->options.most_stuck; }
+bool Head::degraded() const { return state_->count_stuck() >= state_->options.max_stuck; }
 
 }  // namespace skein

@@ -1,30 +1,56 @@
 #include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
 
+#include "brokerless_discovery/broker.hpp"
 #include "head_state.hpp"
-#include "skein/core/error.hpp"
+#include "rpc/local_directory.hpp"
+#include "skein/constraint.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
+using brokerless_discovery::find_attribute;
 using brokerless_discovery::number_attribute;
+using brokerless_discovery::Quantity;
+using brokerless_discovery::quantity_of;
 using brokerless_discovery::ServiceDescription;
 
+namespace {
+
+// What others declare may be any number; as far as any task is concerned, this is for ever.
+constexpr double kLongestLatencySeconds = 365.0 * 24 * 3600;
+
+// A plain number is in milliseconds, the dictionary's unit.
+std::optional<Duration> declared_latency(const ServiceDescription& description) {
+  const std::string* const declared = find_attribute(description, "latency");
+  const Quantity quantity = declared ? quantity_of(*declared) : Quantity{};
+  if (quantity.kind == Quantity::Kind::Text) return std::nullopt;
+  const double seconds =
+      quantity.kind == Quantity::Kind::Time ? quantity.value : quantity.value / 1000;
+  return std::chrono::round<Duration>(
+      std::chrono::duration<double>(std::clamp(seconds, 0.0, kLongestLatencySeconds)));
+}
+
+}  // namespace
+
 Head::State::Known Head::State::known(const InterfaceInfo& interface,
-                                      const ServiceDescription& description) {
+                                      const std::shared_ptr<const ServiceDescription>& described) {
+  const ServiceDescription& description = *described;
   Known known;
   Candidate& candidate = known.candidate;
   candidate.name = description.entity;
   candidate.provider = {description.provider};
   const auto service = parts.directory->find(candidate.provider);
   known.service = service;
+  known.host = std::shared_ptr<const std::string>(described, &description.host);
   candidate.in_process = service != nullptr;
   candidate.pid = description.pid;
   candidate.quality = number_attribute(description, "quality").value_or(0);
-  if (const auto latency_ms = number_attribute(description, "latency")) {
-    candidate.latency = std::chrono::duration_cast<Duration>(
-        std::chrono::duration<double, std::milli>(*latency_ms));
-  }
-  known.standing = &standing(interface.name, candidate.name);
+  candidate.latency = declared_latency(description);
+  known.breaker = &breaker(interface.name, candidate.name);
   return known;
 }
 
@@ -37,9 +63,20 @@ const Head::State::Roster& Head::State::roster(const InterfaceInfo& interface) {
   query.client = &interface;
   const auto found = parts.broker.find_service(query);
   roster.csps.clear();
-  for (const auto& description : found) roster.csps.push_back(known(interface, *description));
+  for (const auto& description : found) roster.csps.push_back(known(interface, description));
   roster.generation = generation;
   return roster;
+}
+
+// Under the lock.
+std::shared_ptr<const std::string> Head::State::host_of(const InterfaceInfo& interface,
+                                                        const Guid& provider) const {
+  const auto roster = rosters.find(&interface);
+  if (roster == rosters.end()) return nullptr;
+  for (const Known& known : roster->second.csps) {
+    if (known.candidate.provider == provider) return known.host;
+  }
+  return nullptr;
 }
 
 std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
@@ -56,9 +93,9 @@ std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
     if (service && service->overdue()) continue;
     Candidate& candidate = candidates.emplace_back(known.candidate);
     candidate.learned = history.predict(interface.name, candidate.name, features);
-    candidate.breaker = known.standing->breaker.state(now);
+    candidate.breaker = known.breaker->state(now);
     if (candidate.breaker != CircuitBreaker::State::Closed)
-      candidate.quarantine = known.standing->breaker.quarantine(now);
+      candidate.quarantine = known.breaker->quarantine(now);
   }
   return candidates;
 }
@@ -67,8 +104,8 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
   auto query = parts.broker.query(std::string(interface.name));
   query.client = &interface;
   throw NoCandidate(only.empty() ? parts.broker.explain(query)
-                                 : "the planner or other CSP '" + only +
-                                       "' does not stand by for " + std::string(interface.name));
+                                 : "the planner or other CSP '" + only + "' is not available for " +
+                                       std::string(interface.name));
 }
 
 Situation Head::State::situation(const InterfaceInfo& interface, const Features& features,

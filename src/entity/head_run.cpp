@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "skein/core/call_context.hpp"
-#include "skein/core/call_memory.hpp"
-#include "skein/core/error.hpp"
+#include "rpc/local_directory.hpp"
+#include "skein/error.hpp"
 #include "slice.hpp"
 
 namespace skein {
@@ -33,7 +32,7 @@ Verdict task_run::verdict_of_current_exception() {
     if (error.code() == ErrorCode::TimedOut) verdict.outcome = Outcome::TimedOut;
     if (error.code() == ErrorCode::Disconnected) verdict.outcome = Outcome::Disconnected;
     // Not executed: nothing is known of how it works.
-    verdict.fault = error.code() != ErrorCode::Unavailable && error.code() != ErrorCode::Overloaded;
+    verdict.fault = !is_refusal(error.code());
   } catch (const std::exception& exception) {
     verdict.text = exception.what();
   } catch (...) {
@@ -65,6 +64,17 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       iterator_(strategy, record.candidates, record.situation) {}
 
 bool Head::Run::run() {
+  try {
+    run_all();
+  } catch (...) {  // a strategy's or a synthesis's own
+    cancel_rest();
+    throw;
+  }
+  cancel_rest();
+  return done_;
+}
+
+void Head::Run::run_all() {
   while (!done_ && !settled_) {
     while (begin_another()) {
     }
@@ -81,8 +91,6 @@ bool Head::Run::run() {
       done_ = true;
     }
   }
-  cancel_rest();
-  return done_;
 }
 
 // Where all have failed others may have joined: those that left, say, have been replaced.
@@ -121,13 +129,13 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   static_cast<Choice&>(attempt) = std::move(next.choice);
   attempt.round = round_;
   attempt.began = began - begin_;
-  const auto beginning = state_.begin(interface_, next.candidate, began, deadline_ - began);
-  if (!beginning) {
+  const auto run = state_.begin(interface_, next.candidate, began);
+  if (!run) {
     attempt.outcome = Outcome::Cancelled;
     attempt.text = "it has been quarantined meanwhile";
     return;
   }
-  Live live{record_.attempts.size() - 1, std::move(next.candidate), beginning->run, nullptr};
+  Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr};
   const Instant end =
       task_.options().execution == Execution::One ? began + attempt.slice : deadline_;
   // What is late before the next may begin is late only by what it was expected to take.
@@ -138,8 +146,6 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     Instant reached = began;
     auto channel = state_.channel_to(live.candidate,
                                      std::min(end - began, Duration(kOpeningPatience)), reached);
-    Exposure exposure;
-    channel = expose(live, std::move(channel), beginning->room_inline, exposure);
     live.work =
         task_.begin(std::move(channel), std::max(Duration::zero(), end - reached), live.candidate);
     live_.push_back(std::move(live));
@@ -152,40 +158,6 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     }
     note(live, std::move(verdict));
   }
-}
-
-// A CSP that is quick, and has always come back, is called without a change of threads, where this
-// thread can be spared if it does not come back for once.
-std::shared_ptr<Channel> Head::Run::expose(Live& live, std::shared_ptr<Channel> channel,
-                                           std::size_t most, Exposure& exposure) {
-  if (most == 0 || task_.options().execution != Execution::One) return channel;
-  Worker* const worker = ThreadExecutor::worker();
-  caller_ = CallContext::current();
-  if (!worker || !caller_) return channel;
-  auto service = state_.parts.directory->find(live.candidate.provider);
-  if (!service) return channel;
-  exposure.channel = make_shared_in_call_memory<entity::ExposedChannel>(
-      std::move(channel), std::move(service),
-      entity::ExposedChannel::Terms{*state_.watch, *worker, deadline_, most,
-                                    [this, &live] { lose(live); }});
-  return exposure.channel;
-}
-
-// On `control`, in the place of the performing thread, which hangs in the CSP and touches nothing
-// of this any more.
-void Head::Run::lose(Live& live) {
-  Verdict verdict;
-  verdict.outcome = Outcome::TimedOut;
-  verdict.fault = false;  // it is quarantined at once
-  verdict.text = live.candidate.name + " hangs on the thread of the service that asked for it; " +
-                 "the thread is written off, and the CSP has one of its own from now on";
-  const auto error = std::make_exception_ptr(TimedOut(verdict.text));
-  record_.failure = verdict.text;
-  note(live, std::move(verdict));
-  state_.distrust(interface_, live.candidate);
-  record_.took = now() - begin_;
-  state_.conclude(std::move(record_));
-  caller_->answer_instead(error);
 }
 
 bool Head::Run::waits_for_late_ones() const {

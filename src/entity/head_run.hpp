@@ -3,7 +3,6 @@
 #include <condition_variable>
 #include <optional>
 
-#include "exposed_channel.hpp"
 #include "head_state.hpp"
 
 namespace skein {
@@ -30,14 +29,6 @@ class Head::Run {
     std::unique_ptr<task_run::Work> work;
   };
 
-  /// Lets a channel run calls here while it lives.
-  struct Exposure {
-    std::shared_ptr<entity::ExposedChannel> channel{};
-    ~Exposure() {
-      if (channel) channel->end();
-    }
-  };
-
   /// Where the caller's thread waits for several CSPs.
   class Bell {
    public:
@@ -51,12 +42,10 @@ class Head::Run {
   };
 
   Instant now() const { return state_.parts.clock.now(); }
+  void run_all();
   bool begin_another();
   bool look_again();
   void begin(CandidateIterator::Next next, Instant began);
-  std::shared_ptr<Channel> expose(Live& live, std::shared_ptr<Channel> channel, std::size_t most,
-                                  Exposure& exposure);
-  void lose(Live& live);
   void await();
   void judge_ready();
   void note(Live& live, task_run::Verdict verdict);
@@ -73,7 +62,6 @@ class Head::Run {
   CandidateIterator iterator_;
   std::uint32_t round_ = 0;
   std::vector<Live> live_;
-  const CallContext* caller_ = nullptr;  // whom a CSP on this thread keeps waiting
   std::optional<Instant> late_at_;
   std::shared_ptr<Bell> bell_;  // once several work at a time
   task_run::Verdict last_;

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "skein/core/call_context.hpp"
-#include "skein/entity/selection.hpp"
+#include "skein/call_context.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::entity {
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "core/log.hpp"
 #include "head_session.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/core/call_context.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
-#include "skein/idl/type_support.hpp"
+#include "rpc/local_directory.hpp"
+#include "skein/call_context.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein {
@@ -17,19 +17,13 @@ using Outcome = Attempt::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
 
-// A CSP runs on its Body's thread if as many like runs as a prediction rests on were quick, and the
-// task has so much time that the system's load is not taken for a hang.
-constexpr std::size_t kRunsBeforeInline = History::kNeighbours;
-constexpr std::chrono::milliseconds kTimeInline{100};
-
 }  // namespace
 
 Head::State::State(const Parts& parts_, HeadOptions options_)
     : parts(parts_),
       options(std::move(options_)),
-      host(brokerless_discovery::ProcessWatch::host()),
-      watch(std::make_shared<entity::InlineWatch>(parts_.clock, parts_.control)),
-      topic(parts.participant, parts.control) {
+      publisher(parts.participant, parts.control, introspection::kDecisions) {
+  for (const auto& strategy : options.strategies) strategies.add(strategy);
   strategies.make(options.strategy);
   if (!options.history.empty()) history = History::load(options.history);
   if (options.log.empty()) return;
@@ -49,35 +43,27 @@ std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
   return strategies.make(options.strategy);
 }
 
-Head::State::Standing& Head::State::standing(std::string_view interface, std::string_view csp) {
-  const auto found = standings.find(ByCsp::View(interface, csp));
-  if (found != standings.end()) return found->second;
-  const Standing first{CircuitBreaker(options.breaker), history.was_late(interface, csp)};
-  return standings.try_emplace({std::string(interface), std::string(csp)}, first).first->second;
+CircuitBreaker& Head::State::breaker(std::string_view interface, std::string_view csp) {
+  const auto found = breakers.find(ByCsp::View(interface, csp));
+  if (found != breakers.end()) return found->second;
+  return breakers
+      .try_emplace({std::string(interface), std::string(csp)}, CircuitBreaker(options.breaker))
+      .first->second;
 }
 
-std::optional<Head::State::Beginning> Head::State::begin(const InterfaceInfo& interface,
-                                                         const Candidate& candidate, Instant now,
-                                                         Duration time) {
+std::optional<std::uint64_t> Head::State::begin(const InterfaceInfo& interface,
+                                                const Candidate& candidate, Instant now) {
   std::lock_guard lock(mutex);
-  Standing& standing = this->standing(interface.name, candidate.name);
+  CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);
   // Listed as open it is the last resort.
-  if (standing.breaker.state(now) == CircuitBreaker::State::Open &&
+  if (breaker.state(now) == CircuitBreaker::State::Open &&
       candidate.breaker != CircuitBreaker::State::Open) {
     return std::nullopt;
   }
-  standing.breaker.begin(now);
-  running.push_back({++last_run, candidate.name, candidate.pid});
-  return Beginning{last_run, room_inline(candidate, standing, time)};
-}
-
-std::size_t Head::State::room_inline(const Candidate& candidate, const Standing& standing,
-                                     Duration time) const {
-  const auto& learned = candidate.learned;
-  const bool quick = learned && learned->samples >= kRunsBeforeInline && learned->median &&
-                     *learned->median <= options.quick;
-  if (!candidate.in_process || standing.hung || !quick || time < kTimeInline) return 0;
-  return options.most_stuck - std::min(options.most_stuck, hung.size());
+  breaker.begin(now);
+  running.push_back(
+      {++last_run, candidate.name, candidate.pid, host_of(interface, candidate.provider)});
+  return last_run;
 }
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
@@ -89,31 +75,20 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
   {
     std::lock_guard lock(mutex);
     std::erase_if(running, [&](const Running& each) { return each.run == run; });
-    Standing& standing = this->standing(interface.name, candidate.name);
+    CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);
     if (is_told) {  // it may be ended
-      standing.breaker.trip(parts.clock.now());
+      breaker.trip(parts.clock.now());
     } else if (fault) {
-      standing.breaker.fail(parts.clock.now());
+      breaker.fail(parts.clock.now());
     } else if (attempt.outcome == Outcome::Accepted || attempt.outcome == Outcome::Refused) {
-      standing.breaker.succeed();
+      breaker.succeed();
     } else {
-      standing.breaker.end();
+      breaker.end();
     }
     learn(interface, candidate, features, attempt);
-    if (timed_out && candidate.in_process) {
-      standing.hung = true;
-      hung.insert(candidate.provider);
-    }
+    if (timed_out && candidate.in_process) hung.insert(candidate.provider);
   }
   if (is_told) options.on_hang(candidate);
-}
-
-void Head::State::distrust(const InterfaceInfo& interface, const Candidate& candidate) {
-  std::lock_guard lock(mutex);
-  Standing& standing = this->standing(interface.name, candidate.name);
-  standing.breaker.trip(parts.clock.now());
-  standing.hung = true;
-  hung.erase(candidate.provider);  // its worker is counted
 }
 
 void Head::State::learn(const InterfaceInfo& interface, const Candidate& candidate,
@@ -138,8 +113,8 @@ std::size_t Head::State::stuck() {
     const auto service = parts.directory->find(provider);
     return !service || !service->overdue();
   });
-  const std::size_t stuck = hung.size() + watch->lost();
-  const bool degraded = stuck >= options.most_stuck;
+  const std::size_t stuck = hung.size();
+  const bool degraded = stuck >= options.max_stuck;
   if (degraded && !was_degraded) {
     log(LogLevel::Error, parts.entity,
         std::to_string(stuck) + " CSPs in this process do not return; it should be restarted");
@@ -151,7 +126,8 @@ std::size_t Head::State::stuck() {
 void Head::State::conclude(DecisionRecord&& record, DecisionRecord* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
                                     [](const Attempt& attempt) { return attempt.explores; });
-  const bool told = topic.on() || !options.log.empty();
+  const bool read = publisher.on();
+  const bool told = read || !options.log.empty();
   std::optional<DecisionRecord> copy;
   std::optional<DecisionRecord> dropped;  // outside the lock
   {
@@ -166,7 +142,7 @@ void Head::State::conclude(DecisionRecord&& record, DecisionRecord* wanted) {
       decisions.pop_front();
     }
   }
-  if (told) topic.tell(*copy);
+  if (read) publisher.publish(report_of(*copy));
   if (!options.log.empty()) write_log(*copy);
   if (wanted) *wanted = std::move(*copy);
 }

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <deque>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
 #include <unordered_map>
 
-#include "inline_watch.hpp"
-#include "skein/entity/decision_topic.hpp"
-#include "skein/entity/head.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "rpc/introspection_topic.hpp"
+#include "rpc/service.hpp"
+#include "skein/head.hpp"
 
 namespace skein {
 
@@ -18,7 +20,7 @@ struct Head::State {
   State(const Parts& parts, HeadOptions options);
 
   std::shared_ptr<const SelectionStrategy> strategy() const;
-  /// Those that stand by; perhaps none.
+  /// Those that are available; perhaps none.
   std::vector<Candidate> candidates(const InterfaceInfo& interface, const std::string& only,
                                     const Features& features, Instant now);
   /// Throws NoCandidate: there is none.
@@ -28,37 +30,26 @@ struct Head::State {
   /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
   std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 
-  struct Beginning {
-    std::uint64_t run = 0;
-    /// How many CSPs may run on their callers' threads for this one to be among them; none where it
-    /// has a thread of its own in any case.
-    std::size_t room_inline = 0;
-  };
-
-  /// A CSP begins to work, with so much time; nothing, and nothing happens, where it has been
+  /// A CSP begins to work: the number of its run. Nothing, and nothing happens, where it has been
   /// quarantined since it was listed.
-  std::optional<Beginning> begin(const InterfaceInfo& interface, const Candidate& candidate,
-                                 Instant now, Duration time);
+  std::optional<std::uint64_t> begin(const InterfaceInfo& interface, const Candidate& candidate,
+                                     Instant now);
   /// What came of it: for the breaker, the history, and whoever is told of hangs.
   void end(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
            std::uint64_t run, const Attempt& attempt, bool fault);
-  /// It hung on its caller's thread: it is quarantined at once, and has its own thread for good.
-  void distrust(const InterfaceInfo& interface, const Candidate& candidate);
+  /// Runs `decide()`, which fills the record, and concludes that, also where it throws.
+  template <class Decide>
+  void record(DecisionRecord& record, Instant begin, DecisionRecord* wanted, Decide decide);
   /// Numbers the decision, keeps it and tells of it; a copy to whom `wanted` belongs, if anybody.
   void conclude(DecisionRecord&& record, DecisionRecord* wanted = nullptr);
   std::size_t count_stuck();
 
-  /// What is held of a CSP by its name.
-  struct Standing {
-    CircuitBreaker breaker;
-    bool hung = false;  ///< It was late once, in this process.
-  };
-
   /// A CSP as its description tells of it.
   struct Known {
     Candidate candidate;
-    std::weak_ptr<rpc::Service> service;  ///< In this process.
-    const Standing* standing;
+    std::shared_ptr<const std::string> host;  ///< Where it lives.
+    std::weak_ptr<rpc::Service> service;      ///< In this process.
+    const CircuitBreaker* breaker;
   };
 
   /// The CSPs of an interface, for as long as the Broker's table stays as it is.
@@ -71,16 +62,15 @@ struct Head::State {
     std::uint64_t run;
     std::string csp;
     std::uint32_t pid;
+    std::shared_ptr<const std::string> host;  // null where it has just left
   };
 
   const Parts parts;
   const HeadOptions options;
-  const std::string host;  // looking it up reads a file
-  const std::shared_ptr<entity::InlineWatch> watch;
   mutable std::mutex mutex;
   StrategyFactory strategies;
   History history;
-  std::map<std::pair<std::string, std::string>, Standing, ByCsp> standings;
+  std::map<std::pair<std::string, std::string>, CircuitBreaker, ByCsp> breakers;
   std::unordered_map<const InterfaceInfo*, Roster> rosters;
   std::map<Guid, std::shared_ptr<Channel>> channels;
   std::vector<Running> running;
@@ -91,19 +81,34 @@ struct Head::State {
   std::deque<DecisionRecord> decisions;
   std::mutex log_mutex;
   std::ofstream log_file;
-  introspection::DecisionTopic topic;
+  introspection::Publisher<introspection::Decision> publisher;
 
  private:
   const Roster& roster(const InterfaceInfo& interface);
   Known known(const InterfaceInfo& interface,
-              const brokerless_discovery::ServiceDescription& description);
-  Standing& standing(std::string_view interface, std::string_view csp);
-  std::size_t room_inline(const Candidate& candidate, const Standing& standing,
-                          Duration time) const;
+              const std::shared_ptr<const brokerless_discovery::ServiceDescription>& described);
+  std::shared_ptr<const std::string> host_of(const InterfaceInfo& interface,
+                                             const Guid& provider) const;
+  CircuitBreaker& breaker(std::string_view interface, std::string_view csp);
   void learn(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
              const Attempt& attempt);
   std::size_t stuck();
   void write_log(const DecisionRecord& record);
 };
+
+template <class Decide>
+void Head::State::record(DecisionRecord& record, Instant begin, DecisionRecord* wanted,
+                         Decide decide) {
+  std::exception_ptr failure;
+  try {
+    decide();
+  } catch (...) {
+    failure = std::current_exception();
+    record.failure = task_run::verdict_of_current_exception().text;
+  }
+  record.took = parts.clock.now() - begin;
+  conclude(std::move(record), wanted);
+  if (failure) std::rethrow_exception(failure);
+}
 
 }  // namespace skein

@@ -1,4 +1,4 @@
-#include "skein/entity/history.hpp"
+#include "skein/detail/history.hpp"
 
 #include <algorithm>
 #include <array>
@@ -88,7 +88,7 @@ void predict_times(Prediction& prediction, const Nearest& samples) {
   const std::span times(room.data(), count);
   std::sort(times.begin(), times.end());
   prediction.median = quantile(times, 0.5);
-  prediction.q95 = quantile(times, 0.95);
+  prediction.p95 = quantile(times, 0.95);
 }
 
 void predict_results(Prediction& prediction, const Nearest& samples) {
@@ -123,13 +123,6 @@ Prediction History::predict(const std::deque<Sample>& samples, const Features& f
   predict_times(prediction, near);
   predict_results(prediction, near);
   return prediction;
-}
-
-bool History::was_late(std::string_view interface, std::string_view csp) const {
-  const auto found = records_.find(ByCsp::View(interface, csp));
-  return found != records_.end() &&
-         std::any_of(found->second.samples.begin(), found->second.samples.end(),
-                     [](const Sample& sample) { return sample.late; });
 }
 
 void History::note_surprise(Record& record, const Prediction& before, const Sample& sample) {

@@ -2,9 +2,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "skein/core/error.hpp"
-#include "skein/entity/history.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/history.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
 #include "wire_values.hpp"
 
 namespace skein {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "selection_text.hpp"
-#include "skein/entity/selection.hpp"
+#include "skein/selection.hpp"
 #include "slice.hpp"
 
 namespace skein {
@@ -24,7 +24,7 @@ struct Outlook {
     quality = candidate.quality;
     if (const auto& learned = candidate.learned) {
       typical = learned->median.value_or(typical);
-      safe = learned->q95.value_or(safe);
+      safe = learned->p95.value_or(safe);
       quality = learned->quality.value_or(quality);
       reliability = learned->reliability;
     }
@@ -33,7 +33,7 @@ struct Outlook {
 
   double utility() const { return reliability * quality; }
   // Expected time until a result is accepted: of several that follow each other the sum is least
-  // where those with the least pace go first. A failure is taken to cost the 95 % latency.
+  // where those with the least pace go first. A failure is taken to cost the p95 latency.
   double pace() const {
     return static_cast<double>(typical.count()) +
            (1 - reliability) / reliability * static_cast<double>(safe.count());
@@ -133,26 +133,24 @@ class Choice {
     const Duration kept = situation_.remaining - slice;
     const bool keeps = kept > Duration::zero();
     std::string reason =
-        joined({candidates_[best].name, " has ", outlook_text(best), ": the best that fits into ",
+        joined({candidates_[best].name, ": ", outlook_text(best), ": the best that fits into ",
                 in_ms(situation_.remaining), keeps ? "; " : "", keeps ? in_ms(kept) : "",
                 keeps ? " are kept for a fall-back" : ""});
     return {best, slice, std::move(reason), outlooks_[best].safe};
   }
 
-  static std::string runs_text(std::size_t count) {
-    return count == 1 ? "like run " : std::to_string(count) + " like runs ";
-  }
-
   std::string outlook_text(std::size_t index) const {
     const Candidate& candidate = candidates_[index];
     const auto& learned = candidate.learned;
-    const double quality =
-        learned ? learned->quality.value_or(candidate.quality) : candidate.quality;
-    return joined({learned ? "by its last " : "by its description (it has not run before) ",
-                   learned ? runs_text(learned->samples) : "", "a 95 % latency of ",
-                   in_ms(outlooks_[index].safe), ", quality ", number(quality),
-                   learned ? " and " : "", learned ? percent(learned->reliability) : "",
-                   learned ? " accepted" : ""});
+    const std::string p95 = "p95 " + in_ms(outlooks_[index].safe);
+    if (!learned) {
+      return joined({"declares ", p95, " and quality ", number(candidate.quality),
+                     " (it has not run before)"});
+    }
+    return joined({p95, " over ", std::to_string(learned->samples),
+                   learned->samples == 1 ? " similar request" : " similar requests", ", quality ",
+                   number(learned->quality.value_or(candidate.quality)), ", ",
+                   percent(learned->reliability), " accepted"});
   }
 
   Duration reserve_beside(std::size_t best) const {
@@ -171,8 +169,8 @@ class Choice {
     }
     return {fastest, situation_.remaining,
             "no predicted latency fits into " + in_ms(situation_.remaining) + "; " +
-                candidates_[fastest].name + " is the fastest (" + in_ms(outlooks_[fastest].safe) +
-                " at 95 %)",
+                candidates_[fastest].name + " is the fastest (p95 " +
+                in_ms(outlooks_[fastest].safe) + ")",
             outlooks_[fastest].safe};
   }
 

@@ -1,9 +1,9 @@
-#include "skein/entity/parameters.hpp"
+#include "skein/parameters.hpp"
 
 #include <algorithm>
 
-#include "skein/core/error.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/suggestion.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 

@@ -1,10 +1,10 @@
-#include "skein/entity/selection.hpp"
+#include "skein/selection.hpp"
 
 #include <algorithm>
 
+#include "core/suggestion.hpp"
 #include "selection_text.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/suggestion.hpp"
+#include "skein/error.hpp"
 #include "slice.hpp"
 
 namespace skein {
@@ -113,14 +113,17 @@ void StrategyFactory::add(std::shared_ptr<const SelectionStrategy> strategy) {
 
 std::shared_ptr<const SelectionStrategy> StrategyFactory::make(const std::string& name) const {
   if (const auto found = strategies_.find(name); found != strategies_.end()) return found->second;
-  std::vector<std::string> known;
+  const std::vector<std::string> known = names();
   std::string list;
-  for (const auto& [known_name, strategy] : strategies_) {
-    known.push_back(known_name);
-    list += (list.empty() ? "" : ", ") + known_name;
-  }
+  for (const std::string& each : known) list += (list.empty() ? "" : ", ") + each;
   throw InvalidArgument("unknown selection strategy '" + name + "'" + suggestion(name, known) +
                         "; there are: " + list);
+}
+
+std::vector<std::string> StrategyFactory::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, strategy] : strategies_) names.push_back(name);
+  return names;
 }
 
 CandidateIterator::CandidateIterator(const SelectionStrategy& strategy,
@@ -148,6 +151,12 @@ CandidateIterator::Next CandidateIterator::next(Duration remaining) {
   situation_.remaining = remaining;
   Selection selection = strategy_.select(left_, situation_);
   situation_.exploration = 0;  // only a request's first choice explores
+  if (selection.candidate >= left_.size()) {
+    throw Internal("the strategy '" + strategy_.name() + "' selected candidate " +
+                   std::to_string(selection.candidate) + " of " + std::to_string(left_.size()));
+  }
+  selection.slice =
+      std::clamp(selection.slice, Duration::zero(), std::max(remaining, Duration::zero()));
   const auto chosen = left_.begin() + static_cast<std::ptrdiff_t>(selection.candidate);
   Next next{std::move(*chosen), {}};
   left_.erase(chosen);

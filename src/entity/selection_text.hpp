@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "skein/core/clock.hpp"
+#include "skein/clock.hpp"
 
 /// How reasons are put in words.
 namespace skein::selection_text {

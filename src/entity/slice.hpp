@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "skein/core/clock.hpp"
+#include "skein/clock.hpp"
 
 namespace skein {
 

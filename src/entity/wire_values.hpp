@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "skein/entity/history.hpp"
+#include "skein/detail/history.hpp"
 #include "skein/introspection.idl.hpp"
 
 /// Between the Head's types and those that travel and are stored.

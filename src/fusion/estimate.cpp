@@ -1,12 +1,11 @@
-#include "skein/fusion/estimate.hpp"
-
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <string>
 
 #include "matrices.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
+#include "skein/fusion.hpp"
 
 namespace skein::fusion {
 namespace {

@@ -1,11 +1,10 @@
-#include "skein/fusion/fuse.hpp"
-
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 
 #include "matrices.hpp"
+#include "skein/fusion.hpp"
 
 namespace skein::fusion {
 namespace {
@@ -49,11 +48,11 @@ double merit(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covarian
 
 std::vector<double> best_weights(const std::vector<Gaussian>& gaussians, Measure measure) {
   constexpr double kMeritLeft = 1e-10;
-  constexpr int kMostSteps = 10'000;  // whatever the weights are then, the result is consistent
+  constexpr int kMaxSteps = 10'000;  // whatever the weights are then, the result is consistent
   std::vector<Eigen::MatrixXd> informations;
   for (const Gaussian& gaussian : gaussians) informations.push_back(inverse(gaussian.covariance));
   std::vector<double> weights(gaussians.size(), 1.0 / static_cast<double>(gaussians.size()));
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     Eigen::MatrixXd sum = weights[0] * informations[0];
     for (std::size_t i = 1; i < weights.size(); ++i) sum += weights[i] * informations[i];
     const Eigen::MatrixXd covariance = inverse(sum);

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <span>
 
-#include "skein/fusion/estimate.hpp"
+#include "skein/fusion.hpp"
 
 namespace skein::fusion {
 

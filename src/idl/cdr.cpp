@@ -1,4 +1,4 @@
-#include "skein/idl/cdr.hpp"
+#include "skein/detail/cdr.hpp"
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/exceptions/BadParamException.h>
@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+
+#include "skein/detail/codec.hpp"
 
 namespace skein::idl {
 namespace {

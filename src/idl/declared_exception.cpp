@@ -1,4 +1,4 @@
-#include "skein/idl/declared_exception.hpp"
+#include "skein/detail/declared_exception.hpp"
 
 #include <atomic>
 

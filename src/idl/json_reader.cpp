@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "skein/core/suggestion.hpp"
-#include "skein/idl/json.hpp"
+#include "core/suggestion.hpp"
+#include "skein/detail/json.hpp"
 
 namespace skein::idl {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "skein/idl/json.hpp"
+#include "skein/detail/json.hpp"
 
 namespace skein::idl {
 

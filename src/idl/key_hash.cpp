@@ -1,11 +1,11 @@
-#include "skein/idl/key_hash.hpp"
+#include "skein/detail/key_hash.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::idl {
 namespace {

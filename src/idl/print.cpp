@@ -1,4 +1,4 @@
-#include "skein/idl/print.hpp"
+#include "skein/detail/print.hpp"
 
 #include <charconv>
 

@@ -1,7 +1,7 @@
-#include "skein/idl/service_reference.hpp"
+#include "skein/detail/service_reference.hpp"
 
-#include "skein/idl/print.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/make_type_support.hpp"
+#include "skein/detail/print.hpp"
 
 namespace skein {
 

@@ -1,8 +1,8 @@
-#include "skein/idl/union_access.hpp"
+#include "skein/detail/union_access.hpp"
 
 #include <string>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::idl {
 

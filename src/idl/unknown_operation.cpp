@@ -1,10 +1,10 @@
-#include "skein/idl/unknown_operation.hpp"
+#include "skein/detail/unknown_operation.hpp"
 
 #include <string>
 #include <vector>
 
-#include "skein/core/error.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/suggestion.hpp"
+#include "skein/error.hpp"
 
 namespace skein::idl {
 

@@ -1,11 +1,11 @@
-#include "skein/launch/address_space.hpp"
+#include "launch/address_space.hpp"
 
 #include <sys/mman.h>
 #include <sys/resource.h>
 
 #include <string>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::launch {
 namespace {

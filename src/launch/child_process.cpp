@@ -12,8 +12,8 @@
 #include <system_error>
 #include <vector>
 
-#include "skein/core/error.hpp"
-#include "skein/launch/ready.hpp"
+#include "launch/ready.hpp"
+#include "skein/error.hpp"
 #include "wake_up.hpp"
 
 namespace skein::launch {

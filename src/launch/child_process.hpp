@@ -7,7 +7,7 @@
 
 #include "../core/file_descriptor.hpp"
 #include "group_guard.hpp"
-#include "skein/launch/launch_plan.hpp"
+#include "launch/launch_plan.hpp"
 
 namespace skein::launch {
 

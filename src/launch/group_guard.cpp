@@ -14,7 +14,7 @@
 namespace skein::launch {
 namespace {
 
-constexpr std::size_t kMostGroups = 4096;
+constexpr std::size_t kMaxGroups = 4096;
 
 /// The body of the guard. It is forked, not executed, so that it uses system calls only.
 [[noreturn]] void guard_groups(int input) {
@@ -27,14 +27,14 @@ constexpr std::size_t kMostGroups = 4096;
   ::dup2(input, 0);
   ::close_range(1, ~0U, 0);
 
-  static std::array<pid_t, kMostGroups> groups;
+  static std::array<pid_t, kMaxGroups> groups;
   std::size_t count = 0;
   pid_t message = 0;
   while (true) {
     const auto size = ::read(0, &message, sizeof message);
     if (size < 0 && errno == EINTR) continue;
     if (size != sizeof message) break;
-    if (message > 0 && count < kMostGroups) groups[count++] = message;
+    if (message > 0 && count < kMaxGroups) groups[count++] = message;
     if (message < 0) {
       count = static_cast<std::size_t>(
           std::remove(groups.begin(), groups.begin() + count, -message) - groups.begin());

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
-#include "skein/brokerless_discovery/broker.hpp"
-#include "skein/brokerless_discovery/kill_process.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/core/log.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/kill_process.hpp"
+#include "brokerless_discovery/process_watch.hpp"
+#include "core/log.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::launch {
 

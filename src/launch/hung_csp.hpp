@@ -1,8 +1,8 @@
 #pragma once
 
-#include "skein/brokerless_discovery/broker.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/profile/mission_profile.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "profile/mission_profile.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::launch {
 

@@ -1,12 +1,12 @@
-#include "skein/launch/launch_plan.hpp"
+#include "launch/launch_plan.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
 
-#include "skein/core/host.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/host.hpp"
+#include "core/suggestion.hpp"
 
 namespace skein::launch {
 namespace {

@@ -1,15 +1,18 @@
-#include "skein/launch/machine_check.hpp"
+#include "launch/machine_check.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "skein/core/error.hpp"
-#include "skein/core/host.hpp"
-#include "skein/core/suggestion.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/launch/launch_plan.hpp"
-#include "skein/launch/peer.hpp"
+#include "core/host.hpp"
+#include "core/suggestion.hpp"
+#include "core/thread_settings.hpp"
+#include "dds/vendor_names.hpp"
+#include "launch/launch_plan.hpp"
+#include "launch/peer.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/error.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::launch {
 namespace {
@@ -84,7 +87,7 @@ class MachineCheck {
     const auto elsewhere =
         std::ranges::find(here_, false, &std::pair<const std::string, bool>::second);
     if (elsewhere != here_.end()) {
-      if (peer.interface.empty() && peer.vendor != "loopback") {
+      if (peer.interface.empty() && peer.vendor != dds::kLoopback) {
         add(Severity::Error, peer.where,
             "'" + peer.name + "' speaks on 127.0.0.1 alone, and the mission has peers on '" +
                 elsewhere->first + "'",
@@ -168,6 +171,7 @@ class PluginCheck {
     for (const auto& [plugin, where] : plugins) {
       if (!load(registry, plugin, where)) return;
     }
+    if (plugins.size() > 1 || !peer.plugin.empty()) check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
       if (csp.process == CspProcess::InOwner && !csp.plugin.empty())
         demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
@@ -182,6 +186,16 @@ class PluginCheck {
     if (peer.runs_mission) {
       demand(registry.find_mission(component), component, "mission", peer.plugin, peer.where,
              registry);
+    }
+  }
+
+  void check_strategy(const PeerProfile& peer, const ComponentRegistry& registry) {
+    StrategyFactory strategies;
+    for (const auto& strategy : registry.strategies()) strategies.add(strategy);
+    try {
+      strategies.make(peer.head.strategy);
+    } catch (const InvalidArgument& error) {
+      add(peer.where, "'" + peer.name + "': " + error.what(), "");
     }
   }
 

@@ -1,4 +1,4 @@
-#include "skein/launch/mission_claim.hpp"
+#include "launch/mission_claim.hpp"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "../core/file_descriptor.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "wake_up.hpp"
 
 namespace skein::launch {

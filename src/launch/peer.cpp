@@ -1,4 +1,4 @@
-#include "skein/launch/peer.hpp"
+#include "launch/peer.hpp"
 
 #include <pthread.h>
 
@@ -8,18 +8,19 @@
 #include <cstdio>
 #include <set>
 
+#include "core/interface_name.hpp"
+#include "core/log.hpp"
+#include "core/printable.hpp"
+#include "core/suggestion.hpp"
+#include "core/thread_settings.hpp"
 #include "hung_csp.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
-#include "skein/core/log.hpp"
-#include "skein/core/printable.hpp"
-#include "skein/core/suggestion.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/launch/address_space.hpp"
-#include "skein/launch/launch_plan.hpp"
-#include "skein/launch/ready.hpp"
-#include "skein/launch/supervisor.hpp"
-#include "skein/profile/component_xml.hpp"
+#include "launch/address_space.hpp"
+#include "launch/launch_plan.hpp"
+#include "launch/ready.hpp"
+#include "launch/supervisor.hpp"
+#include "profile/component_xml.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
 
 namespace skein::launch {
 namespace {
@@ -104,12 +105,19 @@ void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp
       required(registry.find_csp(csp.component->name), csp.component->name, "CSP", registry);
   auto servant = factory(values_of(csp.parameters));
   ServiceOptions options = service_options(*csp.component, *servant);
+  options.thread = csp.threads.thread;
   options.scheduling = csp.threads.settings;
   entity.provide_csp(csp.name, owner, std::move(servant), options);
 }
 
 // The implementation knows how many threads it bears, the profile how many it is to have.
 std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& body) {
+  if (peer.threads.thread == CallThread::Caller && body.threads > 1) {
+    throw InvalidArgument(profile::to_text(peer.where) + ": thread=\"caller\" for '" + peer.name +
+                          "', whose calls then run one at a time, but the implementation of '" +
+                          peer.component->name + "' needs " + std::to_string(body.threads) +
+                          " threads; remove thread=");
+  }
   if (peer.threads.count == 0) return body.threads;
   if (peer.threads.count <= 1 || body.threads > 1) return peer.threads.count;
   throw InvalidArgument(profile::to_text(peer.where) + ": " + std::to_string(peer.threads.count) +
@@ -123,6 +131,7 @@ void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegist
                                  "component", registry);
   ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
   ServiceOptions options = service_options(*peer.component, *body.servant);
+  options.thread = peer.threads.thread;
   options.threads = threads_of(peer, body);
   options.scheduling = peer.threads.settings;
   entity.provide(std::move(body.servant), options);
@@ -205,6 +214,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   load_plugins(registry, peer);
   Entity* self = nullptr;
   EntityOptions options = entity_options(mission, peer);
+  options.head.strategies = registry.strategies();
   options.head.on_hang = [&](const Candidate& hung) { end_hung_csp(*self, peer, hung); };
   Entity entity(std::move(options));
   self = &entity;

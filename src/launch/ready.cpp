@@ -1,4 +1,4 @@
-#include "skein/launch/ready.hpp"
+#include "launch/ready.hpp"
 
 #include <unistd.h>
 

@@ -5,8 +5,8 @@
 #include <csignal>
 #include <cstdio>
 
-#include "skein/core/printable.hpp"
-#include "skein/launch/ready.hpp"
+#include "core/printable.hpp"
+#include "launch/ready.hpp"
 
 namespace skein::launch {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "child_process.hpp"
+#include "launch/child_state.hpp"
+#include "launch/supervisor.hpp"
 #include "line_splitter.hpp"
-#include "skein/launch/child_state.hpp"
-#include "skein/launch/supervisor.hpp"
 
 namespace skein::launch {
 

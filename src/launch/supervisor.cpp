@@ -1,4 +1,4 @@
-#include "skein/launch/supervisor.hpp"
+#include "launch/supervisor.hpp"
 
 #include <poll.h>
 #include <sys/prctl.h>

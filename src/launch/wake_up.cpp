@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::launch {
 

@@ -1,11 +1,13 @@
-#include "skein/profile/check.hpp"
+#include "profile/check.hpp"
 
 #include <algorithm>
 
 #include "check_component.hpp"
 #include "composition.hpp"
+#include "dds/vendor_names.hpp"
 #include "finding_list.hpp"
 #include "repeated.hpp"
+#include "skein/selection.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -52,10 +54,10 @@ class Checker {
                      [](const CspProfile& csp) { return csp.process == CspProcess::Own; });
     if (one_process) return;
     for (const auto& peer : mission_.peers) {
-      if (peer.vendor != "loopback") continue;
-      findings_.warning(peer.where,
-                        in_quotes(peer.name) + " is on loopback, a network inside of one process",
-                        "other processes will not see it; write fastdds or cyclonedds");
+      if (peer.vendor != dds::kLoopback) continue;
+      findings_.warning(
+          peer.where, in_quotes(peer.name) + " is on loopback, a network inside of one process",
+          "other processes will not see it; write " + dds::alternatives(dds::networked_vendors()));
     }
   }
 
@@ -63,6 +65,7 @@ class Checker {
     const auto& peer = mission_.peers[number];
     check_needs(number);
     check_network(peer);
+    check_strategy(peer);
     Repeated names("the CSP");
     for (const auto& csp : peer.csps) names.add(csp.name, csp.where, findings_);
     if (peer.component) {
@@ -86,6 +89,22 @@ class Checker {
                     in_quotes(peer.name) + " is to look for peers of other hosts, but speaks on " +
                         "127.0.0.1 alone",
                     "name its network interface: interface=\"...\"");
+  }
+
+  void check_strategy(const PeerProfile& peer) {
+    const bool has_plugin =
+        !peer.plugin.empty() ||
+        std::any_of(peer.csps.begin(), peer.csps.end(), [](const CspProfile& csp) {
+          return csp.process == CspProcess::InOwner && !csp.plugin.empty();
+        });
+    if (has_plugin) return;  // what it holds only a machine can tell
+    const auto known = StrategyFactory().names();
+    if (std::find(known.begin(), known.end(), peer.head.strategy) != known.end()) return;
+    findings_.warning(peer.where,
+                      in_quotes(peer.head.strategy) +
+                          " is none of Skein's own selection strategies, and " +
+                          in_quotes(peer.name) + " has no plugin that could hold it",
+                      remedy_for(peer.head.strategy, {known.begin(), known.end()}));
   }
 
   void check_isolation(const CspProfile& csp) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "finding_list.hpp"
-#include "skein/profile/mission_profile.hpp"
+#include "profile/mission_profile.hpp"
 
 namespace skein::profile {
 

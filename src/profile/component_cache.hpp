@@ -6,7 +6,7 @@
 #include <string>
 
 #include "finding_list.hpp"
-#include "skein/profile/component_description.hpp"
+#include "profile/component_description.hpp"
 
 namespace skein::profile {
 

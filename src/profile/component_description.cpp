@@ -1,8 +1,8 @@
-#include "skein/profile/component_description.hpp"
+#include "profile/component_description.hpp"
 
 #include <algorithm>
 
-#include "skein/core/interface_name.hpp"
+#include "core/interface_name.hpp"
 
 namespace skein::profile {
 namespace {

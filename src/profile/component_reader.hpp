@@ -1,8 +1,8 @@
 #pragma once
 
 #include "finding_list.hpp"
-#include "skein/profile/component_description.hpp"
-#include "skein/profile/dictionary.hpp"
+#include "profile/component_description.hpp"
+#include "profile/dictionary.hpp"
 #include "xml_document.hpp"
 
 namespace skein::profile {

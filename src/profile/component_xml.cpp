@@ -1,9 +1,9 @@
-#include "skein/profile/component_xml.hpp"
+#include "profile/component_xml.hpp"
 
 #include <sstream>
 
 #include "component_reader.hpp"
-#include "skein/core/interface_name.hpp"
+#include "core/interface_name.hpp"
 #include "text_file.hpp"
 #include "words.hpp"
 

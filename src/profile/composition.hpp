@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "skein/profile/mission_profile.hpp"
+#include "profile/mission_profile.hpp"
 
 namespace skein::profile {
 

@@ -1,4 +1,4 @@
-#include "skein/profile/dictionary.hpp"
+#include "profile/dictionary.hpp"
 
 #include <array>
 #include <charconv>

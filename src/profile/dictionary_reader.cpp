@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "skein/core/interface_name.hpp"
+#include "core/interface_name.hpp"
 #include "text_file.hpp"
 #include "words.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "finding_list.hpp"
-#include "skein/profile/dictionary.hpp"
+#include "profile/dictionary.hpp"
 #include "xml_document.hpp"
 
 namespace skein::profile {

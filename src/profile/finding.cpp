@@ -1,4 +1,4 @@
-#include "skein/profile/finding.hpp"
+#include "profile/finding.hpp"
 
 #include <algorithm>
 

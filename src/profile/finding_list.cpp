@@ -13,7 +13,7 @@ void FindingList::warning(const SourcePosition& where, std::string problem, std:
 void FindingList::add(Finding finding) {
   if (full() || !seen_.insert(to_text(finding)).second) return;
   list_.push_back(std::move(finding));
-  if (list_.size() + 1 == kMost) {
+  if (list_.size() + 1 == kMax) {
     list_.push_back({Severity::Error,
                      {list_.back().where.file, 0, 0},
                      "more findings than are shown",

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "skein/profile/finding.hpp"
+#include "profile/finding.hpp"
 
 namespace skein::profile {
 
@@ -19,12 +19,12 @@ class FindingList {
 
   const std::vector<Finding>& list() const noexcept { return list_; }
   /// Whether further findings are dropped; loops that make many of them end then.
-  bool full() const noexcept { return list_.size() >= kMost; }
+  bool full() const noexcept { return list_.size() >= kMax; }
   /// Throws DescriptionError if one of the findings is an error.
   void throw_if_errors() const;
 
  private:
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMax = 1000;
   std::vector<Finding> list_;
   std::set<std::string> seen_;
 };

@@ -1,23 +1,12 @@
 #include "head_reader.hpp"
 
-#include "skein/core/error.hpp"
 #include "value_readers.hpp"
 
 namespace skein::profile {
 namespace {
 
-void read_strategy(const XmlElement& element, std::string& strategy) {
-  const auto text = element.maybe_attribute("strategy");
-  if (!text) return;
-  try {
-    strategy = StrategyFactory().make(text->value)->name();
-  } catch (const InvalidArgument& error) {
-    element.findings().error(text->where, error.what());
-  }
-}
-
-void read_file_name(const XmlElement& element, const char* name, std::string& file) {
-  if (element.maybe_attribute(name)) file = element.attribute(name).value;
+void read_text(const XmlElement& element, const char* name, std::string& text) {
+  if (element.maybe_attribute(name)) text = element.attribute(name).value;
 }
 
 CircuitBreaker::Rules read_breaker(const XmlElement& element) {
@@ -37,12 +26,12 @@ CircuitBreaker::Rules read_breaker(const XmlElement& element) {
 
 HeadOptions read_head_options(const XmlElement& element) {
   HeadOptions head;
-  read_strategy(element, head.strategy);
-  read_file_name(element, "history", head.history);
-  read_file_name(element, "decision_log", head.log);
+  read_text(element, "strategy", head.strategy);
+  read_text(element, "history", head.history);
+  read_text(element, "decision_log", head.log);
   head.exploration = read_share(element, "exploration", head.exploration);
-  head.most_stuck = static_cast<std::size_t>(
-      read_count(element, "most_stuck", static_cast<int>(head.most_stuck)));
+  head.max_stuck =
+      static_cast<std::size_t>(read_count(element, "max_stuck", static_cast<int>(head.max_stuck)));
   head.breaker = read_breaker(element);
   return head;
 }

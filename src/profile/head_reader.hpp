@@ -1,12 +1,18 @@
 #pragma once
 
-#include "skein/entity/head_options.hpp"
+#include <array>
+
+#include "skein/head_options.hpp"
 #include "xml_document.hpp"
 
 namespace skein::profile {
 
-/// The XML attributes `strategy`, `history`, `decision_log`, `exploration`, `most_stuck`,
-/// `quarantine_after`, `first_quarantine` and `longest_quarantine` of a peer.
+/// The XML attributes of a peer that read_head_options() reads.
+inline constexpr std::array kHeadAttributes{
+    "strategy",  "history",          "decision_log",     "exploration",
+    "max_stuck", "quarantine_after", "first_quarantine", "longest_quarantine"};
+
+/// Any word is taken for a strategy: a plugin may bring it.
 HeadOptions read_head_options(const XmlElement& element);
 
 }  // namespace skein::profile

@@ -1,4 +1,4 @@
-#include "skein/profile/mission_profile.hpp"
+#include "profile/mission_profile.hpp"
 
 #include <algorithm>
 
@@ -74,13 +74,6 @@ const CspProfile* PeerProfile::find_csp(std::string_view csp_name) const {
 const PeerProfile* MissionProfile::find_peer(std::string_view peer_name) const {
   return find_named(peers, peer_name);
 }
-
-const std::vector<std::string>& known_vendors() {
-  static const std::vector<std::string> kVendors{"fastdds", "cyclonedds", "loopback"};
-  return kVendors;
-}
-
-bool has_shared_memory(std::string_view vendor) { return vendor == "fastdds"; }
 
 void apply_setting(MissionProfile& profile, std::string_view assignment) {
   const auto equals = assignment.find('=');

@@ -1,14 +1,16 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <sstream>
 
 #include "component_cache.hpp"
+#include "dds/allowed_sources.hpp"
+#include "dds/vendor_names.hpp"
 #include "dictionary_reader.hpp"
 #include "head_reader.hpp"
+#include "profile/mission_profile.hpp"
 #include "rules_reader.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/allowed_sources.hpp"
-#include "skein/profile/mission_profile.hpp"
+#include "skein/error.hpp"
 #include "text_file.hpp"
 #include "thread_rules_reader.hpp"
 #include "value_readers.hpp"
@@ -19,11 +21,23 @@ namespace {
 
 constexpr int kLargestDomain = 232;
 constexpr std::size_t kLongestName = 64;
-constexpr std::size_t kMostHosts = 64;
+constexpr std::size_t kMaxHosts = 64;
+
+/// The attributes of the mission that each peer has unless it says otherwise.
+constexpr std::array kInheritedAttributes{"vendor", "system",    "host",   "interface",
+                                          "peers",  "multicast", "plugin", "allowed_sources"};
+
+/// The attributes of an element: its own, and those of the readers that it is handed to.
+template <class... Lists>
+std::vector<std::string_view> joined(const Lists&... lists) {
+  std::vector<std::string_view> names;
+  (names.insert(names.end(), lists.begin(), lists.end()), ...);
+  return names;
+}
 
 /// What a peer has unless it says otherwise.
 struct Defaults {
-  std::string vendor = "fastdds";
+  std::string vendor = dds::vendor_names().front();
   std::string system;
   std::string host;
   std::string interface;
@@ -47,9 +61,7 @@ class MissionReader {
                       "its outermost element is <mission name=\"...\">");
       return mission;
     }
-    root.allow({"name", "domain", "dictionary", "vendor", "system", "host", "interface", "peers",
-                "multicast", "plugin", "allowed_sources"},
-               {"peer"});
+    root.allow(joined(std::array{"name", "domain", "dictionary"}, kInheritedAttributes), {"peer"});
     mission.name = root.attribute("name").value;
     mission.domain = domain_of(root);
     mission.dictionary = dictionary_of(root);
@@ -98,7 +110,7 @@ class MissionReader {
   std::string vendor_of(const XmlElement& element, std::string fallback) {
     const auto vendor = element.maybe_attribute("vendor");
     if (!vendor) return fallback;
-    const auto& known = known_vendors();
+    const auto& known = dds::vendor_names();
     if (std::find(known.begin(), known.end(), vendor->value) == known.end()) {
       findings_.error(vendor->where, in_quotes(vendor->value) + " is no DDS vendor known here",
                       remedy_for(vendor->value, {known.begin(), known.end()}));
@@ -109,10 +121,12 @@ class MissionReader {
   bool shared_memory_of(const XmlElement& element, const std::string& vendor, bool fallback) {
     const bool wanted = read_boolean(element, "shared_memory", fallback);
     const auto attribute = element.maybe_attribute("shared_memory");
-    if (!wanted || has_shared_memory(vendor)) return wanted;
+    const auto& able = dds::shared_memory_vendors();
+    if (!wanted || std::find(able.begin(), able.end(), vendor) != able.end()) return wanted;
     if (attribute) {
-      findings_.error(attribute->where, in_quotes(vendor) + " has no shared memory",
-                      "leave shared_memory out, or write vendor=\"fastdds\"");
+      findings_.error(
+          attribute->where, in_quotes(vendor) + " has no shared memory",
+          "leave shared_memory out, or write vendor=" + in_quotes(dds::alternatives(able)));
     }
     return false;
   }
@@ -159,10 +173,10 @@ class MissionReader {
                            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                                   (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
                          });
-      if (plain && hosts.size() <= kMostHosts) continue;
+      if (plain && hosts.size() <= kMaxHosts) continue;
       findings_.error(list->where, "peers is " + in_quotes(list->value) + ", no list of hosts",
                       "write names or addresses, as in \"10.0.0.2 10.0.0.3\", at most " +
-                          std::to_string(kMostHosts));
+                          std::to_string(kMaxHosts));
       return {};
     }
     return hosts;
@@ -190,41 +204,9 @@ class MissionReader {
   }
 
   PeerProfile peer_of(const XmlElement& element, const Defaults& mission) {
-    element.allow({"name",
-                   "component",
-                   "vendor",
-                   "system",
-                   "host",
-                   "interface",
-                   "peers",
-                   "multicast",
-                   "allowed_sources",
-                   "shared_memory",
-                   "plugin",
-                   "role",
-                   "required",
-                   "restart",
-                   "restart_delay",
-                   "max_restart_delay",
-                   "max_restarts",
-                   "restart_window",
-                   "ready_timeout",
-                   "stop_timeout",
-                   "threads",
-                   "scheduling",
-                   "priority",
-                   "nice",
-                   "cpus",
-                   "spin",
-                   "lock_memory",
-                   "strategy",
-                   "history",
-                   "decision_log",
-                   "exploration",
-                   "most_stuck",
-                   "quarantine_after",
-                   "first_quarantine",
-                   "longest_quarantine"},
+    element.allow(joined(std::array{"name", "component"}, kInheritedAttributes,
+                         std::array{"shared_memory", "role", "required"}, kProcessAttributes,
+                         kThreadCountAttributes, kThreadAttributes, kHeadAttributes),
                   {"csp", "parameter"});
     PeerProfile peer;
     peer.where = element.where();
@@ -265,12 +247,10 @@ class MissionReader {
   }
 
   CspProfile csp_of(const XmlElement& element, const PeerProfile& peer) {
-    element.allow(
-        {"name",         "component",      "process",       "vendor",        "shared_memory",
-         "plugin",       "required",       "restart",       "restart_delay", "max_restart_delay",
-         "max_restarts", "restart_window", "ready_timeout", "stop_timeout",  "scheduling",
-         "priority",     "nice",           "cpus",          "spin",          "lock_memory"},
-        {"parameter"});
+    element.allow(joined(std::array{"name", "component", "process", "vendor", "shared_memory",
+                                    "plugin", "required"},
+                         kProcessAttributes, kThreadAttributes),
+                  {"parameter"});
     CspProfile csp;
     csp.where = element.where();
     const auto component = element.attribute("component");
@@ -288,6 +268,11 @@ class MissionReader {
     csp.threads = read_thread_rules(element);
     csp.parameters = parameters_of(element);
     if (csp.process == CspProcess::InOwner) refuse_process_rules(element);
+    if (csp.process == CspProcess::Own && csp.threads.thread == CallThread::Caller) {
+      findings_.error(element.maybe_attribute("thread")->where,
+                      "a CSP in a process of its own cannot run on its caller's thread",
+                      "leave thread out, or write process=\"in\"");
+    }
     return csp;
   }
 

@@ -1,4 +1,4 @@
-#include "skein/profile/restart_rules.hpp"
+#include "profile/restart_rules.hpp"
 
 #include <array>
 #include <utility>

@@ -1,8 +1,8 @@
 #include "rules_reader.hpp"
 
 #include <algorithm>
-#include <array>
 
+#include "thread_rules_reader.hpp"
 #include "value_readers.hpp"
 #include "words.hpp"
 
@@ -10,10 +10,6 @@ namespace skein::profile {
 namespace {
 
 using std::chrono::nanoseconds;
-
-constexpr std::array<const char*, 8> kNames{"restart",      "restart_delay",  "max_restart_delay",
-                                            "max_restarts", "restart_window", "ready_timeout",
-                                            "stop_timeout", "lock_memory"};
 
 RestartPolicy read_policy(const XmlElement& element) {
   const auto word = element.maybe_attribute("restart");
@@ -57,13 +53,15 @@ ProcessRules read_process_rules(const XmlElement& element) {
 }
 
 void refuse_process_rules(const XmlElement& element) {
-  for (const char* name : kNames) {
+  const auto refuse = [&](const char* name) {
     if (const auto attribute = element.maybe_attribute(name)) {
       element.findings().error(attribute->where,
                                std::string(name) + " is for processes, and this CSP has none",
                                "write process=\"own\", or set it at the <peer>");
     }
-  }
+  };
+  for (const char* name : kProcessAttributes) refuse(name);
+  refuse(kLockMemoryAttribute);
 }
 
 }  // namespace skein::profile

@@ -1,15 +1,21 @@
 #pragma once
 
-#include "skein/profile/restart_rules.hpp"
+#include <array>
+
+#include "profile/restart_rules.hpp"
 #include "xml_document.hpp"
 
 namespace skein::profile {
 
-/// The XML attributes `restart`, `restart_delay`, `max_restart_delay`, `max_restarts`,
-/// `restart_window`, `ready_timeout` and `stop_timeout` of a peer or CSP.
+/// The XML attributes of a peer or CSP that read_process_rules() reads.
+inline constexpr std::array kProcessAttributes{
+    "restart",        "restart_delay", "max_restart_delay", "max_restarts",
+    "restart_window", "ready_timeout", "stop_timeout"};
+
 ProcessRules read_process_rules(const XmlElement& element);
 
-/// Findings for these attributes where there is no process that they could rule.
+/// Findings for these attributes, and for `lock_memory`, where there is no process that they could
+/// rule.
 void refuse_process_rules(const XmlElement& element);
 
 }  // namespace skein::profile

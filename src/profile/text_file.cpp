@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "../core/file_descriptor.hpp"
-#include "skein/profile/finding.hpp"
+#include "profile/finding.hpp"
 
 namespace skein::profile {
 namespace {

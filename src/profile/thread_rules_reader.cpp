@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "skein/profile/dictionary.hpp"
+#include "profile/dictionary.hpp"
 #include "value_readers.hpp"
 #include "words.hpp"
 
@@ -23,6 +23,21 @@ Scheduling read_scheduling(const XmlElement& element) {
   element.findings().error(word->where, in_quotes(word->value) + " is no scheduling",
                            remedy_for(word->value, {"normal", "fifo", "round-robin"}));
   return Scheduling::Normal;
+}
+
+CallThread read_thread(const XmlElement& element) {
+  const auto word = element.maybe_attribute("thread");
+  if (!word || word->value == "own") return CallThread::Own;
+  if (word->value != "caller") {
+    element.findings().error(word->where, "thread is " + in_quotes(word->value),
+                             remedy_for(word->value, {"own", "caller"}));
+    return CallThread::Own;
+  }
+  if (const auto threads = element.maybe_attribute("threads"); threads && threads->value != "1") {
+    element.findings().error(threads->where, "with thread=\"caller\" calls run one at a time",
+                             "leave threads out, or write thread=\"own\"");
+  }
+  return CallThread::Caller;
 }
 
 int read_number(const XmlElement& element, const char* name, int least, int greatest) {
@@ -114,6 +129,7 @@ void demand_agreement(const XmlElement& element, Scheduling scheduling) {
 
 ThreadRules read_thread_rules(const XmlElement& element) {
   ThreadRules rules;
+  rules.thread = read_thread(element);
   rules.count = static_cast<std::size_t>(read_number(element, "threads", 1, 256));
   ThreadSettings& settings = rules.settings;
   settings.scheduling = read_scheduling(element);
@@ -121,7 +137,7 @@ ThreadRules read_thread_rules(const XmlElement& element) {
   settings.nice = read_number(element, "nice", -20, 19);
   settings.cpus = read_cpus(element);
   settings.spin = read_spin(element);
-  rules.lock_memory = read_boolean(element, "lock_memory", false);
+  rules.lock_memory = read_boolean(element, kLockMemoryAttribute, false);
   demand_agreement(element, settings.scheduling);
   return rules;
 }

@@ -1,6 +1,6 @@
 #include "value_readers.hpp"
 
-#include "skein/profile/dictionary.hpp"
+#include "profile/dictionary.hpp"
 #include "words.hpp"
 
 namespace skein::profile {

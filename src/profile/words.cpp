@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "skein/core/suggestion.hpp"
+#include "core/suggestion.hpp"
 
 namespace skein::profile {
 namespace {
 
 constexpr std::size_t kLongestQuote = 80;
 constexpr std::size_t kLongestWord = 64;
-constexpr std::size_t kMostListed = 12;
-constexpr std::size_t kMostCompared = 1000;
+constexpr std::size_t kMaxListed = 12;
+constexpr std::size_t kMaxCompared = 1000;
 
 }  // namespace
 
@@ -29,17 +29,17 @@ std::string in_quotes(std::string_view text) { return "\"" + shortened(text) + "
 
 std::string remedy_for(std::string_view unknown, const std::vector<std::string_view>& known) {
   std::vector<std::string> comparable;
-  for (std::size_t i = 0; i < std::min(known.size(), kMostCompared); ++i) {
+  for (std::size_t i = 0; i < std::min(known.size(), kMaxCompared); ++i) {
     if (known[i].size() <= kLongestWord) comparable.emplace_back(known[i]);
   }
   const std::string near = unknown.size() > kLongestWord ? "" : suggestion(unknown, comparable);
   if (!near.empty()) return near.substr(2, near.size() - 3);  // without its blank and parentheses
   if (known.empty()) return "none is known here";
   std::string text = known.size() == 1 ? "known is" : "known are";
-  for (std::size_t i = 0; i < std::min(known.size(), kMostListed); ++i) {
+  for (std::size_t i = 0; i < std::min(known.size(), kMaxListed); ++i) {
     text += (i == 0 ? " " : ", ") + in_quotes(known[i]);
   }
-  return known.size() > kMostListed ? text + ", ..." : text;
+  return known.size() > kMaxListed ? text + ", ..." : text;
 }
 
 std::string_view trimmed(std::string_view text) {

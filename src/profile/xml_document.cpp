@@ -107,10 +107,10 @@ std::vector<XmlElement> XmlElement::children() const {
   for (const auto child : node_.children()) {
     if (child.type() != pugi::node_element) continue;
     found.emplace_back(child, *document_, *findings_);
-    if (found.size() <= kMostItems) continue;
+    if (found.size() <= kMaxItems) continue;
     findings_->error(
         found.back().where(),
-        "<" + shortened(name()) + "> holds more than " + std::to_string(kMostItems) + " elements",
+        "<" + shortened(name()) + "> holds more than " + std::to_string(kMaxItems) + " elements",
         "split the file");
     found.pop_back();
     break;
@@ -134,9 +134,8 @@ std::optional<XmlElement> XmlElement::maybe_child(std::string_view child_name) c
   return found.front();
 }
 
-void XmlElement::allow(std::initializer_list<std::string_view> attributes,
-                       std::initializer_list<std::string_view> child_names,
-                       bool text_allowed) const {
+void XmlElement::allow(const std::vector<std::string_view>& attributes,
+                       const std::vector<std::string_view>& child_names, bool text_allowed) const {
   allow_attributes(attributes);
   allow_children(child_names);
   if (text_allowed || text().empty()) return;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "finding_list.hpp"
-#include "skein/profile/finding.hpp"
+#include "profile/finding.hpp"
 
 namespace skein::profile {
 
@@ -73,7 +72,7 @@ class XmlElement {
   /// The attribute's value; a finding and empty text if it is missing or empty.
   XmlAttribute attribute(const char* attribute_name) const;
 
-  /// The child elements in their order. More of them than kMostItems are a finding and left out:
+  /// The child elements in their order. More of them than kMaxItems are a finding and left out:
   /// what is compared with each other later must not be many.
   std::vector<XmlElement> children() const;
   /// Those of one name.
@@ -83,13 +82,13 @@ class XmlElement {
 
   /// Findings for attributes and children that the notation does not have here, attributes given
   /// twice, and text where only elements belong.
-  void allow(std::initializer_list<std::string_view> attributes,
-             std::initializer_list<std::string_view> child_names, bool text_allowed = false) const;
+  void allow(const std::vector<std::string_view>& attributes,
+             const std::vector<std::string_view>& child_names, bool text_allowed = false) const;
 
   FindingList& findings() const { return *findings_; }
 
  private:
-  static constexpr std::size_t kMostItems = 256;
+  static constexpr std::size_t kMaxItems = 256;
 
   void allow_attributes(const std::vector<std::string_view>& names) const;
   void allow_children(const std::vector<std::string_view>& names) const;

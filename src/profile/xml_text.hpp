@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "skein/profile/finding.hpp"
+#include "profile/finding.hpp"
 
 namespace skein::profile {
 

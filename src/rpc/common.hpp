@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "skein/core/call_context.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/call_context.hpp"
 
-/// What both ends of a lane share.
+/// What both ends of a transport share.
 namespace skein::rpc {
 
 /// A message that needed more is not kept for the next one.

@@ -1,11 +1,12 @@
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "common.hpp"
+#include "core/clock_wait.hpp"
 #include "dds_channel_state.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -81,24 +82,29 @@ void DdsChannel::State::await_open() {
     }
     if (greeted > 0) send_open();
     lock.lock();
-    changed.wait_for(lock, greeted > 0 ? interval : kLastOpenInterval, [&] {
-      return phase != Phase::Opening || refusal || servers.size() != greeted;
-    });
+    const Instant next = clock.now() + (greeted > 0 ? interval : kLastOpenInterval);
+    wait_until(clock, std::min(deadline, next), lock, changed,
+               [&] { return phase != Phase::Opening || refusal || servers.size() != greeted; });
     if (greeted > 0) interval = std::min(2 * interval, kLastOpenInterval);
   }
   if (refusal) std::rethrow_exception(refusal);
-  if (phase != Phase::Open)
-    throw Unavailable(options.peer + " went away while it was being connected");
+  if (phase != Phase::Open) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
 }
 
 void DdsChannel::State::send_open() {
+  std::shared_ptr<dds::Writer> writer;
+  {
+    std::lock_guard lock(mutex);
+    if (phase != Phase::Opening) return;
+    writer = requests;
+  }
   Bytes message;
   wire::begin_request(message, {client, 0}, wire::kOpen);
   wire::append_default_branch(message);
   wire::append_trailer(
       message, wire::RequestTrailer{
                    options.timeout, 0, {}, options.strategy, 0, clock.now().time_since_epoch()});
-  requests->write(message);
+  writer->write(message);
 }
 
 // Others may read a provider's requests, too: they are not it, and their end is not its end.
@@ -163,6 +169,7 @@ std::shared_ptr<DdsChannel> DdsChannel::open(dds::Participant& participant, Exec
                                        std::move(clock), address, std::move(options));
   std::shared_ptr<DdsChannel> channel(new DdsChannel(state));
   state->create_endpoints();
+  if (state->options.begun) state->options.begun(channel);
   state->await_open();
   return channel;
 }

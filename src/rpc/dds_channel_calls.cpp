@@ -3,7 +3,7 @@
 
 #include "common.hpp"
 #include "dds_channel_state.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {

@@ -1,9 +1,9 @@
 #include <algorithm>
 
+#include "core/log.hpp"
 #include "dds_channel_state.hpp"
 #include "reply_reading.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 
@@ -75,7 +75,7 @@ void DdsChannel::State::note_malformed(const std::string& why) {
 
 // For who waited in vain; under the lock.
 std::string DdsChannel::State::what_came_malformed() const {
-  const std::uint64_t headless = replies ? replies->malformed() : 0;
+  const std::uint64_t headless = replies ? replies->counters().malformed : 0;
   if (malformed + headless == 0) return {};
   return "; " + std::to_string(malformed + headless) +
          " malformed replies came on this connection, the first: " +

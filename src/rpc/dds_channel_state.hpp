@@ -7,11 +7,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "skein/core/call_memory.hpp"
-#include "skein/core/stream.hpp"
-#include "skein/rpc/dds_channel.hpp"
-#include "skein/rpc/shared_writers.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/dds_channel.hpp"
+#include "rpc/shared_writers.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/stream.hpp"
 
 namespace skein::rpc {
 

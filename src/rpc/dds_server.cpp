@@ -1,14 +1,14 @@
-#include "skein/rpc/dds_server.hpp"
+#include "rpc/dds_server.hpp"
 
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "common.hpp"
+#include "core/interface_name.hpp"
+#include "core/log.hpp"
 #include "dds_server_state.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/interface_name.hpp"
-#include "skein/core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {

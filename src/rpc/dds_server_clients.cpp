@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "common.hpp"
+#include "core/log.hpp"
 #include "dds_server_state.hpp"
 #include "reply_encoding.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -92,7 +92,7 @@ void DdsServer::State::open(const Newcomer& newcomer) {
   try {
     if (!room) {
       throw Overloaded("this client's process has its share of sessions already (at most " +
-                       std::to_string(kMostClientsOfPeer) + " of " + std::to_string(kMostClients) +
+                       std::to_string(kMaxClientsOfPeer) + " of " + std::to_string(kMaxClients) +
                        "); close connections that are not needed");
     }
     client->session = service->open({id.client, newcomer.strategy});
@@ -115,9 +115,9 @@ bool DdsServer::State::has_room(const Guid& client, std::size_t beyond_of_peer,
       static_cast<std::size_t>(std::count_if(clients.begin(), clients.end(), [&](const auto& each) {
         return each.first.participant() == peer;
       }));
-  const std::size_t most = kMostClients + beyond;
+  const std::size_t most = kMaxClients + beyond;
   const std::size_t left = most - std::min(most, clients.size());
-  return of_peer < std::min(kMostClientsOfPeer + beyond_of_peer, left);
+  return of_peer < std::min(kMaxClientsOfPeer + beyond_of_peer, left);
 }
 
 // Under the lock.
@@ -125,8 +125,8 @@ void DdsServer::State::turn_away(const Guid& client) {
   if (++counters.turned_away > 1) return;
   log(LogLevel::Warning, address.service,
       "participant " + client.participant().hex() +
-          " opens more sessions than its share (at most " + std::to_string(kMostClientsOfPeer) +
-          " of " + std::to_string(kMostClients) + "); what is beyond it is refused");
+          " opens more sessions than its share (at most " + std::to_string(kMaxClientsOfPeer) +
+          " of " + std::to_string(kMaxClients) + "); what is beyond it is refused");
 }
 
 // This side forgot the client (it was stopped, or cut off), and the client did not notice: it

@@ -2,10 +2,10 @@
 #include <utility>
 
 #include "common.hpp"
+#include "core/log.hpp"
 #include "dds_server_state.hpp"
 #include "reply_encoding.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -121,7 +121,7 @@ bool DdsServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes&
   {
     std::lock_guard lock(mutex);
     if (!client->writer) return false;
-    if (client->unsent_size + size > kMostUnsent - unsent_size) {
+    if (client->unsent_size + size > kMaxUnsent - unsent_size) {
       note_lost(1, std::to_string(unsent_size) + " octets wait already for clients that take none");
       return false;
     }

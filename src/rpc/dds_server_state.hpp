@@ -10,10 +10,10 @@
 
 #include "../core/recent_set.hpp"
 #include "newcomers.hpp"
-#include "skein/core/call_memory.hpp"
-#include "skein/rpc/dds_server.hpp"
-#include "skein/rpc/shared_writers.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/dds_server.hpp"
+#include "rpc/shared_writers.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/call_memory.hpp"
 #include "transit_delay.hpp"
 
 namespace skein::rpc {

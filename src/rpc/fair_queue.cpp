@@ -1,8 +1,8 @@
-#include "skein/rpc/fair_queue.hpp"
+#include "rpc/fair_queue.hpp"
 
 #include <algorithm>
 
-#include "skein/rpc/service.hpp"
+#include "rpc/service.hpp"
 
 namespace skein::rpc {
 

@@ -1,11 +1,11 @@
-#include "skein/rpc/local_channel.hpp"
+#include "rpc/local_channel.hpp"
 
 #include <algorithm>
 
 #include "common.hpp"
-#include "skein/core/call_memory.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/stream.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
+#include "skein/stream.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -85,6 +85,7 @@ void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* i
 void LocalChannel::call(const OperationInfo& operation, const void* in, void* out,
                         const CallTime& time) {
   const auto target = service();
+  if (target->thread() == CallThread::Own) return Channel::call(operation, in, out, time);
   Invocation frame;
   frame.connection = id_;
   frame.begun = time.begin;
@@ -92,7 +93,7 @@ void LocalChannel::call(const OperationInfo& operation, const void* in, void* ou
   frame.outer = CallContext::current();
   frame.session =
       std::shared_ptr<Session>(std::shared_ptr<void>(), session_.get());  // owned by this
-  if (!target->try_call_inline(operation, in, out, frame)) Channel::call(operation, in, out, time);
+  target->call_here(operation, in, out, frame);
 }
 
 void LocalChannel::disconnect() {

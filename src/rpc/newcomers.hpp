@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "skein/rpc/turns.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/turns.hpp"
+#include "rpc/wire.hpp"
 #include "transit_delay.hpp"
 
 namespace skein::rpc {

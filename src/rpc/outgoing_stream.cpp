@@ -1,7 +1,9 @@
-#include "skein/rpc/outgoing_stream.hpp"
+#include "rpc/outgoing_stream.hpp"
 
 #include <algorithm>
 #include <utility>
+
+#include "core/clock_wait.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -24,7 +26,9 @@ OutgoingStream::OutgoingStream(const OperationInfo& operation, Clock& clock, Ins
 bool OutgoingStream::put(const void* out, bool wait) {
   {
     std::unique_lock lock(mutex_);
-    if (credit_ == 0 && wait && !last_only_) wait_for_credit(lock);
+    if (wait && !last_only_) {
+      wait_until(clock_, deadline_, lock, changed_, [&] { return credit_ > 0 || stopped_; });
+    }
     refuse_if_over();
     if (last_only_) {
       if (!last_) last_.reset(operation_.out->make());
@@ -34,24 +38,14 @@ bool OutgoingStream::put(const void* out, bool wait) {
     if (credit_ == 0) return false;
     --credit_;
   }
-  send_(out, sent_);
+  try {
+    send_(out, sent_);
+  } catch (...) {
+    grant(1);
+    throw;
+  }
   ++sent_;
   return true;
-}
-
-void OutgoingStream::wait_for_credit(std::unique_lock<std::mutex>& lock) {
-  lock.unlock();  // a timer that has passed may run within call_at()
-  const TimerId timer = clock_.call_at(deadline_, [weak = weak_from_this()] {
-    const auto self = weak.lock();
-    if (!self) return;
-    std::lock_guard wake(self->mutex_);
-    self->changed_.notify_all();
-  });
-  lock.lock();
-  changed_.wait(lock, [&] { return credit_ > 0 || stopped_ || clock_.now() >= deadline_; });
-  lock.unlock();
-  clock_.cancel(timer);
-  lock.lock();
 }
 
 void OutgoingStream::refuse_if_over() const {

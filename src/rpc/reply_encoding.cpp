@@ -2,25 +2,42 @@
 
 #include <memory>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
 
 using wire::RequestId;
 
-bool declares(const OperationInfo& operation, const ExceptionInfo& exception) {
-  for (const ExceptionInfo* declared : operation.raises) {
-    if (declared->hash == exception.hash) return true;
-  }
-  return false;
-}
-
 void encode_result(Bytes& message, const RequestId& id, const OperationInfo& operation,
                    const void* out) {
   wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
   wire::append_discriminator(message, 0);
   operation.out->encode(out, message);
+}
+
+// Declared: see call_servant().
+void encode_exception(Bytes& message, const RequestId& id, const OperationInfo& operation,
+                      const UserException& exception) {
+  wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
+  wire::append_discriminator(message, exception.info().hash);
+  exception.info().type->encode(exception.value(), message);
+}
+
+void encode_failure(Bytes& message, const RequestId& id, const OperationInfo& operation,
+                    const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const UserException& exception) {
+    encode_exception(message, id, operation, exception);
+  } catch (const Error& error) {
+    encode_error(message, id, error.code(), error.what());
+  }
+}
+
+std::string cannot_be_sent(const std::string& what, const OperationInfo& operation,
+                           const std::exception& reason) {
+  return what + " of " + std::string(operation.name) + " cannot be sent: " + reason.what();
 }
 
 }  // namespace
@@ -35,32 +52,21 @@ void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std
 void encode_outcome(Bytes& message, const RequestId& id, const OperationInfo& operation,
                     const void* out, const std::exception_ptr& error) {
   try {
-    if (error) std::rethrow_exception(error);
+    if (error) return encode_failure(message, id, operation, error);
     encode_result(message, id, operation, out);
-  } catch (const UserException& exception) {
-    if (!declares(operation, exception.info())) {
-      return encode_error(message, id, ErrorCode::Internal,
-                          std::string(operation.name) + " threw " +
-                              std::string(exception.info().name) +
-                              ", which its interface does not declare");
-    }
-    wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
-    wire::append_discriminator(message, exception.info().hash);
-    exception.info().type->encode(exception.value(), message);
-  } catch (const Error& failure) {
-    encode_error(message, id, failure.code(), failure.what());
-  } catch (const std::exception& failure) {
+  } catch (const std::exception& reason) {
     encode_error(message, id, ErrorCode::Internal,
-                 std::string(operation.name) + " failed: " + failure.what());
-  } catch (...) {
-    encode_error(message, id, ErrorCode::Internal,
-                 std::string(operation.name) + " threw something that is no std::exception");
+                 cannot_be_sent(error ? "the exception" : "the result", operation, reason));
   }
 }
 
 void encode_item(Bytes& message, const RequestId& id, const OperationInfo& operation,
                  const void* out, std::uint64_t position) {
-  encode_result(message, id, operation, out);
+  try {
+    encode_result(message, id, operation, out);
+  } catch (const std::exception& reason) {
+    throw Internal(cannot_be_sent("a result", operation, reason));
+  }
   wire::append_trailer(message, wire::ReplyTrailer{{}, {}, wire::StreamPart::Item, position});
 }
 

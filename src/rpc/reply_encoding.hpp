@@ -3,8 +3,8 @@
 #include <exception>
 #include <string>
 
-#include "skein/core/operation.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/operation.hpp"
 
 namespace skein::rpc {
 
@@ -12,11 +12,13 @@ namespace skein::rpc {
 void encode_error(Bytes& message, const wire::RequestId& id, ErrorCode code,
                   const std::string& text, std::uint32_t operation = 0);
 
-/// The reply of a call: its out struct, or what was thrown.
+/// The reply of a call: its out struct, or the Error or declared exception that was thrown;
+/// Internal where CDR cannot carry it.
 void encode_outcome(Bytes& message, const wire::RequestId& id, const OperationInfo& operation,
                     const void* out, const std::exception_ptr& error);
 
 /// A result of a stream, with more to follow, and the reply that ends it after `position` results.
+/// Throws Internal where CDR cannot carry the result.
 void encode_item(Bytes& message, const wire::RequestId& id, const OperationInfo& operation,
                  const void* out, std::uint64_t position);
 void encode_end(Bytes& message, const wire::RequestId& id, const OperationInfo& operation,

@@ -1,6 +1,6 @@
 #include "reply_reading.hpp"
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
@@ -11,6 +11,7 @@ std::exception_ptr raised(const ExceptionInfo& exception, const void* value) {
   } catch (...) {
     return std::current_exception();
   }
+  return nullptr;  // raise() throws
 }
 
 std::exception_ptr read_exception(const OperationInfo& operation, std::uint32_t which,

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "skein/core/operation.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/operation.hpp"
 
 namespace skein::rpc {
 

@@ -1,41 +1,83 @@
-#include "skein/rpc/service.hpp"
+#include "rpc/service.hpp"
 
 #include <algorithm>
 
-#include "skein/core/error.hpp"
+#include "core/clock_wait.hpp"
+#include "servant_call.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {
 
-/// Notes that an invocation is inside the implementation.
+/// Notes that an invocation is inside the implementation; none enters a service that is closed.
 class Service::Running {
  public:
   Running(Service& service, Invocation& invocation) : service_(service), invocation_(invocation) {
     std::lock_guard lock(service_.mutex_);
+    admitted_ = !service_.closed_;
+    if (!admitted_) return;
     next_ = service_.running_;
     if (next_) next_->before_ = this;
     service_.running_ = this;
-    if (service_.closed_) service_.stop(invocation_);
   }
   ~Running() {
+    if (!admitted_) return;
     std::lock_guard lock(service_.mutex_);
     (before_ ? before_->next_ : service_.running_) = next_;
     if (next_) next_->before_ = before_;
+    if (service_.closed_ && !service_.running_) service_.all_ended_.notify_all();
   }
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
+  bool admitted() const noexcept { return admitted_; }
   const Running* next() const noexcept { return next_; }
   Invocation& invocation() const noexcept { return invocation_; }
 
  private:
   Service& service_;
   Invocation& invocation_;
+  bool admitted_ = false;
   Running* before_ = nullptr;
   Running* next_ = nullptr;
 };
 
-Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clock& clock,
+/// Lets the calls of a service with CallThread::Caller run one at a time, whichever thread is
+/// theirs. Those of others have their turn at once.
+class Service::Turn {
+ public:
+  /// Waits for it until the deadline, or until the service is closed.
+  Turn(Service& service, Instant deadline)
+      : service_(service.options_.thread == CallThread::Caller ? &service : nullptr) {
+    if (!service_) return;
+    std::unique_lock lock(service_->turn_mutex_);
+    waited_ = service_->turn_taken_;
+    came_ = wait_until(service_->clock_, deadline, lock, service_->turn_ended_,
+                       [&] { return !service_->turn_taken_ || service_->closed_; }) &&
+            !service_->closed_;
+    if (came_) service_->turn_taken_ = true;
+  }
+  ~Turn() {
+    if (!service_ || !came_) return;
+    {
+      std::lock_guard lock(service_->turn_mutex_);
+      service_->turn_taken_ = false;
+    }
+    service_->turn_ended_.notify_one();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  bool came() const noexcept { return came_; }
+  bool waited() const noexcept { return waited_; }
+
+ private:
+  Service* const service_;
+  bool came_ = true;
+  bool waited_ = false;
+};
+
+Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& clock,
                  Options options)
     : servant_(std::move(servant)),
       executor_(executor),
@@ -44,6 +86,13 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, const Clo
       meter_(servant_->interface_info()),
       queue_(options_.queue) {
   if (options_.strand.is_nil()) options_.strand = options_.id;
+  if (options_.thread == CallThread::Caller && options_.threads > 1) {
+    throw InvalidArgument(std::string(interface_info().name) +
+                          " is to run on its callers' threads, "
+                          "one call at a time, and to have " +
+                          std::to_string(options_.threads) +
+                          " threads of its own; give it one, or CallThread::Own");
+  }
 }
 
 std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
@@ -100,27 +149,46 @@ void Service::execute_next() {
   if (const auto next = take_next()) execute(*next);
 }
 
-bool Service::try_call_inline(const OperationInfo& operation, const void* in, void* out,
-                              Invocation& frame) {
-  return options_.inline_calls && try_call_exposed(operation, in, out, frame);
+void Service::call_here(const OperationInfo& operation, const void* in, void* out,
+                        Invocation& frame) {
+  OperationMeter& meter = meter_.of(operation);
+  OperationMeter::count(meter.received);
+  note_begin(operation, frame);
+  try {
+    begin_here(meter, frame);
+    const Instant arrived = frame.begun;
+    const Turn turn(*this, frame.deadline);
+    if (turn.waited()) {
+      frame.begun = clock_.now();
+      meter.waited.record(frame.begun - arrived);
+    }
+    if (!turn.came()) refuse_turn(meter, operation);
+    dispatch(operation, in, out, frame);
+    refuse_too_late(operation, frame);
+  } catch (...) {
+    note_end(operation, frame, std::current_exception());
+    throw;
+  }
+  note_end(operation, frame, nullptr);
 }
 
-bool Service::try_call_exposed(const OperationInfo& operation, const void* in, void* out,
-                               Invocation& frame) {
-  refuse_self_wait(frame);
-  const auto task = [&] {
-    OperationMeter::count(meter_.of(operation).received);
-    note_begin(operation, frame);
-    try {
-      dispatch(operation, in, out, frame);
-      refuse_too_late(operation, frame);
-    } catch (...) {
-      note_end(operation, frame, std::current_exception());
-      throw;
-    }
-    note_end(operation, frame, nullptr);
-  };
-  return executor_.try_run_inline(std::cref(task));  // a reference fits into std::function
+void Service::begin_here(OperationMeter& meter, const Invocation& frame) const {
+  try {
+    refuse_self_wait(frame);
+  } catch (const Error&) {
+    OperationMeter::count(meter.refused);
+    throw;
+  }
+}
+
+void Service::refuse_turn(OperationMeter& meter, const OperationInfo& operation) const {
+  if (closed_) {
+    OperationMeter::count(meter.refused);
+    throw being_withdrawn();
+  }
+  OperationMeter::count(meter.expired);
+  throw TimedOut("the deadline passed while other calls of " + std::string(interface_info().name) +
+                 " ran; " + std::string(operation.name) + " was not executed");
 }
 
 void Service::refuse_self_wait(const Invocation& invocation) const {
@@ -162,11 +230,17 @@ Unavailable Service::being_withdrawn() const {
 
 void Service::close() {
   {
-    std::scoped_lock lock(owner_mutex_, mutex_);
+    std::scoped_lock lock(owner_mutex_, mutex_, turn_mutex_);
     closed_ = true;
     for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
   }
+  turn_ended_.notify_all();
   while (const auto waiting = take_next()) withdraw(*waiting);
+}
+
+bool Service::await_end(std::chrono::steady_clock::time_point deadline) const {
+  std::unique_lock lock(mutex_);
+  return all_ended_.wait_until(lock, deadline, [&] { return running_ == nullptr; });
 }
 
 // Under the queue's lock an invocation is queued or refused: none comes after those that close()
@@ -187,10 +261,11 @@ void Service::stop(Invocation& invocation) const {
 
 void Service::execute(Invocation& invocation) {
   OperationMeter& meter = meter_.of(*invocation.operation);
+  const Turn turn(*this, invocation.deadline);
   const Instant now = invocation.begun = clock_.now();
   meter.waited.record(now - invocation.arrived);
   if (closed_) return withdraw(invocation);
-  if (invocation.cancelled || now >= invocation.deadline) {
+  if (!turn.came() || invocation.cancelled || now >= invocation.deadline) {
     OperationMeter::count(meter.expired);
     answer(invocation, nullptr,
            std::make_exception_ptr(TimedOut("the deadline passed before " +
@@ -219,10 +294,14 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
                        Invocation& frame) {
   const CallContext context(clock_, frame.deadline, frame.caller,
                             {frame.outer, frame.chain, options_.strand}, frame.session.get(),
-                            &frame.cancelled, &frame.respond);
+                            &frame.cancelled);
   const CallContextScope scope(context);
-  const Running running(*this, frame);
   OperationMeter& meter = meter_.of(operation);
+  const Running running(*this, frame);
+  if (!running.admitted()) {
+    OperationMeter::count(meter.refused);
+    throw being_withdrawn();
+  }
   OperationMeter::Counter* outcome = &meter.answered;
   const auto end = [&] {
     frame.ended = clock_.now();
@@ -230,7 +309,7 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
     OperationMeter::count(*outcome);
   };
   try {
-    servant_->dispatch(operation, in, out);
+    call_servant(*servant_, operation, in, out);
   } catch (const UserException&) {
     outcome = &meter.raised;
     end();

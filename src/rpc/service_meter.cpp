@@ -1,4 +1,4 @@
-#include "skein/rpc/service_meter.hpp"
+#include "rpc/service_meter.hpp"
 
 #include "skein/introspection.idl.hpp"
 

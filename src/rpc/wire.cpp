@@ -1,4 +1,4 @@
-#include "skein/rpc/wire.hpp"
+#include "rpc/wire.hpp"
 
 #include <algorithm>
 #include <bit>

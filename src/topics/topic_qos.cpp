@@ -1,4 +1,4 @@
-#include "skein/topics/topic_qos.hpp"
+#include "skein/topic_qos.hpp"
 
 namespace skein {
 

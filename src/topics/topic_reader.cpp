@@ -1,9 +1,12 @@
 #include <atomic>
 #include <mutex>
+#include <utility>
 
-#include "skein/core/log.hpp"
-#include "skein/idl/malformed_sample.hpp"
-#include "skein/topics/subscription.hpp"
+#include "core/log.hpp"
+#include "dds/port.hpp"
+#include "skein/detail/cdr.hpp"
+#include "skein/detail/malformed_sample.hpp"
+#include "skein/subscription.hpp"
 #include "wire_topic.hpp"
 
 namespace skein::topics {
@@ -27,9 +30,10 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
         value(type.support->make(), type.support->destroy) {}
 
   dds::ReaderListener listener();
-  /// What a callback throws is reported, and harms nobody.
+  /// What a callback throws is reported, the first time, and harms nobody; under `running`.
   template <class Call>
-  void guarded(const Call& call) const;
+  void guarded(const Call& call);
+  void report_thrown(const std::string& what);
   std::optional<Guid> find_key(std::span<const std::byte> cdr) const;
   /// Runs `tell` on the executor, unless the subscription has gone by then.
   void post(std::function<void(State&)> tell);
@@ -52,6 +56,7 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   std::atomic<std::uint64_t> missed_deadlines{0};
   std::mutex running;   // one callback at a time
   bool closed = false;  // under running
+  bool threw = false;   // under running
   std::unique_ptr<dds::Reader> reader;
 };
 
@@ -105,12 +110,21 @@ dds::ReaderListener TopicReader::State::listener() {
 }
 
 template <class Call>
-void TopicReader::State::guarded(const Call& call) const {
+void TopicReader::State::guarded(const Call& call) {
   try {
     call();
   } catch (const std::exception& error) {
-    log(LogLevel::Error, "topics", "topic '" + name + "': a callback threw: " + error.what());
+    report_thrown(error.what());
+  } catch (...) {
+    report_thrown("something that is no std::exception");
   }
+}
+
+void TopicReader::State::report_thrown(const std::string& what) {
+  if (std::exchange(threw, true)) return;
+  log(LogLevel::Error, "topics",
+      "topic '" + name + "': a callback threw: " + what +
+          "; what this subscription's callbacks throw from now on is not logged");
 }
 
 std::optional<Guid> TopicReader::State::find_key(std::span<const std::byte> cdr) const {
@@ -190,9 +204,9 @@ bool TopicReader::take(void* value) {
 std::size_t TopicReader::publishers() const { return state_->reader->matched_writers().size(); }
 
 SubscriptionCounters TopicReader::counters() const {
-  const dds::Reader& reader = *state_->reader;
-  return {state_->received, reader.replaced(), reader.expired(),
-          state_->malformed + reader.malformed(), state_->missed_deadlines};
+  const dds::ReceiveCounters dropped = state_->reader->counters();
+  return {state_->received, dropped.replaced, dropped.expired,
+          state_->malformed + dropped.malformed, state_->missed_deadlines};
 }
 
 }  // namespace skein::topics

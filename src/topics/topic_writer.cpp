@@ -1,8 +1,10 @@
 #include <atomic>
 #include <mutex>
 
-#include "skein/core/log.hpp"
-#include "skein/topics/publisher.hpp"
+#include "core/log.hpp"
+#include "dds/port.hpp"
+#include "skein/detail/cdr.hpp"
+#include "skein/publisher.hpp"
 #include "wire_topic.hpp"
 
 namespace skein::topics {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "skein/topics/topic_qos.hpp"
-#include "skein/topics/topic_type.hpp"
+#include "skein/detail/topic_type.hpp"
+#include "skein/topic_qos.hpp"
 
 namespace skein::topics {
 

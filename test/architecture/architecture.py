@@ -28,6 +28,7 @@ def main():
     compiler = compile_rules.Compiler(arguments.compiler, arguments.include)
     checks = {
         "homes": lambda: include_rules.homes(tree),
+        "public_headers": lambda: include_rules.public_headers(tree),
         "floors": lambda: include_rules.floors(tree),
         "machine_paths": lambda: text_rules.machine_paths(tree),
         "sleeps": lambda: text_rules.sleeps(tree),
@@ -42,7 +43,7 @@ def main():
     if arguments.check not in checks:
         parser.error(f"there is no check '{arguments.check}'; known are {', '.join(checks)}")
     if arguments.check == "quotes" and not text_rules.quoted_code(tree):
-        print("skipped: README quotes no code")
+        print("skipped: neither README nor the guide quotes code")
         return 77
     violations = list(checks[arguments.check]())
     print("\n".join(violations) or f"{arguments.check}: nothing found")

@@ -58,24 +58,58 @@ class Homes(TreeTest):
     def test_at_home_and_in_peers_without_skein_they_are_welcome(self):
         self.write("src/dds/cyclonedds/x.cpp", "#include <dds/dds.h>\n")
         self.write("test/foreign/fastdds/x.cpp", "#include <fastdds/dds/domain/DomainParticipant.hpp>\n")
-        self.write("src/navigation/x.cpp", "#include <ompl/base/Planner.h>\n")
+        self.write("src/navigation/planners/x.cpp", "#include <ompl/base/Planner.h>\n")
         self.write("src/fusion/x.cpp", "#include <Eigen/Core>\n")
         self.assertFindsNothing(include_rules.homes(self.tree))
 
 
+class PublicHeaders(TreeTest):
+    def setUp(self):
+        super().setUp()
+        for folder, headers in (("", include_rules.USERS_HEADERS), ("detail/", include_rules.DETAIL_HEADERS)):
+            for name in " ".join(headers.values()).split():
+                self.write(f"include/skein/{folder}{name}.hpp", "")
+
+    def test_those_that_are_named_are_taken(self):
+        self.assertFindsNothing(include_rules.public_headers(self.tree))
+
+    def test_one_that_is_not_named_is_found(self):
+        self.write("include/skein/detail/queue.hpp", "")
+        self.assertFinds(include_rules.public_headers(self.tree), "include/skein/detail/queue.hpp", "beside their sources")
+
+    def test_one_that_is_gone_is_found(self):
+        os.remove(os.path.join(self.root, "include/skein/call.hpp"))
+        self.assertFinds(include_rules.public_headers(self.tree), "include/skein/call.hpp", "does not exist")
+
+    def test_too_many_are_found(self):
+        most, include_rules.MAX_USERS_HEADERS = include_rules.MAX_USERS_HEADERS, 5
+        self.addCleanup(setattr, include_rules, "MAX_USERS_HEADERS", most)
+        self.assertFinds(include_rules.public_headers(self.tree), "5 are enough")
+
+
 class Floors(TreeTest):
     def test_an_include_up_a_floor_is_found(self):
-        self.write("include/skein/core/call.hpp", '#include "skein/rpc/wire.hpp"\n')
-        self.assertFinds(include_rules.floors(self.tree), "include/skein/core/call.hpp:1", "core (floor 0)", "rpc (floor 3)")
+        self.write("src/rpc/wire.hpp", "")
+        self.write("src/core/call.cpp", '#include "rpc/wire.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "src/core/call.cpp:1", "core (floor 0)", "rpc (floor 3)")
 
     def test_an_include_up_a_floor_by_a_relative_path_is_found(self):
         self.write("src/entity/head.hpp", "")
         self.write("src/connector/connector.cpp", '#include "../entity/head.hpp"\n')
         self.assertFinds(include_rules.floors(self.tree), "connector (floor 5)", "entity (floor 6)")
 
+    def test_an_include_up_a_floor_by_a_public_header_is_found(self):
+        self.write("src/rpc/x.cpp", '#include "skein/detail/history.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "rpc (floor 3)", "entity (floor 6)")
+
     def test_a_generated_header_has_the_floor_of_its_idl(self):
         self.write("src/rpc/x.cpp", '#include "skein/discovery.idl.hpp"\n')
         self.assertFinds(include_rules.floors(self.tree), "brokerless_discovery (floor 4)")
+
+    def test_a_public_header_that_needs_an_internal_one_is_found(self):
+        self.write("src/core/log.hpp", "")
+        self.write("include/skein/call.hpp", '#include "core/log.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "include/skein/call.hpp:1", "core/log.hpp", "not installed")
 
     def test_one_vendor_that_knows_the_other_is_found(self):
         self.write("src/dds/cyclonedds/writer.hpp", "")
@@ -83,16 +117,19 @@ class Floors(TreeTest):
         self.assertFinds(include_rules.floors(self.tree), "dds/cyclonedds")
 
     def test_neighbours_that_know_each_other_are_found(self):
-        self.write("src/navigation/x.cpp", '#include "skein/launch/peer.hpp"\n')
-        self.assertFinds(include_rules.floors(self.tree), "navigation (floor 7)")
+        self.write("src/launch/peer.hpp", "")
+        self.write("src/fusion/x.cpp", '#include "launch/peer.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "fusion (floor 7)")
 
     def test_a_folder_without_a_floor_is_found(self):
         self.write("src/attic/x.cpp", "")
         self.assertFinds(include_rules.floors(self.tree), "stands on no floor")
 
     def test_downwards_is_allowed(self):
-        self.write("brokerless_discovery/x.cpp", '#include "skein/dds/port.hpp"\n#include "skein/discovery.idl.hpp"\n')
-        self.write("src/launch/x.cpp", '#include "skein/profile/check.hpp"\n#include "launch.hpp"\n#include <vector>\n')
+        self.write("src/dds/port.hpp", "")
+        self.write("src/profile/check.hpp", "")
+        self.write("brokerless_discovery/x.cpp", '#include "dds/port.hpp"\n#include "skein/discovery.idl.hpp"\n')
+        self.write("src/launch/x.cpp", '#include "profile/check.hpp"\n#include "launch.hpp"\n#include <vector>\n')
         self.assertFindsNothing(include_rules.floors(self.tree))
 
 
@@ -131,6 +168,35 @@ class Texts(TreeTest):
         self.write("README.md", "```cpp\nint main() {\n  f();\n}\n```\n\n```sh\n./dev test\n```\n")
         self.assertFindsNothing(text_rules.quotes(self.tree))
 
+    def test_code_in_readme_that_only_the_guides_files_hold_is_found(self):
+        self.write("test/guide/x.cpp", "int main() {}\n")
+        self.write("README.md", "```cpp\nint main() {}\n```\n")
+        self.assertFinds(text_rules.quotes(self.tree), "README.md", "in no file of examples/")
+
+    def test_code_in_the_guide_that_nobody_holds_is_found(self):
+        self.write("test/guide/x.cpp", "int main() {\n  g();\n}\n")
+        self.write("test/guide/x.xml", '<peer name="a"/>\n')
+        for language, code in (("cpp", "int main() {\n  f();\n}"), ("idl", "module m {};"), ("xml", '<peer name="b"/>'),
+                               ("cpp", "")):
+            self.write("GUIDE.md", f"```{language}\n{code}\n```\n")
+            self.assertFinds(text_rules.quotes(self.tree), "GUIDE.md", language, "examples/ or test/guide/")
+
+    def test_code_in_the_guide_may_stand_deeper_in_its_file(self):
+        self.write("test/guide/x.cpp", "void f() {\n    if (a) {\n\n      g();\n    }\n}\n")
+        self.write("examples/01/x.xml", '<a>\n  <b/>\n</a>\n')
+        self.write("GUIDE.md", "```cpp\nif (a) {\n\n  g();\n}\n```\n\n```xml\n<b/>\n```\n")
+        self.assertFindsNothing(text_rules.quotes(self.tree))
+
+    def test_code_in_the_guide_that_is_indented_otherwise_within_itself_is_found(self):
+        self.write("test/guide/x.cpp", "if (a) {\n  g();\n}\n")
+        self.write("GUIDE.md", "```cpp\nif (a) {\n    g();\n}\n```\n")
+        self.assertFinds(text_rules.quotes(self.tree), "if (a) {")
+
+    def test_all_code_that_must_be_held_is_known(self):
+        self.write("README.md", "```idl\nmodule m {};\n```\n\n```xml\n<a/>\n```\n")
+        self.write("GUIDE.md", "```xml\n<a/>\n```\n\n```sh\nls\n```\n")
+        self.assertEqual(text_rules.quoted_code(self.tree), [("README.md", "idl", "module m {};\n"), ("GUIDE.md", "xml", "<a/>\n")])
+
 
 class Compiled(TreeTest):
     def setUp(self):
@@ -138,12 +204,12 @@ class Compiled(TreeTest):
         self.compiler = compile_rules.Compiler(COMPILER, [os.path.join(self.root, "include")])
 
     def test_a_header_that_does_not_compile_alone_is_found(self):
-        self.write("include/skein/core/x.hpp", "#pragma once\nstd::string text();\n")
-        self.write("include/skein/core/y.hpp", "#pragma once\n#include <string>\nstd::string text();\n")
-        self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "include/skein/core/x.hpp", "error")
+        self.write("include/skein/x.hpp", "#pragma once\nstd::string text();\n")
+        self.write("include/skein/y.hpp", "#pragma once\n#include <string>\nstd::string text();\n")
+        self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "include/skein/x.hpp", "error")
 
     def test_a_header_that_does_not_compile_twice_is_found(self):
-        self.write("include/skein/core/x.hpp", "struct X {};\n")
+        self.write("include/skein/x.hpp", "struct X {};\n")
         self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "redefinition")
 
     def test_a_program_whose_search_path_has_an_empty_entry_is_found(self):
@@ -166,8 +232,8 @@ class Compiled(TreeTest):
         self.assertFindsNothing(compile_rules.generated_version(header, self.compiler))
 
     def test_generated_code_that_knows_dds_is_found(self):
-        header = self.write("x.idl.hpp", '#include "skein/core/call.hpp"\n#include "skein/dds/port.hpp"\n')
-        self.assertFinds(compile_rules.generated_includes(header), "skein/dds/port.hpp")
+        header = self.write("x.idl.hpp", '#include "skein/call.hpp"\n#include "skein/vendor.hpp"\n')
+        self.assertFinds(compile_rules.generated_includes(header), "skein/vendor.hpp")
 
 
 class Definitions(TreeTest):

@@ -5,10 +5,12 @@ import re
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
+import include_rules
+
 
 class Compiler:
     def __init__(self, command, include_folders):
-        self._command = [command, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
+        self._command = [command, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
         self._command += [f"-I{folder}" for folder in include_folders]
 
     def refusal(self, code):
@@ -47,7 +49,7 @@ def generated_version(header, compiler):
 def generated_includes(header):
     """Generated code that knows more of Skein than floors 0 and 1."""
     for line, included in re.findall(r'^(#include "(skein/[^"]+)")', _read(header), re.MULTILINE):
-        if not re.match(r"skein/(core|idl)/", included):
+        if include_rules.floor_of_header(included) not in ("core", "idl"):
             yield f"{header}: {line}: generated code knows core and idl alone"
 
 

@@ -10,9 +10,6 @@ FLOORS = {
     "core": 0,
     "idl": 1,
     "dds": 2,
-    "dds/loopback": 2.5,
-    "dds/fastdds": 2.5,
-    "dds/cyclonedds": 2.5,
     "rpc": 3,
     "topics": 3,
     "brokerless_discovery": 4,
@@ -23,10 +20,46 @@ FLOORS = {
     "fusion": 7,
     "navigation": 7,
     "navigation/grid": 1.5,
+    "navigation/terrain": 7.1,
+    "navigation/threats": 7.2,
+    "navigation/planners": 7.3,
+    "navigation/routes": 7.4,
+    "navigation/route_checker": 7.4,
     "navigation/components": 7.5,
-    "skein": 8,
-    "asio.hpp": 0.5,
+    "command": 8,
+    "all of the library": 8,
+    "Asio": 0.5,
 }
+# What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
+USERS_HEADERS = {
+    "core": "call call_context clock error executor guid stream",
+    "dds": "loopback vendor",
+    "topics": "publisher subscription topic_qos",
+    "brokerless_discovery": "constraint",
+    "connector": "connector gather",
+    "entity": "component_registry decision entity evaluation head head_options parameters process selection synthesis task",
+    "fusion": "fusion",
+    "all of the library": "skein",
+    "Asio": "asio",
+}
+MAX_USERS_HEADERS = 30
+# What those, and generated code, need: skein/detail/NAME.hpp.
+DETAIL_HEADERS = {
+    "core": "abi action bytes call_memory channel operation",
+    "idl": "argument cdr codec declared_exception json json_codec key_hash make_type_support malformed_sample plain_layout print"
+           " service_reference type_support union_access unknown_operation version",
+    "dds": "qos",
+    "topics": "topic_type",
+    "entity": "circuit_breaker history task_run",
+}
+_FLOOR_OF_HEADER = {
+    f"skein/{folder}{name}.hpp": floor
+    for folder, headers in (("", USERS_HEADERS), ("detail/", DETAIL_HEADERS))
+    for floor, names in headers.items()
+    for name in names.split()
+}
+# Each back end's folder in src/dds, which only knows what is below.
+BACK_END = 2.5
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("launch", "profile")}
 # Headers that are generated, by the floor of their IDL.
@@ -45,12 +78,12 @@ HOMES = {
     "Fast DDS": (r"(fastdds|fastrtps)/", ["src/dds/fastdds", *_OUTSIDE]),
     "Cyclone DDS": (r"dds/(dds\.h|ddsc/|ddsi/|ddsrt/)", ["src/dds/cyclonedds", "test/idl", *_OUTSIDE]),
     "Fast CDR": (r"fastcdr/", ["src/idl", "test/idl", *_OUTSIDE]),
-    "OMPL": (r"ompl/", ["src/navigation"]),
+    "OMPL": (r"ompl/", ["src/navigation/planners"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
-    "JSON": (r"nlohmann/", ["src/idl", "src/skein", "test", "benchmarks"]),
+    "JSON": (r"nlohmann/", ["src/idl", "src/command", "test", "benchmarks"]),
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
-    "the command line": (r"CLI/", ["src/skein", "benchmarks", "examples"]),
+    "the command line": (r"CLI/", ["src/command", "benchmarks", "examples"]),
 }
 
 
@@ -63,8 +96,20 @@ def homes(tree):
                     yield f"{path}:{line}: {included} belongs to {library}, whose headers stay in {', '.join(folders)}"
 
 
+def public_headers(tree):
+    """A header that is installed and not named above, and too many of a user's."""
+    headers = {path.removeprefix("include/") for path in tree.files((".hpp",), "include")}
+    for header in sorted(headers - set(_FLOOR_OF_HEADER)):
+        yield f"include/{header}: is nowhere in USERS_HEADERS or DETAIL_HEADERS; internals lie beside their sources"
+    for header in sorted(set(_FLOOR_OF_HEADER) - headers):
+        yield f"include/{header}: is named as a public header and does not exist"
+    count = sum(len(names.split()) for names in USERS_HEADERS.values())
+    if count > MAX_USERS_HEADERS:
+        yield f"{count} headers are a user's; {MAX_USERS_HEADERS} are enough"
+
+
 def floors(tree):
-    """An include against the floors."""
+    """An include against the floors, or of internals by what is installed."""
     for top in ("include/skein", "src", "brokerless_discovery"):
         for path in tree.files(SOURCES, top):
             user = _module(path)
@@ -74,29 +119,44 @@ def floors(tree):
             for line, included, quoted in tree.includes(path):
                 used = _module_of_include(tree, path, included, quoted)
                 if used and not _may_use(user, used):
-                    yield f"{path}:{line}: {user} (floor {FLOORS[user]}) includes {included} of {used} (floor {FLOORS[used]})"
+                    yield f"{path}:{line}: {user} (floor {_floor(user)}) includes {included} of {used} (floor {_floor(used)})"
+                if top == "include/skein" and quoted and not included.startswith("skein/"):
+                    yield f"{path}:{line}: includes {included}, which is not installed"
 
 
 def _may_use(user, used):
-    return user == used or FLOORS[used] < FLOORS[user] or (user, used) in NEIGHBOURS
+    return user == used or _floor(used) < _floor(user) or (user, used) in NEIGHBOURS
+
+
+def _floor(module):
+    return BACK_END if module.startswith("dds/") else FLOORS[module]
 
 
 def _module(path):
-    for prefix in ("include/skein/", "src/"):
-        if path.startswith(prefix):
-            path = path[len(prefix):]
-    parts = path.split("/")
+    if path.startswith("include/"):
+        return floor_of_header(path.removeprefix("include/"))
+    parts = path.removeprefix("src/").split("/")
+    if parts[0] == "dds" and len(parts) > 2:
+        return "/".join(parts[:2])
     for length in (2, 1):
         name = "/".join(parts[:length])
-        if (len(parts) > length or name.endswith(".hpp")) and name in FLOORS:
+        if len(parts) > length and name in FLOORS:
             return name
     return None
+
+
+def floor_of_header(included):
+    """The floor of an installed header; None for another one."""
+    return _FLOOR_OF_HEADER.get(included)
 
 
 def _module_of_include(tree, path, included, quoted):
     if included in GENERATED:
         return GENERATED[included]
-    if included.startswith("skein/"):
-        return _module("include/" + included)
-    beside = os.path.normpath(os.path.join(os.path.dirname(path), included))
-    return _module(beside) if quoted and tree.exists(beside) else None
+    if included in _FLOOR_OF_HEADER:
+        return floor_of_header(included)
+    for folder in (os.path.dirname(path), "src", ""):
+        found = os.path.normpath(os.path.join(folder, included))
+        if quoted and tree.exists(found):
+            return _module(found)
+    return None

@@ -1,4 +1,4 @@
-"""What no file of the project says, and what README quotes."""
+"""What no file of the project says, and what README and the guide quote."""
 
 import re
 
@@ -21,6 +21,12 @@ SLEEPERS = {
     "test/faults/processes.hpp": "how long a fault lasts, which is what the tests vary",
     "test/faults/tally_client.cpp": "the pace of a client that never rests",
     "test/faults/tally_peer.cpp": "an operation that takes its time",
+}
+
+# Which code of a text must stand, as it is, in files of which folders.
+QUOTING = {
+    "README.md": (("cpp", "idl"), ("examples",)),
+    "GUIDE.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
 }
 
 
@@ -52,20 +58,42 @@ def sleeps(tree):
 
 
 def quotes(tree):
-    """Code in README that no example holds, line by line as it stands."""
-    examples = ["\n" + _trimmed(tree.text(path)) + "\n" for path in tree.files((*SOURCES, ".idl"), "examples")]
-    for language, code in quoted_code(tree):
-        if not any("\n" + _trimmed(code) + "\n" in example for example in examples):
-            first = code.strip().splitlines()[0] if code.strip() else "nothing"
-            yield f"README.md: its {language} code that begins with '{first}' is in no file of examples/"
+    """Code that a text quotes and that no file which it may quote holds, line by line; common indentation does not count."""
+    for path, (_, folders) in QUOTING.items():
+        sources = [
+            tree.text(source).splitlines() for folder in folders for source in tree.files((*SOURCES, ".idl", ".xml"), folder)
+        ]
+        for language, code in _quoted_by(tree, path):
+            lines = _without_margin(code.strip("\n").splitlines())
+            if not any(_holds(source, lines) for source in sources):
+                first = lines[0] if lines else "nothing"
+                places = " or ".join(folder + "/" for folder in folders)
+                yield f"{path}: its {language} code that begins with '{first}' is in no file of {places}"
 
 
 def quoted_code(tree):
-    """(language, code) of each block of code that examples must hold."""
-    if not tree.exists("README.md"):
+    """(text, language, code) of each block of code that files must hold."""
+    return [(path, *block) for path in QUOTING for block in _quoted_by(tree, path)]
+
+
+def _quoted_by(tree, path):
+    if not tree.exists(path):
         return []
-    return re.findall(r"^```(cpp|idl)\n(.*?)^```$", tree.text("README.md"), re.MULTILINE | re.DOTALL)
+    languages = "|".join(QUOTING[path][0])
+    return re.findall(rf"^```({languages})\n(.*?)^```$", tree.text(path), re.MULTILINE | re.DOTALL)
 
 
-def _trimmed(text):
-    return "\n".join(line.rstrip() for line in text.strip("\n").splitlines())
+def _holds(source, lines):
+    """Whether `lines`, which have no margin, stand in `source` one after the other."""
+    if not lines:
+        return False
+    for at in range(len(source) - len(lines) + 1):
+        if source[at].strip() == lines[0].strip() and _without_margin(source[at : at + len(lines)]) == lines:
+            return True
+    return False
+
+
+def _without_margin(lines):
+    """The lines without the blanks that they begin with in common, and without those at their ends."""
+    margin = min((len(line) - len(line.lstrip(" ")) for line in lines if line.strip()), default=0)
+    return [line[margin:].rstrip() for line in lines]

@@ -1,15 +1,15 @@
-#include "skein/brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/broker.hpp"
 
 #include <catch2/catch.hpp>
 #include <condition_variable>
 #include <thread>
 
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 #include "descriptions.hpp"
-#include "skein/brokerless_discovery/process_watch.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/loopback.hpp"
-#include "skein/idl/codec.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
+#include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;
@@ -101,6 +101,18 @@ TEST_CASE("a late joiner receives every description that stands", "[R16]") {
   const Peer late(world, "ground");
   CHECK(late.finds("A/INavigator"));
   CHECK(late.finds("A/IOther"));
+}
+
+TEST_CASE("a registration that gives way to another is withdrawn at once") {
+  World world;
+  Peer navigator(world, "navigator");
+  auto one = navigator.broker.add_service(navigator.describe(1, "A/INavigator", "navigator"));
+  auto two = navigator.broker.add_service(navigator.describe(2, "A/IOther", "navigator"));
+  one = std::move(two);
+  CHECK_FALSE(navigator.finds("A/INavigator"));
+  CHECK(navigator.finds("A/IOther"));
+  one = Broker::Registration();
+  CHECK_FALSE(navigator.finds("A/IOther"));
 }
 
 TEST_CASE("a peer knows its own services at once, and forgets them when they are withdrawn",
@@ -400,7 +412,7 @@ TEST_CASE("a description of more than it may be is refused, by its own peer at o
   World world;
   Peer ground(world, "ground");
   auto large = ground.describe(1, "A/ILarge", "ground");
-  large.component = std::string(kMostDescriptionBytes, ' ');
+  large.component = std::string(kMaxDescriptionBytes, ' ');
   CHECK_THROWS_WITH(ground.broker.add_service(large),
                     Catch::Contains("A/ILarge") && Catch::Contains("bytes"));
   Writer rogue(world);
@@ -525,8 +537,6 @@ struct SlowToTake final : Executor {
     return true;
   }
   void post_or_run(Action task) override { post(std::move(task)); }
-  bool try_run_inline(const std::function<void()>&) override { return false; }
-  bool runs_here() const noexcept override { return false; }
   bool let_in(bool now) {
     std::lock_guard lock(mutex);
     open = now;

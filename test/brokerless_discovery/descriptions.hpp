@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "skein/core/guid.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::test {
 

@@ -1,9 +1,9 @@
-#include "skein/brokerless_discovery/load_board.hpp"
+#include "brokerless_discovery/load_board.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "descriptions.hpp"
-#include "skein/dds/loopback.hpp"
+#include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;

@@ -1,4 +1,4 @@
-#include "skein/brokerless_discovery/process_watch.hpp"
+#include "brokerless_discovery/process_watch.hpp"
 
 #include <poll.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 
 #include "../../brokerless_discovery/abstract_socket.hpp"
 #include "../tools/eventually.hpp"
-#include "skein/brokerless_discovery/kill_process.hpp"
+#include "brokerless_discovery/kill_process.hpp"
 
 using namespace skein::brokerless_discovery;
 using skein::FileDescriptor;
@@ -279,9 +279,9 @@ TEST_CASE("one process has so many connections to another, which has room for ot
   CHECK(eventually([&] { return own.counters().watchers == 1; }));
 
   constexpr std::size_t kMore = 10;
-  auto many = connections_to(address, ProcessWatch::kMostWatchersOfOne + kMore);
+  auto many = connections_to(address, ProcessWatch::kMaxWatchersOfOne + kMore);
   CHECK(eventually([&] { return own.counters().refused == kMore; }));
-  CHECK(own.counters().watchers == ProcessWatch::kMostWatchersOfOne + 1);
+  CHECK(own.counters().watchers == ProcessWatch::kMaxWatchersOfOne + 1);
 
   many.clear();
   CHECK(eventually([&] { return own.counters().watchers == 1; }));
@@ -290,10 +290,10 @@ TEST_CASE("one process has so many connections to another, which has room for ot
 }
 
 TEST_CASE("a process watches so many others", "[R27]") {
-  const std::vector<Doorman> doors(ProcessWatch::kMostWatched + 1);
+  const std::vector<Doorman> doors(ProcessWatch::kMaxWatched + 1);
   ProcessWatch watch;
   for (const Doorman& door : doors) watch.watch(door.address, kWatcher, [] {});
-  CHECK(watch.counters().watched == ProcessWatch::kMostWatched);
+  CHECK(watch.counters().watched == ProcessWatch::kMaxWatched);
 }
 
 TEST_CASE("a process without a free descriptor waits for one in peace, and hears of others' ends",

@@ -1,10 +1,10 @@
-#include "skein/brokerless_discovery/table.hpp"
+#include "brokerless_discovery/table.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
 #include "descriptions.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;
@@ -428,19 +428,19 @@ TEST_CASE("what no participant may say of a service is refused with the reason",
     CHECK(refuses(Refusal::Oversized));
   }
   SECTION("too many bases") {
-    bad.bases.assign(kMostBases + 1, "A/IBase");
+    bad.bases.assign(kMaxBases + 1, "A/IBase");
     CHECK(refuses(Refusal::Oversized));
   }
   SECTION("too many operations") {
-    bad.operations.resize(kMostOperations + 1);
+    bad.operations.resize(kMaxOperations + 1);
     CHECK(refuses(Refusal::Oversized));
   }
   SECTION("too many attributes") {
-    bad.attributes.resize(kMostAttributes + 1);
+    bad.attributes.resize(kMaxAttributes + 1);
     CHECK(refuses(Refusal::Oversized));
   }
   SECTION("too much XML") {
-    bad.component.assign(kMostDescriptionBytes + 1, ' ');
+    bad.component.assign(kMaxDescriptionBytes + 1, ' ');
     CHECK(refuses(Refusal::Oversized));
   }
 }
@@ -495,7 +495,7 @@ TEST_CASE("a participant has room for so many descriptions, and what goes makes 
 
 TEST_CASE("a participant has room for so many bytes", "[R26]") {
   Table table;
-  const std::string xml(kMostDescriptionBytes, ' ');
+  const std::string xml(kMaxDescriptionBytes, ' ');
   const std::size_t count = fill(table, kWriter, xml);
   CHECK(count < Room::kEntriesOfOne);
   CHECK(count * xml.size() <= Room::kBytesOfOne);
@@ -532,7 +532,7 @@ TEST_CASE("all participants together have room for so many descriptions, and thi
 TEST_CASE("so many processes that have ended are remembered, the oldest are forgotten first",
           "[R15][R27]") {
   Table table;
-  for (std::size_t i = 0; i <= Table::kMostEnded; ++i) {
+  for (std::size_t i = 0; i <= Table::kMaxEnded; ++i) {
     table.on_process_ended("skein/process-of-" + std::to_string(i));
   }
   CHECK(table.on_description(description(1, "A/I", "1"), kWriter).empty());

@@ -12,7 +12,7 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/rtps_packet.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 using namespace skein;
 using namespace skein::test;

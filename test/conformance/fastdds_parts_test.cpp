@@ -5,10 +5,10 @@
 #include "../../src/dds/fastdds/announcement_pace.hpp"
 #include "../../src/dds/fastdds/events.hpp"
 #include "../../src/dds/fastdds/forgetting.hpp"
+#include "../../src/dds/fastdds/liveliness_tracker.hpp"
 #include "../../src/dds/fastdds/participant_leases.hpp"
 #include "../../src/dds/fastdds/received_payloads.hpp"
-#include "../../src/dds/fastdds/signs_of_life.hpp"
-#include "../../src/dds/fastdds/wake_watch.hpp"
+#include "../../src/dds/fastdds/suspend_detector.hpp"
 #include "../tools/eventually.hpp"
 #include "../tools/rtps_packet.hpp"
 
@@ -329,8 +329,8 @@ TEST_CASE("farewells and announcements cut off anywhere are read no further than
 }
 
 TEST_CASE("a participant that is not heard of for its lease is overdue, once") {
-  SignsOfLife signs;
-  SignsOfLife::Time now{1h};
+  LivelinessTracker signs;
+  LivelinessTracker::Time now{1h};
   signs.watch(now, 10ms);
   signs.follow(participant(1), 60ms, now);
   signs.follow(participant(2), 60ms, now);
@@ -346,8 +346,8 @@ TEST_CASE("a participant that is not heard of for its lease is overdue, once") {
 }
 
 TEST_CASE("while this process did not run, nobody's lease runs out") {
-  SignsOfLife signs;
-  SignsOfLife::Time now{1h};
+  LivelinessTracker signs;
+  LivelinessTracker::Time now{1h};
   signs.watch(now, 10ms);
   signs.follow(participant(1), 60ms, now);
   CHECK(signs.watch(now += 1h, 10ms).empty());
@@ -359,10 +359,10 @@ TEST_CASE("while this process did not run, nobody's lease runs out") {
 
 TEST_CASE(
     "a participant that sent nothing for its lease is mute until it is woken; a busy one not") {
-  WakeWatch watch(100ms);
+  SuspendDetector watch(100ms);
   int wakes = 0;
   watch.on_wake = [&] { ++wakes; };
-  WakeWatch::Time now{1h};
+  SuspendDetector::Time now{1h};
   CHECK(watch.may_receive(now));
   CHECK(watch.may_send(now));
   // Busy: each announcement is late, by far more than half the lease.

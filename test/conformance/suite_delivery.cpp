@@ -52,7 +52,7 @@ TEST_CASE("samples of every size arrive whole, byte for byte and in order") {
     CHECK(received[i].key.is_nil());
     CHECK(received[i].writer == outbox.writer().guid());
   }
-  CHECK(inbox.reader().malformed() == 0);
+  CHECK(inbox.reader().counters().malformed == 0);
 }
 
 TEST_CASE("a burst of reliable samples arrives complete and in order") {

@@ -26,7 +26,7 @@ TEST_CASE("a sample in another encoding is counted and dropped, the next one arr
   outbox.writer().write(make_number(4));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(numbers(inbox.received()) == std::vector<std::uint32_t>{4});
-  CHECK(inbox.reader().malformed() == 3);
+  CHECK(inbox.reader().counters().malformed == 3);
 }
 
 TEST_CASE("a sample without room for its header is refused by the writer") {

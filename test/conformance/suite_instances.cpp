@@ -52,7 +52,7 @@ TEST_CASE("a disposal arrives with the right key, after what was written before"
   CHECK(received[2].cdr.empty());
   CHECK(received[2].writer == outbox.writer().guid());
   CHECK(received[3].state == InstanceState::Alive);
-  CHECK(inbox.reader().malformed() == 0);
+  CHECK(inbox.reader().counters().malformed == 0);
 }
 
 TEST_CASE("a disposed instance can be written again") {

@@ -13,11 +13,11 @@ using namespace std::chrono_literals;
 namespace {
 
 /// Writes one number after the other until it goes.
-class Stream {
+class SteadyWriter {
  public:
-  Stream(Participant& participant, const Topic& topic)
+  SteadyWriter(Participant& participant, const Topic& topic)
       : outbox_(participant, topic, depth_one()), thread_([this] { run(); }) {}
-  ~Stream() {
+  ~SteadyWriter() {
     stopping_ = true;
     thread_.join();
   }
@@ -45,7 +45,7 @@ class Stream {
 
 TEST_CASE("readers come and go while samples flow") {
   Wire wire;
-  Stream stream(*wire.writing, keyless());
+  SteadyWriter stream(*wire.writing, keyless());
   for (int round = 0; round < 15; ++round) {
     Inbox inbox(*wire.reading, keyless(), keep_all());
     REQUIRE(eventually([&] { return inbox.count() > 2; }));
@@ -54,7 +54,7 @@ TEST_CASE("readers come and go while samples flow") {
 
 TEST_CASE("no listener runs after its reader or writer is destroyed") {
   Wire wire;
-  Stream stream(*wire.writing, keyless());
+  SteadyWriter stream(*wire.writing, keyless());
   std::atomic<int> late{0};
   for (int round = 0; round < 15; ++round) {
     auto ended = std::make_shared<std::atomic<bool>>(false);
@@ -85,7 +85,7 @@ TEST_CASE("writers come and go while their reader reads") {
   Inbox inbox(*wire.reading, keyless(), keep_all());
   for (int round = 0; round < 15; ++round) {
     const std::size_t before = inbox.count();
-    Stream stream(*wire.writing, keyless());
+    SteadyWriter stream(*wire.writing, keyless());
     REQUIRE(eventually([&] { return inbox.count() > before + 2; }));
   }
   CHECK(eventually([&] { return inbox.reader().matched_writers().empty(); }));
@@ -93,7 +93,7 @@ TEST_CASE("writers come and go while their reader reads") {
 
 TEST_CASE("participants come and go while others talk") {
   Wire wire;
-  Stream stream(*wire.writing, keyless());
+  SteadyWriter stream(*wire.writing, keyless());
   Inbox inbox(*wire.reading, keyless(), keep_all());
   for (int round = 0; round < 4; ++round) {
     const auto guest =

@@ -94,8 +94,8 @@ TEST_CASE("a sample whose lifespan is over is not handed over, but counted") {
   std::size_t taken = 0;
   reader->take([&](const Sample&) { ++taken; });
   CHECK(taken == 0);
-  CHECK(reader->expired() == 1);
-  CHECK(witness.reader().expired() == 0);
+  CHECK(reader->counters().expired == 1);
+  CHECK(witness.reader().counters().expired == 0);
 }
 
 TEST_CASE("a late joiner is not given what has expired") {
@@ -127,7 +127,7 @@ TEST_CASE("a reader with a limit keeps the newest samples, and counts those that
   reader->take([](const Sample&) {});
   for (std::uint32_t i = 0; i < 10; ++i) outbox.writer().write(make_number(i));
   REQUIRE(eventually([&] { return witness.count() == 10; }));
-  REQUIRE(eventually([&] { return reader->replaced() >= 7; }));
+  REQUIRE(eventually([&] { return reader->counters().replaced >= 7; }));
   std::vector<std::uint32_t> values;
   reader->take([&](const Sample& sample) {
     values.push_back(to_number({sample.cdr.begin(), sample.cdr.end()}));

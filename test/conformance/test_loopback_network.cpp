@@ -1,7 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "skein/core/error.hpp"
-#include "skein/dds/loopback.hpp"
+#include "dds/port.hpp"
+#include "skein/error.hpp"
+#include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -202,6 +203,35 @@ TEST_CASE("a full writer refuses at once where time stands still") {
   CHECK_NOTHROW(pair.writer->write(number(4)));
 }
 
+TEST_CASE("a listener's write that finds no room is refused at once, and waits for nobody") {
+  SystemClock clock;
+  LoopbackNetwork network(clock);
+  Peer one(network, 10min);
+  Peer two(network, 10min);
+  Qos qos;
+  qos.max_samples = 1;
+  qos.max_blocking = 10min;
+  const auto writer = one.participant->create_writer(kTopic, qos);
+  const auto far = two.participant->create_reader(kTopic, qos);
+  network.isolate(two.participant->guid());
+  writer->write(number(1));
+
+  const Topic bell{"bell", "test::Count", false};
+  bool refused = false;
+  ReaderListener listener;
+  listener.on_data = [&](Reader&) {
+    try {
+      writer->write(number(2));
+    } catch (const Overloaded&) {
+      refused = true;
+    }
+  };
+  const auto ears = one.participant->create_reader(bell, Qos{}, listener);
+  const auto hand = one.participant->create_writer(bell, Qos{});
+  hand->write(number(3));
+  CHECK(refused);
+}
+
 TEST_CASE("a deadline is missed when its period is over, and again after each further one") {
   Qos qos;
   qos.deadline = 100ms;
@@ -234,11 +264,11 @@ TEST_CASE("a sample expires to the instant, on its way and in the reader") {
   pair.writer->write(number(2));
   pair.clock.advance(99ms);
   CHECK(take_all(*pair.reader) == std::vector{2});
-  CHECK(pair.reader->expired() == 1);
+  CHECK(pair.reader->counters().expired == 1);
   pair.writer->write(number(3));
   pair.clock.advance(100ms);
   CHECK(take_all(*pair.reader).empty());
-  CHECK(pair.reader->expired() == 2);
+  CHECK(pair.reader->counters().expired == 2);
 }
 
 TEST_CASE("an owner that is silent for its lease hands over, and takes again when it is back") {

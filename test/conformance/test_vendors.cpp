@@ -1,6 +1,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -8,8 +9,9 @@
 #include "../../src/dds/keyed_queue.hpp"
 #include "../../src/dds/sample_format.hpp"
 #include "../../src/dds/topic_table.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "dds/vendor_names.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -19,6 +21,27 @@ TEST_CASE("an unknown vendor is refused with the known ones and the nearest") {
   CHECK_THROWS_WITH(load_vendor("fastdss"), Contains("did you mean 'fastdds'") &&
                                                 Contains("cyclonedds") && Contains("loopback"));
   CHECK_THROWS_AS(load_vendor(""), InvalidArgument);
+}
+
+TEST_CASE("the library knows the vendors that the build knows, and loopback") {
+  std::string networked;
+  for (const std::string& name : networked_vendors()) {
+    networked += (networked.empty() ? "" : ",") + name;
+  }
+  CHECK(networked == SKEIN_VENDORS);
+  auto all = networked_vendors();
+  all.push_back(kLoopback);
+  CHECK(vendor_names() == all);
+  for (const std::string& name : shared_memory_vendors()) {
+    CHECK(std::count(all.begin(), all.end(), name) == 1);
+  }
+}
+
+TEST_CASE("alternatives are listed as people write them") {
+  CHECK(alternatives({}) == "");
+  CHECK(alternatives({"a"}) == "a");
+  CHECK(alternatives({"a", "b"}) == "a or b");
+  CHECK(alternatives({"a", "b", "c"}) == "a, b or c");
 }
 
 TEST_CASE("loopback is always there, and one network for the process") {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "../tools/eventually.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds::conformance {
 
-/// Which vendor writes and which reads. Each program of the suite defines its own in a few lines.
+/// Which vendor writes and which reads. Each program of the suite defines its own (pairing.cpp).
 struct Pairing {
   std::string writing;
   std::string reading;

@@ -1,4 +1,4 @@
-#include "skein/rpc/call_journal.hpp"
+#include "rpc/call_journal.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 #include "../tools/log.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
-#include "skein/idl/codec.hpp"
+#include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -24,7 +24,7 @@ namespace {
 class Heard {
  public:
   explicit Heard(dds::Participant& participant)
-      : reader_(participant, [this](const CallEvent& event) {
+      : reader_(participant, introspection::kCalls, [this](const CallEvent& event) {
           std::lock_guard lock(mutex_);
           events_.push_back(event);
         }) {}
@@ -57,7 +57,7 @@ class Heard {
  private:
   mutable std::mutex mutex_;
   std::vector<CallEvent> events_;
-  rpc::CallJournalReader reader_;  // last: goes first
+  introspection::Reader<CallEvent> reader_;  // last: goes first
 };
 
 }  // namespace
@@ -105,16 +105,16 @@ TEST_CASE("a journal is on while it is read, bounded, and counts what it drops")
   const auto entity = make_server();
   const auto other = make_client();
   ManualExecutor control;
-  const auto journal = rpc::CallJournal::open(entity->participant(), control, "uav-1/test");
+  rpc::CallJournal journal(entity->participant(), control, "uav-1/test");
   const OperationInfo& operation = Echo::interface_info().operations[0];
-  const auto note = [&] { journal->note(CallStep::Sent, Guid{}, 1, "test/Echo", operation); };
-  CHECK_FALSE(journal->on());
+  const auto note = [&] { journal.note(CallStep::Sent, Guid{}, 1, "test/Echo", operation); };
+  CHECK_FALSE(journal.on());
   note();
   CHECK(control.run_all() == 0);
   {
     const Heard heard(other->participant());
-    REQUIRE(eventually([&] { return journal->on(); }));
-    for (std::size_t i = 0; i < rpc::CallJournal::kCapacity + 10; ++i) note();
+    REQUIRE(eventually([&] { return journal.on(); }));
+    for (std::size_t i = 0; i < introspection::AnyPublisher::kCapacity + 10; ++i) note();
     CHECK(control.run_all() == 1);
     CHECK(eventually([&] {
       note();
@@ -124,8 +124,8 @@ TEST_CASE("a journal is on while it is read, bounded, and counts what it drops")
     }));
     CHECK(heard.all().size() > 0);
   }
-  CHECK(eventually([&] { return !journal->on(); }));
-  journal->close();
+  CHECK(eventually([&] { return !journal.on(); }));
+  journal.close();
 }
 
 TEST_CASE("malformed events are counted, and the first alone is logged") {
@@ -144,7 +144,7 @@ TEST_CASE("malformed events are counted, and the first alone is logged") {
     writer->write(malformed);
     return heard.refused() >= 10;
   }));
-  CHECK(log.count("dropped a malformed sample of participant " +
+  CHECK(log.count("dropped a sample of participant " +
                   entity->participant().guid().hex().substr(0, 24)) == 1);
   CHECK(heard.all().empty());
 }

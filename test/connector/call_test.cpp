@@ -6,7 +6,7 @@
 #include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -25,6 +25,9 @@ struct Pair {
     echo.emplace(client->connect<Echo>());
   }
   ~Pair() { echo.reset(); }
+
+  /// A proxy of the client's, or of one in the server's process.
+  Echo::Proxy connect(bool same_process) { return same_process ? server->connect<Echo>() : *echo; }
 
   std::unique_ptr<Entity> server;
   std::unique_ptr<Entity> client;
@@ -73,16 +76,58 @@ TEST_CASE("an exception that the interface declares arrives as its own type") {
   }
 }
 
-TEST_CASE("whatever else an implementation throws arrives as an error with its text") {
+TEST_CASE(
+    "whatever else an implementation throws arrives as an error with its text, on every "
+    "transport") {
   Pair pair;
-  CHECK_THROWS_AS(pair.echo->fail("overloaded"), Overloaded);
-  CHECK_THROWS_WITH(pair.echo->fail("overloaded"), Catch::Contains("no room for this one"));
-  CHECK_THROWS_AS(pair.echo->fail("standard"), Internal);
-  CHECK_THROWS_WITH(pair.echo->fail("standard"), Catch::Contains("something broke"));
-  CHECK_THROWS_AS(pair.echo->fail("undeclared"), Internal);
-  CHECK_THROWS_WITH(pair.echo->fail("undeclared"), Catch::Contains("does not declare"));
-  CHECK_THROWS_AS(pair.echo->fail("number"), Internal);
+  auto echo = pair.connect(GENERATE(false, true));
+  CHECK_THROWS_AS(echo.fail("overloaded"), Overloaded);
+  CHECK_THROWS_WITH(echo.fail("overloaded"), Catch::EndsWith("no room for this one"));
+  const std::vector<std::pair<std::string, std::string>> texts{
+      {"standard", "fail failed: something broke"},
+      {"undeclared", "fail threw test::DivisionByZero, which its interface does not declare"},
+      {"number", "fail threw something that is no std::exception"}};
+  for (const auto& [how, text] : texts) {
+    CAPTURE(how);
+    CHECK_THROWS_AS(echo.fail(how), Internal);
+    CHECK_THROWS_WITH(echo.fail(how), Catch::EndsWith(text));
+    CHECK_THROWS_AS(echo.async_fail(how).get(), Internal);
+    CHECK_THROWS_WITH(echo.async_fail(how).get(), Catch::EndsWith(text));
+  }
+  CHECK(echo.echo("still alive") == "still alive");
+}
+
+TEST_CASE(
+    "an exception that CDR cannot carry arrives as Internal on every transport, and the provider "
+    "lives on") {
+  Pair pair;
+  auto echo = pair.connect(GENERATE(false, true));
+  const std::string how = GENERATE(as<std::string>(), "zero", "long");
+  const auto text = Catch::Contains("the exception test::Garbled of garble cannot be sent: ");
+  CHECK_THROWS_AS(echo.garble(how), Internal);
+  CHECK_THROWS_WITH(echo.garble(how), text);
+  CHECK_THROWS_AS(echo.async_garble(how).get(), Internal);
+  CHECK_THROWS_WITH(echo.async_garble(how).get(), text);
+  CHECK(echo.echo("still alive") == "still alive");
+}
+
+TEST_CASE("a result that CDR cannot carry is answered as Internal where it would have to be sent") {
+  Pair pair;
+  CHECK_THROWS_AS(pair.echo->garble("result"), Internal);
+  CHECK_THROWS_WITH(pair.echo->garble("result"),
+                    Catch::Contains("the result of garble cannot be sent: text with a zero byte"));
+  auto stream = pair.echo->mumble();
+  CHECK(stream.next() == "clear");
+  CHECK_THROWS_WITH(stream.next(), Catch::Contains("a result of mumble cannot be sent: "));
+  CHECK_THROWS_AS(
+      [&] {
+        auto again = pair.echo->mumble();
+        while (again.next()) {
+        }
+      }(),
+      Internal);
   CHECK(pair.echo->echo("still alive") == "still alive");
+  CHECK(pair.connect(true).garble("result").size() == 8);
 }
 
 TEST_CASE("calls from several threads do not disturb each other") {
@@ -149,7 +194,7 @@ TEST_CASE("dropping an asynchronous call cancels it at the server") {
 
 TEST_CASE(
     "dropping, cancelling, timing out and disconnecting each reach the running call, on every "
-    "lane") {
+    "transport") {
   const auto server = make_server();
   const auto service = std::make_shared<EchoService>();
   server->provide<LouderEcho>(service);
@@ -408,7 +453,7 @@ TEST_CASE("a managed service is closed to strangers") {
   CHECK(owner->connect<Echo>({.name = "hidden"}).echo("mine") == "mine");
 }
 
-TEST_CASE("within one process a call stays in it and runs on the caller's thread") {
+TEST_CASE("within one process a call stays in it and runs on the thread that is declared") {
   const auto process = std::make_shared<Process>();
   const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
   const auto client = make_entity("client", Pairing::get().client, "uav-1", process);
@@ -420,13 +465,25 @@ TEST_CASE("within one process a call stays in it and runs on the caller's thread
     std::thread::id ran_on;
   };
   const auto service = std::make_shared<Where>();
-  server->provide<LouderEcho>(service);
+  const CallThread thread = GENERATE(CallThread::Own, CallThread::Caller);
+  server->provide<LouderEcho>(service, {.thread = thread});
   auto echo = client->connect<Echo>();
   echo.echo("x");
-  CHECK(service->ran_on == std::this_thread::get_id());
+  CHECK((service->ran_on == std::this_thread::get_id()) == (thread == CallThread::Caller));
   std::int32_t remainder;
   CHECK_THROWS_AS(echo.divide(1, 0, remainder), DivisionByZero);
   CHECK_THROWS_AS(echo.within(30ms).async_wait(5'000).get(), TimedOut);
+}
+
+TEST_CASE("an entity withdraws its own services and no others of its process") {
+  const auto process = std::make_shared<Process>();
+  const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
+  const auto client = make_entity("client", Pairing::get().server, "uav-1", process);
+  const Guid id = server->provide<LouderEcho>(std::make_shared<EchoService>());
+  client->withdraw(id);
+  CHECK_THAT(client->connect<Echo>().channel()->peer(), Catch::Contains("in this process"));
+  server->withdraw(id);
+  CHECK_THROWS_AS(server->connect<Echo>({.timeout = 50ms}), Unavailable);
 }
 
 TEST_CASE("a call that would wait for itself is refused with the reason") {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <thread>
 
-#include "skein/core/call_context.hpp"
-#include "skein/core/error.hpp"
+#include "skein/call_context.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 namespace {
+
+const std::string kWithZeroByte("gar\0bled", 8);
 
 class Inside {
  public:
@@ -111,6 +113,18 @@ void EchoService::burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>
   const Inside inside(*this);
   while (sink.try_push(std::vector<std::uint8_t>(size))) ++pushed;
   stream_ended = true;
+}
+
+std::string EchoService::garble(const std::string& how) {
+  const Inside inside(*this);
+  if (how == "result") return kWithZeroByte;
+  throw ::test::Garbled(how == "long" ? std::string(17, 'x') : kWithZeroByte);
+}
+
+void EchoService::mumble(StreamSink<std::string>& sink) {
+  const Inside inside(*this);
+  sink.push("clear");
+  sink.push(kWithZeroByte);
 }
 
 std::string EchoService::shout(const std::string& text) {

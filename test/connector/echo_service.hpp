@@ -26,6 +26,8 @@ class EchoService : public ::test::LouderEcho {
   std::string who(std::uint32_t time_ms) override;
   void count_up(std::int32_t count, std::int32_t fail_at, StreamSink<std::int32_t>& sink) override;
   void burst(std::uint32_t size, StreamSink<std::vector<std::uint8_t>>& sink) override;
+  std::string garble(const std::string& how) override;
+  void mumble(StreamSink<std::string>& sink) override;
   std::string shout(const std::string& text) override;
 
   std::atomic<std::uint64_t> calls{0};

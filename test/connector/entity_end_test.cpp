@@ -1,9 +1,11 @@
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <future>
 
 #include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
+#include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -92,6 +94,28 @@ TEST_CASE("a call that waits for another provider ends with its entity") {
   CHECK_THROWS_AS(waiting.get(), Unavailable);
   REQUIRE(call.ready());
   CHECK_THROWS_AS(call.get(), Unavailable);
+}
+
+TEST_CASE("a connection that is being opened ends with its entity, though time stands still") {
+  const auto clock = std::make_shared<ManualClock>();
+  std::atomic<bool> asked = false;
+  dds::LoopbackNetwork network(*clock);
+  network.judge_transfers([&](const dds::Transfer& transfer) {
+    if (transfer.topic.ends_with("_Request")) asked = true;
+    return transfer.topic.ends_with("_Reply") ? dds::Fate::drop() : dds::Fate::deliver();
+  });
+  const auto join = [&](const std::string& name) {
+    return make_entity(name, network.vendor(), "uav-1", std::make_shared<Process>(clock));
+  };
+  const auto server = join("server");
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  auto client = join("client");
+  auto connecting = std::async(std::launch::async, [connector = client->connector()]() mutable {
+    return connector.connect<Echo>();
+  });
+  REQUIRE(eventually([&] { return asked.load(); }));
+  client.reset();
+  CHECK_THROWS_AS(connecting.get(), Unavailable);
 }
 
 TEST_CASE("calls that wait at a service that is withdrawn are refused at once") {

@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 

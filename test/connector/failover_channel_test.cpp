@@ -24,15 +24,15 @@ struct World {
     for (int i = 0; i < count; ++i)
       providers.push_back(std::make_shared<FakeChannel>(clock, continuations));
     channel = std::make_shared<FailoverChannel>(
-        link_to(1), [this](const Wanted& wanted) { return connect(wanted); }, hedge_after);
+        link_to(1), [this](const ProviderQuery& wanted) { return connect(wanted); }, hedge_after);
   }
 
-  Link link_to(int number) {
+  ProviderConnection link_to(int number) {
     return {guid(static_cast<std::uint8_t>(number)),
             providers[static_cast<std::size_t>(number - 1)], provider(number).suspect};
   }
 
-  Link connect(const Wanted& wanted) {
+  ProviderConnection connect(const ProviderQuery& wanted) {
     const auto found = [](const std::vector<Guid>& list, const Guid& id) {
       return std::find(list.begin(), list.end(), id) != list.end();
     };
@@ -45,7 +45,7 @@ struct World {
         return link_to(static_cast<int>(i + 1));
       }
     }
-    throw Unavailable("nobody is left");
+    throw_error(refusal, "nobody is left");
   }
 
   std::shared_ptr<NumberCall> call(const OperationInfo& operation) {
@@ -62,6 +62,7 @@ struct World {
   ManualExecutor continuations;
   std::vector<std::shared_ptr<FakeChannel>> providers;
   std::shared_ptr<FailoverChannel> channel;
+  ErrorCode refusal = ErrorCode::Unavailable;  // where there is nobody
 };
 
 const OperationInfo kIdempotent = number_operation(true);
@@ -137,7 +138,7 @@ TEST_CASE("a call that every provider refuses is tried by four of them at most")
   CHECK(tries == 4);
 }
 
-TEST_CASE("who was lost and comes back is asked once more, where nobody else stands by") {
+TEST_CASE("who was lost and comes back is asked once more, where nobody else is available") {
   World world(1);
   const auto call = world.call(kIdempotent);
   world.provider(1).lose();
@@ -176,6 +177,7 @@ TEST_CASE("while another provider stands a suspect one gets no new calls", "[R20
 TEST_CASE("with nobody else to ask calls go to a suspect provider", "[R20]") {
   World world(1);
   const OperationInfo& operation = GENERATE(std::cref(kIdempotent), std::cref(kOther)).get();
+  world.refusal = GENERATE(ErrorCode::Unavailable, ErrorCode::Overloaded);
   *world.provider(1).suspect = true;
   world.call(operation);
   world.continuations.run_all();

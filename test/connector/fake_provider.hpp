@@ -3,8 +3,8 @@
 #include <atomic>
 #include <deque>
 
-#include "skein/core/channel.hpp"
-#include "skein/core/error.hpp"
+#include "skein/detail/channel.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 

@@ -4,7 +4,7 @@
 #include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
 
 using namespace skein;
 using namespace skein::test;

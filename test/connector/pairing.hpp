@@ -7,8 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "skein/core/error.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
 
 namespace skein::test {
 

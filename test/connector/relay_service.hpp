@@ -1,7 +1,7 @@
 #pragma once
 
 #include "relay.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::test {
 

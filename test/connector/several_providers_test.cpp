@@ -2,6 +2,7 @@
 #include <set>
 
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "fake_provider.hpp"
 #include "pairing.hpp"

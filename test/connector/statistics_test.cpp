@@ -1,10 +1,11 @@
 #include <catch2/catch.hpp>
 
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
+#include "entity/statistics_topic.hpp"
 #include "pairing.hpp"
-#include "skein/entity/statistics_topic.hpp"
-#include "skein/idl/codec.hpp"
+#include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -106,7 +107,7 @@ TEST_CASE("a call on the caller's own thread is counted, and did not wait") {
   const auto process = std::make_shared<Process>();
   const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
   const auto client = make_entity("client", Pairing::get().client, "uav-1", process);
-  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  server->provide<LouderEcho>(std::make_shared<EchoService>(), {.thread = CallThread::Caller});
   auto echo = client->connect<Echo>();
   echo.echo("x");
   CHECK(of(server->statistics(), "echo").answered == 1);

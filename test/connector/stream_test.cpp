@@ -122,6 +122,18 @@ TEST_CASE("a reader that drops or cancels its stream stops the server") {
   CHECK(test.service->saw_cancellation);
 }
 
+TEST_CASE("a stream that gives way to another is dropped at once") {
+  Streaming test(GENERATE(false, true));
+  auto echo = test.connect();
+  auto numbers = echo.within(10min).count_up(kEndless, kNever);
+  CHECK(numbers.next() == 0);
+  CHECK(numbers.next() == 1);
+  auto others = echo.within(10min).count_up(3, kNever);
+  numbers = std::move(others);
+  CHECK(eventually([&] { return test.service->saw_cancellation.load(); }));
+  CHECK(numbers.next() == 0);
+}
+
 TEST_CASE("the deadline ends a stream at both ends") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();

@@ -1,10 +1,10 @@
-#include "skein/core/action.hpp"
+#include "skein/detail/action.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
 #include <memory>
 
-#include "skein/core/call_memory.hpp"
+#include "skein/detail/call_memory.hpp"
 
 using skein::Action;
 

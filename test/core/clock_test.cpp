@@ -1,7 +1,8 @@
-#include "skein/core/clock.hpp"
+#include "skein/clock.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <thread>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -67,6 +68,36 @@ TEST_CASE("after cancel has returned a timer's action is over, also when it was 
   release = true;
   clock.cancel(timer);
   CHECK(left);
+}
+
+TEST_CASE("a manual clock's cancel, too, waits for an action that runs on another thread") {
+  ManualClock clock;
+  std::atomic<bool> entered = false;
+  std::atomic<bool> release = false;
+  std::atomic<bool> left = false;
+  const TimerId timer = clock.call_after(1s, [&] {
+    entered = true;
+    while (!release) std::this_thread::yield();
+    left = true;
+  });
+  std::thread advancing([&] { clock.advance(1s); });
+  CHECK(eventually([&] { return entered.load(); }));
+  release = true;
+  clock.cancel(timer);
+  CHECK(left);
+  advancing.join();
+}
+
+TEST_CASE("a manual clock's timer may cancel itself") {
+  ManualClock clock;
+  TimerId timer = 0;
+  bool done = false;
+  timer = clock.call_after(1s, [&] {
+    clock.cancel(timer);
+    done = true;
+  });
+  clock.advance(1s);
+  CHECK(done);
 }
 
 TEST_CASE("a timer may cancel itself") {

@@ -1,8 +1,8 @@
-#include "skein/core/host.hpp"
+#include "core/host.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 

@@ -1,4 +1,4 @@
-#include "skein/core/latency_histogram.hpp"
+#include "core/latency_histogram.hpp"
 
 #include <catch2/catch.hpp>
 #include <thread>

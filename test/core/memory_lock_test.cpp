@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "skein/core/thread_settings.hpp"
+#include "core/thread_settings.hpp"
 
 namespace {
 

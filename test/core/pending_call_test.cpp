@@ -3,8 +3,8 @@
 #include <thread>
 #include <vector>
 
-#include "skein/core/channel.hpp"
-#include "skein/core/error.hpp"
+#include "skein/detail/channel.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 
@@ -50,7 +50,7 @@ TEST_CASE("a call's continuation runs once, whether set before or after the end"
   CHECK_THROWS_AS(std::rethrow_exception(late->take_error()), Disconnected);
 }
 
-TEST_CASE("cancelling tells the lane once, and not after the end") {
+TEST_CASE("cancelling tells the transport once, and not after the end") {
   const auto call = a_call();
   int told = 0;
   call->set_canceller([&] { ++told; });

@@ -1,4 +1,4 @@
-#include "skein/core/printable.hpp"
+#include "core/printable.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <unordered_set>
 
-#include "skein/core/bytes.hpp"
-#include "skein/core/guid.hpp"
-#include "skein/core/suggestion.hpp"
+#include "core/suggestion.hpp"
+#include "skein/detail/bytes.hpp"
+#include "skein/guid.hpp"
 
 using namespace skein;
 

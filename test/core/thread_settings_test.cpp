@@ -1,4 +1,4 @@
-#include "skein/core/thread_settings.hpp"
+#include "core/thread_settings.hpp"
 
 #include <pthread.h>
 #include <sched.h>
@@ -11,8 +11,8 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/executor.hpp"
+#include "skein/error.hpp"
+#include "skein/executor.hpp"
 
 using namespace skein;
 using skein::test::Log;

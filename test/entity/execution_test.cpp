@@ -136,7 +136,7 @@ TEST_CASE("the answer is there at the deadline although every CSP hangs") {
   const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
   const Place place = GENERATE(Place::Inside, Place::Outside);
   Hang hang;
-  Office office(HeadOptions{.most_stuck = 2});
+  Office office(HeadOptions{.max_stuck = 2});
   for (const char* name : {"a", "b", "c"})
     office.add(name, place, hang.script(), declared("10", "0.5"));
   CHECK_THROWS_AS(office.perform(task(execution), 300ms), TimedOut);

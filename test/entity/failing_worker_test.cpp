@@ -117,3 +117,21 @@ TEST_CASE("a client has its answer by its deadline although the CSP that was cho
   CHECK(desk.within(1s).ask("x") == "second did x");
   hang.release();
 }
+
+TEST_CASE("an entity that ends waits no longer for several CSPs that hang than for one") {
+  Hang hang;
+  Office office;
+  std::vector<Call<std::string>> calls;
+  for (const std::string name : {"a", "b", "c", "d"}) {
+    const auto worker = office.add(name, Place::Inside, hang.script(), declared("10", "0.5"));
+    auto proxy = office.owner->connect<crew::Worker>({.name = name}).within(10min);
+    calls.push_back(proxy.async_work("it"));
+    REQUIRE(eventually([&] { return worker->inside == 1; }));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  office.owner.reset();
+  // For one it waits 2 s.
+  CHECK(std::chrono::steady_clock::now() - begin < 6s);
+  for (auto& call : calls) CHECK_THROWS_AS(call.get(), Disconnected);
+  hang.release();
+}

@@ -1,11 +1,80 @@
 #include <catch2/catch.hpp>
 
+#include "../tools/describe.hpp"
 #include "office.hpp"
+#include "rpc/dds_server.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
 using namespace skein::test;
 using namespace std::chrono_literals;
+
+namespace {
+
+/// A CSP whose description says that it lives elsewhere; behind it is nothing until it is served.
+class DistantWorker {
+ public:
+  DistantWorker(const Office& office, const std::string& name)
+      : participant_(Pairing::get().client->create_participant(participant_options())),
+        id_(participant_->guid().participant()) {
+    id_.bytes[12] = 1;
+    dds::Qos qos;
+    qos.transient_local = true;
+    qos.history_depth = 1;
+    qos.liveliness_lease = 1000ms;
+    qos.partitions = {"managed/" + office.owner->id()};
+    writer_ = participant_->create_writer(
+        {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+    auto description = describe(crew::Worker::interface_info(), id_, name);
+    description.system = "uav-1";
+    description.owner = office.owner->id();
+    description.host = "elsewhere";
+    writer_->write(idl::encode_message(description), id_);
+    REQUIRE(eventually([&] { return office.is_available(name); }));
+  }
+
+  void serve(std::shared_ptr<crew::Worker> worker) {
+    rpc::Service::Options options;
+    options.id = id_;
+    service_ = std::make_shared<rpc::Service>(
+        std::make_shared<crew::Worker::Skeleton>(std::move(worker)), executor_, clock_, options);
+    server_ = std::make_unique<rpc::DdsServer>(*participant_, control_, clock_, service_,
+                                               rpc::DdsServer::Options{.foreign_clients = false});
+  }
+
+ private:
+  static dds::ParticipantOptions participant_options() {
+    dds::ParticipantOptions options;
+    options.domain = 17;
+    options.name = "distant";
+    return options;
+  }
+
+  SystemClock clock_;
+  ThreadExecutor control_{"control"};
+  ThreadExecutor executor_{"distant"};
+  std::unique_ptr<dds::Participant> participant_;
+  Guid id_;
+  std::shared_ptr<rpc::Service> service_;
+  std::unique_ptr<rpc::DdsServer> server_;
+  std::unique_ptr<dds::Writer> writer_;
+};
+
+struct Slowest final : SelectionStrategy {
+  std::string name() const override { return "slowest"; }
+  Selection select(const std::vector<Candidate>& candidates,
+                   const Situation& situation) const override {
+    std::size_t slowest = 0;
+    for (std::size_t i = 1; i < candidates.size(); ++i) {
+      if (candidates[i].latency > candidates[slowest].latency) slowest = i;
+    }
+    return {slowest, situation.remaining, "it is the slowest"};
+  }
+};
+
+}  // namespace
 
 TEST_CASE("the Head selects by declared quality among those that fit into the time") {
   Office office;
@@ -38,6 +107,26 @@ TEST_CASE("a decision's record holds candidates, choice, reason, outcome and tim
   CHECK(record.took >= record.attempts[0].took);
 }
 
+TEST_CASE("a declared latency is a number of milliseconds, or has any unit of time") {
+  const std::vector<std::pair<std::string, std::optional<Duration>>> latencies{
+      {"300", 300ms},         {"300 ms", 300ms},      {"300ms", 300ms},
+      {"0.3 s", 300ms},       {"300000 us", 300ms},   {"300000000 ns", 300ms},
+      {"2 min", 2min},        {"1.5 h", 90min},       {"-1", Duration::zero()},
+      {"1e300 h", 365 * 24h}, {"soon", std::nullopt}, {"3 days", std::nullopt}};
+  Office office;
+  for (std::size_t i = 0; i < latencies.size(); ++i) {
+    office.add("csp" + std::to_string(i), Place::Inside, answer_as("it"),
+               declared(latencies[i].first, "0.5"));
+  }
+  office.perform(Office::task(), 10s);
+  REQUIRE(office.record.candidates.size() == latencies.size());
+  for (const Candidate& candidate : office.record.candidates) {
+    const auto& [text, latency] = latencies.at(std::stoul(candidate.name.substr(3)));
+    CAPTURE(text);
+    CHECK(candidate.latency == latency);
+  }
+}
+
 TEST_CASE("the last 64 decisions are kept and numbered") {
   Office office;
   office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
@@ -67,18 +156,28 @@ TEST_CASE("without any CSP a task is refused with the reason") {
   CHECK_THROWS_WITH(office.perform(Office::task(), 1s), Catch::Contains("crew/Worker"));
 }
 
+TEST_CASE("a Head's default may be a strategy that it was given") {
+  HeadOptions options;
+  options.strategy = "slowest";
+  options.strategies = {std::make_shared<Slowest>()};
+  Office office(options);
+  office.add("slow", Place::Outside, answer_as("slow"), declared("60000", "0.1"));
+  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  CHECK(office.perform(Office::task(), 10s) == "slow did it");
+  CHECK(office.record.strategy == "slowest");
+}
+
+TEST_CASE("a default that the Head does not know is refused with those that it knows") {
+  HeadOptions options;
+  options.strategy = "slowst";
+  options.strategies = {std::make_shared<Slowest>()};
+  CHECK_THROWS_AS(Office(options), InvalidArgument);
+  CHECK_THROWS_WITH(Office(options),
+                    Catch::Contains("'slowst' (did you mean 'slowest'?)") &&
+                        Catch::Contains("there are: declared, fixed_order, learned, slowest"));
+}
+
 TEST_CASE("a client's session selects by the strategy that it asked for") {
-  struct Slowest final : SelectionStrategy {
-    std::string name() const override { return "slowest"; }
-    Selection select(const std::vector<Candidate>& candidates,
-                     const Situation& situation) const override {
-      std::size_t slowest = 0;
-      for (std::size_t i = 1; i < candidates.size(); ++i) {
-        if (candidates[i].latency > candidates[slowest].latency) slowest = i;
-      }
-      return {slowest, situation.remaining, "it is the slowest"};
-    }
-  };
   Office office;
   office.owner->head().add_strategy(std::make_shared<Slowest>());
   office.add("slow", Place::Outside, answer_as("slow"), declared("60000", "0.1"));
@@ -119,6 +218,22 @@ TEST_CASE("who works for the Head now is known while it works") {
   CHECK(office.owner->head().running().empty());
 }
 
+TEST_CASE("who works for the Head works where its description says") {
+  Office office;
+  Hang hang;
+  const auto worker = std::make_shared<ScriptedWorker>(hang.script());
+  DistantWorker distant(office, "distant");
+  distant.serve(worker);
+  std::thread other([&] { office.perform(Office::task(), 60s); });
+  const bool entered = eventually([&] { return worker->inside == 1; });
+  const auto running = office.owner->head().running();
+  hang.release();
+  other.join();
+  REQUIRE(entered);
+  REQUIRE(running.size() == 1);
+  CHECK(running[0].host == "elsewhere");
+}
+
 TEST_CASE("a client changes its strategy by disconnecting and connecting again") {
   Office office;
   office.add("a", Place::Inside, answer_as("a"), declared("10", "0.1"));
@@ -153,7 +268,22 @@ TEST_CASE("a Body may call the CSP that the Head selects beforehand itself") {
   CHECK(replay(record_of(report_of(office.record))).front().csp == "better");
 }
 
-TEST_CASE("without any CSP nothing can be selected beforehand") {
+TEST_CASE("where nothing can be selected beforehand, that is recorded with the reason") {
   Office office;
-  CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>(), NoCandidate);
+  std::optional<DistantWorker> silent;
+  std::vector<std::string> attempts;
+  SECTION("as there is no CSP") {
+    CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>(), NoCandidate);
+  }
+  SECTION("as the CSP does not answer") {
+    silent.emplace(office, "silent");
+    CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>({}, 100ms), Unavailable);
+    attempts = {"silent failed"};
+  }
+  REQUIRE(office.owner->head().decisions().size() == 1);
+  office.record = office.owner->head().decisions().front();
+  CHECK(office.attempts() == attempts);
+  CHECK_FALSE(office.record.failure.empty());
+  CHECK_THAT(explain(office.record),
+             Catch::Contains("for the Body to call itself") && Catch::Contains("  failed after"));
 }

@@ -16,7 +16,7 @@ TEST_CASE("a CSP that is killed while it works is followed by the next best") {
   ChildProcess victim(WORKER_PROCESS,
                       {.arguments = {Pairing::get().client->name(), "victim", office.owner->id()}});
   victim.expect("ready");
-  REQUIRE(eventually([&] { return office.stands_by("victim"); }));
+  REQUIRE(eventually([&] { return office.is_available("victim"); }));
 
   std::string result;
   std::thread other([&] { result = office.perform(Office::task(), 60s); });

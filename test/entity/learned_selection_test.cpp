@@ -2,8 +2,8 @@
 #include <cmath>
 #include <random>
 
-#include "skein/core/error.hpp"
-#include "skein/entity/selection.hpp"
+#include "skein/error.hpp"
+#include "skein/selection.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -20,9 +20,9 @@ Candidate candidate(std::string name, Duration latency, double quality,
   return candidate;
 }
 
-Prediction shown(Duration median, Duration q95, double quality, double reliability = 1,
+Prediction shown(Duration median, Duration p95, double quality, double reliability = 1,
                  std::uint64_t idle = 0) {
-  return {12, median, q95, quality, reliability, idle};
+  return {12, median, p95, quality, reliability, idle};
 }
 
 Selection select(const std::vector<Candidate>& candidates, Duration remaining,
@@ -61,7 +61,7 @@ TEST_CASE("of those that are nearly equally useful the quickest is selected") {
             .candidate == 1);
 }
 
-TEST_CASE("the 95 % latency of the quickest other CSP is kept in reserve where it fits") {
+TEST_CASE("the p95 latency of the quickest other CSP is kept in reserve where it fits") {
   const std::vector<Candidate> two{candidate("good", 0ms, 0.9, shown(400ms, 500ms, 0.9)),
                                    candidate("quick", 0ms, 0.1, shown(20ms, 30ms, 0.1))};
   CHECK(select(two, 1s).slice == 970ms);
@@ -95,7 +95,7 @@ TEST_CASE(
   CHECK(select(chancy(0.2), 105ms).candidate == 0);    // no time for both
 }
 
-TEST_CASE("where no 95 % latency fits the fastest is selected and gets all of the time") {
+TEST_CASE("where no p95 latency fits the fastest is selected and gets all of the time") {
   const Selection selection = select({candidate("good", 0ms, 0.9, shown(400ms, 500ms, 0.9)),
                                       candidate("quick", 0ms, 0.1, shown(20ms, 30ms, 0.1))},
                                      10ms);

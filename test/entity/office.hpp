@@ -10,6 +10,7 @@
 
 #include "../connector/pairing.hpp"
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "scripted_worker.hpp"
 #include "skein/discovery.idl.hpp"
 
@@ -46,7 +47,7 @@ class Office {
       host = outside.back().get();
     }
     ids[name] = {host, host->provide_csp<crew::Worker>(name, owner->id(), worker, options)};
-    if (!eventually([&] { return stands_by(name); }))
+    if (!eventually([&] { return is_available(name); }))
       throw std::runtime_error(name + " was never seen");
     return worker;
   }
@@ -56,14 +57,14 @@ class Office {
     host->withdraw(id);
   }
 
-  bool stands_by(const std::string& name) const {
+  bool is_available(const std::string& name) const {
     for (const auto& csp : owner->broker().find_service(owner->broker().query("crew/Worker"))) {
       if (csp->entity == name) return true;
     }
     return false;
   }
 
-  /// Stands by, or is suspect and may stand by again.
+  /// Available, or is suspect and may be available again.
   bool knows(const std::string& name) const { return owner->broker().knows(ids.at(name).second); }
 
   /// A task that hands `text` to the CSP, accepts what begins with a name, and never blocks on a

@@ -1,8 +1,8 @@
-#include "skein/entity/parameters.hpp"
+#include "skein/parameters.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 

@@ -8,8 +8,8 @@
 #include <mutex>
 
 #include "office.hpp"
-#include "skein/entity/decision_topic.hpp"
-#include "skein/idl/type_support.hpp"
+#include "rpc/introspection_topic.hpp"
+#include "skein/detail/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -128,7 +128,7 @@ TEST_CASE("a decision is explained in plain words") {
                  Catch::Contains("failed after") && Catch::Contains("a bug") &&
                  Catch::Contains("answered after"));
   CHECK_THAT(explain(mixed.office.record),
-             Catch::Contains("in quarantine for") && Catch::Contains("has shown over 3 like runs"));
+             Catch::Contains("in quarantine for") && Catch::Contains("over 3 similar requests"));
 }
 
 TEST_CASE("decisions without a result are recorded with the reason") {
@@ -197,11 +197,11 @@ TEST_CASE("who reads the topic of decisions gets each as it is made") {
   const auto onlooker = make_client();
   std::mutex mutex;
   std::vector<Decision> seen;
-  const introspection::DecisionReader reader(onlooker->participant(),
-                                             [&](const Decision& decision) {
-                                               const std::lock_guard lock(mutex);
-                                               seen.push_back(decision);
-                                             });
+  introspection::Reader<Decision> reader(onlooker->participant(), introspection::kDecisions,
+                                         [&](const Decision& decision) {
+                                           const std::lock_guard lock(mutex);
+                                           seen.push_back(decision);
+                                         });
   REQUIRE(eventually([&] {
     mixed.perform(1);
     const std::lock_guard lock(mutex);

@@ -1,4 +1,4 @@
-#include "skein/entity/selection.hpp"
+#include "skein/selection.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -30,6 +30,30 @@ std::string chosen(const std::vector<Candidate>& candidates, Duration remaining)
 }
 
 }  // namespace
+
+TEST_CASE("a strategy that selects a candidate that is not there is named") {
+  struct Beyond final : SelectionStrategy {
+    std::string name() const override { return "beyond"; }
+    Selection select(const std::vector<Candidate>& candidates, const Situation&) const override {
+      return {candidates.size(), 1s, ""};
+    }
+  };
+  const Beyond beyond;
+  CandidateIterator iterator(beyond, {candidate("only", 10ms, 1)}, {});
+  CHECK_THROWS_WITH(iterator.next(1s), Catch::Contains("'beyond'"));
+}
+
+TEST_CASE("a slice is never longer than the time left") {
+  struct Generous final : SelectionStrategy {
+    std::string name() const override { return "generous"; }
+    Selection select(const std::vector<Candidate>&, const Situation&) const override {
+      return {0, Duration::max(), ""};
+    }
+  };
+  const Generous generous;
+  CandidateIterator iterator(generous, {candidate("only", 10ms, 1)}, {});
+  CHECK(iterator.next(1s).choice.slice == 1s);
+}
 
 TEST_CASE("the best declared quality that fits into the time left is selected") {
   CHECK(chosen(kThree, 2s) == "thorough");

@@ -1,9 +1,9 @@
-#include "skein/entity/synthesis.hpp"
+#include "skein/synthesis.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "skein/entity/evaluation.hpp"
+#include "skein/evaluation.hpp"
 
 using namespace skein;
 

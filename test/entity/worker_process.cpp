@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scripted_worker.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 using namespace skein;
 

@@ -8,8 +8,8 @@
 #include "exposed_service.hpp"
 #include "messages.hpp"
 #include "processes.hpp"
-#include "skein/idl/type_support.hpp"
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
+#include "skein/detail/type_support.hpp"
 
 using namespace skein;
 using namespace skein::test;

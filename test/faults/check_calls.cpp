@@ -7,7 +7,7 @@
 namespace skein::test {
 
 void check_calls(const Journal& journal, const std::string& cell,
-                 const std::set<std::string>& outcomes, int most_late) {
+                 const std::set<std::string>& outcomes, int max_late) {
   std::map<std::string, int> counts;
   int strange = 0, twice = 0, late = 0, unexecuted = 0, refused_and_executed = 0;
   std::int64_t overdue_us = 0;
@@ -29,7 +29,7 @@ void check_calls(const Journal& journal, const std::string& cell,
   INFO(line);
   CHECK(strange == 0);
   CHECK(twice == 0);
-  CHECK(late <= most_late);
+  CHECK(late <= max_late);
   CHECK(unexecuted == 0);
   CHECK(refused_and_executed == 0);
 }

@@ -12,8 +12,8 @@ namespace skein::test {
 /// succeeded were executed, those that were refused (Unavailable, Overloaded) were not, and none
 /// was executed after its caller had been told TimedOut. (One that ended as Disconnected may be,
 /// within its deadline: its outcome is unknown.) Prints a line with counts under the name of the
-/// cell. Of calls that were executed after they had ended as TimedOut `most_late` are allowed.
+/// cell. Of calls that were executed after they had ended as TimedOut `max_late` are allowed.
 void check_calls(const Journal& journal, const std::string& cell,
-                 const std::set<std::string>& outcomes, int most_late);
+                 const std::set<std::string>& outcomes, int max_late);
 
 }  // namespace skein::test

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 

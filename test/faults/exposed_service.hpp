@@ -1,32 +1,19 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include "../connector/echo_service.hpp"
-#include "skein/discovery.idl.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/rpc/dds_server.hpp"
+#include "../tools/describe.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "rpc/dds_server.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
-
-/// The description of a service, as an entity would register it.
-inline brokerless_discovery::ServiceDescription describe(const InterfaceInfo& interface,
-                                                         const Guid& provider,
-                                                         const std::string& entity) {
-  brokerless_discovery::ServiceDescription description;
-  description.provider = provider.bytes;
-  description.service = interface.name;
-  description.entity = entity;
-  for (const InterfaceInfo* base : interface.bases) description.bases.emplace_back(base->name);
-  for (const OperationInfo& operation : interface.operations) {
-    description.operations.push_back(
-        {std::string(operation.name), operation.hash, operation.signature});
-  }
-  return description;
-}
 
 inline brokerless_discovery::ServiceDescription describe_echo(const Guid& provider,
                                                               const std::string& entity) {
@@ -52,6 +39,9 @@ class ExposedService {
   rpc::DdsAddress address() const { return {std::string(service_->interface_info().name), id()}; }
   rpc::DdsServer::Counters counters() const { return server_.counters(); }
 
+  /// From now on no session is opened: who asks for one hears that the service is Overloaded.
+  void fill() { full_ = true; }
+
   /// Sessions that have not ended.
   std::size_t sessions() const {
     std::lock_guard lock(mutex_);
@@ -65,6 +55,7 @@ class ExposedService {
     rpc::Service::Options options;
     options.id = id;
     options.open = [this](const rpc::OpenRequest&) {
+      if (full_) throw Overloaded("no room for one more session");
       auto session = std::make_shared<Session>();
       std::lock_guard lock(mutex_);
       sessions_.push_back(session);
@@ -73,6 +64,7 @@ class ExposedService {
     return options;
   }
 
+  std::atomic<bool> full_{false};
   mutable std::mutex mutex_;
   std::vector<std::weak_ptr<Session>> sessions_;
   ThreadExecutor control_{"control"};

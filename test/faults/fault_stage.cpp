@@ -124,14 +124,14 @@ void FaultStage::check_healed() {
 }
 
 void FaultStage::check(const std::string& cell, const std::set<std::string>& outcomes,
-                       int most_late) {
+                       int max_late) {
   INFO(cell);
   check_healed();
   for (const auto& [peer, before] : threads_) {
     CHECK(eventually(
         [&, peer = peer, before = before] { return footprint_of(*peer).threads <= before; }));
   }
-  check_calls(journal_, cell, outcomes, most_late);
+  check_calls(journal_, cell, outcomes, max_late);
 }
 
 CableStage::CableStage(std::uint64_t seed, int clients)

@@ -8,8 +8,8 @@
 
 #include "../tools/cable.hpp"
 #include "../tools/child_process.hpp"
+#include "dds/port.hpp"
 #include "journal.hpp"
-#include "skein/dds/port.hpp"
 
 namespace skein::test {
 
@@ -58,7 +58,7 @@ class FaultStage {
   void check_healed();
   /// What must be true again after every fault: check_healed(), and no thread that was not there in
   /// connect(). At last the journal is held to check_calls().
-  void check(const std::string& cell, const std::set<std::string>& outcomes, int most_late = 0);
+  void check(const std::string& cell, const std::set<std::string>& outcomes, int max_late = 0);
 
   Journal& journal() { return journal_; }
   ChildProcess& client(std::size_t index = 0) { return *clients_[index].process; }

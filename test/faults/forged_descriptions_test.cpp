@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
+#include "brokerless_discovery/admission.hpp"
 #include "exposed_service.hpp"
 #include "processes.hpp"
-#include "skein/brokerless_discovery/admission.hpp"
-#include "skein/idl/codec.hpp"
+#include "skein/detail/codec.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -7,7 +7,7 @@
 #include "exposed_service.hpp"
 #include "messages.hpp"
 #include "processes.hpp"
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
 #include "unseen_peer.hpp"
 
 using namespace skein;

@@ -6,7 +6,7 @@
 #include "../../src/dds/repeated_messages.hpp"
 #include "../../src/dds/rtps_guard.hpp"
 #include "../tools/rtps_packet.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -267,7 +267,7 @@ TEST_CASE("a flood of unknown writers does not make the guard forget those that 
       REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
     }
   }
-  const std::int64_t far = WriterLedger::kMostBefore - 1;
+  const std::int64_t far = WriterLedger::kMaxBefore - 1;
   CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)), Refusal::Leap));
 }
 

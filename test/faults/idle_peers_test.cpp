@@ -5,7 +5,7 @@
 #include "../tools/wire_tap.hpp"
 #include "messages.hpp"
 #include "processes.hpp"
-#include "skein/rpc/dds_server.hpp"
+#include "rpc/dds_server.hpp"
 
 using namespace skein::test;
 using namespace std::chrono_literals;

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "../connector/echo_service.hpp"
-#include "skein/core/operation.hpp"
+#include "skein/detail/operation.hpp"
 
 namespace skein::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "skein/core/bytes.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/bytes.hpp"
 
 namespace skein::test {
 

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "../tools/child_process.hpp"
-#include "skein/core/error.hpp"
-#include "skein/entity/component_registry.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -7,11 +7,13 @@
 #include <sstream>
 
 #include "../connector/echo_service.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "core/log.hpp"
 #include "peer_arguments.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/gather.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -29,7 +31,7 @@ class KeptLog {
     if (!arguments.contains("keep_log")) return;
     set_log_sink([lines = lines_](LogLevel, std::string_view place, std::string_view text) {
       std::lock_guard lock(lines->mutex);
-      if (lines->text.size() < kMost) lines->text.append(place).append(": ").append(text) += "; ";
+      if (lines->text.size() < kMax) lines->text.append(place).append(": ").append(text) += "; ";
     });
   }
 
@@ -41,7 +43,7 @@ class KeptLog {
   }
 
  private:
-  static constexpr std::size_t kMost = 4096;
+  static constexpr std::size_t kMax = 4096;
   /// Vendors' threads may still log when the peer has ended.
   struct Lines {
     std::mutex mutex;

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::test {
 

@@ -27,9 +27,9 @@ void stop_a_provider_for(std::chrono::seconds pause, std::chrono::milliseconds l
   stage.run_for_calls(200);
   stage.stop();
   // One that is stopped just after it has looked at the deadline executes that one call.
-  constexpr int kMostLate = 1;
+  constexpr int kMaxLate = 1;
   const std::string cell = "provider stopped for " + std::to_string(pause.count()) + " s";
-  stage.check(cell, kLostProvider, kMostLate);
+  stage.check(cell, kLostProvider, kMaxLate);
 }
 
 void stop_clients_for(std::chrono::seconds pause, std::chrono::milliseconds lease) {

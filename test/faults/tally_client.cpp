@@ -1,7 +1,8 @@
 #include "tally_client.hpp"
 
-#include "skein/core/error.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "journal.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/rpc/dds_channel.hpp"
+#include "rpc/dds_channel.hpp"
+#include "skein/entity.hpp"
 #include "tally.idl.hpp"
 
 namespace skein::test {
@@ -26,8 +26,8 @@ struct CallShape {
 /// A client of the tally service whose calls are written down.
 class TallyClient {
  public:
-  /// Connects as users do, or, `exposed`, by a lane of its own so that its pending calls can be
-  /// counted. Throws what connecting throws. Its calls' numbers begin at `first`.
+  /// Connects as users do, or, `exposed`, by a transport of its own so that its pending calls can
+  /// be counted. Throws what connecting throws. Its calls' numbers begin at `first`.
   TallyClient(Entity& entity, Journal& journal, std::uint64_t first, bool exposed);
   ~TallyClient();
   TallyClient(const TallyClient&) = delete;
@@ -47,7 +47,7 @@ class TallyClient {
   /// Has the provider end before it answers.
   std::string call_and_kill(std::chrono::milliseconds timeout);
 
-  /// Calls of the exposed lane that have no answer yet.
+  /// Calls of the exposed transport that have no answer yet.
   std::size_t pending() const { return lane_ ? lane_->pending() : 0; }
 
  private:

@@ -7,9 +7,10 @@
 #include <iostream>
 #include <sstream>
 
+#include "brokerless_discovery/broker.hpp"
 #include "exposed_service.hpp"
 #include "peer_arguments.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "tally_client.hpp"
 
 using namespace skein;

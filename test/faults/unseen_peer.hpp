@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "../tools/eventually.hpp"
-#include "skein/core/operation.hpp"
-#include "skein/dds/port.hpp"
-#include "skein/rpc/dds_server.hpp"
-#include "skein/rpc/wire.hpp"
+#include "dds/port.hpp"
+#include "rpc/dds_server.hpp"
+#include "rpc/wire.hpp"
+#include "skein/detail/operation.hpp"
 
 namespace skein::test {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "estimates.hpp"
-#include "skein/fusion/fuse.hpp"
+#include "skein/fusion.hpp"
 
 using namespace skein::fusion;
 

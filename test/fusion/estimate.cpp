@@ -1,6 +1,6 @@
 #include "estimates.hpp"
-#include "skein/core/error.hpp"
-#include "skein/fusion/fuse.hpp"
+#include "skein/error.hpp"
+#include "skein/fusion.hpp"
 
 using namespace skein::fusion;
 using Catch::Contains;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "skein/fusion/estimate.hpp"
+#include "skein/fusion.hpp"
 
 namespace skein::fusion {
 

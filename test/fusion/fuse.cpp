@@ -1,9 +1,8 @@
-#include "skein/fusion/fuse.hpp"
-
 #include <Eigen/Dense>
 #include <random>
 
 #include "estimates.hpp"
+#include "skein/fusion.hpp"
 
 using namespace skein::fusion;
 

@@ -4,7 +4,8 @@
 #include "allocation_meter.hpp"
 #include "planner.idl.hpp"
 #include "samples.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/detail/type_support.hpp"
 
 using skein::Bytes;
 using skein::TypeSupport;

@@ -5,6 +5,7 @@ compiler_test.py SKEIN_ROOT [unittest's arguments]
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -134,11 +135,48 @@ class Clashes(CompilerTest):
             "x.idl:2: error: the C++ name IProxy would be both the proxy of I and IProxy; rename one of them",
         )
 
+    def assert_clash(self, text, line, name, one, other):
+        reason = f"the flattened name {name} would be both {one} and {other}; rename one of them"
+        self.assert_refused(text, f"x.idl:{line}: error: {reason}")
+
+    def test_names_that_become_one_in_the_flattened_idl_are_refused(self):
+        self.assert_clash("interface I {};\nstruct I_Request { long y; };\n",
+                          2, "I_Request", "I_Request of I", "I_Request")  # fmt: skip
+        self.assert_clash("interface I {\n  void f();\n};\nconst long I_f_Hash = 1;\n",
+                          4, "I_f_Hash", "I_f_Hash of I::f", "I_f_Hash")  # fmt: skip
+        self.assert_clash("exception E {};\nconst long E_Ex_Hash = 1;\n",
+                          2, "E_Ex_Hash", "E_Ex_Hash of E", "E_Ex_Hash")  # fmt: skip
+        self.assert_clash("interface I {\n  enum E { A };\n};\ninterface J {\n  enum F { A };\n};\n",
+                          5, "A", "the enumerator I::A", "the enumerator J::A")  # fmt: skip
+        self.assert_clash("module m {\n  module I_T {\n    struct S { long x; };\n  };\n"
+                          "  interface I {\n    struct T { long x; };\n  };\n};\n",
+                          6, "m_I_T", "the module m::I_T", "m::I::T")  # fmt: skip
+
+    def test_names_that_become_one_in_the_c_of_idlc_are_refused(self):
+        self.assert_clash("module a_b {\n  struct c { long x; };\n};\nmodule a {\n  struct b_c { long x; };\n};\n",
+                          5, "a_b_c", "a_b::c", "a::b_c")  # fmt: skip
+        self.write("other.idl", "module a_b {\n  struct c { long x; };\n};\n")
+        self.assert_clash('#include "other.idl"\nmodule a {\n  interface b {\n    struct c { long x; };\n  };\n};\n',
+                          4, "a_b_c", "a_b::c", "a::b::c")  # fmt: skip
+
+    def test_members_that_become_one_in_the_flattened_idl_are_refused(self):
+        self.assert_clash("interface I {\n  long f(out long return_);\n};\n", 2, "I_f_Out.return_",
+                          "the parameter return_ of I::f", "the result of I::f")  # fmt: skip
+        self.assert_clash("interface I {\n  void unknownOp();\n};\n",
+                          1, "I_Call.unknownOp", "the case of unknown operations", "I::unknownOp")  # fmt: skip
+        self.assert_clash("interface I {\n  void attribute_get_x();\n  readonly attribute long x;\n};\n",
+                          1, "I_Call.attribute_get_x", "I::attribute_get_x", "I::_get_x")  # fmt: skip
+        self.assert_clash("module a {\n  exception E {};\n};\nmodule b {\n  exception E {};\n};\n"
+                          "interface I {\n  void f() raises (a::E, b::E);\n};\n",
+                          8, "I_f_Result.e_ex", "a::E", "b::E")  # fmt: skip
+
     def test_names_that_differ_only_in_case_are_two_names(self):
         self.assert_compiles("struct Problem { long x; }; interface I { void plan(in Problem problem); };")
 
 
 class Pragmas(CompilerTest):
+    COUNTS = "there a nested struct counts by its own keylist, or as a whole without one; make both agree"
+
     def test_a_key_that_is_no_member_is_refused_with_a_suggestion(self):
         self.assert_refused("struct S { long number; };\n#pragma keylist S numbr\n",
                             "x.idl:2: error: #pragma keylist: S has no member 'numbr' (did you mean 'number'?)")  # fmt: skip
@@ -152,6 +190,50 @@ class Pragmas(CompilerTest):
             "structs of these",
         )
 
+    def test_keys_are_in_the_flattened_idl_and_stand_in_the_order_of_the_members(self):
+        self.assert_compiles("struct P { long a; short b; long c; };\n#pragma keylist P b a\n"
+                             "struct S { long before; P part; long d; };\n#pragma keylist S d part.b part.a\n")  # fmt: skip
+        flattened = self.output("x.dds.idl")
+        self.assertIn("struct P {\n  @key long a;\n  @key short b;\n  long c;\n};", flattened)
+        self.assertIn("struct S {\n  long before;\n  @key P part;\n  @key long d;\n};", flattened)
+        self.assertIn("the key (part.a, part.b, d)", self.output("x.idl.hpp"))
+
+    def test_a_nested_struct_is_a_key_as_a_whole_or_by_its_own_keylist(self):
+        for pragmas in ("#pragma keylist S part", "#pragma keylist S part.a part.b",
+                        "#pragma keylist P a\n#pragma keylist S part.a", "#pragma keylist S part.a\n#pragma keylist P a",
+                        "#pragma keylist P b a\n#pragma keylist S part"):  # fmt: skip
+            with self.subTest(pragmas):
+                self.assert_compiles("struct P { long a; long b; };\nstruct S { P part; long c; };\n" + pragmas + "\n")
+        self.assert_compiles("struct Q { long a; long b; };\nstruct P { Q inner; long c; };\nstruct S { P part; };\n"
+                             "#pragma keylist Q b\n#pragma keylist P inner.b\n#pragma keylist S part.inner.b\n")  # fmt: skip
+
+    def test_a_key_that_would_be_another_one_in_dds_is_refused(self):
+        def refused(pragmas, line, here, in_dds):
+            self.assert_refused(
+                "struct P { long a; long b; };\nstruct S { P part; long c; };\n" + pragmas + "\n",
+                f"x.idl:{line}: error: #pragma keylist: the key of S is {here}, but in DDS {in_dds}: {self.COUNTS}",
+            )
+
+        refused("#pragma keylist S part.a", 3, "part.a", "part.a, part.b")
+        refused("#pragma keylist P a\n#pragma keylist S part.b c", 4, "part.b, c", "part.a, c")
+        refused("#pragma keylist S part\n#pragma keylist P a", 3, "part.a, part.b", "part.a")
+        refused("#pragma keylist S part part.a", 3, "part.a, part.b, part.a", "part.a, part.b")
+
+    def test_what_is_whole_is_so_down_to_its_last_member(self):
+        # As idlc does it: a struct without keys that is a key takes no notice of the keys below it.
+        self.assert_compiles("struct Q { long a; long b; };\nstruct P { Q inner; };\nstruct S { P part; };\n"
+                             "#pragma keylist Q a\n#pragma keylist S part\n")  # fmt: skip
+
+    def test_keys_by_the_keylist_of_another_file_are_compared_too(self):
+        self.write("other.idl", "struct P { long a; long b; };\n#pragma keylist P a\nstruct Plain { long a; long b; };\n")
+        self.assert_compiles('#include "other.idl"\nstruct S { P part; Plain plain; };\n#pragma keylist S part.a plain\n')
+        shutil.rmtree(os.path.join(self.folder, "out"))
+        self.assert_refused('#include "other.idl"\nstruct S { Plain plain; };\n#pragma keylist S plain.a\n',
+                            "x.idl:3: error: #pragma keylist: the key of S is plain.a, but in DDS plain.a, plain.b: "
+                            + self.COUNTS)  # fmt: skip
+        self.assert_refused('#include "other.idl"\n#pragma keylist Plain a\n',
+                            "x.idl:2: error: #pragma keylist: Plain is of another file, where its keylist must stand")  # fmt: skip
+
     def test_idempotent_names_an_operation_that_exists(self):
         self.assert_refused("interface I {\n  void plan();\n  #pragma idempotent plan\n  #pragma idempotent plam\n"
                             "  #pragma idempotent plan\n};\n",
@@ -163,6 +245,52 @@ class Pragmas(CompilerTest):
         self.assertIn("virtual void count(std::int32_t sink, ::skein::StreamSink<std::int32_t>& sink_) = 0;", header)
         self.assertIn("::skein::Stream<std::int32_t> count(std::int32_t sink);", header)
         self.assertIn("// count is a stream", self.output("x.dds.idl"))
+
+    STREAM = ("typedef long Number;\nexception No {};\ninterface Base {\n  long plan(in string task);\n  %s\n};\ninterface I : Base {\n"
+              "  Number improve(in string plan) raises (No);\n  #pragma stream improve %s\n};\n")  # fmt: skip
+
+    def test_a_stream_may_name_the_operation_whose_result_it_brings_by_default(self):
+        self.assert_compiles(self.STREAM % ("", "plan"))
+        self.assertIn("  /// By default: the result of plan(), and no other.\n"
+                      "  virtual void improve(const std::string& plan, ::skein::StreamSink<::Number>& sink);\n",
+                      self.output("x.idl.hpp"))  # fmt: skip
+        self.assertIn("void I::improve(const std::string& plan, ::skein::StreamSink<::Number>& sink) {\n"
+                      "  sink.push(this->plan(plan));\n}\n", self.output("x.idl.cpp"))  # fmt: skip
+        self.assert_compiles("interface I {\n  long f();\n  long g();\n};\n#pragma stream I::f g\n")
+        self.assertIn("  sink.push(this->g());\n", self.output("x.idl.cpp"))
+
+    def test_a_streams_default_is_an_operation_that_exists_and_fits(self):
+        place = "x.idl:9: error: #pragma stream: "
+        self.assert_refused(self.STREAM % ("", "plam"), place + "I has no operation 'plam' (did you mean 'plan'?)")
+        self.assert_refused(self.STREAM % ("attribute long level;", "level"), place + "'level' is an attribute; use an operation")
+        refusals = {
+            "improve": "it is a stream itself",
+            "long other();": "its parameters are others",
+            "long other(in long task);": "its parameters are others",
+            "long other(inout string task);": "its parameters are others",
+            "long other(in string task, out long x);": "its parameters are others",
+            "void other(in string task);": "its result is another",
+            "unsigned long other(in string task);": "its result is another",
+            "string other(in string task);": "its result is another",
+        }
+        for declared, reason in refusals.items():
+            with self.subTest(declared):
+                name = "other" if "other" in declared else declared
+                text = self.STREAM % (declared if name == "other" else "", name)
+                self.assert_refused(text, f"{place}'{name}' cannot stand in for 'improve': {reason}")
+        self.assert_refused(
+            "exception No {};\ninterface I {\n  long f() raises (No);\n  long g();\n  #pragma stream g f\n};\n",
+            "x.idl:5: error: #pragma stream: 'f' cannot stand in for 'g': it raises No, which the stream does not",
+        )
+        self.assert_refused(
+            "interface I {\n  long f();\n  long g();\n  #pragma stream g f f\n};\n",
+            "x.idl:4: error: #pragma stream names one stream and at most the operation whose result it brings by default; "
+            "write a pragma for each stream",
+        )
+        self.assert_refused(
+            "interface I {\n  long f();\n  long g();\n  #pragma stream g f\n  #pragma stream f\n};\n",
+            "x.idl:4: error: #pragma stream: 'f' cannot stand in for 'g': it is a stream itself",
+        )
 
     def test_what_cannot_be_a_stream_is_refused(self):
         refusal = "must have a result, which becomes the stream, and no out parameters"

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "skein/core/channel.hpp"
+#include "skein/detail/channel.hpp"
 
-/// A lane of the shortest kind: runs the servant on the caller's thread, in start().
+/// A transport of the shortest kind: runs the servant on the caller's thread, in start().
 class DirectChannel final : public skein::Channel {
  public:
   explicit DirectChannel(std::shared_ptr<skein::Servant> servant) : servant_(std::move(servant)) {}

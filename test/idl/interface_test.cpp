@@ -2,8 +2,9 @@
 
 #include "direct_channel.hpp"
 #include "planner.idl.hpp"
-#include "skein/core/error.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+#include "skein/stream.hpp"
 
 using namespace test_planner;
 
@@ -39,6 +40,48 @@ class Planner final : public IPlanner {
 
  private:
   double margin_ = IPlanner::kDefaultMargin;
+};
+
+/// Has one route, and implements no stream.
+class Improver : public IImprover {
+ public:
+  Route plan(const Problem& problem) override {
+    if (problem.speed == Speed::Slow) throw NoRoute("fog", 7);
+    return {{problem.start, problem.goal}, 12.5, "the only one"};
+  }
+};
+
+/// Has another one before it.
+class BusyImprover final : public Improver {
+ public:
+  void improve(const Problem& problem, skein::StreamSink<Route>& sink) override {
+    sink.push({{problem.start}, 20, "a draft"});
+    sink.push(plan(problem));
+  }
+};
+
+/// The remarks of the routes that a stream brings through the skeleton.
+class Remarks final : public skein::StreamWriter {
+ public:
+  explicit Remarks(std::shared_ptr<IImprover> improver) : skeleton_(std::move(improver)) {}
+
+  std::vector<std::string> of(const Problem& problem) {
+    remarks_.clear();
+    for (const auto& operation : IImprover::interface_info().operations) {
+      const IImprover_improve_In in{problem};
+      if (operation.stream) skeleton_.dispatch(operation, &in, static_cast<StreamWriter*>(this));
+    }
+    return remarks_;
+  }
+
+ private:
+  bool put(const void* out, bool) override {
+    remarks_.push_back(static_cast<const IImprover_improve_Out*>(out)->return_.remark);
+    return true;
+  }
+
+  IImprover::Skeleton skeleton_;
+  std::vector<std::string> remarks_;
 };
 
 struct Fixture {
@@ -130,6 +173,16 @@ TEST_CASE_METHOD(Fixture, "a parameter of an interface's type is a service refer
   skein::Reference<IPlanner> self;
   proxy.observe(observer, self);
   CHECK(self.provider == observer.provider);
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "a stream that names an operation brings its result, unless it is implemented") {
+  Remarks by_default(std::make_shared<Improver>());
+  CHECK(by_default.of(problem) == std::vector<std::string>{"the only one"});
+  Remarks implemented(std::make_shared<BusyImprover>());
+  CHECK(implemented.of(problem) == std::vector<std::string>{"a draft", "the only one"});
+  problem.speed = Speed::Slow;
+  CHECK_THROWS_AS(by_default.of(problem), NoRoute);
 }
 
 TEST_CASE_METHOD(Fixture, "within() makes a proxy of the same channel") {

@@ -10,7 +10,8 @@
 #include "planner.dds.h"
 #include "planner.idl.hpp"
 #include "samples.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/detail/type_support.hpp"
 
 using skein::Bytes;
 using skein::idl::CdrWriter;

@@ -5,7 +5,8 @@
 #include "names.idl.hpp"
 #include "planner.idl.hpp"
 #include "samples.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/detail/type_support.hpp"
 
 using namespace everything;
 using skein::idl::decode_message;
@@ -247,6 +248,11 @@ TEST_CASE(
   part.part.id = 1;
   part.colour = Colour::Blue;
   CHECK(key_hash(part).hex() == "00000001000000020000000000000000");
+  // In the order of the members, whatever the pragma's is.
+  PairKey pair;
+  pair.first = first;
+  CHECK(key_hash(pair) == key_hash(first));
+  CHECK(key_hash(WholeKey{{1, 2}, 3}).hex() == "01020000000000000000000000000000");
 }
 
 TEST_CASE("an argument borrows, owns and copies") {

@@ -1,4 +1,4 @@
-#include "skein/launch/child_state.hpp"
+#include "launch/child_state.hpp"
 
 #include <catch2/catch.hpp>
 #include <vector>

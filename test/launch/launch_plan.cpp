@@ -1,9 +1,9 @@
-#include "skein/launch/launch_plan.hpp"
+#include "launch/launch_plan.hpp"
 
 #include <catch2/catch.hpp>
 
+#include "core/host.hpp"
 #include "profile_folder.hpp"
-#include "skein/core/host.hpp"
 
 using namespace skein::launch;
 using namespace skein::profile;

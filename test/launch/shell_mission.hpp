@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "skein/launch/supervisor.hpp"
+#include "launch/supervisor.hpp"
 
 /// A process that is a shell script; `ready` in it reports readiness.
 inline skein::launch::ChildPlan shell_child(const std::string& name, const std::string& script) {

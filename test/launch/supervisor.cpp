@@ -1,4 +1,4 @@
-#include "skein/launch/supervisor.hpp"
+#include "launch/supervisor.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>

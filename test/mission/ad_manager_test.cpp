@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "skein/navigation/demo_problem.hpp"
+#include "navigation/routes/demo_problem.hpp"
 
 using namespace skein::navigation;
 using AE_adManagerI::InvalidReport;

@@ -9,9 +9,10 @@
 #include "command_run.hpp"
 #include "errand.hpp"
 #include "installed.hpp"
-#include "skein/entity/decision.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/idl/type_support.hpp"
+#include "skein/decision.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/entity.hpp"
+#include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
 #include "worker.idl.hpp"
 
@@ -207,4 +208,25 @@ TEST_CASE("a component that its plugin does not implement is a finding with what
   CHECK_THAT(run.output(),
              Contains("the plugin 'skein_errand_components' has no implementation of the mission "
                       "'office'; it implements client, clumsy, office"));
+}
+
+TEST_CASE(
+    "a strategy that neither its plugin nor Skein holds is a finding with those that there are") {
+  const Errand errand;
+  const auto check = [&](const std::string& strategy) {
+    return CommandRun(
+        {"check", errand.profile("", "<peer name='office' component='office.xml' strategy='" +
+                                         strategy + "'/>")});
+  };
+  for (const std::string strategy : {"first", "learned"}) {
+    CAPTURE(strategy);
+    CommandRun run = check(strategy);
+    CHECK(run.wait() == 0);
+  }
+  CommandRun run = check("fist");
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(),
+             Contains("errand.xml:1:") &&
+                 Contains("'office': unknown selection strategy 'fist' (did you mean "
+                          "'first'?); there are: declared, first, fixed_order, learned"));
 }

@@ -1,17 +1,21 @@
-// A worker that hangs when it is told to, one that does not, a desk in front of them, and a mission
-// that tells the first to hang and waits until it works again.
+// A worker that hangs when it is told to, one that does not, a desk in front of them, a strategy of
+// selection, and two missions: one that tells the first worker to hang and waits until it works
+// again, and one that asks the desk once.
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "../tools/eventually.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/entity.hpp"
+#include "skein/head.hpp"
+#include "skein/selection.hpp"
 #include "worker.idl.hpp"
 
 namespace {
@@ -27,9 +31,6 @@ class Worker final : public crew::Worker {
     if (name_ == "moody" && task.starts_with("stop")) raise(SIGSTOP);
     while (name_ == "moody" && task == "hang") pause();
     return name_ + " did " + task;
-  }
-  void improve(const std::string& task, StreamSink<std::string>& sink) override {
-    sink.push(work(task));
   }
 
  private:
@@ -47,6 +48,20 @@ class Desk final : public crew::Desk {
 
  private:
   Head& head_;
+};
+
+/// The least declared quality.
+class Humblest final : public SelectionStrategy {
+ public:
+  std::string name() const override { return "humblest"; }
+  Selection select(const std::vector<Candidate>& candidates,
+                   const Situation& situation) const override {
+    const auto humblest = std::min_element(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& one, const Candidate& other) { return one.quality < other.quality; });
+    return {static_cast<std::size_t>(humblest - candidates.begin()), situation.remaining,
+            "it claims the least"};
+  }
 };
 
 void say(const std::string& line) {
@@ -69,6 +84,12 @@ int upset_the_moody_one(Entity& entity, const ParameterValues&) {
   return 0;
 }
 
+int ask_once(Entity& entity, const ParameterValues&) {
+  auto desk = entity.connect<crew::Desk>();
+  say(desk.within(10s).ask("it"));
+  return 0;
+}
+
 ComponentRegistry::CspFactory worker(const std::string& name) {
   return [name](const ParameterValues&) {
     return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>(name));
@@ -87,4 +108,6 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>(entity.head()))};
   });
   registry.add_mission("client", upset_the_moody_one);
+  registry.add_mission("caller", ask_once);
+  registry.add_strategy(std::make_shared<Humblest>());
 }

@@ -1,12 +1,15 @@
-// A small mission, for tests of how missions are started: a desk that answers, and one who asks it.
+// A small mission, for tests of how missions are started: a desk that answers, and one who asks it;
+// and a strategy of selection.
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/entity.hpp"
+#include "skein/head.hpp"
+#include "skein/selection.hpp"
 #include "worker.idl.hpp"
 
 namespace {
@@ -17,6 +20,14 @@ using namespace std::chrono_literals;
 class Desk final : public crew::Desk {
  public:
   std::string ask(const std::string& text) override { return "yes, " + text; }
+};
+
+class First final : public SelectionStrategy {
+ public:
+  std::string name() const override { return "first"; }
+  Selection select(const std::vector<Candidate>&, const Situation& situation) const override {
+    return {0, situation.remaining, "it is the first"};
+  }
 };
 
 int ask(Entity& entity, const ParameterValues&) {
@@ -39,4 +50,5 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   });
   registry.add_mission("client", ask);
   registry.add_mission("clumsy", stumble);
+  registry.add_strategy(std::make_shared<First>());
 }

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "skein/core/error.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/error.hpp"
 
 namespace skein::test {
 

@@ -6,12 +6,11 @@
 #include <memory>
 #include <string>
 
+#include "navigation/routes/demo_problem.hpp"
 #include "navigator.idl.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/core/error.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/navigation/demo_problem.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
 
 namespace {
 
@@ -32,10 +31,6 @@ class ShortCut final : public AE_navigator::IPlanner {
  public:
   AE_navigator::Route plan(const AE_navigator::Problem& task) override {
     return straight_line(task);
-  }
-  void improve(const AE_navigator::Problem& task,
-               skein::StreamSink<AE_navigator::Route>& sink) override {
-    sink.push(plan(task));
   }
 };
 

@@ -4,8 +4,9 @@
 #include "../../src/navigation/components/navigator.hpp"
 #include "../connector/pairing.hpp"
 #include "../tools/eventually.hpp"
-#include "skein/navigation/demo_problem.hpp"
-#include "skein/navigation/planners.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "navigation/planners/planners.hpp"
+#include "navigation/routes/demo_problem.hpp"
 
 using namespace skein;
 using namespace skein::navigation;
@@ -26,7 +27,6 @@ struct OneRoute : IPlanner {
     route.threat_epoch = task.threat_epoch;
     return route;
   }
-  void improve(const Problem& task, StreamSink<Route>& sink) override { sink.push(plan(task)); }
   Route route;
   std::vector<Problem> asked;
 };

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "../tools/eventually.hpp"
+#include "launch/supervisor.hpp"
+#include "navigation/routes/demo_problem.hpp"
 #include "planning_stage.hpp"
-#include "skein/launch/supervisor.hpp"
-#include "skein/navigation/demo_problem.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -79,7 +79,7 @@ TEST_CASE("F1: the chosen planner is killed while it plans: a valid route within
     CHECK(answer.outcome_of(name) == "disconnected");
     CHECK(answer.outcome_of("quick") == "accepted");
     took.push_back(answer.took);
-    REQUIRE(eventually([&] { return !stage.stands_by(name); }));
+    REQUIRE(eventually([&] { return !stage.is_available(name); }));
   }
   print("F1, a planner killed in a budget of 10 s", took);
 }
@@ -171,7 +171,7 @@ TEST_CASE(
       },
       200s));
   CHECK(aborts == kRestarts + 1);
-  REQUIRE(eventually([&] { return !stage.stands_by("legacy"); }));
+  REQUIRE(eventually([&] { return !stage.is_available("legacy"); }));
   const auto answer = stage.ask(kBudget);
   CHECK(answer.proven);
   CHECK(answer.outcome_of("legacy").empty());

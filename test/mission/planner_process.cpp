@@ -11,9 +11,9 @@
 #include <string>
 #include <thread>
 
-#include "skein/entity/entity.hpp"
-#include "skein/launch/ready.hpp"
-#include "skein/navigation/planners.hpp"
+#include "launch/ready.hpp"
+#include "navigation/planners/planners.hpp"
+#include "skein/entity.hpp"
 
 using namespace skein;
 using namespace skein::navigation;
@@ -28,7 +28,6 @@ class Misbehaving : public IPlanner {
  public:
   explicit Misbehaving(std::shared_ptr<IPlanner> planner) : planner_(std::move(planner)) {}
   Route plan(const Problem& task) override { return spoil(task, planner_->plan(task)); }
-  void improve(const Problem& task, StreamSink<Route>& sink) override { sink.push(plan(task)); }
 
  private:
   virtual Route spoil(const Problem& task, Route route) = 0;

@@ -39,7 +39,7 @@ DecisionRecord record() {
 
 }  // namespace
 
-TEST_CASE("a request's report tells who stood by, who was tried, why and what came of it") {
+TEST_CASE("a request's report tells who was available, who was tried, why and what came of it") {
   PlanningJournal journal;
   journal.begin("one");
   journal.end("one", {{0, record()}}, "");
@@ -70,7 +70,7 @@ TEST_CASE("what a planner has shown is reported beside what it declares") {
   CHECK(planner.declared_ms == Approx(300));
   CHECK(planner.runs == 7);
   CHECK(planner.median_ms == Approx(120));
-  CHECK(planner.q95_ms == Approx(250));
+  CHECK(planner.p95_ms == Approx(250));
   CHECK(planner.measured_quality == Approx(0.8));
   CHECK(planner.accepted == Approx(0.875));
   CHECK(planner.quarantined);
@@ -88,7 +88,7 @@ TEST_CASE("a request that was planned twice is one report, each attempt with its
   CHECK(report.elapsed_ms == Approx(602));
 }
 
-TEST_CASE("a planner that stood by once and is gone is reported as not available") {
+TEST_CASE("a planner that was available once and is gone is reported as not available") {
   PlanningJournal journal;
   journal.begin("one");
   journal.end("one", {{0, record()}}, "");
@@ -105,8 +105,8 @@ TEST_CASE("a planner that stood by once and is gone is reported as not available
 TEST_CASE("the report of a request that no planner was tried for gives the error") {
   PlanningJournal journal;
   journal.begin("one");
-  journal.end("one", {}, "no planner stands by");
-  CHECK(journal.report("one").failure == "no planner stands by");
+  journal.end("one", {}, "no planner is available");
+  CHECK(journal.report("one").failure == "no planner is available");
 }
 
 TEST_CASE("the last 64 reports are kept, an unknown request is refused by its name") {

@@ -5,9 +5,10 @@
 #include "../../src/navigation/components/flight_controller.hpp"
 #include "../../src/navigation/components/navigator.hpp"
 #include "../tools/eventually.hpp"
+#include "brokerless_discovery/broker.hpp"
+#include "navigation/route_checker/route_checker.hpp"
+#include "navigation/routes/demo_problem.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/navigation/demo_problem.hpp"
-#include "skein/navigation/route_checker.hpp"
 
 using namespace std::chrono_literals;
 
@@ -80,7 +81,7 @@ ChildProcess& PlanningStage::add(const std::string& name, const std::string& kin
   return planner;
 }
 
-bool PlanningStage::stands_by(const std::string& name) const {
+bool PlanningStage::is_available(const std::string& name) const {
   auto& broker = navigator_->broker();
   for (const auto& csp : broker.find_service(broker.query("AE_navigator/IPlanner"))) {
     if (csp->entity == name) return true;
@@ -89,7 +90,7 @@ bool PlanningStage::stands_by(const std::string& name) const {
 }
 
 void PlanningStage::await(const std::string& name) const {
-  if (!eventually([&] { return stands_by(name); }))
+  if (!eventually([&] { return is_available(name); }))
     throw std::runtime_error(name + " was never seen");
 }
 

@@ -8,9 +8,9 @@
 
 #include "../connector/pairing.hpp"
 #include "../tools/child_process.hpp"
+#include "navigation/route_checker/height_grid.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
 #include "navigator.idl.hpp"
-#include "skein/navigation/height_grid.hpp"
-#include "skein/navigation/terrain_provider.hpp"
 
 namespace skein::test {
 
@@ -33,7 +33,7 @@ class PlanningStage {
   /// The command line of such a process, for whoever starts it in our place.
   std::vector<std::string> command(const std::string& name, const std::string& kind,
                                    Declared declared, int seed = 1) const;
-  bool stands_by(const std::string& name) const;
+  bool is_available(const std::string& name) const;
   void await(const std::string& name) const;
 
   struct Answer {

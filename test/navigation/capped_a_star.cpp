@@ -4,8 +4,8 @@
 #include <queue>
 
 #include "flat_crossing.hpp"
-#include "skein/core/error.hpp"
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/threats/radar_exposure.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

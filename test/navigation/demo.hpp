@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "skein/navigation/demo_problem.hpp"
-#include "skein/navigation/planners.hpp"
-#include "skein/navigation/route_checker.hpp"
+#include "navigation/planners/planners.hpp"
+#include "navigation/route_checker/route_checker.hpp"
+#include "navigation/routes/demo_problem.hpp"
 
 namespace skein::navigation::testing {
 

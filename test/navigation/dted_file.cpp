@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "made_terrain.hpp"
-#include "skein/core/error.hpp"
-#include "skein/navigation/height_grid.hpp"
+#include "navigation/route_checker/height_grid.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

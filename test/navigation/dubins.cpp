@@ -1,11 +1,11 @@
-#include "skein/navigation/dubins.hpp"
+#include "navigation/planners/dubins.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using AE_navigator::GroundPoint;

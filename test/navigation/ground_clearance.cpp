@@ -1,4 +1,4 @@
-#include "skein/navigation/ground_clearance.hpp"
+#include "navigation/terrain/ground_clearance.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

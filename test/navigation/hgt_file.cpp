@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "made_terrain.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

@@ -1,4 +1,4 @@
-#include "skein/navigation/keep_out.hpp"
+#include "navigation/threats/keep_out.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "skein/navigation/terrain.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "navigation/terrain/terrain.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
 
 namespace skein::navigation::testing {
 

@@ -1,4 +1,4 @@
-#include "skein/navigation/path_hybridisation.hpp"
+#include "navigation/planners/path_hybridisation.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "skein/navigation/planners.hpp"
+#include "navigation/planners/planners.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "demo.hpp"
-#include "skein/core/call_context.hpp"
-#include "skein/core/error.hpp"
+#include "skein/call_context.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

@@ -1,4 +1,4 @@
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/threats/radar_exposure.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

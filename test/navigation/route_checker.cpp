@@ -1,9 +1,9 @@
-#include "skein/navigation/route_checker.hpp"
+#include "navigation/route_checker/route_checker.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using AE_navigator::Position;

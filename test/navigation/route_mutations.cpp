@@ -8,8 +8,8 @@
 #include <random>
 
 #include "demo.hpp"
-#include "skein/navigation/ground_clearance.hpp"
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/terrain/ground_clearance.hpp"
+#include "navigation/threats/radar_exposure.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

@@ -1,4 +1,4 @@
-#include "skein/navigation/route_picture.hpp"
+#include "navigation/routes/route_picture.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 
 #include "demo.hpp"
 #include "made_terrain.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

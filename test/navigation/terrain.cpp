@@ -1,12 +1,12 @@
-#include "skein/navigation/terrain.hpp"
+#include "navigation/terrain/terrain.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <thread>
 
 #include "made_terrain.hpp"
-#include "skein/core/error.hpp"
-#include "skein/navigation/terrain_ceilings.hpp"
+#include "navigation/terrain/terrain_ceilings.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

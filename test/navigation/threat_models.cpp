@@ -1,10 +1,10 @@
-#include "skein/navigation/threat_models.hpp"
+#include "navigation/threats/threat_models.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "made_terrain.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;

@@ -1,4 +1,4 @@
-#include "skein/profile/check.hpp"
+#include "profile/check.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "skein/profile/component_xml.hpp"
+#include "profile/component_xml.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "skein/profile/component_xml.hpp"
-#include "skein/profile/dictionary.hpp"
+#include "profile/component_xml.hpp"
+#include "profile/dictionary.hpp"
 
 using namespace skein::profile;
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "profile/component_xml.hpp"
 #include "profile_folder.hpp"
-#include "skein/profile/component_xml.hpp"
 
 using namespace skein::profile;
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <pugixml.hpp>
 
-#include "skein/profile/component_xml.hpp"
+#include "profile/component_xml.hpp"
 
 using namespace skein::profile;
 

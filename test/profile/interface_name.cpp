@@ -1,8 +1,8 @@
-#include "skein/core/interface_name.hpp"
+#include "core/interface_name.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 

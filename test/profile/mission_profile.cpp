@@ -1,4 +1,4 @@
-#include "skein/profile/mission_profile.hpp"
+#include "profile/mission_profile.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -141,7 +141,7 @@ TEST_CASE("How a Head decides is read for peers; without a word it is as the Hea
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(
       R"(<peer name="n" component="n.xml" strategy="learned" history="h.json" decision_log="d.jsonl"
-           exploration="0.25" most_stuck="7" quarantine_after="2" first_quarantine="300 ms"
+           exploration="0.25" max_stuck="7" quarantine_after="2" first_quarantine="300 ms"
            longest_quarantine="5"/>
          <peer name="f" component="f.xml"/>)"));
   const skein::HeadOptions& head = mission.peers.at(0).head;
@@ -149,7 +149,7 @@ TEST_CASE("How a Head decides is read for peers; without a word it is as the Hea
   CHECK(head.history == "h.json");
   CHECK(head.log == "d.jsonl");
   CHECK(head.exploration == 0.25);
-  CHECK(head.most_stuck == 7);
+  CHECK(head.max_stuck == 7);
   CHECK(head.breaker.faults == 2);
   CHECK(head.breaker.first_quarantine == 300ms);
   CHECK(head.breaker.longest_quarantine == 5s);
@@ -159,7 +159,7 @@ TEST_CASE("How a Head decides is read for peers; without a word it is as the Hea
   CHECK(silent.history.empty());
   CHECK(silent.log.empty());
   CHECK(silent.exploration == standard.exploration);
-  CHECK(silent.most_stuck == standard.most_stuck);
+  CHECK(silent.max_stuck == standard.max_stuck);
   CHECK(silent.breaker.faults == standard.breaker.faults);
   CHECK(silent.breaker.longest_quarantine == standard.breaker.longest_quarantine);
 }
@@ -168,13 +168,16 @@ TEST_CASE("A Head that cannot decide as the profile says is found, with its plac
   ProfileFolder folder;
   const auto [attributes, finding] = GENERATE(table<std::string, std::string>({
       {R"(strategy="lerned")",
-       "unknown selection strategy 'lerned' (did you mean 'learned'?); there are: declared"},
+       "warning: \"lerned\" is none of Skein's own selection strategies, and \"n\" has no plugin "
+       "that "
+       "could hold it; did you mean 'learned'?"},
+      {R"(strategy="")", "strategy"},
       {R"(stratgy="learned")", R"(did you mean 'strategy'?)"},
       {R"(history="")", "history"},
       {R"(decision_log="")", "decision_log"},
       {R"(exploration="1.5")", "write a number from 0 to 1"},
       {R"(exploration="much")", "write a number from 0 to 1"},
-      {R"(most_stuck="0")", "write a number from 1 to 1000"},
+      {R"(max_stuck="0")", "write a number from 1 to 1000"},
       {R"(quarantine_after="0")", "write a number from 1 to 1000"},
       {R"(first_quarantine="0")", "first_quarantine is zero"},
       {R"(first_quarantine="2 min")", "longest_quarantine is shorter than first_quarantine"},
@@ -182,6 +185,15 @@ TEST_CASE("A Head that cannot decide as the profile says is found, with its plac
   }));
   const std::string peer = R"(<peer name="n" component="n.xml" )" + attributes + "/>";
   CHECK_THAT(folder.check(peer), Catch::Contains("m.xml:2:") && Catch::Contains(finding));
+}
+
+TEST_CASE("A strategy that only a plugin may know is taken at its word") {
+  ProfileFolder folder;
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" plugin="mine" strategy="steady"/>)") ==
+        "");
+  const auto mission = read_mission_profile(
+      folder.mission(R"(<peer name="f" component="f.xml" plugin="mine" strategy="steady"/>)"));
+  CHECK(mission.peers.at(0).head.strategy == "steady");
 }
 
 TEST_CASE("A CSP has no Head") {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "skein/profile/check.hpp"
+#include "profile/check.hpp"
 #include "temporary_folder.hpp"
 
 /// A folder with a small dictionary and components to compose missions from: N depends on IF and

@@ -7,8 +7,8 @@
 #include <new>
 
 #include "../connector/echo_service.hpp"
-#include "skein/dds/loopback.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/loopback.hpp"
 
 namespace {
 
@@ -44,9 +44,9 @@ constexpr std::size_t kCalls = 200;
 /// that nothing but calls allocates: no lease, no statistics.
 class Pair {
  public:
-  explicit Pair(bool one_process) {
+  explicit Pair(bool one_process, CallThread thread = CallThread::Own) {
     server_ = make("server", std::make_shared<Process>(clock_));
-    server_->provide<Echo>(std::make_shared<EchoService>());
+    server_->provide<Echo>(std::make_shared<EchoService>(), {.thread = thread});
     client_ = make("client",
                    one_process ? server_->options().process : std::make_shared<Process>(clock_));
     echo.emplace(client_->connect<Echo>());
@@ -100,7 +100,7 @@ std::function<void()> asynchronous(Echo::Proxy& echo) {
 TEST_CASE("a steady call allocates nothing, within the process or over loopback") {
   const bool one_process = GENERATE(true, false);
   CAPTURE(one_process);
-  Pair pair(one_process);
+  Pair pair(one_process, GENERATE(CallThread::Own, CallThread::Caller));
   CHECK(allocations_of(blocking(*pair.echo)) == 0);
   CHECK(allocations_of(asynchronous(*pair.echo)) == 0);
 }

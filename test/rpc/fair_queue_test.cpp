@@ -1,11 +1,11 @@
-#include "skein/rpc/fair_queue.hpp"
+#include "rpc/fair_queue.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "../connector/echo_service.hpp"
-#include "skein/core/error.hpp"
-#include "skein/rpc/service.hpp"
+#include "rpc/service.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using rpc::FairQueue;

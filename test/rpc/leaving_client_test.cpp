@@ -6,8 +6,8 @@
 
 #include "../connector/echo_service.hpp"
 #include "../tools/eventually.hpp"
-#include "skein/rpc/dds_server.hpp"
-#include "skein/rpc/wire.hpp"
+#include "rpc/dds_server.hpp"
+#include "rpc/wire.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -83,9 +83,7 @@ class PlayedParticipant final : public dds::Participant {
     }
     Guid guid() const override { return {}; }
     std::vector<Guid> matched_writers() const override { return {}; }
-    std::uint64_t malformed() const override { return 0; }
-    std::uint64_t expired() const override { return 0; }
-    std::uint64_t replaced() const override { return 0; }
+    dds::ReceiveCounters counters() const override { return {}; }
     dds::Sample sample;
   };
 

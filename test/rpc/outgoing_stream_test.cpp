@@ -1,4 +1,4 @@
-#include "skein/rpc/outgoing_stream.hpp"
+#include "rpc/outgoing_stream.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -96,6 +96,22 @@ TEST_CASE("what waits for credit goes on with it, and ends with the deadline or 
   }
   waiting.join();
   CHECK(ended == expected);
+}
+
+TEST_CASE("a result that cannot be sent takes the room of no other") {
+  ManualClock clock;
+  int sent = 0;
+  const auto stream = std::make_shared<OutgoingStream>(
+      count_up(), clock, clock.now() + 1s, 1, [&](const void* out, std::uint64_t) {
+        if (static_cast<const Echo_count_up_Out*>(out)->return_ < 0) throw Internal("not this one");
+        ++sent;
+      });
+  const Echo_count_up_Out bad{-1};
+  const Echo_count_up_Out good{1};
+  CHECK_THROWS_AS(stream->put(&bad, false), Internal);
+  CHECK(stream->put(&good, false));
+  CHECK_FALSE(stream->put(&good, false));
+  CHECK(sent == 1);
 }
 
 TEST_CASE("a caller that grants nothing gets the last result, and cannot get none") {

@@ -1,4 +1,4 @@
-#include "skein/rpc/service.hpp"
+#include "rpc/service.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "../connector/echo_service.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

@@ -6,12 +6,12 @@
 
 #include "../connector/echo_service.hpp"
 #include "../tools/eventually.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/loopback.hpp"
+#include "rpc/call_journal.hpp"
+#include "rpc/dds_channel.hpp"
+#include "rpc/dds_server.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
-#include "skein/rpc/call_journal.hpp"
-#include "skein/rpc/dds_channel.hpp"
-#include "skein/rpc/dds_server.hpp"
+#include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -186,13 +186,14 @@ TEST_CASE("a journal that ends waits for who is inside its writer") {
   const auto vendor = network.vendor();
   SlowParticipant participant(*vendor);
   ThreadExecutor control("control");
-  const auto journal = rpc::CallJournal::open(participant, control, "uav-1/test");
-  const rpc::CallJournalReader reader(participant, [](const introspection::CallEvent&) {});
-  REQUIRE(eventually([&] { return journal->on(); }));
+  rpc::CallJournal journal(participant, control, "uav-1/test");
+  introspection::Reader<introspection::CallEvent> reader(participant, introspection::kCalls,
+                                                         [](const introspection::CallEvent&) {});
+  REQUIRE(eventually([&] { return journal.on(); }));
   participant.valve.set(Valve::Mode::Holding);
-  journal->note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",
-                LouderEcho::interface_info().operations[0]);
-  check_that_it_waits(participant.valve, [&] { journal->close(); });
+  journal.note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",
+               LouderEcho::interface_info().operations[0]);
+  check_that_it_waits(participant.valve, [&] { journal.close(); });
 }
 
 TEST_CASE("answers for which there is no room arrive once there is some, within their deadlines") {
@@ -227,7 +228,7 @@ TEST_CASE("what waits for room is bounded: a client may have half of it, and the
   Pair pair;
   pair.serving.valve.set(Valve::Mode::Full);
   constexpr std::size_t kSize = 16 << 20;
-  constexpr std::size_t kFit = rpc::DdsServer::kMostUnsent / 2 / kSize;
+  constexpr std::size_t kFit = rpc::DdsServer::kMaxUnsent / 2 / kSize;
   const std::vector<std::uint8_t> content(kSize);
   std::vector<Call<std::vector<std::uint8_t>>> calls;
   for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(pair.echo().async_echo_octets(content));

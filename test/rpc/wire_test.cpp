@@ -1,4 +1,4 @@
-#include "skein/rpc/wire.hpp"
+#include "rpc/wire.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>

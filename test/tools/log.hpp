@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
 
 namespace skein::test {
 

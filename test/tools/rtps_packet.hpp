@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::test {
 

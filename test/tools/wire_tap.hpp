@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::test {
 

@@ -1,15 +1,21 @@
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <stdexcept>
 
+#include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
-#include "skein/core/error.hpp"
-#include "skein/dds/loopback.hpp"
-#include "skein/topics/publisher.hpp"
-#include "skein/topics/subscription.hpp"
+#include "dds/port.hpp"
+#include "skein/detail/codec.hpp"
+#include "skein/error.hpp"
+#include "skein/loopback.hpp"
+#include "skein/publisher.hpp"
+#include "skein/subscription.hpp"
 #include "streams.idl.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
 using Catch::Contains;
+using skein::test::eventually;
 using skein::test::Log;
 using streams::Depth;
 using streams::Rudder;
@@ -192,20 +198,52 @@ TEST_CASE("a sample that is no such value is counted, reported once, and stops n
              Contains("'rudder'") && Contains("streams::Rudder") && Contains("same IDL"));
 }
 
-TEST_CASE("a callback that throws is reported, and the next value comes") {
+TEST_CASE("a callback that throws is reported once, whatever it throws, and the next value comes") {
   Sea sea;
   const Log log;
   auto rudder = sea.rudder();
+  const bool standard = GENERATE(true, false);
   int calls = 0;
   const Subscription<Rudder> watch(*sea.shore, sea.executor, "rudder", {}, [&](const Rudder&) {
-    if (++calls == 1) throw std::runtime_error("aground");
+    ++calls;
+    if (standard) throw std::runtime_error("aground");
+    throw 42;
   });
-  rudder.publish({"helm", 1});
-  rudder.publish({"helm", 2});
+  for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
   sea.executor.run_all();
-  CHECK(calls == 2);
+  rudder.publish({"helm", 4});
+  sea.executor.run_all();
+  CHECK(calls == 4);
   CHECK(log.count("\n") == 1);
-  CHECK_THAT(log.text(), Contains("'rudder'") && Contains("aground"));
+  CHECK_THAT(log.text(),
+             Contains("'rudder'") &&
+                 Contains(standard ? "aground" : "something that is no std::exception"));
+}
+
+TEST_CASE("what is told of keys may throw anything, too, and the executor's thread goes on") {
+  Sea sea;
+  const Log log;
+  TopicQos qos;
+  qos.deadline = 100ms;
+  ThreadExecutor executor("topics");
+  Publisher<Depth> depths(*sea.ship, "depth", qos);
+  std::atomic<int> told = 0;
+  SubscriptionOptions options;
+  options.executor = &executor;
+  options.on_deadline_missed = [&](const Guid&) {
+    ++told;
+    throw 42;
+  };
+  options.on_disposed = options.on_deadline_missed;
+  const Subscription<Depth> watch(
+      *sea.shore, sea.executor, "depth", qos, [](const Depth&) { throw 42; }, options);
+  depths.publish({7, 12.5, ""});
+  sea.clock.advance(100ms);
+  CHECK(eventually([&] { return told == 1; }));
+  depths.dispose({7, 0, ""});
+  CHECK(eventually([&] { return told == 2; }));
+  executor.stop();
+  CHECK(log.count("\n") == 1);
 }
 
 TEST_CASE("no callback runs once the subscription has gone") {

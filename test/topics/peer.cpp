@@ -5,8 +5,8 @@
 
 #include <iostream>
 
-#include "skein/core/error.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
 #include "streams.idl.hpp"
 
 using namespace skein;

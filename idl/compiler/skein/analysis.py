@@ -1,6 +1,6 @@
 """What the templates need to know beyond the declarations: recursion, hashes, in and out structs, clashes."""
 
-from . import hashes, model, names
+from . import flattened_names, hashes, keys, model, names
 from .errors import suggestion
 
 
@@ -18,6 +18,10 @@ def analyse(builder, report):
     for interface in builder.interfaces:
         _check_hashes(interface, report)
     _check_clashes(builder, report)
+    if not report.refused:
+        known = [decl for decl in builder._built.values() if decl.place[0] not in builder.broken]
+        defined = [decl for decl in known if not isinstance(decl, model.Interface) or decl.defined]
+        flattened_names.check_clashes(defined, report)
 
 
 # ---- recursion
@@ -190,10 +194,12 @@ def bounded(kind):
 
 
 def apply_pragmas(pragmas, builder, report, main_file):
+    structs = {decl.scope: decl for decl in builder._built.values() if type(decl) is model.Struct}
+    keylists = keys.Keylists(structs, report)
     for pragma in pragmas:
         words = pragma.text.split() or [""]
         if words[0] == "keylist":
-            _keylist(pragma, words[1:], builder, report)
+            keylists.add(pragma, words[1:])
         elif words[0] == "idempotent":
             _idempotent(pragma, words[1:], builder, report)
         elif words[0] == "stream":
@@ -202,15 +208,12 @@ def apply_pragmas(pragmas, builder, report, main_file):
             report.error(pragma.place, f"unknown pragma '{words[0]}'{hint}")
         elif pragma.place[0] == main_file:
             report.warning(pragma.place, f"unknown pragma '{words[0]}' is passed over")
-
-
-def _lookup(pragma, name, table):
-    """What `name` means where the pragma stands: in its scope or in one around it."""
-    parts_of = tuple(part for part in name.split("::") if part)
-    for depth in range(len(pragma.scope), -1, -1):
-        if found := table.get(pragma.scope[:depth] + parts_of):
-            return found
-    return None
+    for pragma in pragmas:  # once it is known which operations are streams
+        words = pragma.text.split()
+        if words[:1] == ["stream"] and len(words) == 3:
+            _default(pragma, words[1:], builder, report)
+    if not report.refused:
+        keylists.check()
 
 
 def _operations(pragma, kind, given, builder, report):
@@ -224,7 +227,7 @@ def _operations(pragma, kind, given, builder, report):
     if not given:
         report.error(pragma.place, f"#pragma {kind} needs the name of an operation")
     for name in given:
-        found = _lookup(pragma, name, table)
+        found = pragma.lookup(name, table)
         if found is None:
             known = [scope[-1] for scope in table]
             report.error(pragma.place, f"#pragma {kind}: no operation '{name}' here{suggestion(name, known)}")
@@ -238,7 +241,11 @@ def _idempotent(pragma, given, builder, report):
 
 
 def _stream(pragma, given, builder, report):
-    for operation in _operations(pragma, "stream", given, builder, report):
+    """A stream, and perhaps the operation that it falls back on."""
+    if len(given) > 2:
+        return report.error(pragma.place, "#pragma stream names one stream and at most the operation whose result it brings by "
+                            "default; write a pragma for each stream")  # fmt: skip
+    for operation in _operations(pragma, "stream", given[:1], builder, report):
         if operation.name.startswith("_set_"):
             continue
         if operation.name.startswith("_get_"):
@@ -253,79 +260,56 @@ def _stream(pragma, given, builder, report):
             _refuse_repeated_stream(pragma, operation, report)
 
 
+def _default(pragma, given, builder, report):
+    for stream in _operations(pragma, "stream", given[:1], builder, report):
+        source = _source_of(stream, given[1], pragma, report) if stream.stream else None
+        if source is None:
+            continue
+        if reason := _obstacle(stream, source):
+            report.error(pragma.place, f"#pragma stream: '{source.name}' cannot stand in for '{stream.name}': {reason}")
+        else:
+            stream.by_default = source
+
+
+def _source_of(stream, name, pragma, report):
+    """The operation of that name, own or inherited, of the stream's interface."""
+    known = {operation.name: operation for operation in stream.interface.all_operations()}
+    if name in known:
+        return known[name]
+    if "_get_" + name in known:
+        report.error(pragma.place, f"#pragma stream: '{name}' is an attribute; use an operation")
+    else:
+        hint = suggestion(name, [each for each in known if not each.startswith("_") and each != stream.name])
+        report.error(pragma.place, f"#pragma stream: {stream.interface.idl_name} has no operation '{name}'{hint}")
+    return None
+
+
+def _obstacle(stream, source):
+    """Why the result of `source` cannot be what the stream brings; None where it can."""
+    if source.stream:
+        return "it is a stream itself"
+    if [(p.direction, _resolved(p.type)) for p in source.parameters] != [
+        (p.direction, _resolved(p.type)) for p in stream.parameters
+    ]:
+        return "its parameters are others"
+    if source.result is None or _resolved(source.result) != _resolved(stream.result):
+        return "its result is another"
+    if undeclared := [exception.idl_name for exception in source.raises if exception not in stream.raises]:
+        return f"it raises {', '.join(undeclared)}, which the stream does not"
+    return None
+
+
+def _resolved(kind):
+    """The type without any typedef."""
+    kind = model.unaliased(kind)
+    if isinstance(kind, model.Sequence):
+        return model.Sequence(_resolved(kind.element), kind.bound)
+    if isinstance(kind, model.Array):
+        return model.Array(_resolved(kind.element), kind.size)
+    return kind
+
+
 def _refuse_repeated_stream(pragma, operation, report):
     """What was taken from a stream cannot be taken back."""
     if operation.stream and operation.idempotent:
         report.error(pragma.place, f"'{operation.name}' cannot be both idempotent and a stream: a stream is never repeated")
-
-
-def _keylist(pragma, words, builder, report):
-    structs = {decl.scope: decl for decl in builder._built.values() if type(decl) is model.Struct}
-    if not words:
-        return report.error(pragma.place, "#pragma keylist needs a struct and its key members")
-    struct = _lookup(pragma, words[0], structs)
-    if struct is None:
-        known = [scope[-1] for scope in structs]
-        return report.error(pragma.place, f"#pragma keylist: no struct '{words[0]}' here{suggestion(words[0], known)}")
-    for path in words[1:]:
-        key = _key_path(pragma, struct, path, report)
-        if key and key not in struct.keys:
-            struct.keys.append(key)
-    order = {id(member): index for index, member in enumerate(struct.members)}
-    struct.keys.sort(key=lambda key: order[id(key[0])])
-
-
-def _key_path(pragma, struct, path, report):
-    found = []
-    current = struct
-    parts_of = path.split(".")
-    for depth, name in enumerate(parts_of, 1):
-        member = next((m for m in current.members if m.name == name), None)
-        if member is None:
-            hint = suggestion(name, [m.name for m in current.members])
-            report.error(pragma.place, f"#pragma keylist: {current.idl_name} has no member '{name}'{hint}")
-            return None
-        if found:
-            member.key = True
-            if not current.in_main_file:
-                report.warning(pragma.place, f"{current.idl_name} is of another file, whose flattened IDL does not show that "
-                               f"'{name}' is a key; the key hash is right")  # fmt: skip
-        found.append(member)
-        kind = model.unaliased(member.type)
-        current = kind.decl if isinstance(kind, model.Named) and isinstance(kind.decl, model.Struct) else None
-        if current is None and depth < len(parts_of):
-            report.error(pragma.place, f"#pragma keylist: '{name}' in '{path}' is no struct")
-            return None
-    if key_size(found[-1].type) is None:
-        report.error(pragma.place, f"#pragma keylist: '{path}' cannot be a key; keys are numbers, text, enumerations, "
-                     "and arrays and structs of these")  # fmt: skip
-        return None
-    return found
-
-
-UNBOUNDED = 1 << 40
-
-
-def key_size(kind, start=0):
-    """The largest offset at which a key that begins at `start` may end in CDR; None: it cannot be a key."""
-    kind = model.unaliased(kind)
-    if isinstance(kind, model.Primitive):
-        size = model.PRIMITIVES[kind.idl][1]
-        return start + -start % size + size
-    if isinstance(kind, model.String):
-        return start + -start % 4 + 4 + kind.bound + 1 if kind.bound else UNBOUNDED
-    if isinstance(kind, model.Array):
-        for _ in range(min(kind.size, 64)):
-            start = key_size(kind.element, start)
-            if start is None:
-                return None
-        return start
-    if isinstance(kind, model.Named) and isinstance(kind.decl, model.Enum):
-        return start + -start % 4 + 4
-    if isinstance(kind, model.Named) and type(kind.decl) is model.Struct and not kind.decl.recursive:
-        for member in kind.decl.members:
-            start = key_size(member.type, start)
-            if start is None:
-                return None
-        return start
-    return None

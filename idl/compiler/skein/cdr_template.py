@@ -1,6 +1,6 @@
 """CDR of each type, and the key hash of keyed ones."""
 
-from . import analysis, cpp, model
+from . import analysis, cpp, keys, model
 
 
 def bounds_check(decl):
@@ -115,7 +115,7 @@ def key_hash(decl):
         return []
     size = 0
     for key in decl.keys:
-        size = analysis.key_size(key[-1].type, size)
+        size = keys.size(key[-1].type, size)
     fields = [
         f"    ::skein::idl::encode(writer, value.{'.'.join(member.cpp_name for member in key)});" for key in decl.keys
     ]

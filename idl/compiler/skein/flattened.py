@@ -17,6 +17,18 @@ _FASTDDSGEN = frozenset(
     uses valuebase ValueBase valuetype""".split()
 )
 
+UNKNOWN_OPERATION = "unknownOp"  # the default case of an interface's calls and of their answers
+
+
+def exception_hash(exception):
+    """The name of the constant."""
+    return f"{exception.dds_name}_Ex_Hash"
+
+
+def exception_member(exception):
+    """Its name in the result of an operation that raises it."""
+    return f"{exception.dds_name[0].lower()}{exception.dds_name[1:]}_ex"
+
 
 def _identifier(name):
     return "_" + name if name.lower() in _IDLC or name in _FASTDDSGEN else name
@@ -150,12 +162,12 @@ class _Writer:
 
     def _struct(self, decl):
         keys = {id(key[0]) for key in decl.keys}
-        members = [f"  {'@key ' if m.key or id(m) in keys else ''}{self._declarator(m.type, m.name)}" for m in decl.members]
+        members = [f"  {'@key ' if id(m) in keys else ''}{self._declarator(m.type, m.name)}" for m in decl.members]
         return [f"struct {_identifier(decl.dds_name)} {{", *(members or ["  octet dummy;"]), "};"]
 
     def _exception(self, decl):
         number = hashes.signed(hashes.name_hash(decl.idl_name))
-        return [f"const long {decl.dds_name}_Ex_Hash = {number};", *self._struct(decl)]
+        return [f"const long {exception_hash(decl)} = {number};", *self._struct(decl)]
 
     def _union(self, decl):
         lines = [f"union {_identifier(decl.dds_name)} switch ({self._type(decl.discriminator)}) {{"]
@@ -178,7 +190,7 @@ class _Writer:
 
     def _choice(self, name, alternatives):
         """A union over operations."""
-        lines = [f"union {name} switch (long) {{", "  default:", "    dds::rpc::UnknownOperation unknownOp;"]
+        lines = [f"union {name} switch (long) {{", "  default:", f"    dds::rpc::UnknownOperation {UNKNOWN_OPERATION};"]
         for operation, kind in alternatives:
             lines += [f"  case {self._named(operation, 'Hash')}:", f"    {kind} {_identifier(operation.dds_member)};"]
         return lines + ["};"]
@@ -198,7 +210,6 @@ class _Writer:
         lines += [f"union {name}_Result switch (long) {{", "  default:", "    dds::rpc::UnknownException unknownEx;"]
         lines += ["  case 0:", f"    {name}_Out result;"]
         for exception in operation.raises:
-            member = exception.dds_name[0].lower() + exception.dds_name[1:] + "_ex"
-            number = self._relative(exception.modules, f"{exception.dds_name}_Ex_Hash")
-            lines += [f"  case {number}:", f"    {self._scoped(exception)} {_identifier(member)};"]
+            number = self._relative(exception.modules, exception_hash(exception))
+            lines += [f"  case {number}:", f"    {self._scoped(exception)} {_identifier(exception_member(exception))};"]
         return lines + ["};"]

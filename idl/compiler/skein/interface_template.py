@@ -31,8 +31,9 @@ def definition(interface):
     lines += [types_template.alias(nested) for nested in interface.nested]
     lines += ["", f"  virtual ~{name}();", "  static const ::skein::InterfaceInfo& interface_info();"]
     for operation in interface.operations:
-        lines += ["", *cpp.documentation(operation.documentation, "  ")]
-        lines.append(f"  virtual {result(operation)} {operation.cpp_name}({parameters(operation)}) = 0;")
+        lines += ["", *cpp.documentation(_documentation(operation), "  ")]
+        pure = "" if operation.by_default else " = 0"
+        lines.append(f"  virtual {result(operation)} {operation.cpp_name}({parameters(operation)}){pure};")
     return lines + [
         "",
         " protected:",
@@ -43,5 +44,26 @@ def definition(interface):
     ]
 
 
+def _documentation(operation):
+    if not operation.by_default:
+        return operation.documentation
+    return [*operation.documentation, f"By default: the result of {operation.by_default.cpp_name}(), and no other."]
+
+
 def source(interface):
-    return [f"{interface.cpp_name}::~{interface.cpp_name}() = default;", ""]
+    lines = [f"{interface.cpp_name}::~{interface.cpp_name}() = default;", ""]
+    for operation in interface.operations:
+        if operation.by_default:
+            lines += _default(interface, operation)
+    return lines
+
+
+def _default(interface, operation):
+    """The implementation of a stream that has none of its own."""
+    arguments = ", ".join(p.cpp_name for p in operation.parameters)
+    return [
+        f"void {interface.cpp_name}::{operation.cpp_name}({parameters(operation)}) {{",
+        f"  {sink(operation)}.push(this->{operation.by_default.cpp_name}({arguments}));",
+        "}",
+        "",
+    ]

@@ -103,7 +103,6 @@ class Member:
     place: tuple
     documentation: list = field(default_factory=list)
     argument: bool = False  # of an in struct: held as skein::Argument
-    key: bool = False
 
 
 @dataclass(eq=False)
@@ -203,6 +202,7 @@ class Operation:
     signature: int = 0
     in_struct: Struct = None
     out_struct: Struct = None
+    by_default: object = None  # of a stream: the operation whose result it brings where it is not implemented
 
     @property
     def dds_member(self):

@@ -10,6 +10,14 @@ class Pragma:
     place: tuple
     scope: tuple
 
+    def lookup(self, name, table):
+        """What `name` means where the pragma stands: in its scope or in one around it."""
+        parts = tuple(part for part in name.split("::") if part)
+        for depth in range(len(self.scope), -1, -1):
+            if found := table.get(self.scope[:depth] + parts):
+                return found
+        return None
+
 
 def collect(tree, resolve):
     found = [Pragma(p.text().strip(), (p.file(), p.line()), ()) for p in tree.pragmas()]

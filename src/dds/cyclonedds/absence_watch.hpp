@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 struct ddsi_domaingv;
 

@@ -5,10 +5,11 @@
 #include <dds/ddsi/ddsi_sertype.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -73,6 +74,8 @@ class BlobReference {
     done_with(*blob_);
     ddsi_serdata_unref(blob_);
   }
+  /// Hands the reference over.
+  std::shared_ptr<const void> keep() { return std::make_shared<BlobReference>(std::move(*this)); }
   Blob& operator*() const noexcept { return *blob_; }
   Blob* operator->() const noexcept { return blob_; }
 

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t kLeastKept = 64 << 10;
 constexpr std::size_t kGreatestKept = 4 << 20;
-constexpr std::size_t kMostKept = 16 << 20;
+constexpr std::size_t kMaxKept = 16 << 20;
 
 /// Freed memory by size, each a power of two.
 class Kept {
  public:
   Kept() {
-    for (auto& list : lists_) list.reserve(kMostKept / kLeastKept);
+    for (auto& list : lists_) list.reserve(kMaxKept / kLeastKept);
   }
 
   void* take(std::size_t size) {
@@ -32,7 +32,7 @@ class Kept {
 
   bool keep(void* memory, std::size_t size) noexcept {
     std::lock_guard lock(mutex_);
-    if (total_ + size > kMostKept) return false;
+    if (total_ + size > kMaxKept) return false;
     list_of(size).push_back(memory);
     total_ += size;
     return true;

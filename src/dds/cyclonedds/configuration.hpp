@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 namespace skein::dds::cyclonedds {
 

@@ -1,7 +1,7 @@
 #include "entity.hpp"
 
 #include "identity.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 namespace skein::dds::cyclonedds {
 

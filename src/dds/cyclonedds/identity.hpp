@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::dds::cyclonedds {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "../repeated_messages.hpp"
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

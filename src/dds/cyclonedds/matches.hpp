@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::dds::cyclonedds {
 

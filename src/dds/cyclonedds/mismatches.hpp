@@ -6,7 +6,7 @@
 #include <mutex>
 #include <set>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 namespace skein::dds::cyclonedds {
 

@@ -11,7 +11,7 @@
 
 #include "../options_check.hpp"
 #include "connections.h"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

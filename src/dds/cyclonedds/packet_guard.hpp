@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "../rtps_guard.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 
 struct ddsi_domaingv;
 struct ddsi_tran_conn;

@@ -7,7 +7,7 @@
 #include "identity.hpp"
 #include "log.hpp"
 #include "reader.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "writer.hpp"
 
 namespace skein::dds::cyclonedds {

@@ -10,7 +10,8 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
       topic_(topic),
       handle_(participant.acquire_topic(topic)),
       listener_(std::move(listener)),
-      queue_(qos, listener_),
+      queue_(qos, listener_.find_key, listener_.on_deadline_missed),
+      cache_(queue_),
       matches_(
           [this](dds_instance_handle_t* handles, std::size_t room) {
             return dds_get_matched_publications(reader_handle_, handles, room);
@@ -63,7 +64,7 @@ Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
                                 static_cast<CycloneReader*>(self)->liveliness_changed(status);
                               });
   const dds_entity_t reader =
-      dds_create_reader_rhc(participant_.handle(), handle_.entity, qos.get(), listener, &queue_);
+      dds_create_reader_rhc(participant_.handle(), handle_.entity, qos.get(), listener, &cache_);
   dds_delete_listener(listener);
   return Entity(check(reader, "topic '" + topic.name + "': a reader cannot be created"));
 }

@@ -2,10 +2,11 @@
 
 #include <atomic>
 
+#include "../receive_queue.hpp"
+#include "history_cache.hpp"
 #include "matches.hpp"
 #include "mismatches.hpp"
 #include "participant.hpp"
-#include "sample_queue.hpp"
 
 namespace skein::dds::cyclonedds {
 
@@ -20,9 +21,7 @@ class CycloneReader final : public Reader {
   }
   Guid guid() const override { return guid_; }
   std::vector<Guid> matched_writers() const override { return matches_.current(); }
-  std::uint64_t malformed() const override { return queue_.malformed(); }
-  std::uint64_t expired() const override { return queue_.expired(); }
-  std::uint64_t replaced() const override { return queue_.replaced(); }
+  ReceiveCounters counters() const override { return queue_.counters(); }
 
  private:
   Entity make(const Topic& topic, const Qos& qos);
@@ -33,7 +32,8 @@ class CycloneReader final : public Reader {
   const Topic topic_;
   const TopicHandle handle_;
   const ReaderListener listener_;
-  SampleQueue queue_;
+  ReceiveQueue queue_;
+  HistoryCache cache_;
   Matches matches_;
   Mismatches mismatches_;
   std::atomic<bool> made_{false};

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "../options_check.hpp"
-#include "skein/core/host.hpp"
+#include "core/host.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <memory>
 
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
 #include "transport.hpp"
 
 /// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands

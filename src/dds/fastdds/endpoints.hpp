@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "dds/port.hpp"
 #include "events.hpp"
-#include "skein/dds/port.hpp"
 
 namespace skein::dds::fastdds {
 

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "skein/core/guid.hpp"
-#include "skein/dds/port.hpp"
+#include "dds/port.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::dds::fastdds {
 

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 namespace eprosima::fastrtps::rtps {
 class RTPSParticipant;

@@ -2,7 +2,7 @@
 
 #include <fastdds/dds/log/Log.hpp>
 
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

@@ -1,4 +1,4 @@
-#include "skein/dds/module.hpp"
+#include "dds/module.hpp"
 
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 

@@ -12,7 +12,7 @@
 #include "liveliness.hpp"
 #include "participant_leases.hpp"
 #include "reader.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "writer.hpp"
 
 namespace skein::dds::fastdds {

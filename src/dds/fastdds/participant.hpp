@@ -8,9 +8,9 @@
 #include <set>
 
 #include "../topic_table.hpp"
+#include "dds/port.hpp"
 #include "endpoints.hpp"
 #include "events.hpp"
-#include "skein/dds/port.hpp"
 #include "transport.hpp"
 
 namespace eprosima::fastrtps::rtps {
@@ -46,7 +46,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);
   /// Tells others, often enough for `lease`, that this participant's writers live.
   void assert_liveliness_for(std::chrono::nanoseconds lease);
-  SignsOfLife& signs() noexcept { return transport_->state->signs; }
+  LivelinessTracker& signs() noexcept { return transport_->state->signs; }
   Endpoints& endpoints() noexcept { return endpoints_; }
   void acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);

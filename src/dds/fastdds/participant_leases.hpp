@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "skein/core/guid.hpp"
+#include "skein/guid.hpp"
 
 /// The parts of RTPS by which participants' leases are taken out of Fast DDS's hands. Its timer for
 /// them runs on a thread of its own, beside the one that receives, and they share the proxy of the

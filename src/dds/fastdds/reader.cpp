@@ -6,36 +6,19 @@
 #include "../sample_format.hpp"
 #include "attributes.hpp"
 #include "identity.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds::fastdds {
-namespace {
-
-/// Lends out a queued item's buffer.
-class Owner final : public SampleOwner {
- public:
-  explicit Owner(Bytes& cdr) : cdr_(cdr) {}
-  std::shared_ptr<const void> keep() override { return std::make_shared<Bytes>(std::move(cdr_)); }
-
- private:
-  Bytes& cdr_;
-};
-
-}  // namespace
 
 FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Qos& qos,
                        dds::ReaderListener listener)
     : participant_(participant),
       topic_(topic),
       on_data_(std::move(listener.on_data)),
-      find_key_(std::move(listener.find_key)),
       tells_incompatible_(listener.on_incompatible != nullptr),
       events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
       history_(history_attributes(0)),
-      queue_(qos.history_depth, qos.max_waiting),
-      gate_(qos),
-      exclusive_(qos.exclusive),
-      deadline_(deadline_timer(qos, std::move(listener.on_deadline_missed))) {
+      queue_(qos, std::move(listener.find_key), std::move(listener.on_deadline_missed)) {
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());
@@ -61,7 +44,6 @@ FastReader::~FastReader() {
     std::lock_guard lock(participant_.readers());
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
-  deadline_.reset();
   events_->close();
   participant_.release_topic(topic_.name);
 }
@@ -76,24 +58,10 @@ EndpointListener FastReader::endpoint_listener(dds::ReaderListener& listener) {
   auto on_liveliness = std::move(listener.on_liveliness);
   return {std::move(listener.on_matched),
           [this, tell = std::move(on_liveliness)](const Guid& writer, bool alive) {
-            if (!alive) {
-              std::lock_guard lock(mutex_);
-              gate_.release_all(writer);
-            }
+            if (!alive) queue_.writer_not_alive(writer);
             if (tell) tell(writer, alive);
           },
           std::move(listener.on_incompatible)};
-}
-
-std::unique_ptr<DeadlineTimer> FastReader::deadline_timer(const Qos& qos,
-                                                          DeadlineTimer::Missed missed) {
-  return make_deadline_timer(qos, [this, tell = std::move(missed)](const KeyHash& key) {
-    {
-      std::lock_guard lock(mutex_);
-      gate_.release(key);
-    }
-    if (tell) tell(key);
-  });
 }
 
 /// Called before the writer's first sample.
@@ -101,17 +69,13 @@ void FastReader::on_writer_discovery(rtps::RTPSReader*,
                                      rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
                                      const rtps::GUID_t& writer,
                                      const rtps::WriterProxyData* info) {
-  const Guid guid = to_guid(writer);
-  std::lock_guard lock(mutex_);
   if (reason == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
-    writers_.erase(guid);
-    gate_.release_all(guid);
+    queue_.writer_unmatched(to_guid(writer));
     return;
   }
   const auto& qos = info->m_qos;
-  const auto lifespan = from_duration(qos.m_lifespan.duration);
-  if (!lifespan && !exclusive_) return;
-  writers_[guid] = {static_cast<std::int32_t>(qos.m_ownershipStrength.value), lifespan};
+  queue_.writer_matched(to_guid(writer), {static_cast<std::int32_t>(qos.m_ownershipStrength.value),
+                                          from_duration(qos.m_lifespan.duration)});
 }
 
 /// Called with the RTPS reader's mutex held.
@@ -123,8 +87,7 @@ void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChang
 
 bool FastReader::store(const rtps::CacheChange_t& change) {
   if (change.kind == rtps::NOT_ALIVE_UNREGISTERED) {
-    std::lock_guard lock(mutex_);
-    gate_.release(to_guid(change.instanceHandle), to_guid(change.writerGUID));
+    queue_.instance_unregistered(to_guid(change.instanceHandle), to_guid(change.writerGUID));
     return false;
   }
   // Fast DDS also hands on what its writer has withdrawn with a GAP, replaced by a newer one or
@@ -132,73 +95,23 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
   // wrong number (StatefulReader::processGapMsg). The rest will never come.
   if (!const_cast<rtps::CacheChange_t&>(change).is_fully_assembled()) return false;
   const bool alive = change.kind == rtps::ALIVE;
-  const auto& payload = change.serializedPayload;
-  const std::span received(reinterpret_cast<const std::byte*>(payload.data), payload.length);
-  const auto found = alive && !is_plain_cdr(received) ? std::nullopt : key_of(change, received);
-  if (!found) {
-    malformed_.fetch_add(1, std::memory_order_relaxed);
-    return false;
-  }
-  Item item{alive ? payloads_->take(change) : Bytes{},
-            alive ? InstanceState::Alive : InstanceState::Disposed, *found,
-            to_guid(change.writerGUID)};
-  const KeyHash key = item.key;
-  {
-    std::lock_guard lock(mutex_);
-    if (!admit(item, SourceTime(change.sourceTimestamp.to_ns()))) {
-      payloads_->give_back(std::move(item.cdr));
-      return false;
-    }
-    if (queue_.push(key, std::move(item))) ++replaced_;
-    if (deadline_) alive ? deadline_->heard(key) : deadline_->ended(key);
-  }
-  return true;
+  std::optional<SourceTime> written(change.sourceTimestamp.to_ns());
+  if (*written <= SourceTime::zero()) written.reset();
+  return queue_.store({alive ? take_over(change) : Payload{},
+                       alive ? InstanceState::Alive : InstanceState::Disposed, key_of(change),
+                       to_guid(change.writerGUID), written});
 }
 
-std::optional<KeyHash> FastReader::key_of(const rtps::CacheChange_t& change,
-                                          std::span<const std::byte> received) const {
+Payload FastReader::take_over(const rtps::CacheChange_t& change) {
+  Bytes memory = payloads_->take(change);
+  const auto cdr = without_padding(memory.data(), memory.size());
+  return {cdr, ReceivedPayload(std::move(memory), *payloads_)};
+}
+
+std::optional<KeyHash> FastReader::key_of(const rtps::CacheChange_t& change) const {
   if (!topic_.keyed) return KeyHash{};
-  if (change.instanceHandle.isDefined()) return to_guid(change.instanceHandle);
-  if (!find_key_ || change.kind != rtps::ALIVE) return std::nullopt;
-  return find_key_(received);
-}
-
-bool FastReader::admit(Item& item, SourceTime written) {
-  if (writers_.empty()) return true;
-  const auto writer = writers_.find(item.writer);
-  if (writer == writers_.end()) return true;
-  const SourceTime now = wall_clock_time();
-  // A peer may leave the time out.
-  if (written <= SourceTime::zero()) written = now;
-  const auto expiry = gate_.admit(item.key, item.writer, writer->second, written, now);
-  if (expiry) item.expiry = *expiry;
-  return expiry.has_value();
-}
-
-std::optional<FastReader::Item> FastReader::pop() {
-  std::lock_guard lock(mutex_);
-  auto item = queue_.pop();
-  while (item && item->expiry != SampleGate::kNever &&
-         !gate_.fresh(item->expiry, wall_clock_time())) {
-    item = queue_.pop();
-  }
-  return item;
-}
-
-std::size_t FastReader::take(const std::function<void(const Sample&)>& consumer,
-                             std::size_t limit) {
-  std::size_t taken = 0;
-  for (; taken < limit; ++taken) {
-    std::optional<Item> item = pop();
-    if (!item) break;
-    std::span<const std::byte> cdr;
-    if (item->state == InstanceState::Alive)
-      cdr = without_padding(item->cdr.data(), item->cdr.size());
-    Owner owner(item->cdr);
-    consumer({cdr, item->state, item->key, item->writer, &owner});
-    payloads_->give_back(std::move(item->cdr));
-  }
-  return taken;
+  if (!change.instanceHandle.isDefined()) return std::nullopt;
+  return to_guid(change.instanceHandle);
 }
 
 }  // namespace skein::dds::fastdds

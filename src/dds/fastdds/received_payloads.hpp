@@ -3,10 +3,12 @@
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/history/IPayloadPool.h>
 
+#include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
-#include "skein/core/bytes.hpp"
+#include "skein/detail/bytes.hpp"
 
 namespace skein::dds::fastdds {
 
@@ -34,6 +36,22 @@ class ReceivedPayloads final : public rtps::IPayloadPool {
   std::mutex mutex_;
   std::vector<Bytes> lent_;  // to changes
   std::vector<Bytes> spare_;
+};
+
+/// The memory of one sample that was taken over: given back in the end, unless it is kept.
+class ReceivedPayload {
+ public:
+  /// `home` outlives it.
+  ReceivedPayload(Bytes memory, ReceivedPayloads& home) noexcept
+      : memory_(std::move(memory)), home_(home) {}
+  ReceivedPayload(ReceivedPayload&&) noexcept = default;
+  ~ReceivedPayload() { home_.give_back(std::move(memory_)); }
+
+  std::shared_ptr<const void> keep() { return std::make_shared<Bytes>(std::move(memory_)); }
+
+ private:
+  Bytes memory_;
+  ReceivedPayloads& home_;
 };
 
 }  // namespace skein::dds::fastdds

@@ -12,8 +12,8 @@
 #include "acknack_repair.hpp"
 #include "announcement_pace.hpp"
 #include "forgetting.hpp"
-#include "signs_of_life.hpp"
-#include "wake_watch.hpp"
+#include "liveliness_tracker.hpp"
+#include "suspend_detector.hpp"
 
 namespace skein::dds::fastdds {
 
@@ -77,8 +77,8 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
         : watch(lease), pace(announcement_period), guard(std::move(sources), "dds/fastdds") {}
     std::atomic<bool> open{false};        // lets messages out
     std::atomic<std::uint32_t> ports{0};  // on which it listens
-    SignsOfLife signs;
-    WakeWatch watch;
+    LivelinessTracker signs;
+    SuspendDetector watch;
     AnnouncementPace pace;
     RtpsGuard guard;
     DiscoveryInput discovery;

@@ -9,7 +9,7 @@
 #include "../sample_format.hpp"
 #include "attributes.hpp"
 #include "identity.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

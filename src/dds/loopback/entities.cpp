@@ -49,13 +49,11 @@ class LoopbackReader final : public Reader {
   }
 
   std::size_t take(const std::function<void(const Sample&)>& consumer, std::size_t limit) override {
-    return hub_->take(*core_, consumer, limit);
+    return core_->queue.take(consumer, limit);
   }
   Guid guid() const override { return core_->guid; }
   std::vector<Guid> matched_writers() const override { return hub_->matched_writers(*core_); }
-  std::uint64_t malformed() const override { return hub_->malformed(*core_); }
-  std::uint64_t expired() const override { return core_->gate.expired(); }
-  std::uint64_t replaced() const override { return core_->replaced; }
+  ReceiveCounters counters() const override { return core_->queue.counters(); }
 
  private:
   std::shared_ptr<Hub> hub_;
@@ -81,7 +79,6 @@ void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, co
   endpoint.participant = core_;
   endpoint.topic = topic;
   endpoint.qos = qos;
-  if (qos.deadline) endpoint.deadline.emplace(*qos.deadline);
   endpoint.guid = core_->guid;
   std::lock_guard lock(mutex_);
   const std::uint32_t number = ++core_->last_entity;
@@ -93,7 +90,7 @@ void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, co
 
 std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, const Qos& qos,
                                                            WriterListener listener) {
-  auto core = std::make_shared<WriterCore>(qos);
+  auto core = std::make_shared<WriterCore>(qos, *hub_);
   prepare(*core, topic, qos, kWriterKind);
   core->listener = std::move(listener);
   return std::make_unique<LoopbackWriter>(hub_, std::move(core));
@@ -101,7 +98,7 @@ std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, c
 
 std::unique_ptr<Reader> LoopbackParticipant::create_reader(const Topic& topic, const Qos& qos,
                                                            ReaderListener listener) {
-  auto core = std::make_shared<ReaderCore>(qos);
+  auto core = std::make_shared<ReaderCore>(qos, *hub_);
   prepare(*core, topic, qos, kReaderKind);
   core->listener = std::move(listener);
   return std::make_unique<LoopbackReader>(hub_, std::move(core));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "../vendor_names.hpp"
 #include "hub.hpp"
 
 namespace skein::dds::loopback {
@@ -7,7 +8,7 @@ namespace skein::dds::loopback {
 class LoopbackVendor final : public Vendor {
  public:
   explicit LoopbackVendor(std::shared_ptr<Hub> hub) : hub_(std::move(hub)) {}
-  std::string name() const override { return "loopback"; }
+  std::string name() const override { return kLoopback; }
   std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) override;
 
  private:

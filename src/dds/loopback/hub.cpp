@@ -11,6 +11,17 @@ void put_big_endian(std::uint32_t value, std::uint8_t* to) {
 
 }  // namespace
 
+WriterCore::WriterCore(const Qos& qos, Hub& hub)
+    : history(qos.history_depth),
+      deadline(make_deadline_timer(
+          qos, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); }, hub.clock())) {
+}
+
+ReaderCore::ReaderCore(const Qos& qos, Hub& hub)
+    : queue(
+          qos, {}, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); },
+          hub.clock()) {}
+
 Hub::Hub(Clock& clock) : clock_(clock), may_wait_(dynamic_cast<SystemClock*>(&clock) != nullptr) {}
 
 std::shared_ptr<ParticipantCore> Hub::join(const ParticipantOptions& options) {
@@ -85,6 +96,20 @@ void Hub::kill(const Guid& participant) {
   found->second->killed = true;
   update_presence();
   run_callbacks(lock);
+}
+
+void Hub::deadline_missed(const Guid& endpoint, const KeyHash& key) {
+  after(Duration::zero(), [endpoint, key](Hub& hub) {
+    const auto tell = [&](const auto& endpoints) {
+      const auto found = endpoints.find(endpoint);
+      if (found == endpoints.end()) return;
+      hub.post(found->second.get(), [core = found->second, key] {
+        if (core->listener.on_deadline_missed) core->listener.on_deadline_missed(key);
+      });
+    };
+    tell(hub.writers_);
+    tell(hub.readers_);
+  });
 }
 
 void Hub::post(const EndpointCore* target, Action callback) {

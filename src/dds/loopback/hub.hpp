@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -13,13 +12,15 @@
 
 #include "../deadline_watch.hpp"
 #include "../keyed_queue.hpp"
-#include "../sample_gate.hpp"
+#include "../receive_queue.hpp"
 #include "../topic_table.hpp"
-#include "skein/core/action.hpp"
-#include "skein/core/call_memory.hpp"
-#include "skein/dds/loopback.hpp"
+#include "skein/detail/action.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/loopback.hpp"
 
 namespace skein::dds::loopback {
+
+class Hub;
 
 struct Message {
   std::pmr::vector<std::byte> cdr;
@@ -54,41 +55,24 @@ struct EndpointCore {
   Topic topic;
   Qos qos;
   bool closed = false;
-  std::optional<DeadlineWatch> deadline;
-  bool deadline_set = false;  // a timer will look for overdue instances
-  std::set<Guid> refused;     // whose incompatibility has been told
-
-  virtual ~EndpointCore() = default;
-  virtual void deadline_missed(const KeyHash& key) = 0;
+  std::set<Guid> refused;  // whose incompatibility has been told
 };
 
+/// Cores belong to one hub, which outlives them.
 struct WriterCore final : EndpointCore {
-  explicit WriterCore(const Qos& qos) : history(qos.history_depth) {}
-  void deadline_missed(const KeyHash& key) override {
-    if (listener.on_deadline_missed) listener.on_deadline_missed(key);
-  }
+  WriterCore(const Qos& qos, Hub& hub);
   WriterListener listener;
   std::uint64_t last_sequence = 0;
   KeyedQueue<MessagePtr> history;  // for late joiners, where the writer is transient-local
-};
-
-struct Arrived {
-  MessagePtr message;
-  SourceTime expiry;
+  const std::unique_ptr<DeadlineTimer> deadline;
 };
 
 struct ReaderCore final : EndpointCore {
-  explicit ReaderCore(const Qos& qos) : gate(qos), queue(qos.history_depth, qos.max_waiting) {}
-  void deadline_missed(const KeyHash& key) override {
-    if (listener.on_deadline_missed) listener.on_deadline_missed(key);
-  }
+  ReaderCore(const Qos& qos, Hub& hub);
   Reader* self = nullptr;
   ReaderListener listener;
-  SampleGate gate;
-  KeyedQueue<Arrived> queue;
   bool told = false;  // an on_data is on its way
-  std::uint64_t malformed = 0;
-  std::atomic<std::uint64_t> replaced{0};
+  ReceiveQueue queue;
 };
 
 struct Unacknowledged {
@@ -99,7 +83,7 @@ struct Unacknowledged {
 };
 
 /// A matched writer and reader. Either side may know of the match without the other.
-struct Link {
+struct Match {
   std::shared_ptr<WriterCore> writer;
   std::shared_ptr<ReaderCore> reader;
   bool writer_side = false;
@@ -126,9 +110,6 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
              InstanceState state);
   bool wait_for_acknowledgments(const WriterCore& writer, std::chrono::milliseconds timeout);
-  std::size_t take(ReaderCore& reader, const std::function<void(const Sample&)>& consumer,
-                   std::size_t limit);
-  std::uint64_t malformed(const ReaderCore& reader);
   std::vector<Guid> matched_readers(const WriterCore& writer);
   std::vector<Guid> matched_writers(const ReaderCore& reader);
 
@@ -139,9 +120,14 @@ class Hub : public std::enable_shared_from_this<Hub> {
   void pause(const Guid& participant, bool paused);
   void kill(const Guid& participant);
 
+  Clock& clock() const noexcept { return clock_; }
+  /// Tells the endpoint soon, but not now: who destroys it waits for who calls this, perhaps with
+  /// the hub locked.
+  void deadline_missed(const Guid& endpoint, const KeyHash& key);
+
  private:
   using Lock = std::unique_lock<std::mutex>;
-  using LinkId = std::pair<Guid, Guid>;  // writer, reader
+  using MatchId = std::pair<Guid, Guid>;  // writer, reader
 
   // Who hears and knows whom (presence.cpp).
   bool connected(const ParticipantCore& one, const ParticipantCore& other) const;
@@ -150,7 +136,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
             View& view);
   void lose_sound(ParticipantCore& observer, ParticipantCore& observed, View& view);
   void expire_participant(const Guid& observer, const Guid& observed, std::uint64_t generation);
-  void expire_liveliness(const LinkId& id, std::uint64_t generation);
+  void expire_liveliness(const MatchId& id, std::uint64_t generation);
   bool still_silent(const Guid& observer, const Guid& observed, std::uint64_t generation);
   void forget(ParticipantCore& observer, const Guid& observed);
   void tell_presence(ParticipantCore& observer, const Guid& observed, bool present);
@@ -159,34 +145,28 @@ class Hub : public std::enable_shared_from_this<Hub> {
   bool knows(const ParticipantCore& observer, const ParticipantCore& observed) const;
   void match(const std::shared_ptr<WriterCore>& writer, const std::shared_ptr<ReaderCore>& reader);
   void match_all(const ParticipantCore& one, const ParticipantCore& other);
-  void match_writer_side(Link& link);
-  void match_reader_side(Link& link);
-  void unmatch_writer_side(Link& link);
-  void unmatch_reader_side(Link& link);
+  void match_writer_side(Match& match);
+  void match_reader_side(Match& match);
+  void unmatch_writer_side(Match& match);
+  void unmatch_reader_side(Match& match);
   void drop_unused_links();
-  void replay_history(Link& link);
+  void replay_history(Match& match);
   void tell_incompatible(const std::shared_ptr<WriterCore>& writer,
                          const std::shared_ptr<ReaderCore>& reader);
 
   // How samples travel (transfer.cpp).
-  bool reliable(const Link& link) const { return link.reader->qos.reliable; }
+  bool reliable(const Match& match) const { return match.reader->qos.reliable; }
   bool has_room(const WriterCore& writer) const;
   void wait_for_room(WriterCore& writer, Lock& lock);
-  void enqueue(Link& link, const MessagePtr& message);
-  void send(Link& link, const MessagePtr& message, std::uint32_t attempt);
-  void arrive(const LinkId& id, const MessagePtr& message);
-  void deliver_in_order(Link& link);
-  void accept(const Link& link, const MessagePtr& message);
-  void repeat_later(Link& link);
-  void repeat_lost(Link& link);
+  std::chrono::milliseconds patience(std::chrono::milliseconds wanted) const;
+  void enqueue(Match& match, const MessagePtr& message);
+  void send(Match& match, const MessagePtr& message, std::uint32_t attempt);
+  void arrive(const MatchId& id, const MessagePtr& message);
+  void deliver_in_order(Match& match);
+  void accept(const Match& match, const MessagePtr& message);
+  void repeat_later(Match& match);
+  void repeat_lost(Match& match);
   void repeat_between(const ParticipantCore& one, const ParticipantCore& other);
-
-  // What time brings (deadlines.cpp).
-  SourceTime source_time() const { return clock_.now().time_since_epoch(); }
-  void watch_deadline(const std::shared_ptr<EndpointCore>& endpoint, const KeyHash& key,
-                      InstanceState state);
-  void schedule_deadline(const std::shared_ptr<EndpointCore>& endpoint);
-  void check_deadline(const std::shared_ptr<EndpointCore>& endpoint);
 
   void post(const EndpointCore* target, Action callback);
   void run_callbacks(Lock& lock);
@@ -202,7 +182,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
   std::map<Guid, std::shared_ptr<ParticipantCore>> participants_;
   std::map<Guid, std::shared_ptr<WriterCore>> writers_;
   std::map<Guid, std::shared_ptr<ReaderCore>> readers_;
-  std::map<LinkId, Link> links_;
+  std::map<MatchId, Match> matches_;
   std::set<Guid> isolated_;
   std::set<std::pair<Guid, Guid>> separated_;
 

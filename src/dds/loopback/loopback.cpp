@@ -1,4 +1,4 @@
-#include "skein/dds/loopback.hpp"
+#include "skein/loopback.hpp"
 
 #include "entities.hpp"
 

@@ -18,13 +18,14 @@ void Hub::match(const std::shared_ptr<WriterCore>& writer,
   const bool by_writer = knows(*writer->participant, *reader->participant);
   const bool by_reader = knows(*reader->participant, *writer->participant);
   if (!by_writer && !by_reader) return;
-  Link& link = links_.try_emplace({writer->guid, reader->guid}, Link{writer, reader}).first->second;
-  const bool rematched = by_reader && !link.reader_side && link.writer_side;
-  if (by_reader && !link.reader_side) match_reader_side(link);
-  if (by_writer && !link.writer_side) {
-    match_writer_side(link);
+  Match& match =
+      matches_.try_emplace({writer->guid, reader->guid}, Match{writer, reader}).first->second;
+  const bool rematched = by_reader && !match.reader_side && match.writer_side;
+  if (by_reader && !match.reader_side) match_reader_side(match);
+  if (by_writer && !match.writer_side) {
+    match_writer_side(match);
   } else if (rematched) {
-    replay_history(link);
+    replay_history(match);
   }
 }
 
@@ -55,55 +56,55 @@ void Hub::match_all(const ParticipantCore& one, const ParticipantCore& other) {
   }
 }
 
-void Hub::match_reader_side(Link& link) {
-  link.reader_side = true;
-  link.alive = true;
-  link.delivered = link.reader->qos.transient_local ? 0 : link.writer->last_sequence;
-  post(link.reader.get(), [reader = link.reader, writer = link.writer->guid] {
+void Hub::match_reader_side(Match& match) {
+  match.reader_side = true;
+  match.alive = true;
+  match.delivered = match.reader->qos.transient_local ? 0 : match.writer->last_sequence;
+  post(match.reader.get(), [reader = match.reader, writer = match.writer->guid] {
     if (reader->listener.on_matched) reader->listener.on_matched(writer, true);
   });
 }
 
-void Hub::match_writer_side(Link& link) {
-  link.writer_side = true;
-  post(link.writer.get(), [writer = link.writer, reader = link.reader->guid] {
+void Hub::match_writer_side(Match& match) {
+  match.writer_side = true;
+  post(match.writer.get(), [writer = match.writer, reader = match.reader->guid] {
     if (writer->listener.on_matched) writer->listener.on_matched(reader, true);
   });
-  replay_history(link);
+  replay_history(match);
 }
 
-void Hub::replay_history(Link& link) {
-  if (!link.reader->qos.transient_local) return;
+void Hub::replay_history(Match& match) {
+  if (!match.reader->qos.transient_local) return;
   std::vector<MessagePtr> missed;
-  link.writer->history.for_each([&](const MessagePtr& message) {
-    if (message->sequence > link.delivered) missed.push_back(message);
+  match.writer->history.for_each([&](const MessagePtr& message) {
+    if (message->sequence > match.delivered) missed.push_back(message);
   });
-  for (const MessagePtr& message : missed) enqueue(link, message);
+  for (const MessagePtr& message : missed) enqueue(match, message);
 }
 
-void Hub::unmatch_writer_side(Link& link) {
-  if (!link.writer_side) return;
-  link.writer_side = false;
-  link.pending.clear();
+void Hub::unmatch_writer_side(Match& match) {
+  if (!match.writer_side) return;
+  match.writer_side = false;
+  match.pending.clear();
   changed_.notify_all();
-  if (link.writer->closed) return;
-  post(link.writer.get(), [writer = link.writer, reader = link.reader->guid] {
+  if (match.writer->closed) return;
+  post(match.writer.get(), [writer = match.writer, reader = match.reader->guid] {
     if (writer->listener.on_matched) writer->listener.on_matched(reader, false);
   });
 }
 
-void Hub::unmatch_reader_side(Link& link) {
-  if (!link.reader_side) return;
-  link.reader_side = false;
-  link.reader->gate.release_all(link.writer->guid);
-  if (link.reader->closed) return;
-  post(link.reader.get(), [reader = link.reader, writer = link.writer->guid] {
+void Hub::unmatch_reader_side(Match& match) {
+  if (!match.reader_side) return;
+  match.reader_side = false;
+  match.reader->queue.writer_unmatched(match.writer->guid);
+  if (match.reader->closed) return;
+  post(match.reader.get(), [reader = match.reader, writer = match.writer->guid] {
     if (reader->listener.on_matched) reader->listener.on_matched(writer, false);
   });
 }
 
 void Hub::drop_unused_links() {
-  std::erase_if(links_, [](const auto& entry) {
+  std::erase_if(matches_, [](const auto& entry) {
     return !entry.second.writer_side && !entry.second.reader_side;
   });
 }
@@ -126,11 +127,11 @@ void Hub::remove(const std::shared_ptr<WriterCore>& writer) {
   Lock lock(mutex_);
   writer->closed = true;
   writers_.erase(writer->guid);
-  for (auto& [id, link] : links_) {
-    if (link.writer != writer) continue;
-    unmatch_writer_side(link);
+  for (auto& [id, match] : matches_) {
+    if (match.writer != writer) continue;
+    unmatch_writer_side(match);
     // Unreachable readers keep the match until the participant's lease expires.
-    if (connected(*writer->participant, *link.reader->participant)) unmatch_reader_side(link);
+    if (connected(*writer->participant, *match.reader->participant)) unmatch_reader_side(match);
   }
   drop_unused_links();
   wait_until_idle(static_cast<const EndpointCore*>(writer.get()), lock);
@@ -141,10 +142,10 @@ void Hub::remove(const std::shared_ptr<ReaderCore>& reader) {
   Lock lock(mutex_);
   reader->closed = true;
   readers_.erase(reader->guid);
-  for (auto& [id, link] : links_) {
-    if (link.reader != reader) continue;
-    unmatch_reader_side(link);
-    if (connected(*reader->participant, *link.writer->participant)) unmatch_writer_side(link);
+  for (auto& [id, match] : matches_) {
+    if (match.reader != reader) continue;
+    unmatch_reader_side(match);
+    if (connected(*reader->participant, *match.writer->participant)) unmatch_writer_side(match);
   }
   drop_unused_links();
   wait_until_idle(static_cast<const EndpointCore*>(reader.get()), lock);
@@ -154,8 +155,8 @@ void Hub::remove(const std::shared_ptr<ReaderCore>& reader) {
 std::vector<Guid> Hub::matched_readers(const WriterCore& writer) {
   Lock lock(mutex_);
   std::vector<Guid> readers;
-  for (const auto& [id, link] : links_) {
-    if (id.first == writer.guid && link.writer_side) readers.push_back(id.second);
+  for (const auto& [id, match] : matches_) {
+    if (id.first == writer.guid && match.writer_side) readers.push_back(id.second);
   }
   return readers;
 }
@@ -163,8 +164,8 @@ std::vector<Guid> Hub::matched_readers(const WriterCore& writer) {
 std::vector<Guid> Hub::matched_writers(const ReaderCore& reader) {
   Lock lock(mutex_);
   std::vector<Guid> writers;
-  for (const auto& [id, link] : links_) {
-    if (id.second == reader.guid && link.reader_side) writers.push_back(id.first);
+  for (const auto& [id, match] : matches_) {
+    if (id.second == reader.guid && match.reader_side) writers.push_back(id.first);
   }
   return writers;
 }

@@ -32,11 +32,11 @@ void Hub::hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>
     tell_presence(observer, observed->guid, true);
     match_all(observer, *observed);
   }
-  for (auto& [id, link] : links_) {
-    if (link.alive || link.writer->participant != observed) continue;
-    if (link.reader->participant.get() != &observer) continue;
-    link.alive = true;
-    post(link.reader.get(), [reader = link.reader, writer = id.first] {
+  for (auto& [id, match] : matches_) {
+    if (match.alive || match.writer->participant != observed) continue;
+    if (match.reader->participant.get() != &observer) continue;
+    match.alive = true;
+    post(match.reader.get(), [reader = match.reader, writer = id.first] {
       if (reader->listener.on_liveliness) reader->listener.on_liveliness(writer, true);
     });
   }
@@ -46,11 +46,11 @@ void Hub::hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>
 void Hub::lose_sound(ParticipantCore& observer, ParticipantCore& observed, View& view) {
   view.heard = false;
   const std::uint64_t generation = ++view.generation;
-  for (const auto& [id, link] : links_) {
-    if (!link.reader_side || !link.reader->qos.liveliness_lease) continue;
-    if (link.writer->participant.get() != &observed) continue;
-    if (link.reader->participant.get() != &observer) continue;
-    after(*link.reader->qos.liveliness_lease,
+  for (const auto& [id, match] : matches_) {
+    if (!match.reader_side || !match.reader->qos.liveliness_lease) continue;
+    if (match.writer->participant.get() != &observed) continue;
+    if (match.reader->participant.get() != &observer) continue;
+    after(*match.reader->qos.liveliness_lease,
           [id = id, generation](Hub& hub) { hub.expire_liveliness(id, generation); });
   }
   after(observed.options.lease,
@@ -75,16 +75,16 @@ void Hub::expire_participant(const Guid& observer, const Guid& observed, std::ui
   forget(*participants_.at(observer), observed);
 }
 
-void Hub::expire_liveliness(const LinkId& id, std::uint64_t generation) {
-  const auto found = links_.find(id);
-  if (found == links_.end() || !found->second.reader_side || !found->second.alive) return;
-  Link& link = found->second;
-  if (!still_silent(link.reader->participant->guid, link.writer->participant->guid, generation)) {
+void Hub::expire_liveliness(const MatchId& id, std::uint64_t generation) {
+  const auto found = matches_.find(id);
+  if (found == matches_.end() || !found->second.reader_side || !found->second.alive) return;
+  Match& match = found->second;
+  if (!still_silent(match.reader->participant->guid, match.writer->participant->guid, generation)) {
     return;
   }
-  link.alive = false;
-  link.reader->gate.release_all(id.first);
-  post(link.reader.get(), [reader = link.reader, writer = id.first] {
+  match.alive = false;
+  match.reader->queue.writer_not_alive(id.first);
+  post(match.reader.get(), [reader = match.reader, writer = id.first] {
     if (reader->listener.on_liveliness) reader->listener.on_liveliness(writer, false);
   });
 }
@@ -93,11 +93,11 @@ void Hub::expire_liveliness(const LinkId& id, std::uint64_t generation) {
 void Hub::forget(ParticipantCore& observer, const Guid& observed) {
   View& view = observer.views[observed];
   if (!view.known) return;
-  for (auto& [id, link] : links_) {
-    const Guid& writing = link.writer->participant->guid;
-    const Guid& reading = link.reader->participant->guid;
-    if (writing == observed && reading == observer.guid) unmatch_reader_side(link);
-    if (reading == observed && writing == observer.guid) unmatch_writer_side(link);
+  for (auto& [id, match] : matches_) {
+    const Guid& writing = match.writer->participant->guid;
+    const Guid& reading = match.reader->participant->guid;
+    if (writing == observed && reading == observer.guid) unmatch_reader_side(match);
+    if (reading == observed && writing == observer.guid) unmatch_writer_side(match);
   }
   drop_unused_links();
   view.known = false;

@@ -1,29 +1,31 @@
-#include "../sample_format.hpp"
+#include "core/clock_wait.hpp"
 #include "hub.hpp"
 
 namespace skein::dds::loopback {
 namespace {
 
-class Owner final : public SampleOwner {
- public:
-  explicit Owner(const MessagePtr& message) : message_(message) {}
-  std::shared_ptr<const void> keep() override { return message_; }
-
- private:
-  const MessagePtr& message_;
+/// What all readers of a message share.
+struct MessageHolder {
+  MessagePtr message;
+  std::shared_ptr<const void> keep() const { return message; }
 };
 
 }  // namespace
 
 void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHash& key,
                 InstanceState state) {
-  const auto message = make_shared_in_call_memory<Message>(
-      Message{{cdr.begin(), cdr.end(), &call_memory()}, key, state, writer.guid, source_time(), 0});
+  const auto message =
+      make_shared_in_call_memory<Message>(Message{{cdr.begin(), cdr.end(), &call_memory()},
+                                                  key,
+                                                  state,
+                                                  writer.guid,
+                                                  clock_.now().time_since_epoch(),
+                                                  0});
   Lock lock(mutex_);
   wait_for_room(writer, lock);
   message->sequence = ++writer.last_sequence;
-  if (const auto core = writers_.find(writer.guid); core != writers_.end()) {
-    watch_deadline(core->second, key, state);
+  if (writer.deadline) {
+    state == InstanceState::Alive ? writer.deadline->heard(key) : writer.deadline->ended(key);
   }
   if (writer.qos.transient_local) {
     if (state == InstanceState::Disposed)
@@ -31,9 +33,9 @@ void Hub::write(WriterCore& writer, std::span<const std::byte> cdr, const KeyHas
     else
       writer.history.push(key, message);
   }
-  for (auto link = links_.lower_bound({writer.guid, Guid{}});
-       link != links_.end() && link->first.first == writer.guid; ++link) {
-    if (link->second.writer_side) enqueue(link->second, message);
+  for (auto match = matches_.lower_bound({writer.guid, Guid{}});
+       match != matches_.end() && match->first.first == writer.guid; ++match) {
+    if (match->second.writer_side) enqueue(match->second, message);
   }
   run_callbacks(lock);
 }
@@ -42,17 +44,19 @@ bool Hub::has_room(const WriterCore& writer) const {
   const Qos& qos = writer.qos;
   if (!qos.reliable || qos.history_depth || qos.max_samples == 0) return true;
   std::set<std::uint64_t> waiting;
-  for (auto link = links_.lower_bound({writer.guid, Guid{}});
-       link != links_.end() && link->first.first == writer.guid; ++link) {
-    for (const auto& [sequence, entry] : link->second.pending) waiting.insert(sequence);
+  for (auto match = matches_.lower_bound({writer.guid, Guid{}});
+       match != matches_.end() && match->first.first == writer.guid; ++match) {
+    for (const auto& [sequence, entry] : match->second.pending) waiting.insert(sequence);
   }
   return waiting.size() < qos.max_samples;
 }
 
 void Hub::wait_for_room(WriterCore& writer, Lock& lock) {
   if (has_room(writer)) return;
-  const auto waited = may_wait_ ? writer.qos.max_blocking : std::chrono::milliseconds(0);
-  if (changed_.wait_for(lock, waited, [&] { return has_room(writer); })) return;
+  const auto waited = patience(writer.qos.max_blocking);
+  if (wait_until(clock_, clock_.now() + waited, lock, changed_, [&] { return has_room(writer); })) {
+    return;
+  }
   throw Overloaded("topic '" + writer.topic.name + "': " + std::to_string(writer.qos.max_samples) +
                    " samples wait for a reader's acknowledgment, and none was given within " +
                    std::to_string(waited.count()) + " ms");
@@ -61,46 +65,52 @@ void Hub::wait_for_room(WriterCore& writer, Lock& lock) {
 bool Hub::wait_for_acknowledgments(const WriterCore& writer, std::chrono::milliseconds timeout) {
   Lock lock(mutex_);
   const auto all_arrived = [&] {
-    for (const auto& [id, link] : links_) {
-      if (id.first == writer.guid && !link.pending.empty()) return false;
+    for (const auto& [id, match] : matches_) {
+      if (id.first == writer.guid && !match.pending.empty()) return false;
     }
     return true;
   };
-  return changed_.wait_for(lock, may_wait_ ? timeout : std::chrono::milliseconds(0), all_arrived);
+  return wait_until(clock_, clock_.now() + patience(timeout), lock, changed_, all_arrived);
 }
 
-void Hub::enqueue(Link& link, const MessagePtr& message) {
-  if (reliable(link)) {
-    const auto depth = link.writer->qos.history_depth;
+// A listener may be called on the clock's thread, which cannot wait for itself.
+std::chrono::milliseconds Hub::patience(std::chrono::milliseconds wanted) const {
+  const bool listener = runner_ == std::this_thread::get_id();
+  return may_wait_ && !listener ? wanted : std::chrono::milliseconds(0);
+}
+
+void Hub::enqueue(Match& match, const MessagePtr& message) {
+  if (reliable(match)) {
+    const auto depth = match.writer->qos.history_depth;
     if (depth) {  // a newer sample of the instance takes the oldest one's place
       std::size_t same = 0;
-      for (auto entry = link.pending.rbegin(); entry != link.pending.rend(); ++entry) {
+      for (auto entry = match.pending.rbegin(); entry != match.pending.rend(); ++entry) {
         if (entry->second.message->key == message->key && ++same == *depth) {
-          link.pending.erase(entry->first);
+          match.pending.erase(entry->first);
           break;
         }
       }
     }
-    link.pending.try_emplace(message->sequence, Unacknowledged{message});
+    match.pending.try_emplace(message->sequence, Unacknowledged{message});
   }
-  send(link, message, 1);
+  send(match, message, 1);
 }
 
-void Hub::send(Link& link, const MessagePtr& message, std::uint32_t attempt) {
-  const LinkId id{link.writer->guid, link.reader->guid};
-  const bool reachable = connected(*link.writer->participant, *link.reader->participant) &&
-                         !link.writer->participant->paused && !link.reader->participant->paused;
+void Hub::send(Match& match, const MessagePtr& message, std::uint32_t attempt) {
+  const MatchId id{match.writer->guid, match.reader->guid};
+  const bool reachable = connected(*match.writer->participant, *match.reader->participant) &&
+                         !match.writer->participant->paused && !match.reader->participant->paused;
   Fate fate = Fate::drop();
   if (reachable) {
-    fate = judge_ ? judge_({id.first, id.second, link.writer->topic.name, message->sequence,
+    fate = judge_ ? judge_({id.first, id.second, match.writer->topic.name, message->sequence,
                             attempt, message->cdr.size(), message->state})
                   : Fate::deliver();
   }
-  if (const auto entry = link.pending.find(message->sequence); entry != link.pending.end()) {
+  if (const auto entry = match.pending.find(message->sequence); entry != match.pending.end()) {
     entry->second.attempts = attempt;
     if (fate.delay > Duration::zero()) entry->second.in_flight += fate.copies;
   }
-  if (fate.copies == 0 && reliable(link) && reachable) repeat_later(link);
+  if (fate.copies == 0 && reliable(match) && reachable) repeat_later(match);
   for (std::uint32_t copy = 0; copy < fate.copies; ++copy) {
     if (fate.delay > Duration::zero()) {
       after(fate.delay, [id, message](Hub& hub) { hub.arrive(id, message); });
@@ -110,55 +120,49 @@ void Hub::send(Link& link, const MessagePtr& message, std::uint32_t attempt) {
   }
 }
 
-void Hub::arrive(const LinkId& id, const MessagePtr& message) {
-  const auto found = links_.find(id);
-  if (found == links_.end()) return;
-  Link& link = found->second;
-  const auto entry = link.pending.find(message->sequence);
-  if (entry != link.pending.end() && entry->second.in_flight > 0) --entry->second.in_flight;
-  const bool reachable = connected(*link.writer->participant, *link.reader->participant) &&
-                         !link.reader->participant->paused;
-  if (!link.reader_side || !reachable) {
-    if (reachable && reliable(link) && link.writer_side) repeat_later(link);
+void Hub::arrive(const MatchId& id, const MessagePtr& message) {
+  const auto found = matches_.find(id);
+  if (found == matches_.end()) return;
+  Match& match = found->second;
+  const auto entry = match.pending.find(message->sequence);
+  if (entry != match.pending.end() && entry->second.in_flight > 0) --entry->second.in_flight;
+  const bool reachable = connected(*match.writer->participant, *match.reader->participant) &&
+                         !match.reader->participant->paused;
+  if (!match.reader_side || !reachable) {
+    if (reachable && reliable(match) && match.writer_side) repeat_later(match);
     return;
   }
-  if (!reliable(link)) {
-    if (message->sequence > link.delivered) {
-      accept(link, message);
-      link.delivered = message->sequence;
+  if (!reliable(match)) {
+    if (message->sequence > match.delivered) {
+      accept(match, message);
+      match.delivered = message->sequence;
     }
-  } else if (entry != link.pending.end()) {
+  } else if (entry != match.pending.end()) {
     entry->second.arrived = true;
-    deliver_in_order(link);
+    deliver_in_order(match);
   }
 }
 
-void Hub::deliver_in_order(Link& link) {
-  while (!link.pending.empty() && link.pending.begin()->second.arrived) {
-    const auto first = link.pending.begin();
-    if (first->first > link.delivered) {
-      accept(link, first->second.message);
-      link.delivered = first->first;
+void Hub::deliver_in_order(Match& match) {
+  while (!match.pending.empty() && match.pending.begin()->second.arrived) {
+    const auto first = match.pending.begin();
+    if (first->first > match.delivered) {
+      accept(match, first->second.message);
+      match.delivered = first->first;
     }
-    link.pending.erase(first);
+    match.pending.erase(first);
   }
   changed_.notify_all();
 }
 
-void Hub::accept(const Link& link, const MessagePtr& message) {
-  ReaderCore& reader = *link.reader;
-  if (message->state == InstanceState::Alive && !is_plain_cdr(message->cdr)) {
-    ++reader.malformed;
-    return;
-  }
-  const Qos& offered = link.writer->qos;
-  const auto expiry =
-      reader.gate.admit(message->key, message->writer, {offered.strength, offered.lifespan},
-                        message->written, source_time());
-  if (!expiry) return;
-  watch_deadline(link.reader, message->key, message->state);
-  if (reader.queue.push(message->key, {message, *expiry})) ++reader.replaced;
-  if (reader.told) return;
+void Hub::accept(const Match& match, const MessagePtr& message) {
+  ReaderCore& reader = *match.reader;
+  const Qos& offered = match.writer->qos;
+  const bool stored =
+      reader.queue.store({Payload(message->cdr, MessageHolder{message}), message->state,
+                          message->key, message->writer, message->written},
+                         {offered.strength, offered.lifespan});
+  if (!stored || reader.told) return;
   reader.told = true;
   post(&reader, [this, reader = readers_.at(reader.guid)] {
     {
@@ -170,58 +174,34 @@ void Hub::accept(const Link& link, const MessagePtr& message) {
   });
 }
 
-void Hub::repeat_later(Link& link) {
-  if (link.repeating) return;
-  link.repeating = true;
+void Hub::repeat_later(Match& match) {
+  if (match.repeating) return;
+  match.repeating = true;
   after(LoopbackNetwork::kRepeatAfter,
-        [id = LinkId{link.writer->guid, link.reader->guid}](Hub& hub) {
-          const auto found = hub.links_.find(id);
-          if (found == hub.links_.end()) return;
+        [id = MatchId{match.writer->guid, match.reader->guid}](Hub& hub) {
+          const auto found = hub.matches_.find(id);
+          if (found == hub.matches_.end()) return;
           found->second.repeating = false;
           hub.repeat_lost(found->second);
         });
 }
 
-void Hub::repeat_lost(Link& link) {
+void Hub::repeat_lost(Match& match) {
   std::vector<Unacknowledged> lost;
-  for (const auto& [sequence, entry] : link.pending) {
+  for (const auto& [sequence, entry] : match.pending) {
     if (!entry.arrived && entry.in_flight == 0) lost.push_back(entry);
   }
-  for (const Unacknowledged& entry : lost) send(link, entry.message, entry.attempts + 1);
+  for (const Unacknowledged& entry : lost) send(match, entry.message, entry.attempts + 1);
 }
 
 void Hub::repeat_between(const ParticipantCore& one, const ParticipantCore& other) {
-  for (auto& [id, link] : links_) {
-    const ParticipantCore* writing = link.writer->participant.get();
-    const ParticipantCore* reading = link.reader->participant.get();
+  for (auto& [id, match] : matches_) {
+    const ParticipantCore* writing = match.writer->participant.get();
+    const ParticipantCore* reading = match.reader->participant.get();
     if ((writing == &one && reading == &other) || (writing == &other && reading == &one)) {
-      repeat_lost(link);
+      repeat_lost(match);
     }
   }
-}
-
-std::size_t Hub::take(ReaderCore& reader, const std::function<void(const Sample&)>& consumer,
-                      std::size_t limit) {
-  std::pmr::vector<MessagePtr> taken{&call_memory()};
-  {
-    Lock lock(mutex_);
-    while (taken.size() < limit) {
-      auto arrived = reader.queue.pop();
-      if (!arrived) break;
-      if (!reader.gate.fresh(arrived->expiry, source_time())) continue;
-      taken.push_back(std::move(arrived->message));
-    }
-  }
-  for (const MessagePtr& message : taken) {
-    Owner owner(message);
-    consumer({message->cdr, message->state, message->key, message->writer, &owner});
-  }
-  return taken.size();
-}
-
-std::uint64_t Hub::malformed(const ReaderCore& reader) {
-  Lock lock(mutex_);
-  return reader.malformed;
 }
 
 }  // namespace skein::dds::loopback

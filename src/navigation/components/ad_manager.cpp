@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "skein/core/error.hpp"
-#include "skein/navigation/demo_problem.hpp"
+#include "navigation/routes/demo_problem.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -11,14 +11,14 @@ namespace {
 using AE_adManagerI::InvalidReport;
 using AE_adManagerI::ThreatPicture;
 
-constexpr std::size_t kMostTerrains = 16;
-constexpr std::size_t kMostSites = 1000;
+constexpr std::size_t kMaxTerrains = 16;
+constexpr std::size_t kMaxSites = 1000;
 
 template <class Sites>
 void put(Sites& sites, const typename Sites::value_type& site) {
   std::erase_if(sites, [&](const auto& known) { return known.name == site.name; });
-  if (sites.size() >= kMostSites)
-    throw InvalidReport(fmt::format("a picture holds {} sites at most", kMostSites));
+  if (sites.size() >= kMaxSites)
+    throw InvalidReport(fmt::format("a picture holds {} sites at most", kMaxSites));
   sites.push_back(site);
 }
 
@@ -26,8 +26,8 @@ void put(Sites& sites, const typename Sites::value_type& site) {
 
 ThreatPicture& AdManager::picture_of(const std::string& terrain) {
   if (const auto known = pictures_.find(terrain); known != pictures_.end()) return known->second;
-  if (pictures_.size() >= kMostTerrains)
-    throw InvalidReport(fmt::format("pictures of {} terrains are kept at most", kMostTerrains));
+  if (pictures_.size() >= kMaxTerrains)
+    throw InvalidReport(fmt::format("pictures of {} terrains are kept at most", kMaxTerrains));
   try {
     const auto problem = demo_problem(*terrains_->load(terrain));
     return pictures_[terrain] = {terrain, 1, problem.radar_sites, problem.missile_sites};

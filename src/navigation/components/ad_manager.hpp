@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "ad_manager.idl.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
 
 namespace skein::navigation {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "values.hpp"
 
 namespace skein::navigation {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight_controller.idl.hpp"
-#include "skein/entity/parameters.hpp"
+#include "skein/parameters.hpp"
 
 namespace skein::navigation {
 

@@ -8,8 +8,8 @@
 
 #include "planning_value.hpp"
 #include "route_judge.hpp"
-#include "skein/core/call_context.hpp"
-#include "skein/core/error.hpp"
+#include "skein/call_context.hpp"
+#include "skein/error.hpp"
 #include "values.hpp"
 
 namespace skein::navigation {
@@ -106,9 +106,9 @@ Navigator::Navigator(Entity& entity, ParameterValues profile,
       threats_(entity) {}
 
 Route Navigator::request_route(const AE_navigatorI::RouteRequest& request) {
-  if (journal_.at_work() >= kMostRequests) {
+  if (journal_.at_work() >= kMaxRequests) {
     throw Overloaded(fmt::format(
-        "the navigator plans {} routes already; ask again when one is done", kMostRequests));
+        "the navigator plans {} routes already; ask again when one is done", kMaxRequests));
   }
   journal_.begin(request.request_id);
   std::vector<Planning> plannings;

@@ -5,11 +5,12 @@
 #include <optional>
 
 #include "flight_controller.idl.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
 #include "navigator.idl.hpp"
 #include "planning_journal.hpp"
-#include "skein/entity/entity.hpp"
-#include "skein/entity/parameters.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "skein/entity.hpp"
+#include "skein/head.hpp"
+#include "skein/parameters.hpp"
 #include "threat_watch.hpp"
 
 namespace skein::navigation {
@@ -25,18 +26,18 @@ namespace skein::navigation {
 /// where no route is found under an exposure cap, in the first half of the time, the AD manager is
 /// asked for a fresh one; if there is, planning begins anew in the time that is left.
 ///
-/// Up to kMostRequests are planned at once; more are refused as Overloaded, so that status() and
+/// Up to kMaxRequests are planned at once; more are refused as Overloaded, so that status() and
 /// report() always find a thread.
 class Navigator final : public AE_navigatorI::INavigator {
  public:
-  static constexpr std::size_t kMostRequests = 3;
-  static constexpr std::size_t kThreads = kMostRequests + 1;
+  static constexpr std::size_t kMaxRequests = 3;
+  static constexpr std::size_t kThreads = kMaxRequests + 1;
 
   /// `entity` outlives it; `profile` holds the values of the mission profile.
   Navigator(Entity& entity, ParameterValues profile, std::shared_ptr<TerrainProvider> terrains);
 
   /// Throws NoRoute, proven or not; InvalidProblem; Unavailable where no planner or no flight
-  /// controller stands by.
+  /// controller is available.
   AE_navigator::Route request_route(const AE_navigatorI::RouteRequest& request) override;
   AE_navigatorI::PlanningStatus status() override;
   AE_navigatorI::PlanningReport report(const std::string& request_id) override;

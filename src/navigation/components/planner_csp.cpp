@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "navigation/planners/planners.hpp"
 #include "navigator.idl.hpp"
-#include "skein/navigation/planners.hpp"
 #include "values.hpp"
 
 namespace skein::navigation {

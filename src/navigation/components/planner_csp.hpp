@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "skein/core/operation.hpp"
-#include "skein/entity/parameters.hpp"
-#include "skein/navigation/terrain_provider.hpp"
+#include "navigation/terrain/terrain_provider.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/parameters.hpp"
 
 namespace skein::navigation {
 

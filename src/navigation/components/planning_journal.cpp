@@ -26,7 +26,7 @@ PlannerCandidate candidate_of(const Candidate& candidate) {
   if (const auto& learned = candidate.learned) {
     planner.runs = static_cast<std::uint32_t>(learned->samples);
     planner.median_ms = in_ms(learned->median.value_or(Duration::zero()));
-    planner.q95_ms = in_ms(learned->q95.value_or(Duration::zero()));
+    planner.p95_ms = in_ms(learned->p95.value_or(Duration::zero()));
     planner.measured_quality = learned->quality.value_or(0);
     planner.accepted = learned->reliability;
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "navigator.idl.hpp"
-#include "skein/entity/head.hpp"
+#include "skein/head.hpp"
 
 namespace skein::navigation {
 

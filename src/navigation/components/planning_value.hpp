@@ -1,7 +1,7 @@
 #pragma once
 
 #include "navigator.idl.hpp"
-#include "skein/entity/history.hpp"
+#include "skein/detail/history.hpp"
 
 namespace skein::navigation {
 

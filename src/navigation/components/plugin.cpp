@@ -3,11 +3,10 @@
 
 #include "ad_manager.hpp"
 #include "flight_controller.hpp"
+#include "navigation/planners/planners.hpp"
 #include "navigator.hpp"
 #include "planner_csp.hpp"
-#include "skein/core/abi.hpp"
-#include "skein/entity/component_registry.hpp"
-#include "skein/navigation/planners.hpp"
+#include "skein/component_registry.hpp"
 
 using skein::ComponentRegistry;
 using skein::ParameterValues;

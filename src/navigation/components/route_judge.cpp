@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "skein/navigation/ground_clearance.hpp"
-#include "skein/navigation/keep_out.hpp"
-#include "skein/navigation/radar_exposure.hpp"
+#include "navigation/terrain/ground_clearance.hpp"
+#include "navigation/threats/keep_out.hpp"
+#include "navigation/threats/radar_exposure.hpp"
 
 namespace skein::navigation {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <functional>
 
+#include "navigation/terrain/terrain.hpp"
 #include "navigator.idl.hpp"
-#include "skein/entity/evaluation.hpp"
-#include "skein/navigation/terrain.hpp"
+#include "skein/evaluation.hpp"
 
 namespace skein::navigation {
 

@@ -1,7 +1,7 @@
 #include "threat_watch.hpp"
 
-#include "skein/core/error.hpp"
-#include "skein/core/log.hpp"
+#include "core/log.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 

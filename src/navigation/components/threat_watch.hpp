@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "ad_manager.idl.hpp"
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::navigation {
 

@@ -4,8 +4,8 @@
 
 #include <charconv>
 
-#include "skein/core/error.hpp"
-#include "skein/profile/dictionary.hpp"
+#include "profile/dictionary.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "skein/core/clock.hpp"
-#include "skein/entity/parameters.hpp"
+#include "skein/clock.hpp"
+#include "skein/parameters.hpp"
 
 namespace skein::navigation {
 

@@ -1,9 +1,9 @@
-#include "skein/navigation/grid/grid_map.hpp"
+#include "navigation/grid/grid_map.hpp"
 
 #include <limits>
 #include <string>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation::grid {
 

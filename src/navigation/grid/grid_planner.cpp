@@ -1,10 +1,10 @@
-#include "skein/navigation/grid/grid_planner.hpp"
+#include "navigation/grid/grid_planner.hpp"
 
 #include <cmath>
 
+#include "core/suggestion.hpp"
 #include "planners.hpp"
-#include "skein/core/error.hpp"
-#include "skein/core/suggestion.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation::grid {
 namespace {

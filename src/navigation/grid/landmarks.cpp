@@ -38,7 +38,7 @@ std::vector<std::uint32_t> distances_from(const Cell& start, const GridMap& map,
 
 Landmarks::Landmarks(const GridMap& map, const Numbering& numbering, const MoveCosts& costs,
                      const Regions& regions, int count)
-    : count_(static_cast<std::size_t>(count)), used_(std::min(count_, kMostUsed)) {
+    : count_(static_cast<std::size_t>(count)), used_(std::min(count_, kMaxUsed)) {
   const std::optional<Cell> anywhere = regions.cell_of_largest();
   if (count == 0 || !anywhere) {
     used_ = 0;

@@ -32,13 +32,13 @@ class Landmarks {
   }
 
  private:
-  static constexpr std::size_t kMostUsed = 6;
+  static constexpr std::size_t kMaxUsed = 6;
 
   std::size_t count_;
   std::vector<std::uint32_t> distances_;  ///< All of a cell side by side; 0 where there is no way.
   std::size_t used_;
-  std::array<std::size_t, kMostUsed> chosen_{};
-  std::array<std::uint32_t, kMostUsed> at_goal_{};
+  std::array<std::size_t, kMaxUsed> chosen_{};
+  std::array<std::uint32_t, kMaxUsed> at_goal_{};
 };
 
 }  // namespace skein::navigation::grid

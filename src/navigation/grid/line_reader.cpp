@@ -3,7 +3,7 @@
 #include <charconv>
 #include <sstream>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation::grid {
 

@@ -1,6 +1,6 @@
 #include "line_reader.hpp"
-#include "skein/core/error.hpp"
-#include "skein/navigation/grid/grid_map.hpp"
+#include "navigation/grid/grid_map.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation::grid {
 namespace {

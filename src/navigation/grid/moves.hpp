@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "skein/navigation/grid/grid_map.hpp"
+#include "navigation/grid/grid_map.hpp"
 
 namespace skein::navigation::grid {
 

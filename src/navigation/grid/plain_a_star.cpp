@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "moves.hpp"
+#include "navigation/grid/graph_search.hpp"
 #include "planners.hpp"
-#include "skein/navigation/grid/graph_search.hpp"
 
 namespace skein::navigation::grid {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "skein/navigation/grid/grid_planner.hpp"
+#include "navigation/grid/grid_planner.hpp"
 
 namespace skein::navigation::grid {
 

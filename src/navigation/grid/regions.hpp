@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "skein/navigation/grid/grid_map.hpp"
+#include "navigation/grid/grid_map.hpp"
 
 namespace skein::navigation::grid {
 

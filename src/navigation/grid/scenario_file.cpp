@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "line_reader.hpp"
-#include "skein/navigation/grid/scenario.hpp"
+#include "navigation/grid/scenario.hpp"
 
 namespace skein::navigation::grid {
 namespace {

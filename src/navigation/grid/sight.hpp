@@ -1,6 +1,6 @@
 #pragma once
 
-#include "skein/navigation/grid/grid_map.hpp"
+#include "navigation/grid/grid_map.hpp"
 
 namespace skein::navigation::grid {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {

@@ -1,4 +1,4 @@
-#include "skein/navigation/height_grid.hpp"
+#include "navigation/route_checker/height_grid.hpp"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "dted_posts.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {

@@ -1,4 +1,4 @@
-#include "skein/navigation/route_checker.hpp"
+#include "navigation/route_checker/route_checker.hpp"
 
 #include <fmt/core.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "rules.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -17,7 +17,7 @@ using AE_navigator::Position;
 using AE_navigator::Problem;
 using AE_navigator::Route;
 
-constexpr std::size_t kMostWaypoints = 100000;
+constexpr std::size_t kMaxWaypoints = 100000;
 constexpr double kLongestRoute = 50;  ///< In widths of the terrain: what is longer is an attack.
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -86,9 +86,9 @@ class Check {
   }
 
   void check_numbers() {
-    if (points_.size() < 2 || points_.size() > kMostWaypoints) {
+    if (points_.size() < 2 || points_.size() > kMaxWaypoints) {
       report(RouteRule::Continuity, "the route has {} waypoints; a route has 2 to {}",
-             points_.size(), kMostWaypoints);
+             points_.size(), kMaxWaypoints);
     }
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!finite(points_[i])) {

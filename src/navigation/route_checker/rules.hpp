@@ -1,7 +1,7 @@
 #pragma once
 
+#include "navigation/route_checker/height_grid.hpp"
 #include "navigator.idl.hpp"
-#include "skein/navigation/height_grid.hpp"
 
 // The single judgements that check_route puts together.
 namespace skein::navigation::route_checker {

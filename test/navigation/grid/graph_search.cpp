@@ -1,4 +1,4 @@
-#include "skein/navigation/grid/graph_search.hpp"
+#include "navigation/grid/graph_search.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "skein/core/error.hpp"
-#include "skein/navigation/grid/scenario.hpp"
+#include "navigation/grid/scenario.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::navigation::grid;

@@ -1,5 +1,5 @@
 #include "exactness.hpp"
-#include "skein/core/error.hpp"
+#include "skein/error.hpp"
 #include "tools/seed.hpp"
 
 using namespace skein;

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "navigation/grid/scenario.hpp"
 #include "reference.hpp"
-#include "skein/navigation/grid/scenario.hpp"
 
 using namespace skein::navigation::grid;
 using namespace skein::navigation::grid::testing;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <random>
 
-#include "skein/navigation/grid/grid_planner.hpp"
+#include "navigation/grid/grid_planner.hpp"
 
 namespace skein::navigation::grid::testing {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "skein/entity/entity.hpp"
+#include "skein/entity.hpp"
 #include "tides/tide_table.idl.hpp"
 
 namespace {

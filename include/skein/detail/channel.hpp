@@ -1,0 +1,135 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "skein/clock.hpp"
+#include "skein/detail/action.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/executor.hpp"
+
+namespace skein {
+
+/// One call in progress. It is finished exactly once, by a reply or by an error, whichever claims
+/// it first. Shared by the caller and the transport that carries it.
+class PendingCall : public std::enable_shared_from_this<PendingCall> {
+ public:
+  /// `out` is the operation's out struct; it must live until the call is finished.
+  PendingCall(const OperationInfo& operation, void* out, Instant deadline, bool blocking)
+      : operation_(operation), out_(out), deadline_(deadline), blocking_(blocking) {}
+  virtual ~PendingCall() = default;
+
+  const OperationInfo& operation() const noexcept { return operation_; }
+  void* out() const noexcept { return out_; }
+  Instant deadline() const noexcept { return deadline_; }
+  /// Whether the calling thread waits for the answer.
+  bool blocking() const noexcept { return blocking_; }
+
+  /// Returns true to exactly one caller, which may then fill out() and must call finish().
+  bool claim() noexcept { return !claimed_.exchange(true, std::memory_order_acq_rel); }
+
+  /// Ends the call; only after a successful claim(). A null `error` means that out() is filled.
+  void finish(std::exception_ptr error = nullptr);
+
+  /// claim() and finish(error); false if another caller was first.
+  bool fail(std::exception_ptr error);
+
+  bool finished() const;
+
+  /// Blocks until finished. The transport guarantees this by the deadline.
+  void wait() const;
+
+  /// Set by the transport: how long wait() polls for the end before it sleeps.
+  void set_spin(std::chrono::microseconds budget) noexcept { spin_ = budget; }
+
+  /// Moves out the error that ended the call; null after a success. Only once finished. It is not
+  /// copied: otherwise either of two threads might be the one that releases the exception.
+  std::exception_ptr take_error();
+
+  /// Runs `action`; an exception from it ends the call.
+  template <class Action>
+  void attempt(Action&& action) {
+    std::exception_ptr error;
+    try {
+      action();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    if (error) fail(std::move(error));
+  }
+
+  /// Runs `action` when the call is finished; at once if it already is. It runs on the thread that
+  /// finishes the call, possibly a vendor's, so it must neither block nor run user code. At most
+  /// one action.
+  void on_finished(Action action);
+
+  /// Set by the transport: notifies the server of a cancelled call.
+  void set_canceller(Action canceller);
+
+  /// Ends the call as Cancelled, unless it has ended, and notifies the server.
+  void cancel();
+
+  /// As cancel(), with another error.
+  void abandon(std::exception_ptr error);
+
+ private:
+  const OperationInfo& operation_;
+  void* const out_;
+  const Instant deadline_;
+  const bool blocking_;
+  std::atomic<std::chrono::microseconds> spin_{std::chrono::microseconds(0)};
+  std::atomic<bool> claimed_{false};
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::atomic<bool> finished_{false};  // written under the lock
+  std::exception_ptr error_;
+  Action action_;
+  Action canceller_;
+};
+
+/// When a call began, and its deadline.
+struct CallTime {
+  Instant begin;
+  Instant deadline;
+};
+
+/// Carries a proxy's requests and replies: within the process as typed pointers, over a network as
+/// bytes. Thread-safe.
+class Channel {
+ public:
+  virtual ~Channel() = default;
+
+  /// Sends the request with the in struct `in`, which need not outlive this function. Never throws:
+  /// an error finishes `call`. A oneway call is finished when the request has been sent.
+  virtual void start(const std::shared_ptr<PendingCall>& call, const void* in) = 0;
+
+  /// Blocking call: fills `out`, the operation's out struct, or throws the error that ended the
+  /// call. By default it uses start(). Not for streams.
+  virtual void call(const OperationInfo& operation, const void* in, void* out,
+                    const CallTime& time);
+
+  virtual Clock& clock() const noexcept = 0;
+
+  /// Where continuations of asynchronous calls run.
+  virtual Executor& continuations() const noexcept = 0;
+
+  /// Name of the other end, for messages: `AE_navigator::IPlanner of Navigator (uav-1)`.
+  virtual std::string peer() const = 0;
+
+  /// Whether calls can be made: not disconnected, and the provider is not lost.
+  virtual bool connected() const = 0;
+
+  /// Ends the connection: pending calls end as Cancelled, later ones as Unavailable. Calling it
+  /// twice is no error.
+  virtual void disconnect() = 0;
+
+  /// Notes that one end of the connection is gone: pending calls end as Disconnected, later ones as
+  /// Unavailable.
+  virtual void lose(const std::string& how) = 0;
+};
+
+}  // namespace skein

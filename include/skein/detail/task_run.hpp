@@ -1,0 +1,145 @@
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "skein/decision.hpp"
+#include "skein/task.hpp"
+
+/// A running task as the Head sees it, without its types. Used by Head::perform().
+namespace skein::task_run {
+
+/// The judgement of a CSP's answer.
+struct Verdict {
+  Attempt::Outcome outcome = Attempt::Outcome::Failed;
+  std::string check{};
+  std::string text{};
+  std::optional<double> quality{};
+  std::exception_ptr error{};
+  bool fault = true;     ///< Counts as a fault of the CSP.
+  bool settled = false;  ///< No other CSP is to be asked.
+};
+
+/// The verdict for the exception that is being handled.
+Verdict verdict_of_current_exception();
+
+/// One CSP at work; destroying it cancels its call.
+class Work {
+ public:
+  virtual ~Work() = default;
+  virtual bool ready() = 0;
+  virtual void notify(std::function<void()> action) = 0;
+  /// Waits for the answer and judges it; an accepted result is kept.
+  virtual Verdict judge() = 0;
+};
+
+class TaskRun {
+ public:
+  virtual ~TaskRun() = default;
+  virtual const TaskOptions& options() const noexcept = 0;
+  virtual std::unique_ptr<Work> begin(std::shared_ptr<Channel> channel, Duration budget,
+                                      const Candidate& candidate) = 0;
+  virtual std::size_t accepted() const noexcept = 0;
+  /// Tries to make the result from the accepted ones; returns how, in words, or nullopt if they are
+  /// not sufficient.
+  virtual std::optional<std::string> synthesise() = 0;
+};
+
+template <class Interface, class Result>
+class TypedRun final : public TaskRun {
+ public:
+  explicit TypedRun(const Task<Interface, Result>& task) : task_(task) {}
+
+  const TaskOptions& options() const noexcept override { return task_; }
+  std::unique_ptr<Work> begin(std::shared_ptr<Channel> channel, Duration budget,
+                              const Candidate& candidate) override {
+    return std::make_unique<TypedWork>(*this, std::move(channel), budget, candidate);
+  }
+  std::size_t accepted() const noexcept override { return opinions_.size(); }
+
+  std::optional<std::string> synthesise() override {
+    if (opinions_.empty()) return std::nullopt;
+    if (task_.synthesis) {
+      auto made = task_.synthesis(opinions_);
+      if (!made) return std::nullopt;
+      result_ = std::move(made->result);
+      return std::move(made->how);
+    }
+    result_ = std::move(opinions_[best_].result);
+    return opinions_.size() == 1
+               ? ""
+               : opinions_[best_].csp + " gave the best of " + std::to_string(opinions_.size());
+  }
+
+  Result take() { return std::move(*result_); }
+
+ private:
+  class TypedWork final : public Work {
+   public:
+    TypedWork(TypedRun& run, std::shared_ptr<Channel> channel, Duration budget,
+              const Candidate& candidate)
+        : run_(run), candidate_(candidate) {
+      try {
+        typename Interface::Proxy proxy(std::move(channel), budget);
+        answer_.emplace(run.task_.run(proxy, budget));
+      } catch (...) {
+        error_ = std::current_exception();
+      }
+    }
+
+    bool ready() override { return error_ || answer_->ready(); }
+    void notify(std::function<void()> action) override { answer_->notify(std::move(action)); }
+
+    Verdict judge() override {
+      try {
+        if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+        return run_.judge(candidate_, answer_->get());
+      } catch (const UserException& exception) {
+        Verdict verdict = verdict_of_current_exception();
+        verdict.settled = run_.task_.settles && run_.task_.settles(exception, candidate_);
+        return verdict;
+      } catch (...) {
+        return verdict_of_current_exception();
+      }
+    }
+
+   private:
+    TypedRun& run_;
+    const Candidate candidate_;
+    std::optional<Awaited<Result>> answer_;
+    std::exception_ptr error_;
+  };
+
+  Verdict judge(const Candidate& candidate, Result result) {
+    Verdict verdict;
+    if (auto rejection = task_.evaluate(result)) {
+      verdict.outcome = Attempt::Outcome::Rejected;
+      verdict.check = std::move(rejection->check);
+      verdict.text = std::move(rejection->reason);
+      verdict.fault = rejection->fault;
+      return verdict;
+    }
+    verdict.outcome = Attempt::Outcome::Accepted;
+    verdict.fault = false;
+    if (task_.quality) verdict.quality = task_.quality(result);
+    const double quality = verdict.quality.value_or(0);
+    if (opinions_.empty() || quality > best_quality_) {
+      best_ = opinions_.size();
+      best_quality_ = quality;
+    }
+    opinions_.push_back({candidate.name, std::move(result)});
+    return verdict;
+  }
+
+  const Task<Interface, Result>& task_;
+  std::vector<Opinion<Result>> opinions_;
+  std::size_t best_ = 0;
+  double best_quality_ = 0;
+  std::optional<Result> result_;
+};
+
+}  // namespace skein::task_run

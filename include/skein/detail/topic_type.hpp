@@ -1,0 +1,33 @@
+#pragma once
+
+#include "skein/detail/type_support.hpp"
+#include "skein/guid.hpp"
+
+namespace skein {
+
+/// A generated type with a `#pragma keylist`: its topics have one instance per key.
+template <class T>
+concept Keyed = requires(const T& value) {
+  { key_hash(value) } -> std::same_as<Guid>;
+};
+
+namespace topics {
+
+/// A topic's type without its definition.
+struct TopicType {
+  const TypeSupport* support;
+  /// nullptr if the type has no keys.
+  Guid (*key_of)(const void* value);
+};
+
+template <class T>
+TopicType topic_type() {
+  TopicType type{&idl::type_support<T>(), nullptr};
+  if constexpr (Keyed<T>) {
+    type.key_of = [](const void* value) { return key_hash(*static_cast<const T*>(value)); };
+  }
+  return type;
+}
+
+}  // namespace topics
+}  // namespace skein

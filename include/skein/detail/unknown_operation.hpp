@@ -1,0 +1,11 @@
+#pragma once
+
+#include "skein/detail/operation.hpp"
+
+namespace skein::idl {
+
+/// Throws Unimplemented, with the nearest name if there is one. Used by skeletons.
+[[noreturn]] void throw_unknown_operation(const InterfaceInfo& interface,
+                                          const OperationInfo& operation);
+
+}  // namespace skein::idl

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "skein/connector.hpp"
+#include "skein/head_options.hpp"
+#include "skein/process.hpp"
+#include "skein/publisher.hpp"
+#include "skein/subscription.hpp"
+#include "skein/vendor.hpp"
+
+namespace skein::introspection {
+struct ServiceStatistics;
+}
+
+namespace skein {
+
+class Head;
+
+struct EntityOptions {
+  /// Letters, digits, `_`, `-` and `.`; the same for `system`.
+  std::string name{};
+  /// The vehicle or station to which the entity belongs.
+  std::string system = "default";
+  /// The DDS implementation; required: `dds::load_vendor("cyclonedds")`.
+  std::shared_ptr<dds::Vendor> vendor{};
+  /// The DDS domain of the mission, 0 to 232.
+  std::uint32_t domain = 0;
+  /// By default loopback only.
+  dds::Network network{};
+  /// Share one among entities that are to call each other without leaving the process. nullptr: the
+  /// entity makes its own.
+  std::shared_ptr<Process> process{};
+  /// A peer that is not heard of for this time is no longer trusted; at least 20 ms. Use the same
+  /// value in all entities of a mission: an entity does not find the services of peers with a
+  /// longer lease.
+  std::chrono::milliseconds lease{1000};
+  /// How long a thread that waits in a blocking call to another process polls for the answer before
+  /// it sleeps. Polling saves a wake-up and costs CPU time.
+  std::chrono::microseconds spin{0};
+  /// How the Head decides.
+  HeadOptions head{};
+};
+
+struct ServiceAttribute {
+  std::string name;
+  std::string value;
+};
+
+struct ServiceOptions {
+  /// What the service declares: `latency` (in ms, or with a unit: `0.3 s`), `quality`, ...
+  std::vector<ServiceAttribute> attributes{};
+  /// Where blocking calls from the same process run; all others run on the service's own threads.
+  /// With CallThread::Caller, calls run one at a time, and `threads` must be 1.
+  CallThread thread = CallThread::Own;
+  /// Number of own threads that run this service's calls.
+  std::size_t threads = 1;
+  /// Scheduling of these threads.
+  ThreadSettings scheduling{};
+  /// Capacity of the request queue, for all clients together; further requests are refused as
+  /// Overloaded. A peer may have no more requests waiting than there are free places: alone it gets
+  /// half, and a new peer finds room.
+  std::size_t queue = 2048;
+  /// The component description as XML, for clients that look the service up.
+  std::string component{};
+  /// Managed interfaces for which the entity uses CSPs.
+  std::vector<std::string> subcomponents{};
+};
+
+/// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that
+/// implement its public services, and CSPs that implement its managed ones; it can also publish and
+/// subscribe. Thread-safe. Destroy publishers and subscriptions before the entity; otherwise the
+/// program may abort. Proxies, calls and streams may outlive it (see ~Entity). The entity releases
+/// the implementations that it provided.
+class Entity {
+ public:
+  /// Joins the mission. Throws InvalidArgument for an invalid name or option, and what
+  /// Vendor::create_participant() throws.
+  explicit Entity(EntityOptions options);
+  /// Ends all connections: pending calls and streams end as Disconnected, later calls as
+  /// Unavailable. Withdraws all services, stops running calls, runs the continuations that are due,
+  /// and leaves the mission. Waits at most 2 s in all for calls that hang; their threads are left
+  /// behind. Do not destroy an entity from one of its continuations or from a call that it serves.
+  ~Entity();
+
+  const EntityOptions& options() const noexcept;
+  /// `system/name`, by which managed services name their owner.
+  std::string id() const;
+  /// Identity of its DDS participant. The GUIDs of all its writers begin with the same 12 bytes.
+  Guid guid() const;
+
+  /// Provides a public service, implemented by a Body. Each client gets a session of the Head.
+  /// Returns the provider's identity. Throws InvalidArgument for options that cannot work.
+  template <class Interface>
+  Guid provide(std::shared_ptr<Interface> body, const ServiceOptions& options = {}) {
+    return provide(skeleton_of(std::move(body)), options);
+  }
+  Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
+
+  /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. If the owner is
+  /// this entity, the CSP is called without leaving the process. `name` is the CSP's own. Returns
+  /// and throws as provide() does.
+  template <class Interface>
+  Guid provide_csp(const std::string& name, const std::string& owner,
+                   std::shared_ptr<Interface> csp, const ServiceOptions& options = {}) {
+    return provide_csp(name, owner, skeleton_of(std::move(csp)), options);
+  }
+  Guid provide_csp(const std::string& name, const std::string& owner,
+                   std::shared_ptr<Servant> servant, const ServiceOptions& options);
+
+  /// Withdraws one service of this entity. Queued calls are refused; running calls are told to
+  /// stop, and awaited for up to 2 s. Other providers' identities and unknown ones are ignored. Do
+  /// not call it from a call of that service.
+  void withdraw(const Guid& provider);
+
+  /// Counters and latencies of each operation of the services that this entity provides, CSPs
+  /// included. "skein/introspection.idl.hpp" defines the type; `skein services --statistics` shows
+  /// those of all entities.
+  std::vector<introspection::ServiceStatistics> statistics() const;
+
+  /// See Connector::connect.
+  template <class Interface>
+  typename Interface::Proxy connect(const ConnectOptions& options = {}) {
+    return connector().connect<Interface>(options);
+  }
+
+  template <class Interface>
+  typename Interface::Proxy connect(const Reference<Interface>& reference,
+                                    const ConnectOptions& options = {}) {
+    return connector().connect(reference, options);
+  }
+
+  /// See Connector::connect_all and gather().
+  template <class Interface>
+  std::vector<Connected<Interface>> connect_all(const ConnectOptions& options = {}) {
+    return connector().connect_all<Interface>(options);
+  }
+
+  /// A reference to a service that this entity provides, to be passed to others.
+  template <class Interface>
+  Reference<Interface> reference(const Guid& provider) const {
+    return Reference<Interface>(
+        {std::string(Interface::interface_info().name), provider, options().name});
+  }
+
+  /// Publishes on the topic `name`, in the entity's own system unless `qos` names others. Throws as
+  /// Publisher() does.
+  template <class T>
+  Publisher<T> publisher(const std::string& name, const TopicQos& qos = {}) {
+    return Publisher<T>(participant(), name, with_system(qos));
+  }
+
+  /// Subscribes to the topic `name`, likewise. The callback runs on one thread for all
+  /// subscriptions of the entity, or on the executor in `options`. Without a callback the user
+  /// polls.
+  template <class T>
+  Subscription<T> subscription(const std::string& name, const TopicQos& qos = {},
+                               typename Subscription<T>::Callback callback = nullptr,
+                               SubscriptionOptions options = {}) {
+    return Subscription<T>(participant(), topic_executor(), name, with_system(qos),
+                           std::move(callback), std::move(options));
+  }
+
+  Connector& connector() noexcept;
+  brokerless_discovery::Broker& broker() noexcept;
+  Head& head() noexcept;
+  Clock& clock() noexcept;
+  dds::Participant& participant() noexcept;
+
+ private:
+  TopicQos with_system(TopicQos qos) const;
+  Executor& topic_executor();
+
+  struct Provided;
+  struct State;
+
+  template <class Interface>
+  static std::shared_ptr<Servant> skeleton_of(std::shared_ptr<Interface> implementation) {
+    return std::make_shared<typename Interface::Skeleton>(std::move(implementation));
+  }
+  Guid add(std::shared_ptr<Servant> servant, const ServiceOptions& options, const std::string& name,
+           const std::string& owner);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace skein

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "skein/detail/topic_type.hpp"
+#include "skein/topic_qos.hpp"
+
+namespace skein::dds {
+class Participant;
+}
+
+namespace skein {
+
+/// Counters since the publisher was made.
+struct PublisherCounters {
+  /// Values and disposals.
+  std::uint64_t published = 0;
+  /// Periods in which an instance had no value; see Qos::deadline.
+  std::uint64_t missed_deadlines = 0;
+};
+
+namespace topics {
+
+/// A publisher without its type.
+class TopicWriter {
+ public:
+  TopicWriter(dds::Participant& participant, const std::string& name, const TopicType& type,
+              const TopicQos& qos);
+  ~TopicWriter();
+  void publish(const void* value);
+  void dispose(const void* value);
+  std::size_t subscribers() const;
+  PublisherCounters counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace topics
+
+/// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable.
+/// Destroy it before its entity.
+template <class T>
+class Publisher {
+ public:
+  /// In the systems that `qos` names, or in the partition "". Throws InvalidArgument for an invalid
+  /// name or QoS, and for a name that the entity already uses with another type.
+  Publisher(dds::Participant& participant, const std::string& name, const TopicQos& qos)
+      : writer_(std::make_unique<topics::TopicWriter>(participant, name, topics::topic_type<T>(),
+                                                      qos)) {}
+
+  /// Sends the value to all subscribers that are matched now, and keeps it for late joiners if the
+  /// QoS say so. Throws Overloaded if reliable subscribers make no room within `max_blocking`,
+  /// InvalidArgument for a value that CDR cannot carry.
+  void publish(const T& value) { writer_->publish(&value); }
+
+  /// Disposes the instance with this value's key. Throws as publish() does.
+  void dispose(const T& value) requires Keyed<T> { writer_->dispose(&value); }
+
+  /// Number of subscribers that are matched now.
+  std::size_t subscribers() const { return writer_->subscribers(); }
+
+  PublisherCounters counters() const { return writer_->counters(); }
+
+ private:
+  std::unique_ptr<topics::TopicWriter> writer_;
+};
+
+}  // namespace skein

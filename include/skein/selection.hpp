@@ -1,0 +1,142 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/clock.hpp"
+#include "skein/detail/circuit_breaker.hpp"
+#include "skein/detail/history.hpp"
+#include "skein/guid.hpp"
+
+// The paper's Algorithm Selection pattern (Figure 7): a StrategyFactory makes the SelectionStrategy
+// that a session names; a CandidateIterator returns the CSPs in the order that the strategy
+// decides; each CSP is an Adapter, an algorithm behind a managed interface, and is called through
+// that interface's Proxy.
+namespace skein {
+
+/// A CSP that could run the task, with what it declares and what is known about it.
+struct Candidate {
+  std::string name;  ///< The CSP's name: `AStar`.
+  Guid provider;
+  bool in_process = false;
+  std::uint32_t pid = 0;
+  /// Attribute `latency`: the declared time to an answer, a plain number in ms or a duration as
+  /// Constraint knows it. Unset: not declared.
+  std::optional<Duration> latency;
+  /// Attribute `quality`: greater is better; 0 if not declared.
+  double quality = 0;
+  /// What its history predicts; unset if it has never run.
+  std::optional<Prediction> learned;
+  CircuitBreaker::State breaker = CircuitBreaker::State::Closed;
+  Duration quarantine{};  ///< Time until it may be probed.
+  /// 0 for CSPs that were available when the request came, 1 for those that joined when all of
+  /// these had failed, and so on.
+  std::uint32_t round = 0;
+};
+
+/// What a strategy knows about a request, beside the candidates.
+struct Situation {
+  Features features{};
+  Duration remaining{};
+  /// The share of decisions that may try a CSP only to learn about it, and the decisions so far.
+  double exploration = 0;
+  History::Decisions past{};
+};
+
+/// A strategy's decision: which candidate runs next, for how long at most (with Execution::One),
+/// and why, in words.
+struct Selection {
+  std::size_t candidate = 0;  ///< Index into the candidates.
+  Duration slice{};
+  std::string reason;
+  Duration expected{};    ///< Expected time to an answer; later is late. Zero: unknown.
+  bool explores = false;  ///< Chosen only to learn about it.
+};
+
+/// Decides which CSP runs next. It is asked for each CSP, with the candidates and the time that are
+/// left. Pure: equal arguments give equal selections. Thread-safe.
+class SelectionStrategy {
+ public:
+  virtual ~SelectionStrategy() = default;
+  virtual std::string name() const = 0;
+  /// `candidates` is not empty.
+  virtual Selection select(const std::vector<Candidate>& candidates,
+                           const Situation& situation) const = 0;
+};
+
+/// Selects the best declared quality among the CSPs whose declared latency fits into the time left;
+/// if none fits, the fastest. An undeclared latency counts as 0. If the time suffices, the latency
+/// of the fastest other CSP is reserved for a fall-back; the slice is then at most half of the
+/// time, or four times the declared latency if that is longer. Name: `declared`.
+std::shared_ptr<const SelectionStrategy> make_declared_selection();
+
+/// Uses the Broker's order, whatever is declared, and shares the time left evenly. Name:
+/// `fixed_order`.
+std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
+
+/// Selects by what each CSP's history predicts for such a request; a CSP that has not run counts as
+/// it declares. Among the CSPs whose p95 latency fits into the time left, it selects the greatest
+/// utility, reliability times quality; among those within 5 % of it, the least median latency. A
+/// reserve is kept as by `declared`. Another CSP may go first, for its p95 latency, if its quality
+/// is at most 5 % lower, the time suffices for both, and it is expected to take less time per
+/// accepted result (Smith's rule). Within the budget for exploration, the CSP that has not run for
+/// longest goes first, if the time suffices for it and the best one. Name: `learned`.
+std::shared_ptr<const SelectionStrategy> make_learned_selection();
+
+/// The selection strategies by name; the three above from the start.
+class StrategyFactory {
+ public:
+  StrategyFactory();
+  /// Replaces a strategy of the same name.
+  void add(std::shared_ptr<const SelectionStrategy> strategy);
+  /// Throws InvalidArgument for an unknown name; the text lists the known ones.
+  std::shared_ptr<const SelectionStrategy> make(const std::string& name) const;
+  /// Sorted.
+  std::vector<std::string> names() const;
+
+ private:
+  std::map<std::string, std::shared_ptr<const SelectionStrategy>> strategies_;
+};
+
+/// A strategy's answer, as the record of a decision keeps it.
+struct Choice {
+  std::string csp;
+  Duration remaining{};  ///< The time left when the strategy was asked.
+  Duration slice{};
+  Duration expected{};  ///< Expected time to an answer. Zero: unknown.
+  bool explores = false;
+  std::string reason;  ///< Why it was chosen.
+  bool operator==(const Choice&) const = default;
+};
+
+/// The CSPs for one request, in the order that the strategy selects. CSPs in quarantine are
+/// skipped; if all are, the one whose quarantine ends first is tried.
+class CandidateIterator {
+ public:
+  /// The strategy must outlive the iterator.
+  CandidateIterator(const SelectionStrategy& strategy, std::vector<Candidate> candidates,
+                    Situation situation);
+
+  /// Continues with other candidates; only if done().
+  void add(std::vector<Candidate> candidates);
+
+  bool done() const noexcept { return left_.empty(); }
+
+  struct Next {
+    Candidate candidate;
+    Choice choice;
+  };
+  /// Only if not done().
+  Next next(Duration remaining);
+
+ private:
+  const SelectionStrategy& strategy_;
+  std::vector<Candidate> left_;
+  Situation situation_;
+};
+
+}  // namespace skein

@@ -1,0 +1,206 @@
+#pragma once
+
+#include <condition_variable>
+#include <coroutine>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "skein/detail/channel.hpp"
+
+namespace skein {
+
+/// A call with many results: a PendingCall with a queue of out structs that have arrived and were
+/// not taken yet. The other side may send only as many as it was granted, so the queue never holds
+/// more than kWindow. A stream operation must be started with this class.
+class PendingStream final : public PendingCall {
+ public:
+  /// Maximum number of results that are under way or wait here.
+  static constexpr std::uint32_t kWindow = 8;
+
+  /// An out struct, freed by its TypeSupport; null at the end of the stream.
+  using Item = std::unique_ptr<void, void (*)(void*) noexcept>;
+
+  PendingStream(const OperationInfo& operation, Instant deadline);
+
+  /// For transports: the function that grants the other side further results. If it throws, the
+  /// stream ends.
+  void set_granter(std::function<void(std::uint32_t)> granter);
+
+  /// For transports: queues a result. Returns false, and drops the result, if it was not granted.
+  /// After the end it returns true and drops the result.
+  bool deliver(Item item);
+
+  /// For transports: number of results queued so far.
+  std::uint64_t delivered() const;
+
+  /// Whether next() would return at once.
+  bool ready() const;
+
+  /// Waits for the next result. Results that have arrived come first, then the error that ended the
+  /// stream (thrown once), then null.
+  Item next();
+
+  /// Runs `action` when next() would not block: at once, or on the thread that delivers. It must
+  /// neither block nor run user code. One action at a time.
+  void on_ready(std::function<void()> action);
+
+  /// Cancels the call, unless it has ended, and drops the results that were not taken.
+  void drop();
+
+ private:
+  void end();
+  void grant_taken();
+
+  mutable std::mutex items_mutex_;
+  std::condition_variable arrived_;
+  std::deque<Item> items_;
+  std::uint64_t delivered_ = 0;
+  std::uint32_t taken_ = 0;  // and not granted again yet
+  bool ended_ = false;
+  std::function<void()> waiter_;
+  std::function<void(std::uint32_t)> granter_;
+};
+
+/// The results of an operation that `#pragma stream` declares, as they arrive. Move-only;
+/// destroying it cancels the operation. One thread at a time. The deadline of the call applies to
+/// the whole stream.
+///
+/// A slow reader slows the provider: the provider may be PendingStream::kWindow results ahead, then
+/// it waits.
+template <class T>
+class Stream {
+ public:
+  /// `take` moves the result out of an out struct. Used by generated code.
+  Stream(std::shared_ptr<PendingStream> pending, std::shared_ptr<Channel> channel, T (*take)(void*))
+      : pending_(std::move(pending)), channel_(std::move(channel)), take_(take) {}
+  Stream(Stream&&) noexcept = default;
+  Stream& operator=(Stream&& other) noexcept {
+    if (this != &other) {
+      if (pending_) pending_->drop();
+      pending_ = std::move(other.pending_);
+      channel_ = std::move(other.channel_);
+      take_ = other.take_;
+    }
+    return *this;
+  }
+  ~Stream() {
+    if (pending_) pending_->drop();
+  }
+
+  /// Waits for the next result; nullopt at the end of the stream. Throws the error that ended it
+  /// otherwise: an exception that the interface declares, or an Error (TimedOut at the deadline).
+  std::optional<T> next() {
+    const auto item = pending_->next();
+    if (!item) return std::nullopt;
+    return take_(item.get());
+  }
+
+  /// `co_await stream.next_async()` is next() without a thread that waits. The coroutine resumes on
+  /// the connection's continuation executor. Do not move or destroy the stream meanwhile.
+  auto next_async() {
+    struct Awaiter {
+      Stream& stream;
+      bool await_ready() const { return stream.pending_->ready(); }
+      void await_suspend(std::coroutine_handle<> waiting) {
+        Executor& executor = stream.channel_->continuations();
+        stream.pending_->on_ready(
+            [&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
+      }
+      std::optional<T> await_resume() { return stream.next(); }
+    };
+    return Awaiter{*this};
+  }
+
+  /// Whether next() would return at once.
+  bool ready() const { return pending_->ready(); }
+
+  /// Runs `action` when ready(): at once, or on the thread that delivers, possibly a vendor's. It
+  /// must neither block nor run user code. One action at a time, and no next_async() beside it.
+  void notify(std::function<void()> action) { pending_->on_ready(std::move(action)); }
+
+  /// Cancels the operation, unless it has ended, notifies the provider, and drops the results that
+  /// were not taken. next() then throws Cancelled.
+  void cancel() { pending_->drop(); }
+
+  /// For a range-for, which takes the results that are left and throws as next() does.
+  class Iterator {
+   public:
+    using value_type = T;
+    using difference_type = std::ptrdiff_t;
+    explicit Iterator(Stream& stream) : stream_(&stream), item_(stream.next()) {}
+    T& operator*() const { return *item_; }
+    Iterator& operator++() {
+      item_ = stream_->next();
+      return *this;
+    }
+    void operator++(int) { ++*this; }
+    bool operator==(std::default_sentinel_t) const { return !item_; }
+
+   private:
+    Stream* stream_;
+    mutable std::optional<T> item_;
+  };
+  Iterator begin() { return Iterator(*this); }
+  std::default_sentinel_t end() const { return {}; }
+
+ private:
+  std::shared_ptr<PendingStream> pending_;
+  std::shared_ptr<Channel> channel_;
+  T (*take_)(void*);
+};
+
+/// Where the implementation of a stream puts its results. The operation gets one instead of
+/// returning a value; the stream ends when the operation returns or throws. Do not use it after
+/// that. One thread at a time.
+template <class T>
+class StreamSink {
+ public:
+  virtual ~StreamSink() = default;
+
+  /// Sends a result. While the caller is too far behind, it waits, and blocks the service's thread.
+  /// Throws Cancelled if nobody waits for results any more, Disconnected if the service is being
+  /// withdrawn, TimedOut after the deadline, Overloaded if a result to another process finds no
+  /// room, Internal for a value that CDR cannot carry there. An implementation need not catch them.
+  void push(T item) { put(std::move(item), true); }
+
+  /// As push(), but does not wait: returns false, and does not send the result, if the caller is
+  /// too far behind.
+  bool try_push(T item) { return put(std::move(item), false); }
+
+ private:
+  virtual bool put(T item, bool wait) = 0;
+};
+
+/// How a skeleton passes the results of a stream to the transport: the `out` of Servant::dispatch()
+/// for a stream.
+class StreamWriter {
+ public:
+  virtual ~StreamWriter() = default;
+
+  /// Sends one out struct. Returns false if there is no room and `wait` is false. Throws as
+  /// StreamSink::push() does.
+  virtual bool put(const void* out, bool wait) = 0;
+};
+
+/// The sink over a StreamWriter. Used by generated code.
+template <class T, class Out>
+class WritingSink final : public StreamSink<T> {
+ public:
+  explicit WritingSink(void* writer) : writer_(*static_cast<StreamWriter*>(writer)) {}
+
+ private:
+  bool put(T item, bool wait) override {
+    const Out out{std::move(item)};
+    return writer_.put(&out, wait);
+  }
+
+  StreamWriter& writer_;
+};
+
+}  // namespace skein

@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <fstream>
+
+#include "bench.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command::bench {
+namespace {
+
+Rows load(const std::string& path) {
+  std::ifstream file(path);
+  const Rows rows = Rows::parse(file, nullptr, false);
+  bool good = rows.is_array();
+  for (const Rows& row : rows) {
+    good = good && row.is_object() && row.contains("what") && row.contains("vendor") &&
+           row.value("p50_us", Rows()).is_number() && row.value("p99_us", Rows()).is_number();
+  }
+  if (!good)
+    throw InvalidArgument(path + " holds no result; save one by 'skein bench ... --output FILE'");
+  return rows;
+}
+
+// The same measurement, whichever the vendor: comparing vendors is what it is for.
+bool same(const Rows& one, const Rows& other) {
+  return one["what"] == other["what"] &&
+         one.value("payload_bytes", 0) == other.value("payload_bytes", 0);
+}
+
+void print(const Rows& before, const Rows& after) {
+  const double old_p50 = before["p50_us"], new_p50 = after["p50_us"];
+  const double old_p99 = before["p99_us"], new_p99 = after["p99_us"];
+  std::printf("%-12s %9d %-12s %-12s %12.1f %12.1f %7.2f %7.2f\n",
+              before["what"].get<std::string>().c_str(), before.value("payload_bytes", 0),
+              before["vendor"].get<std::string>().c_str(),
+              after["vendor"].get<std::string>().c_str(), old_p50, new_p50, new_p50 / old_p50,
+              new_p99 / old_p99);
+}
+
+}  // namespace
+
+void compare(const std::string& before, const std::string& after) {
+  const Rows old_rows = load(before), new_rows = load(after);
+  std::size_t shared = 0;
+  std::printf("%-12s %9s %-12s %-12s %12s %12s %7s %7s\n", "what", "payload", "A", "B", "A p50 us",
+              "B p50 us", "p50 x", "p99 x");
+  for (const Rows& old_row : old_rows) {
+    for (const Rows& new_row : new_rows) {
+      if (!same(old_row, new_row)) continue;
+      print(old_row, new_row);
+      ++shared;
+    }
+  }
+  if (shared == 0)
+    throw InvalidArgument(before + " and " + after + " have no measurement in common");
+}
+
+}  // namespace skein::command::bench

@@ -1,0 +1,129 @@
+#include <cstdio>
+#include <fstream>
+#include <vector>
+
+#include "commands.hpp"
+#include "core/printable.hpp"
+#include "interruption.hpp"
+#include "onlooker.hpp"
+#include "rpc/introspection_topic.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/decision.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+#include "skein/introspection.idl.hpp"
+#include "skein/selection.hpp"
+
+namespace skein::command {
+namespace {
+
+constexpr std::size_t kLongestDifference = 4096;
+
+struct Arguments : Onlooker {
+  double seconds = 0;
+  std::string log;
+  bool replays = false;
+  std::vector<std::string> plugins;
+};
+
+void print(const DecisionRecord& record) {
+  std::fputs(explain(record).c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void watch(const Arguments& arguments) {
+  const Interruption interruption;
+  Entity entity(arguments.entity_options("decisions"));
+  introspection::Reader<introspection::Decision> reader(
+      entity.participant(), introspection::kDecisions, [](const introspection::Decision& decision) {
+        try {
+          print(record_of(decision));
+        } catch (const InvalidArgument& error) {
+          std::fprintf(stderr, "skein: %s\n", printable(error.what()).c_str());
+        }
+      });
+  interruption.wait(arguments.seconds);
+}
+
+// What comes out differently, in words; empty where nothing does.
+std::string difference(const DecisionRecord& record, const StrategyFactory& strategies) try {
+  const auto choices = replay(record, strategies);
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const Choice& was = record.attempts[i];
+    const Choice& is = choices[i];
+    if (is == was) continue;
+    return "choice " + std::to_string(i + 1) + " was " + was.csp + " (" + was.reason +
+           "), and is now " + is.csp + " (" + is.reason + ")";
+  }
+  return {};
+} catch (const InvalidArgument& error) {
+  return error.what();
+}
+
+StrategyFactory strategies_of(const Arguments& arguments) {
+  ComponentRegistry registry;
+  for (const std::string& plugin : arguments.plugins) registry.load_plugin(plugin);
+  StrategyFactory strategies;
+  for (const auto& strategy : registry.strategies()) strategies.add(strategy);
+  return strategies;
+}
+
+DecisionRecord parse(const std::string& line, const std::string& place) {
+  try {
+    return record_of(idl::from_json<introspection::Decision>(line));
+  } catch (const InvalidArgument& error) {
+    throw InvalidArgument(place + ": " + error.what());
+  }
+}
+
+// 0 where every decision comes out again; 1 otherwise.
+int read(const Arguments& arguments) {
+  std::ifstream file(arguments.log);
+  if (!file) throw InvalidArgument("the log of decisions '" + arguments.log + "' cannot be read");
+  const StrategyFactory strategies = strategies_of(arguments);
+  std::size_t count = 0, different = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::string place = arguments.log + ":" + std::to_string(++count);
+    const DecisionRecord record = parse(line, place);
+    if (!arguments.replays) {
+      print(record);
+    } else if (const std::string what = difference(record, strategies); !what.empty()) {
+      ++different;
+      std::printf("%s: decision %llu of %s: %s\n", place.c_str(),
+                  static_cast<unsigned long long>(record.number), printable(record.entity).c_str(),
+                  printable(what, kLongestDifference).c_str());
+    }
+  }
+  if (!arguments.replays) return 0;
+  std::printf("%zu decisions, %zu come out differently\n", count, different);
+  return different == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_decisions(CLI::App& app, int& result) {
+  auto* command =
+      app.add_subcommand("decisions", "Show how the Heads on a domain decide, live or from a log");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->add_options(*command);
+  command->add_option("--for", arguments->seconds,
+                      "Seconds to watch; until interrupted by default");
+  auto* log = command->add_option("--log", arguments->log, "Read a Head's log instead");
+  auto* replays = command->add_flag("--replay", arguments->replays,
+                                    "Make the choices of the log again and tell of any difference");
+  replays->needs(log);
+  command
+      ->add_option("--plugin", arguments->plugins,
+                   "A plugin whose selection strategies were used; may be given several times")
+      ->needs(replays);
+  command->callback([arguments, &result] {
+    result = 0;
+    if (arguments->log.empty()) {
+      watch(*arguments);
+    } else {
+      result = read(*arguments);
+    }
+  });
+}
+
+}  // namespace skein::command

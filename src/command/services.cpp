@@ -1,0 +1,87 @@
+#include <cstdio>
+#include <optional>
+
+#include "brokerless_discovery/broker.hpp"
+#include "commands.hpp"
+#include "core/printable.hpp"
+#include "entity/statistics_topic.hpp"
+#include "interruption.hpp"
+#include "onlooker.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/introspection.idl.hpp"
+
+namespace skein::command {
+namespace {
+
+struct Arguments : Onlooker {
+  double seconds = 1.5;
+  bool statistics = false;
+};
+
+double microseconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1000; }
+
+void print_latency(const char* what, const introspection::Latency& latency) {
+  if (latency.count == 0) return;
+  std::printf("      %-7s mean %.1f  p50 %.1f  p90 %.1f  p99 %.1f  greatest %.1f us\n", what,
+              microseconds(latency.mean), microseconds(latency.p50), microseconds(latency.p90),
+              microseconds(latency.p99), microseconds(latency.greatest));
+}
+
+void print(const introspection::ServiceStatistics& service) {
+  std::printf("%-40s %s/%s  waiting %u  running %u\n", printable(service.service).c_str(),
+              printable(service.system).c_str(), printable(service.entity).c_str(), service.waiting,
+              service.running);
+  for (const auto& operation : service.operations) {
+    std::printf(
+        "    %s: received %llu, answered %llu, raised %llu, failed %llu, refused %llu, expired "
+        "%llu\n",
+        printable(operation.name).c_str(), static_cast<unsigned long long>(operation.received),
+        static_cast<unsigned long long>(operation.answered),
+        static_cast<unsigned long long>(operation.raised),
+        static_cast<unsigned long long>(operation.failed),
+        static_cast<unsigned long long>(operation.refused),
+        static_cast<unsigned long long>(operation.expired));
+    print_latency("waited", operation.waited);
+    print_latency("ran", operation.ran);
+  }
+}
+
+void print(const Arguments& arguments) {
+  const Interruption interruption;
+  Entity entity(arguments.entity_options("services"));
+  std::optional<introspection::StatisticsReader> statistics;
+  if (arguments.statistics) statistics.emplace(entity.participant());
+  if (arguments.seconds > 0) interruption.wait(arguments.seconds);
+  if (statistics) {
+    for (const auto& service : statistics->latest()) print(service);
+    return;
+  }
+  const auto services = entity.broker().all();
+  for (const auto& service : services) {
+    std::printf("%-40s %s/%s  pid %u  %s\n", printable(service->service).c_str(),
+                printable(service->system).c_str(), printable(service->entity).c_str(),
+                service->pid, printable(service->vendor).c_str());
+    for (const auto& attribute : service->attributes) {
+      std::printf("    %s = %s\n", printable(attribute.name).c_str(),
+                  printable(attribute.value).c_str());
+    }
+  }
+  std::printf("%zu services on domain %u\n", services.size(), arguments.watched_domain());
+}
+
+}  // namespace
+
+void add_services(CLI::App& app, int& result) {
+  auto* command = app.add_subcommand("services", "List what is provided on a domain now");
+  auto arguments = std::make_shared<Arguments>();
+  arguments->add_options(*command);
+  command->add_flag("--statistics", arguments->statistics,
+                    "Show what became of the calls of each service, and how long they took");
+  command->add_option("--wait", arguments->seconds, "Seconds to listen")->capture_default_str();
+  command->callback([arguments, &result] {
+    print(*arguments);
+    result = 0;
+  });
+}
+
+}  // namespace skein::command

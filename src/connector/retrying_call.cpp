@@ -1,0 +1,156 @@
+#include "retrying_call.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "failover_channel.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
+
+namespace skein::connector {
+
+void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
+                         const std::shared_ptr<PendingCall>& call, const void* in) {
+  const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
+  call->set_canceller([moving] { moving->cancel(); });
+  if (const auto delay = channel->hedge_after()) moving->hedge_later(*delay);
+  if (const auto connection = channel->ready(moving->retries_.wanted())) {
+    moving->try_at(*connection);
+  } else {
+    moving->move(nullptr);
+  }
+}
+
+RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
+                           std::shared_ptr<PendingCall> call, const void* in)
+    : channel_(channel),
+      clock_(channel->clock()),
+      continuations_(channel->continuations()),
+      call_(std::move(call)),
+      in_(copy_of(*call_->operation().in, in)),
+      hedged_(channel->hedge_after().has_value()),
+      retries_(call_->deadline()) {}
+
+RetryingCall::~RetryingCall() {
+  clock_.cancel(deadline_timer_);
+  clock_.cancel(hedge_timer_);
+}
+
+void RetryingCall::try_at(const ProviderConnection& connection) {
+  const TypeSupport& type = *call_->operation().out;
+  std::shared_ptr<void> own;
+  if (hedged_) own = {type.make(), type.destroy, std::pmr::polymorphic_allocator<>(&call_memory())};
+  const auto attempt = make_shared_in_call_memory<Attempt>(call_, std::move(own));
+  attempt->on_finished([self = shared_from_this(), attempt = attempt.get(),
+                        provider = connection.provider] { self->ended(*attempt, provider); });
+  connection.channel->start(attempt, in_.get());
+  bool cancelled;
+  {
+    std::lock_guard lock(mutex_);
+    attempts_.emplace_back(connection.provider, attempt);
+    cancelled = cancelled_;
+  }
+  if (cancelled) attempt->cancel();
+}
+
+void RetryingCall::ended(Attempt& attempt, const Guid& provider) {
+  auto error = attempt.take_error();
+  if (!error) {
+    if (!call_->claim()) return;
+    if (hedged_) call_->operation().out->assign(call_->out(), attempt.out());
+    call_->finish();
+    if (hedged_) cancel();
+    return;
+  }
+  bool again;
+  {
+    std::lock_guard lock(mutex_);
+    if (cancelled_) return;
+    again = retries_.admit(error, provider, clock_.now());
+    if (again && others_run()) return;
+  }
+  if (again) {
+    move(std::move(error));
+  } else {
+    call_->fail(std::move(error));
+    cancel();
+  }
+}
+
+bool RetryingCall::others_run() const {
+  return std::any_of(attempts_.begin(), attempts_.end(),
+                     [](const auto& attempt) { return !attempt.second->finished(); });
+}
+
+void RetryingCall::hedge_later(Duration delay) {
+  hedge_timer_ = clock_.call_after(delay, [weak = weak_from_this()] {
+    const auto self = weak.lock();
+    if (self) self->continuations_.post([self] { self->hedge(); });
+  });
+}
+
+// A second provider that is not to be had is no failure: the first one still has the call.
+void RetryingCall::hedge() {
+  const auto channel = channel_.lock();
+  if (!channel || call_->finished()) return;
+  ProviderQuery wanted;
+  {
+    std::lock_guard lock(mutex_);
+    wanted = retries_.wanted();
+    for (const auto& [provider, attempt] : attempts_) wanted.excluded.push_back(provider);
+  }
+  wanted.wait = false;
+  try {
+    try_at(channel->acquire(wanted));
+  } catch (const Error&) {
+  }
+}
+
+// `why` is what the last provider failed with, null where there was none.
+void RetryingCall::move(std::exception_ptr why) {
+  {
+    std::lock_guard lock(mutex_);
+    // While no provider has the call, nobody else watches its deadline.
+    if (deadline_timer_ == 0) {
+      deadline_timer_ = clock_.call_at(call_->deadline(), [call = std::weak_ptr(call_)] {
+        const auto late = call.lock();
+        if (!late) return;
+        late->fail(std::make_exception_ptr(
+            TimedOut("no provider answered " + std::string(late->operation().name) +
+                     " before its deadline; whether it ran is unknown")));
+      });
+    }
+  }
+  if (continuations_.post([self = shared_from_this(), why] { self->go_on(why); })) return;
+  call_->fail(std::make_exception_ptr(Overloaded("too many calls wait for another provider")));
+}
+
+void RetryingCall::go_on(std::exception_ptr why) {
+  const auto channel = channel_.lock();
+  if (!channel) return call_->cancel();
+  if (call_->finished()) return;
+  ProviderQuery wanted;
+  {
+    std::lock_guard lock(mutex_);
+    wanted = retries_.wanted();
+  }
+  std::exception_ptr failure;
+  try {
+    return try_at(channel->acquire(wanted));
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  call_->fail(why ? std::move(why) : std::move(failure));
+}
+
+void RetryingCall::cancel() {
+  Attempts attempts;
+  {
+    std::lock_guard lock(mutex_);
+    cancelled_ = true;
+    attempts = attempts_;
+  }
+  for (const auto& [provider, attempt] : attempts) attempt->cancel();
+}
+
+}  // namespace skein::connector

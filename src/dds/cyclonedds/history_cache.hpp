@@ -1,0 +1,30 @@
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsc/dds_rhc.h>
+
+#include "../receive_queue.hpp"
+#include "blob.hpp"
+
+namespace skein::dds::cyclonedds {
+
+/// What Cyclone calls a reader history cache, ours in place of its own: it knows the writer's GUID
+/// of each sample and tells a disposal from a writer that merely left, both of which Cyclone's own
+/// loses. It keeps nothing, but hands all on to the reader's queue, in that one's terms.
+///
+/// It never refuses a sample: a refusal stalls Cyclone's receive thread, discovery and leases with
+/// it.
+class HistoryCache : public dds_rhc {
+ public:
+  /// `queue` outlives it.
+  explicit HistoryCache(ReceiveQueue& queue);
+
+ private:
+  static const dds_rhc_ops& operations();
+  void store(const ddsi_writer_info& writer, Blob& blob);
+
+  ReceiveQueue& queue_;
+  dds_reader* reader_ = nullptr;
+};
+
+}  // namespace skein::dds::cyclonedds

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "navigation/terrain/terrain_provider.hpp"
+#include "navigator.idl.hpp"
+#include "skein/clock.hpp"
+
+namespace skein::navigation {
+
+/// Whether the call that this thread works for was cancelled or its deadline has passed; false
+/// outside of any call.
+bool current_call_cancelled();
+
+struct PlannerOptions {
+  /// Polled every few hundred steps at least; true ends the planning with NoRoute.
+  std::function<bool()> stop = current_call_cancelled;
+  /// Against this the Problem's time limit is measured.
+  std::function<Instant()> now = std::chrono::steady_clock::now;
+  /// Of the samplers: the same seed gives the same samples.
+  std::uint32_t seed = 1;
+  /// How long a planner that uses all of its time searches where the Problem sets no limit.
+  std::chrono::milliseconds default_time_limit{1000};
+  /// Distance between the points of the planning grid; 0 takes 1/256 of the terrain's longer side,
+  /// but never less than the distance between its posts.
+  double grid_spacing_m = 0;
+  /// The most exposure that CappedAStar's routes may have, in metres, whatever the Problem allows.
+  double exposure_cap_m = std::numeric_limits<double>::infinity();
+};
+
+// What every planner here promises. `plan` returns a route that satisfies the Problem in every
+// respect that `navigator.idl` names: it ends at the goal, keeps clear of zones and ground between
+// waypoints too, and climbs and turns no tighter than the limits. Otherwise it throws
+// InvalidProblem (no planner could answer) or NoRoute, with the reason: unreachable, out of time,
+// stopped. It never returns a route that is only nearly right. Routes stay near the lowest altitude
+// that ground, climb limit, start and goal allow. One planner may serve several threads at once.
+
+/// Cheapest path by A* on a grid, what threats cost included, drawn taut. The slowest to a first
+/// answer, near the optimum, and the only one that proves that there is none: an unreachable
+/// goal is refused with the zones or mountains that enclose it.
+std::unique_ptr<AE_navigator::IPlanner> make_a_star(std::shared_ptr<TerrainProvider> terrains,
+                                                    PlannerOptions options = {});
+
+/// The shortest route whose exposure is no more than `exposure_cap_m`, the Problem's and the
+/// option's, whatever the Problem's weight, as far as A* with some weight finds it (Lagrangian
+/// relaxation): shorter ones between two weights are missed. Without a cap or without radars it is
+/// the shortest route. Several times as slow as A*; brings each shorter route that it finds.
+/// Refuses, without a proof, where no route keeps the cap.
+std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
+    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
+
+/// Two trees grown towards each other: an answer within milliseconds, often long and careless of
+/// radars. Searches on until its time is up where there is no route.
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
+                                                         PlannerOptions options = {});
+
+/// A tree that is improved for as long as there is time: the more time, the cheaper the route.
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options = {});
+
+/// As RRTstar, but as soon as there is a route it samples only where a cheaper one may lead.
+std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
+    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
+
+/// Looks at ever denser batches of samples in the order of what they promise: a good first route
+/// and a quick improvement.
+std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options = {});
+
+/// A map of roads that grows denser for as long as there is time. Brings only its last route.
+std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options = {});
+
+/// As BITstar, with a second search backwards that tells what is left. In the library's version
+/// 1.5.2 it often finds no route among narrow gaps in time that suffices for all others.
+std::unique_ptr<AE_navigator::IPlanner> make_ait_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options = {});
+
+/// A tree of the Dubins paths of OMPL 1.5.2: an old library behind the interface of today, and a
+/// real danger. Sooner or later an assertion in it aborts the process, so it is for processes of
+/// their own alone: its component says `isolated`, and a profile that has it work in its entity's
+/// process is refused. make_planner knows it as LegacyDubins; planner_names() leaves it out.
+std::unique_ptr<AE_navigator::IPlanner> make_legacy_dubins(
+    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
+
+/// The planners that may share a process with others, by the names that make_planner knows and that
+/// the routes carry: AStar, CappedAStar, RRTConnect, RRTstar,
+/// InformedRRTstar, BITstar, PRMstar, AITstar.
+const std::vector<std::string>& planner_names();
+
+/// Makes one by its name. Throws InvalidArgument for an unknown one, with the nearest known.
+std::unique_ptr<AE_navigator::IPlanner> make_planner(const std::string& name,
+                                                     std::shared_ptr<TerrainProvider> terrains,
+                                                     PlannerOptions options = {});
+
+}  // namespace skein::navigation

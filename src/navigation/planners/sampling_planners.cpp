@@ -1,0 +1,192 @@
+#include <ompl/geometric/planners/informedtrees/AITstar.h>
+#include <ompl/geometric/planners/informedtrees/BITstar.h>
+#include <ompl/geometric/planners/prm/PRMstar.h>
+#include <ompl/geometric/planners/rrt/InformedRRTstar.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
+
+#include <limits>
+
+#include "navigation/planners/planners.hpp"
+#include "navigation/planners/route_making.hpp"
+#include "navigation/planners/sampling.hpp"
+
+namespace skein::navigation {
+namespace {
+
+namespace ob = ompl::base;
+namespace og = ompl::geometric;
+
+class RrtConnectPlanner final : public AE_navigator::IPlanner {
+ public:
+  RrtConnectPlanner(std::shared_ptr<TerrainProvider> terrains, PlannerOptions options)
+      : terrains_(std::move(terrains)), options_(std::move(options)) {}
+
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
+    constexpr int kMaxPoints = 45;
+    const PlanningScene scene(*terrains_, problem, options_);
+    const LegCost length = [](const GroundPoint& a, const GroundPoint& b) {
+      return distance_m(a, b);
+    };
+    const Instant end = scene.budget().search_end(0);
+    std::string unflyable;
+    // A path that cannot be flown is no answer; with other samples there may be one.
+    for (std::uint32_t attempt = 0; scene.budget().now() < end; ++attempt) {
+      // Every other time as close to the zones as is allowed: a gap may be that narrow.
+      const Berth berth = attempt % 2 == 0 ? Berth::ForTurns : Berth::Least;
+      const Sampling sampling(scene, options_.seed + 2 * attempt, berth);
+      Seeded<og::RRTConnect> planner(sampling.space(), options_.seed + 2 * attempt);
+      planner.setRange(sampling.range_m());
+      planner.setProblemDefinition(sampling.problem());
+      const auto path = sampling.solve(
+          planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
+      scene.budget().require_time();
+      if (!path) break;
+      try {
+        return make_route(scene, *path, length, kMaxPoints, "RRTConnect");
+      } catch (const Unflyable& reason) {
+        unflyable = reason.what();
+      }
+    }
+    scene.budget().require_time();
+    if (unflyable.empty()) throw scene.budget().nothing_found();
+    throw AE_navigator::NoRoute("no path that was found can be flown: " + unflyable, false);
+  }
+
+ private:
+  std::shared_ptr<TerrainProvider> terrains_;
+  PlannerOptions options_;
+};
+
+/// How OMPL's planners that improve their path differ for us.
+struct Improver {
+  const char* name;
+  ob::PlannerPtr (*make)(const Sampling& sampling, std::uint32_t seed);
+};
+
+template <class Planner>
+ob::PlannerPtr make_tree(const Sampling& sampling, std::uint32_t seed) {
+  auto planner = std::make_shared<Seeded<Planner>>(sampling.space(), seed);
+  planner->setRange(sampling.range_m());
+  return planner;
+}
+
+template <class Planner>
+ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
+  return std::make_shared<Seeded<Planner>>(sampling.space(), seed);
+}
+
+/// Those that draw random numbers from the sampler alone.
+template <class Planner>
+ob::PlannerPtr make_batches(const Sampling& sampling, std::uint32_t) {
+  return std::make_shared<Planner>(sampling.space());
+}
+
+class ImprovingPlanner final : public AE_navigator::IPlanner {
+ public:
+  ImprovingPlanner(const Improver& improver, std::shared_ptr<TerrainProvider> terrains,
+                   PlannerOptions options)
+      : improver_(improver), terrains_(std::move(terrains)), options_(std::move(options)) {}
+
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
+    return search(problem, nullptr);
+  }
+
+  void improve(const AE_navigator::Problem& problem,
+               StreamSink<AE_navigator::Route>& sink) override {
+    bool any = false;
+    std::optional<AE_navigator::Route> best;
+    try {
+      best = search(problem, [&](const AE_navigator::Route& route) {
+        // A route that the caller has no room for is overtaken by the next.
+        if (sink.try_push(route)) any = true;
+      });
+    } catch (const AE_navigator::NoRoute&) {
+      if (!any) throw;
+    }
+    if (best) sink.push(std::move(*best));
+  }
+
+ private:
+  static constexpr int kMaxPoints = 100;
+  // What a path must save to be worth a route of its own.
+  static constexpr double kWorthwhile = 0.98;
+
+  using Report = std::function<void(const AE_navigator::Route&)>;
+
+  AE_navigator::Route search(const AE_navigator::Problem& problem, const Report& report) {
+    const PlanningScene scene(*terrains_, problem, options_);
+    const Sampling sampling(scene, options_.seed, Berth::ForTurns);
+    sampling.count_exposure();
+    const ob::PlannerPtr planner = improver_.make(sampling, options_.seed);
+    planner->setProblemDefinition(sampling.problem());
+    double reported = std::numeric_limits<double>::infinity();
+    if (report) {
+      sampling.on_better_path([&](const GroundPath& path, double cost) {
+        if (cost > kWorthwhile * reported) return;
+        reported = cost;
+        report(route_of(scene, path));
+      });
+    }
+    const Instant end = scene.budget().search_end(10);
+    const auto path = sampling.solve(
+        *planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
+    scene.budget().require_time();
+    if (!path) throw scene.budget().nothing_found();
+    try {
+      return route_of(scene, *path);
+    } catch (const Unflyable& reason) {
+      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
+                                  false);
+    }
+  }
+
+  AE_navigator::Route route_of(const PlanningScene& scene, const GroundPath& path) const {
+    const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
+    return make_route(scene, path, cost, kMaxPoints, improver_.name);
+  }
+
+  Improver improver_;
+  std::shared_ptr<TerrainProvider> terrains_;
+  PlannerOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
+                                                         PlannerOptions options) {
+  return std::make_unique<RrtConnectPlanner>(std::move(terrains), std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options) {
+  return std::make_unique<ImprovingPlanner>(Improver{"RRTstar", make_tree<og::RRTstar>},
+                                            std::move(terrains), std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
+    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options) {
+  return std::make_unique<ImprovingPlanner>(
+      Improver{"InformedRRTstar", make_tree<og::InformedRRTstar>}, std::move(terrains),
+      std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options) {
+  return std::make_unique<ImprovingPlanner>(Improver{"BITstar", make_batches<og::BITstar>},
+                                            std::move(terrains), std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options) {
+  return std::make_unique<ImprovingPlanner>(Improver{"PRMstar", make_roadmap<og::PRMstar>},
+                                            std::move(terrains), std::move(options));
+}
+
+std::unique_ptr<AE_navigator::IPlanner> make_ait_star(std::shared_ptr<TerrainProvider> terrains,
+                                                      PlannerOptions options) {
+  return std::make_unique<ImprovingPlanner>(Improver{"AITstar", make_batches<og::AITstar>},
+                                            std::move(terrains), std::move(options));
+}
+
+}  // namespace skein::navigation

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "profile/finding.hpp"
+#include "profile/mission_profile.hpp"
+
+namespace skein::profile {
+
+/// Everything that is wrong with the composition of a profile, in one go and in the order of the
+/// files; nothing for a clean one:
+/// - a dependency that no peer provides, or that only a managed interface of another peer would
+/// - a cycle of dependencies, each named once with its way round
+/// - an attribute or parameter that the dictionary does not have, or whose value or declared type
+///   disagrees with it; a parameter that the component does not have
+/// - names given twice: peers, CSPs, parameters, attributes, interfaces
+/// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
+/// - a service reference to something that the mission does not have
+/// - more than one peer that runs the mission, or one that would be restarted
+/// - a peer that is to look for others beyond this host, but names no network interface
+/// - a selection strategy that is none of Skein's own where no plugin could hold it: a warning,
+///   since the program may bring it
+///
+/// Components that could not be read (null) are passed over. A pure function; what only a machine
+/// can tell is in launch/machine_check.hpp.
+std::vector<Finding> check(const MissionProfile& profile);
+
+/// Reads a profile and checks it: the findings of reading and those of check() together. Throws
+/// nothing for what files can contain; a file that is missing is a finding as well.
+std::vector<Finding> check_file(const std::filesystem::path& file);
+
+/// Reads a profile that is going to be run: throws DescriptionError with every finding of
+/// check_file() if one of them is an error.
+MissionProfile read_checked_profile(const std::filesystem::path& file);
+
+}  // namespace skein::profile

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "profile/finding.hpp"
+
+namespace skein::profile {
+
+/// A property of a service, such as `latency` = `100`. What the text means is told by the
+/// dictionary: its type, unit and range.
+struct Attribute {
+  std::string name;
+  std::string value;
+  SourcePosition where;
+};
+
+/// A parameter of a service that a client, a profile or the Body provides.
+struct Parameter {
+  std::string name;
+  /// The canonical name of an interface for a service reference, a type word of the dictionary
+  /// (`integer`, `duration`, ...), or empty where the description leaves it to the dictionary.
+  std::string type;
+  SourcePosition where;
+};
+
+/// An interface that a component implements, and how to use it.
+struct ImplementedInterface {
+  std::string type;  ///< Canonical name, see skein::canonical_interface_name().
+  std::vector<Parameter> required;
+  std::vector<Parameter> optional;
+  std::vector<Attribute> attributes;
+  SourcePosition where;
+
+  /// The attribute of that name, or null. The pointer lives as long as this object is unchanged.
+  const Attribute* find_attribute(std::string_view attribute_name) const;
+  /// The required or optional parameter of that name, or null. Lives as long as find_attribute()'s.
+  const Parameter* find_parameter(std::string_view parameter_name) const;
+};
+
+/// An interface that a component depends on, or that it has as a subcomponent.
+struct InterfaceReference {
+  std::string type;  ///< Canonical name.
+  SourcePosition where;
+};
+
+/// What one component says of itself: the only thing that others know of it before they call it.
+/// A plain value; component_xml.hpp reads and writes it as XML.
+struct ComponentDescription {
+  std::string name;
+  std::vector<ImplementedInterface> interfaces;
+  std::vector<InterfaceReference>
+      dependencies;  ///< Services of others without which it cannot work.
+  std::vector<InterfaceReference> subcomponents;  ///< Managed interfaces of the CSPs that it hosts.
+  SourcePosition where;
+
+  /// The implemented interface of that name in any spelling, or null.
+  /// Throws InvalidArgument if `interface_name` is no interface name.
+  const ImplementedInterface* find_interface(std::string_view interface_name) const;
+  /// Whether one of the subcomponents is that interface. Throws as find_interface() does.
+  bool has_subcomponent(std::string_view interface_name) const;
+};
+
+}  // namespace skein::profile

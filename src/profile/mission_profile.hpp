@@ -1,0 +1,106 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "profile/component_description.hpp"
+#include "profile/dictionary.hpp"
+#include "profile/restart_rules.hpp"
+#include "profile/thread_rules.hpp"
+#include "skein/head_options.hpp"
+
+namespace skein::profile {
+
+/// A value that the profile gives to a parameter of a component.
+struct Setting {
+  std::string name;
+  std::string value;
+  SourcePosition where;
+};
+
+enum class CspProcess {
+  InOwner,  ///< `in`: in the process of its autonomous entity.
+  Own,      ///< `own`: in a process of its own, which may crash alone.
+};
+
+/// One CSP of a peer.
+struct CspProfile {
+  std::string name;            ///< Unique in its peer; by default the component's name.
+  std::string component_file;  ///< As the profile names it, relative to the profile.
+  /// Null only where a profile with findings was read to collect them.
+  std::shared_ptr<const ComponentDescription> component;
+  CspProcess process = CspProcess::InOwner;
+  std::string vendor;  ///< The peer's, unless the profile says otherwise.
+  bool shared_memory =
+      false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
+  std::string plugin;     ///< The peer's, unless the profile says otherwise.
+  ProcessRules rules;     ///< Of a process of its own.
+  ThreadRules threads;    ///< Of the thread that runs it.
+  bool required = false;  ///< Whether its loss ends the mission.
+  std::vector<Setting> parameters;
+  SourcePosition where;
+
+  /// The value that the profile gives to that parameter, or null.
+  const Setting* find_parameter(std::string_view parameter_name) const;
+};
+
+/// One peer of the mission: an autonomous entity with its CSPs.
+struct PeerProfile {
+  std::string name;            ///< Unique in the mission.
+  std::string component_file;  ///< As the profile names it, relative to the profile.
+  /// Null only where a profile with findings was read to collect them.
+  std::shared_ptr<const ComponentDescription> component;
+  std::string vendor;              ///< As dds::load_vendor() knows it.
+  std::string system;              ///< The vehicle or station it belongs to.
+  std::string host;                ///< Empty for the host of the launcher.
+  std::string interface;           ///< Network interface; empty for this host alone (127.0.0.1).
+  std::vector<std::string> peers;  ///< Hosts that it asks for others; see launch::network_of().
+  bool multicast = false;          ///< Whether it finds others by multicast.
+  bool shared_memory = false;      ///< The vendor's, between the processes of one host.
+  /// From which addresses it takes packets: of dds::Network.
+  std::vector<std::string> allowed_sources;
+  std::string plugin;         ///< Library with its providers; empty where main() registers them.
+  bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
+  bool required = true;       ///< Whether its loss ends the mission.
+  ProcessRules rules;
+  ThreadRules threads;  ///< Of its public service.
+  HeadOptions head;     ///< How it chooses among its CSPs.
+  std::vector<CspProfile> csps;
+  std::vector<Setting> parameters;
+  SourcePosition where;
+
+  const CspProfile* find_csp(std::string_view csp_name) const;           ///< Or null.
+  const Setting* find_parameter(std::string_view parameter_name) const;  ///< Or null.
+};
+
+/// Which peers fly, from which components, with which CSPs. mission_profiles/README.md describes
+/// the XML. A plain value.
+struct MissionProfile {
+  std::string name;
+  int domain = 0;  ///< The DDS domain of the mission, 0 to 232.
+  std::filesystem::path file;
+  Dictionary dictionary;
+  std::vector<PeerProfile> peers;
+  SourcePosition where;
+
+  const PeerProfile* find_peer(std::string_view peer_name) const;  ///< Or null.
+};
+
+/// Reads a profile with its dictionary and all of its components. Says nothing of the composition:
+/// see check.hpp. Throws DescriptionError with every finding of every file.
+MissionProfile read_mission_profile(const std::filesystem::path& file);
+
+/// As above, but adds the findings to `findings` and gives what could be read: for tools that show
+/// everything that is wrong in one go.
+MissionProfile read_mission_profile(const std::filesystem::path& file,
+                                    std::vector<Finding>& findings);
+
+/// Gives a parameter a value from the command line, `PEER.PARAMETER=VALUE` or
+/// `PEER/CSP.PARAMETER=VALUE`, in place of the profile's. Throws InvalidArgument for an unknown
+/// peer, CSP or parameter, with a suggestion, and for a value that the dictionary refuses.
+void apply_setting(MissionProfile& profile, std::string_view assignment);
+
+}  // namespace skein::profile

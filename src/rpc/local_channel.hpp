@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "rpc/service.hpp"
+#include "skein/detail/channel.hpp"
+
+namespace skein::rpc {
+
+/// The transport within one process: typed pointers, no bytes. A blocking call to a service with
+/// CallThread::Caller runs on the calling thread, and allocates nothing; all others queue.
+class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
+ public:
+  /// Opens a session at the service; throws what the Head throws to refuse it.
+  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service,
+                                            std::shared_ptr<Clock> clock,
+                                            std::shared_ptr<Executor> continuations,
+                                            const std::string& strategy);
+
+  void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void call(const OperationInfo& operation, const void* in, void* out,
+            const CallTime& time) override;
+  Clock& clock() const noexcept override { return *clock_; }
+  Executor& continuations() const noexcept override { return *continuations_; }
+  std::string peer() const override { return *peer_; }
+  bool connected() const override { return !closed_ && !service_.expired(); }
+  void disconnect() override;
+  void lose(const std::string& how) override;
+
+ private:
+  LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+               std::shared_ptr<Executor> continuations);
+
+  std::shared_ptr<Service> service() const;
+  std::vector<std::shared_ptr<PendingCall>> close();
+  void remember(const std::shared_ptr<PendingCall>& call);
+  void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
+
+  const Guid id_ = Guid::random();
+  std::weak_ptr<Service> service_;
+  const std::shared_ptr<Clock> clock_;
+  const std::shared_ptr<Executor> continuations_;
+  std::shared_ptr<const std::string> peer_;  // shared with calls on their way
+  std::shared_ptr<Session> session_;
+  std::atomic<bool> closed_{false};
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<PendingCall>> queued_;  // and what has ended since the last look
+  std::size_t look_at_ = 16;
+};
+
+}  // namespace skein::rpc

@@ -1,0 +1,55 @@
+#include "servant_call.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <span>
+#include <string>
+
+#include "skein/detail/bytes.hpp"
+#include "skein/detail/cdr.hpp"
+#include "skein/error.hpp"
+
+namespace skein::rpc {
+namespace {
+
+bool declares(const OperationInfo& operation, const ExceptionInfo& exception) {
+  return std::any_of(
+      operation.raises.begin(), operation.raises.end(),
+      [&](const ExceptionInfo* declared) { return declared->hash == exception.hash; });
+}
+
+void check_declared(const OperationInfo& operation, const UserException& exception) {
+  if (declares(operation, exception.info())) return;
+  throw Internal(std::string(operation.name) + " threw " + std::string(exception.info().name) +
+                 ", which its interface does not declare");
+}
+
+void check_sendable(const OperationInfo& operation, const UserException& exception) {
+  Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
+  try {
+    exception.info().type->encode(exception.value(), message);
+  } catch (const std::exception& reason) {
+    throw Internal("the exception " + std::string(exception.info().name) + " of " +
+                   std::string(operation.name) + " cannot be sent: " + reason.what());
+  }
+}
+
+}  // namespace
+
+void call_servant(Servant& servant, const OperationInfo& operation, const void* in, void* out) {
+  try {
+    servant.dispatch(operation, in, out);
+  } catch (const UserException& exception) {
+    check_declared(operation, exception);
+    check_sendable(operation, exception);
+    throw;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& failure) {
+    throw Internal(std::string(operation.name) + " failed: " + failure.what());
+  } catch (...) {
+    throw Internal(std::string(operation.name) + " threw something that is no std::exception");
+  }
+}
+
+}  // namespace skein::rpc

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "skein/detail/operation.hpp"
+
+namespace skein::rpc {
+
+/// Runs the operation. What it throws is the same for every caller, whatever transport the call
+/// came by: an Error and an exception that the operation declares as they are; as Internal what is
+/// neither, and an exception that CDR cannot carry.
+void call_servant(Servant& servant, const OperationInfo& operation, const void* in, void* out);
+
+}  // namespace skein::rpc

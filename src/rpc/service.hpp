@@ -1,0 +1,172 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rpc/call_journal.hpp"
+#include "rpc/fair_queue.hpp"
+#include "rpc/outgoing_stream.hpp"
+#include "rpc/service_meter.hpp"
+#include "skein/call_context.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/error.hpp"
+#include "skein/executor.hpp"
+#include "skein/guid.hpp"
+
+namespace skein::introspection {
+struct ServiceStatistics;
+}
+
+namespace skein::rpc {
+
+/// What a client asks for when it connects: the paper's `initialize()`.
+struct OpenRequest {
+  Guid client;           ///< Nil for a client in the same process.
+  std::string strategy;  ///< Selection strategy by name; empty means the provider's default.
+};
+
+/// Makes a Head's session for a new client; throws Error to refuse it.
+using SessionFactory = std::function<std::shared_ptr<Session>(const OpenRequest&)>;
+
+/// One request as the provider sees it, from whichever transport. It owns its arguments.
+struct Invocation {
+  const OperationInfo* operation = nullptr;
+  /// The in struct; freed by the operation's own TypeSupport.
+  std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
+  Guid caller;
+  Guid connection;           ///< With whose other invocations it waits in line.
+  std::uint64_t number = 0;  ///< The connection's own count; 0 within the process.
+  Instant arrived;
+  Instant begun;  ///< When the implementation was called.
+  Instant ended;  ///< When the implementation had returned or thrown.
+  Instant deadline;
+  std::vector<Guid> chain;  ///< Who waits for the answer, as the request says.
+  /// The call on whose thread, and for which, this one runs; null where it has a thread of its own.
+  const CallContext* outer = nullptr;
+  std::shared_ptr<Session> session;
+  std::atomic<bool> cancelled{false};
+  /// Where the results go, where the operation is a stream.
+  std::shared_ptr<OutgoingStream> stream;
+  /// Called once, on the thread that executes it: the out struct, or what was thrown; neither at
+  /// the end of a stream.
+  std::function<void(const void* out, std::exception_ptr error)> respond;
+  std::shared_ptr<Invocation> next;  ///< The FairQueue's.
+
+  /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink).
+  void cancel() { stop(ErrorCode::Cancelled, "its caller waits no longer"); }
+  void stop(ErrorCode code, const std::string& why) {
+    cancelled = true;
+    if (stream) stream->stop(code, why);
+  }
+};
+
+/// A provided service, whatever transport its calls come by: the implementation and the threads
+/// that run it. Expired and cancelled invocations are dropped unexecuted.
+class Service : public std::enable_shared_from_this<Service> {
+ public:
+  struct Options {
+    /// Identity of this provider of this service; also its partition.
+    Guid id = Guid::random();
+    /// Identity of the threads: services that share one executor share it. Nil: the service's own.
+    Guid strand;
+    /// How many calls the executor runs at once: a call is refused that would wait for itself, as
+    /// all these threads are blocked in calls that led to it.
+    std::size_t threads = 1;
+    /// Invocations that may wait in all; see FairQueue.
+    std::size_t queue = 2048;
+    /// What people call a strand, for messages; empty: its number.
+    std::function<std::string(const Guid& strand)> name_of;
+    /// With CallThread::Caller calls run one at a time, and `threads` is 1.
+    CallThread thread = CallThread::Own;
+    SessionFactory open;
+    std::shared_ptr<CallJournal> journal;  ///< May be null.
+    /// What lives as long as the service: its executor, say.
+    std::shared_ptr<const void> keeps;
+  };
+
+  /// `executor` and `clock` outlive the service.
+  Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& clock, Options options);
+
+  const InterfaceInfo& interface_info() const noexcept { return servant_->interface_info(); }
+  const Guid& id() const noexcept { return options_.id; }
+  const Guid& strand() const noexcept { return options_.strand; }
+  const Clock& clock() const noexcept { return clock_; }
+  /// Where blocking calls from the same process run.
+  CallThread thread() const noexcept { return options_.thread; }
+
+  /// A session for a new client (nullptr where the service has no Head). Throws Unavailable once
+  /// the service is closed.
+  std::shared_ptr<Session> open(const OpenRequest& request) const;
+
+  /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
+  /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
+  /// for itself; respond() is not called then.
+  void submit(std::shared_ptr<Invocation> invocation);
+
+  /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
+  /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too
+  /// late, and Unavailable as by submit().
+  void call_here(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
+
+  /// Throws Unavailable, which names the services of the circle, where the invocation would wait
+  /// for itself.
+  void refuse_self_wait(const Invocation& invocation) const;
+
+  /// Whether an invocation is still inside the implementation although its deadline has passed.
+  bool overdue() const;
+
+  /// What it has done and does; entity and system are left empty.
+  introspection::ServiceStatistics statistics() const;
+
+  /// Invocations that have not begun are refused, now and from now on; those that run are told to
+  /// stop. When it returns, Options::open and name_of are not running and will not run: whoever
+  /// they ask may go.
+  void close();
+
+  /// Once closed: waits until no invocation is inside the implementation; false at the deadline.
+  bool await_end(std::chrono::steady_clock::time_point deadline) const;
+
+ private:
+  class Running;
+  class Turn;
+  void enqueue(std::shared_ptr<Invocation> invocation);
+  void execute_next();
+  std::shared_ptr<Invocation> take_next();
+  void withdraw(Invocation& invocation);
+  void note_begin(const OperationInfo& operation, const Invocation& frame);
+  void note_end(const OperationInfo& operation, const Invocation& frame,
+                const std::exception_ptr& error);
+  void answer(Invocation& invocation, const void* out, std::exception_ptr error);
+  void execute(Invocation& invocation);
+  std::string circle(const std::vector<Guid>& chain) const;
+  void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
+  void stop(Invocation& invocation) const;
+  Unavailable being_withdrawn() const;
+  void begin_here(OperationMeter& meter, const Invocation& frame) const;
+  [[noreturn]] void refuse_turn(OperationMeter& meter, const OperationInfo& operation) const;
+  void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
+
+  std::shared_ptr<Servant> servant_;
+  Executor& executor_;
+  Clock& clock_;
+  Options options_;
+  std::atomic<bool> closed_{false};
+  mutable std::mutex owner_mutex_;  // held while `open` or `name_of` runs
+  ServiceMeter meter_;
+  mutable std::mutex queue_mutex_;
+  FairQueue queue_;
+  std::mutex turn_mutex_;
+  std::condition_variable turn_ended_;
+  bool turn_taken_ = false;
+  mutable std::mutex mutex_;
+  mutable std::condition_variable all_ended_;
+  Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run
+};
+
+}  // namespace skein::rpc

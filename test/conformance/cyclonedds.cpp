@@ -1,4 +1,0 @@
-#include "wire.hpp"
-
-const skein::dds::conformance::Pairing skein::dds::conformance::kPairing{"cyclonedds",
-                                                                         "cyclonedds"};

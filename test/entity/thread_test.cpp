@@ -1,0 +1,156 @@
+#include <catch2/catch.hpp>
+
+#include "office.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A CSP with its owner, which notes the thread that it runs on.
+struct Noted {
+  Noted(Office& office, ServiceOptions options) {
+    office.add(
+        "noted", Place::Inside,
+        [this](const std::string& task) {
+          thread = std::this_thread::get_id();
+          return "noted did " + task;
+        },
+        options);
+  }
+  std::atomic<std::thread::id> thread;
+};
+
+ServiceOptions on(CallThread thread) {
+  ServiceOptions options = declared("1", "0.9");
+  options.thread = thread;
+  return options;
+}
+
+WorkTask blocking_task() {
+  WorkTask task = Office::task();
+  task.run = [](crew::Worker::Proxy& worker, Duration) { return worker.work("it"); };
+  return task;
+}
+
+}  // namespace
+
+TEST_CASE("a CSP runs on its own thread unless it declares its caller's") {
+  Office office;
+  const Noted noted(office, declared("1", "0.9"));
+  CHECK(office.perform(blocking_task(), 60s) == "noted did it");
+  CHECK(noted.thread.load() != std::this_thread::get_id());
+}
+
+TEST_CASE("a CSP that declares its caller's thread runs there, however long it takes") {
+  Office office;
+  const Noted noted(office, on(CallThread::Caller));
+  for (int i = 0; i < 20; ++i) {
+    CHECK(office.perform(blocking_task(), 60s) == "noted did it");
+    CHECK(noted.thread.load() == std::this_thread::get_id());
+  }
+
+  SECTION("but for an asynchronous call, which cannot") {
+    CHECK(office.perform(Office::task(), 60s) == "noted did it");
+    CHECK(noted.thread.load() != std::this_thread::get_id());
+  }
+}
+
+TEST_CASE("calls that run on their callers' threads run one at a time") {
+  Office office;
+  std::atomic<int> inside = 0;
+  std::atomic<int> together = 0;
+  office.add(
+      "alone", Place::Inside,
+      [&](const std::string& task) {
+        if (++inside > 1) ++together;
+        std::this_thread::yield();
+        --inside;
+        return "alone did " + task;
+      },
+      on(CallThread::Caller));
+  std::vector<std::thread> callers;
+  for (int i = 0; i < 4; ++i) {
+    callers.emplace_back([&, asynchronous = i % 2 == 1] {
+      const WorkTask task = asynchronous ? Office::task() : blocking_task();
+      for (int j = 0; j < 50; ++j) office.owner->head().perform(task, nullptr, 60s);
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  CHECK(together == 0);
+}
+
+TEST_CASE("whose turn does not come by the deadline is told so, and nothing hangs") {
+  Office office;
+  Hang hang;
+  auto busy = office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  std::thread other(
+      [&] { CHECK(office.owner->head().perform(blocking_task(), nullptr, 60s) == "too late"); });
+  const bool entered = eventually([&] { return busy->inside == 1; });
+  auto proxy = office.owner->head().preselect<crew::Worker>({}, 100ms);
+  CHECK_THROWS_AS(proxy.work("it"), TimedOut);
+  CHECK(busy->inside == 1);
+  hang.release();
+  other.join();
+  CHECK(entered);
+}
+
+TEST_CASE("a service that runs on its callers' threads has one thread of its own") {
+  Office office;
+  ServiceOptions options = on(CallThread::Caller);
+  options.threads = 2;
+  CHECK_THROWS_WITH(office.add("many", Place::Inside, answer_as("many"), options),
+                    Catch::Contains("one call at a time") && Catch::Contains("2 threads"));
+}
+
+TEST_CASE("an entity ends once the calls that run on others' threads have ended") {
+  auto office = std::make_unique<Office>();
+  Hang hang;
+  const auto busy = office->add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  auto proxy = office->owner->head().preselect<crew::Worker>({}, 60s);
+  std::string result;
+  std::thread caller([&] { result = proxy.work("it"); });
+  const bool entered = eventually([&] { return busy->inside == 1; });
+  std::atomic<bool> ended = false;
+  std::thread ending([&] {
+    office.reset();
+    ended = true;
+  });
+  // What comes now is refused, so the end has begun.
+  const bool begun = eventually([&] {
+    try {
+      proxy.within(10ms).work("it");
+    } catch (const TimedOut&) {
+      return false;
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  });
+  CHECK_FALSE(ended);
+  hang.release();
+  caller.join();
+  ending.join();
+  CHECK(entered);
+  CHECK(begun);
+  CHECK(result == "too late");
+  CHECK(busy->calls == 1);
+}
+
+TEST_CASE("whoever waits for a turn is refused when the service is withdrawn") {
+  Office office;
+  Hang hang;
+  const auto busy = office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  auto proxy = office.owner->head().preselect<crew::Worker>({}, 60s);
+  std::thread first([&] { proxy.work("it"); });
+  const bool entered = eventually([&] { return busy->inside == 1; });
+  auto second = proxy.async_work("it");  // waits on the service's own thread
+  std::thread withdrawing([&] { office.remove("busy"); });
+  CHECK_THROWS_AS(second.get(), Error);
+  hang.release();
+  first.join();
+  withdrawing.join();
+  CHECK(entered);
+  CHECK(busy->calls == 1);
+}

@@ -1,0 +1,6 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include "core/standard_library.hpp"
+#include "skein/skein.hpp"
