@@ -18,7 +18,7 @@ std::optional<double> ask(survey::ISurveyor::Proxy& surveyor, const survey::Area
     return surveyor.minutes(area);
   } catch (const survey::TooLarge& refusal) {  // the interface's own word
     return surveyor.minutes({refusal.limit_m2 / area.width_m, area.width_m});
-  } catch (const skein::Unavailable&) {  // nothing was sent
+  } catch (const skein::Unavailable&) {  // not executed
     return std::nullopt;
   } catch (const skein::Overloaded&) {  // it was refused, and not executed
     return std::nullopt;
