@@ -10,19 +10,17 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "dds/vendor_names.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
 namespace {
 
-using bench::Arguments;
 using bench::Rows;
 
 /// The other side as a process of this machine; ends with this object.
 class Server {
  public:
-  explicit Server(const Arguments& arguments) : pid_(fork()) {
+  explicit Server(const BenchArguments& arguments) : pid_(fork()) {
     if (pid_ < 0) throw Internal("no process can be made for the other side");
     if (pid_ > 0) return;
     prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -63,94 +61,32 @@ void save(const Rows& rows, const std::string& path) {
     throw InvalidArgument(path + " cannot be written; is its folder there and writable?");
 }
 
-void run(const Arguments& arguments, Rows (*measure)(const Arguments&)) {
-  if (arguments.serve) return bench::serve(arguments);
+int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&)) {
+  if (arguments.serve) {
+    bench::serve(arguments);
+    return 0;
+  }
   bench::vendors_of(arguments);  // throws, where it must, before there is another process
   std::unique_ptr<Server> server;
   if (!arguments.remote) server = std::make_unique<Server>(arguments);
   const Rows rows = measure(arguments);
   print(rows);
   if (!arguments.output.empty()) save(rows, arguments.output);
-}
-
-CLI::App* add(CLI::App& bench, const char* name, const char* help,
-              Rows (*measure)(const Arguments&), const std::shared_ptr<Arguments>& arguments,
-              int& result) {
-  auto* command = bench.add_subcommand(name, help);
-  auto* vendor =
-      command
-          ->add_option("--vendor", arguments->vendor, dds::alternatives(dds::networked_vendors()))
-          ->capture_default_str();
-  command->add_option("--domain", arguments->domain, "DDS domain")->capture_default_str();
-  auto* interface = command->add_option("--interface", arguments->interface,
-                                        "Network interface; loopback by default");
-  command->add_option("--peer", arguments->peer,
-                      "The other host's address, with an interface of this one");
-  auto* profile =
-      command
-          ->add_option("--profile", arguments->profile,
-                       "Mission profile whose peers' vendor, interface, shared memory, threads and "
-                       "spinning are measured")
-          ->check(CLI::ExistingFile)
-          ->excludes(vendor)
-          ->excludes(interface);
-  command
-      ->add_option("--provider", arguments->provider,
-                   "Peer of the profile that is called; its first by default")
-      ->needs(profile);
-  command
-      ->add_option("--caller", arguments->caller,
-                   "Peer of the profile that calls; the provider by default")
-      ->needs(profile);
-  auto* serve = command->add_flag("--serve", arguments->serve, "Be the other side, until ended");
-  command->add_flag("--remote", arguments->remote, "The other side runs already (--serve)")
-      ->excludes(serve);
-  command->add_option("--output", arguments->output, "JSON file for `skein bench compare`");
-  command->callback([arguments, measure, &result] {
-    run(*arguments, measure);
-    result = 0;
-  });
-  return command;
-}
-
-void add_load(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
-  command
-      .add_option("--payload", arguments->payloads,
-                  "Octets each way; several are measured one by one")
-      ->capture_default_str();
-  command.add_option("--count", arguments->count, "Calls; fewer of great payloads")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+  return 0;
 }
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& result) {
-  auto* command =
-      app.add_subcommand("bench", "Measure calls on this machine, or between two hosts");
-  command->require_subcommand(1);
-  const auto arguments = std::make_shared<Arguments>();
-  add_load(*add(*command, "latency", "One call after the other", bench::measure_latency, arguments,
-                result),
-           arguments);
-  auto* throughput = add(*command, "throughput", "Time per call with many in flight",
-                         bench::measure_throughput, arguments, result);
-  add_load(*throughput, arguments);
-  throughput->add_option("--in-flight", arguments->in_flight, "Calls in flight")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  add(*command, "discovery", "From an entity's start to its first reply", bench::measure_discovery,
-      arguments, result);
-  auto* compare = command->add_subcommand("compare", "Two saved results beside each other");
-  const auto files = std::make_shared<std::pair<std::string, std::string>>();
-  compare->add_option("A", files->first, "Result")->required()->check(CLI::ExistingFile);
-  compare->add_option("B", files->second, "Result to divide by A's")
-      ->required()
-      ->check(CLI::ExistingFile);
-  compare->callback([files, &result] {
-    bench::compare(files->first, files->second);
-    result = 0;
-  });
+int bench_latency(const BenchArguments& arguments) {
+  return run(arguments, bench::measure_latency);
+}
+
+int bench_throughput(const BenchArguments& arguments) {
+  return run(arguments, bench::measure_throughput);
+}
+
+int bench_discovery(const BenchArguments& arguments) {
+  return run(arguments, bench::measure_discovery);
 }
 
 }  // namespace skein::command

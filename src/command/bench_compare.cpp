@@ -2,10 +2,13 @@
 #include <fstream>
 
 #include "bench.hpp"
+#include "commands.hpp"
 #include "skein/error.hpp"
 
-namespace skein::command::bench {
+namespace skein::command {
 namespace {
+
+using bench::Rows;
 
 Rows load(const std::string& path) {
   std::ifstream file(path);
@@ -38,7 +41,8 @@ void print(const Rows& before, const Rows& after) {
 
 }  // namespace
 
-void compare(const std::string& before, const std::string& after) {
+int bench_compare(const BenchCompareArguments& arguments) {
+  const auto& [before, after] = arguments;
   const Rows old_rows = load(before), new_rows = load(after);
   std::size_t shared = 0;
   std::printf("%-12s %9s %-12s %-12s %12s %12s %7s %7s\n", "what", "payload", "A", "B", "A p50 us",
@@ -52,6 +56,7 @@ void compare(const std::string& before, const std::string& after) {
   }
   if (shared == 0)
     throw InvalidArgument(before + " and " + after + " have no measurement in common");
+  return 0;
 }
 
-}  // namespace skein::command::bench
+}  // namespace skein::command

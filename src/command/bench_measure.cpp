@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <memory>
 
 #include "bench.hpp"
 #include "bench.idl.hpp"
@@ -35,14 +37,14 @@ double microseconds_since(std::chrono::steady_clock::time_point begin) {
       .count();
 }
 
-Rows row(const char* what, const Arguments& arguments, const std::vector<double>& times_us) {
+Rows row(const char* what, const BenchArguments& arguments, const std::vector<double>& times_us) {
   const Summary summary = benchmarks::summarize(times_us);
   return {{"what", what},          {"vendor", vendors_of(arguments)}, {"samples", summary.samples},
           {"p50_us", summary.p50}, {"p90_us", summary.p90},           {"p99_us", summary.p99}};
 }
 
 // Payloads of which `count` would take minutes are sent less often.
-std::size_t count_for(const Arguments& arguments, std::size_t payload) {
+std::size_t count_for(const BenchArguments& arguments, std::size_t payload) {
   constexpr std::size_t kManyOctets = 64 << 20;
   return std::max<std::size_t>(
       20, std::min(arguments.count, kManyOctets / std::max<std::size_t>(payload, 1)));
@@ -51,7 +53,8 @@ std::size_t count_for(const Arguments& arguments, std::size_t payload) {
 using Measure =
     std::function<std::vector<double>(Mirror::Proxy&, const Content&, std::size_t count)>;
 
-Rows measure_each_payload(const Arguments& arguments, const char* what, const Measure& measure) {
+Rows measure_each_payload(const BenchArguments& arguments, const char* what,
+                          const Measure& measure) {
   const Side side = side_of(arguments, Role::Caller);
   if (side.lock_memory) lock_memory();
   Entity entity(side.entity);
@@ -70,7 +73,7 @@ Rows measure_each_payload(const Arguments& arguments, const char* what, const Me
 
 }  // namespace
 
-void serve(const Arguments& arguments) {
+void serve(const BenchArguments& arguments) {
   const Interruption interruption;
   const Side side = side_of(arguments, Role::Provider);
   if (side.lock_memory) lock_memory();
@@ -79,7 +82,7 @@ void serve(const Arguments& arguments) {
   interruption.wait(0);
 }
 
-Rows measure_latency(const Arguments& arguments) {
+Rows measure_latency(const BenchArguments& arguments) {
   return measure_each_payload(arguments, "latency",
                               [](Mirror::Proxy& proxy, const Content& content, std::size_t count) {
                                 std::vector<double> times(count);
@@ -92,7 +95,7 @@ Rows measure_latency(const Arguments& arguments) {
                               });
 }
 
-Rows measure_throughput(const Arguments& arguments) {
+Rows measure_throughput(const BenchArguments& arguments) {
   const std::size_t depth = arguments.in_flight;
   return measure_each_payload(
       arguments, "throughput",
@@ -116,7 +119,7 @@ Rows measure_throughput(const Arguments& arguments) {
       });
 }
 
-Rows measure_discovery(const Arguments& arguments) {
+Rows measure_discovery(const BenchArguments& arguments) {
   const Side side = side_of(arguments, Role::Caller);
   std::vector<double> times(kDiscoveries);
   for (double& time : times) {

@@ -25,7 +25,8 @@ const PeerProfile& find_peer(const MissionProfile& mission, const std::string& n
                         suggestion(name, known));
 }
 
-const PeerProfile& peer_of(const MissionProfile& mission, const Arguments& arguments, Role role) {
+const PeerProfile& peer_of(const MissionProfile& mission, const BenchArguments& arguments,
+                           Role role) {
   const bool calls = role == Role::Caller && !arguments.caller.empty();
   const PeerProfile& peer = find_peer(mission, calls ? arguments.caller : arguments.provider);
   if (peer.vendor != dds::kLoopback) return peer;
@@ -35,7 +36,7 @@ const PeerProfile& peer_of(const MissionProfile& mission, const Arguments& argum
       "call; choose a peer on a DDS vendor by --provider and --caller");
 }
 
-Side side_of_profile(const Arguments& arguments, Role role) {
+Side side_of_profile(const BenchArguments& arguments, Role role) {
   const MissionProfile mission = profile::read_mission_profile(arguments.profile);
   const PeerProfile& peer = peer_of(mission, arguments, role);
   Side side{launch::entity_options(mission, peer), {}, peer.threads.lock_memory};
@@ -44,7 +45,7 @@ Side side_of_profile(const Arguments& arguments, Role role) {
   return side;
 }
 
-Side side_of_options(const Arguments& arguments) {
+Side side_of_options(const BenchArguments& arguments) {
   Side side;
   side.entity.vendor = dds::load_vendor(arguments.vendor);
   if (!arguments.interface.empty()) side.entity.network.interfaces = {arguments.interface};
@@ -53,7 +54,7 @@ Side side_of_options(const Arguments& arguments) {
 
 }  // namespace
 
-Side side_of(const Arguments& arguments, Role role) {
+Side side_of(const BenchArguments& arguments, Role role) {
   Side side =
       arguments.profile.empty() ? side_of_options(arguments) : side_of_profile(arguments, role);
   EntityOptions& entity = side.entity;
@@ -71,7 +72,7 @@ Side side_of(const Arguments& arguments, Role role) {
   return side;
 }
 
-std::string vendors_of(const Arguments& arguments) {
+std::string vendors_of(const BenchArguments& arguments) {
   if (arguments.profile.empty()) return arguments.vendor;
   const MissionProfile mission = profile::read_mission_profile(arguments.profile);
   const std::string& provider = peer_of(mission, arguments, Role::Provider).vendor;

@@ -4,18 +4,14 @@
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "interruption.hpp"
-#include "onlooker.hpp"
 #include "rpc/introspection_topic.hpp"
+#include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::command {
 namespace {
 
 constexpr std::size_t kLongestError = 4096;
-
-struct Arguments : Onlooker {
-  double seconds = 0;
-};
 
 const char* word_of(introspection::CallStep step) {
   switch (step) {
@@ -55,26 +51,15 @@ void print(const introspection::CallEvent& event) {
   std::fflush(stdout);
 }
 
-void watch(const Arguments& arguments) {
+}  // namespace
+
+int show_calls(const CallsArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("calls"));
   introspection::Reader<introspection::CallEvent> reader(entity.participant(),
                                                          introspection::kCalls, print);
   interruption.wait(arguments.seconds);
-}
-
-}  // namespace
-
-void add_calls(CLI::App& app, int& result) {
-  auto* command = app.add_subcommand("calls", "Show what happens to each call on a domain, live");
-  auto arguments = std::make_shared<Arguments>();
-  arguments->add_options(*command);
-  command->add_option("--for", arguments->seconds,
-                      "Seconds to watch; until interrupted by default");
-  command->callback([arguments, &result] {
-    watch(*arguments);
-    result = 0;
-  });
+  return 0;
 }
 
 }  // namespace skein::command

@@ -7,15 +7,9 @@
 #include "launch/supervisor.hpp"
 
 namespace skein::command {
-
 namespace {
 
-struct Arguments {
-  std::string profile;
-  std::string host;
-};
-
-std::vector<profile::Finding> findings_of(const Arguments& arguments) {
+std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
   auto findings = profile::check_file(arguments.profile);
   // Of a profile with gaps it cannot be said what it needs here.
   if (profile::has_errors(findings)) return findings;
@@ -30,21 +24,12 @@ std::vector<profile::Finding> findings_of(const Arguments& arguments) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& result) {
-  auto* command = app.add_subcommand("check", "Check a mission profile and all that it names");
-  auto arguments = std::make_shared<Arguments>();
-  command->add_option("PROFILE", arguments->profile, "Mission profile (XML)")->required();
-  command->add_option("--host", arguments->host,
-                      "Which host of the profile this is, where names do not tell");
-  command->callback([arguments, &result] {
-    const auto findings = findings_of(*arguments);
-    std::fputs(profile::to_text(findings).c_str(), stderr);
-    const bool refused = profile::has_errors(findings);
-    if (!refused) {
-      std::printf("%s: complete: every dependency is resolved\n", arguments->profile.c_str());
-    }
-    result = refused ? launch::kConfigurationError : 0;
-  });
+int check(const CheckArguments& arguments) {
+  const auto findings = findings_of(arguments);
+  std::fputs(profile::to_text(findings).c_str(), stderr);
+  if (profile::has_errors(findings)) return launch::kConfigurationError;
+  std::printf("%s: complete: every dependency is resolved\n", arguments.profile.c_str());
+  return 0;
 }
 
 }  // namespace skein::command

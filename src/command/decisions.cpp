@@ -5,11 +5,11 @@
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "interruption.hpp"
-#include "onlooker.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/decision.hpp"
 #include "skein/detail/type_support.hpp"
+#include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
@@ -19,19 +19,12 @@ namespace {
 
 constexpr std::size_t kLongestDifference = 4096;
 
-struct Arguments : Onlooker {
-  double seconds = 0;
-  std::string log;
-  bool replays = false;
-  std::vector<std::string> plugins;
-};
-
 void print(const DecisionRecord& record) {
   std::fputs(explain(record).c_str(), stdout);
   std::fflush(stdout);
 }
 
-void watch(const Arguments& arguments) {
+void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("decisions"));
   introspection::Reader<introspection::Decision> reader(
@@ -60,7 +53,7 @@ std::string difference(const DecisionRecord& record, const StrategyFactory& stra
   return error.what();
 }
 
-StrategyFactory strategies_of(const Arguments& arguments) {
+StrategyFactory strategies_of(const DecisionsArguments& arguments) {
   ComponentRegistry registry;
   for (const std::string& plugin : arguments.plugins) registry.load_plugin(plugin);
   StrategyFactory strategies;
@@ -77,7 +70,7 @@ DecisionRecord parse(const std::string& line, const std::string& place) {
 }
 
 // 0 where every decision comes out again; 1 otherwise.
-int read(const Arguments& arguments) {
+int read(const DecisionsArguments& arguments) {
   std::ifstream file(arguments.log);
   if (!file) throw InvalidArgument("the log of decisions '" + arguments.log + "' cannot be read");
   const StrategyFactory strategies = strategies_of(arguments);
@@ -101,29 +94,10 @@ int read(const Arguments& arguments) {
 
 }  // namespace
 
-void add_decisions(CLI::App& app, int& result) {
-  auto* command =
-      app.add_subcommand("decisions", "Show how the Heads on a domain decide, live or from a log");
-  auto arguments = std::make_shared<Arguments>();
-  arguments->add_options(*command);
-  command->add_option("--for", arguments->seconds,
-                      "Seconds to watch; until interrupted by default");
-  auto* log = command->add_option("--log", arguments->log, "Read a Head's log instead");
-  auto* replays = command->add_flag("--replay", arguments->replays,
-                                    "Make the choices of the log again and tell of any difference");
-  replays->needs(log);
-  command
-      ->add_option("--plugin", arguments->plugins,
-                   "A plugin whose selection strategies were used; may be given several times")
-      ->needs(replays);
-  command->callback([arguments, &result] {
-    result = 0;
-    if (arguments->log.empty()) {
-      watch(*arguments);
-    } else {
-      result = read(*arguments);
-    }
-  });
+int show_decisions(const DecisionsArguments& arguments) {
+  if (!arguments.log.empty()) return read(arguments);
+  watch(arguments);
+  return 0;
 }
 
 }  // namespace skein::command

@@ -1,6 +1,10 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "commands.hpp"
 #include "core/printable.hpp"
@@ -15,29 +19,14 @@
 namespace skein::command {
 namespace {
 
-struct Arguments {
-  std::string profile;
-  std::string process;
-  std::vector<std::string> settings;
-  std::string host;
-  bool dry_run = false;
-  bool verbose = false;
-};
-
-void add_common(CLI::App& command, Arguments& arguments) {
-  command.add_option("PROFILE", arguments.profile, "Mission profile (XML)")->required();
-  command.add_option(
-      "--set", arguments.settings,
-      "A parameter's value for this run: PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE");
-}
-
-profile::MissionProfile read(const Arguments& arguments) {
+profile::MissionProfile read(const MissionArguments& arguments) {
   auto mission = profile::read_checked_profile(arguments.profile);
   for (const std::string& setting : arguments.settings) profile::apply_setting(mission, setting);
   return mission;
 }
 
-std::vector<std::string> command_line(const Arguments& arguments, const profile::PeerProfile& peer,
+std::vector<std::string> command_line(const MissionArguments& arguments,
+                                      const profile::PeerProfile& peer,
                                       const profile::CspProfile* csp) {
   std::vector<std::string> argv{std::filesystem::read_symlink("/proc/self/exe").string(), "peer",
                                 arguments.profile, csp ? peer.name + "/" + csp->name : peer.name};
@@ -107,7 +96,9 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator) {
   return options;
 }
 
-int launch(const Arguments& arguments) {
+}  // namespace
+
+int launch(const LaunchArguments& arguments) {
   const profile::MissionProfile mission = read(arguments);
   const auto plan = launch::make_launch_plan(
       mission,
@@ -133,30 +124,9 @@ int launch(const Arguments& arguments) {
   return outcome.exit_code;
 }
 
-}  // namespace
-
-void add_launch(CLI::App& app, int& result) {
-  auto* command = app.add_subcommand("launch", "Fly a mission: each peer in a process of its own");
-  auto arguments = std::make_shared<Arguments>();
-  add_common(*command, *arguments);
-  command->add_option("--host", arguments->host,
-                      "Which host of the profile this is, where names do not tell");
-  command->add_flag("--dry-run", arguments->dry_run, "Only say what would run");
-  command->add_flag("--verbose", arguments->verbose,
-                    "Show the start, readiness and end of each process");
-  command->callback([arguments, &result] { result = launch(*arguments); });
-}
-
-void add_peer(CLI::App& app, int& result) {
-  auto* command = app.add_subcommand("peer", "Run one process of a mission");
-  auto arguments = std::make_shared<Arguments>();
-  add_common(*command, *arguments);
-  command->add_option("PROCESS", arguments->process, "A peer, or PEER/CSP for a CSP's own process")
-      ->required();
-  command->callback([arguments, &result] {
-    ComponentRegistry registry;
-    result = launch::run_process(read(*arguments), arguments->process, registry);
-  });
+int run_peer(const PeerArguments& arguments) {
+  ComponentRegistry registry;
+  return launch::run_process(read(arguments), arguments.process, registry);
 }
 
 }  // namespace skein::command

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "dds/vendor_names.hpp"
 #include "launch/address_space.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/peer.hpp"
 #include "profile/mission_profile.hpp"
+#include "skein/entity.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
@@ -26,27 +26,6 @@ dds::Network network_of(const profile::MissionProfile& mission, const std::strin
 }
 
 }  // namespace
-
-void Onlooker::add_options(CLI::App& command) {
-  command.add_option("--vendor", vendor, dds::alternatives(dds::networked_vendors()))
-      ->capture_default_str();
-  auto* by_domain =
-      command.add_option("--domain", domain, "DDS domain of the mission")->capture_default_str();
-  auto* by_interface =
-      command.add_option("--interface", interface, "Network interface; loopback by default");
-  command.add_option("--peers", peers, "Hosts to ask for peers, beside this one")
-      ->delimiter(',')
-      ->needs(by_interface);
-  command.add_flag("--multicast", multicast, "Find peers by multicast")->needs(by_interface);
-  auto* by_profile =
-      command
-          .add_option("--profile", profile,
-                      "Mission profile: domain and network are those of its peers on this host")
-          ->excludes(by_domain)
-          ->excludes(by_interface);
-  command.add_option("--host", host, "Which host of the profile this is, where names do not tell")
-      ->needs(by_profile);
-}
 
 std::uint32_t Onlooker::watched_domain() const {
   if (profile.empty()) return domain;

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "skein/entity.hpp"
+namespace skein {
+struct EntityOptions;
+}
 
 namespace skein::command {
 
@@ -17,8 +19,6 @@ struct Onlooker {
   bool multicast = false;
   std::string profile;
   std::string host;
-
-  void add_options(CLI::App& command);
 
   /// The domain that it looks at: the option's or the profile's.
   std::uint32_t watched_domain() const;

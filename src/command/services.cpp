@@ -6,17 +6,12 @@
 #include "core/printable.hpp"
 #include "entity/statistics_topic.hpp"
 #include "interruption.hpp"
-#include "onlooker.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::command {
 namespace {
-
-struct Arguments : Onlooker {
-  double seconds = 1.5;
-  bool statistics = false;
-};
 
 double microseconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1000; }
 
@@ -46,7 +41,9 @@ void print(const introspection::ServiceStatistics& service) {
   }
 }
 
-void print(const Arguments& arguments) {
+}  // namespace
+
+int list_services(const ServicesArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("services"));
   std::optional<introspection::StatisticsReader> statistics;
@@ -54,7 +51,7 @@ void print(const Arguments& arguments) {
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   if (statistics) {
     for (const auto& service : statistics->latest()) print(service);
-    return;
+    return 0;
   }
   const auto services = entity.broker().all();
   for (const auto& service : services) {
@@ -67,21 +64,7 @@ void print(const Arguments& arguments) {
     }
   }
   std::printf("%zu services on domain %u\n", services.size(), arguments.watched_domain());
-}
-
-}  // namespace
-
-void add_services(CLI::App& app, int& result) {
-  auto* command = app.add_subcommand("services", "List what is provided on a domain now");
-  auto arguments = std::make_shared<Arguments>();
-  arguments->add_options(*command);
-  command->add_flag("--statistics", arguments->statistics,
-                    "Show what became of the calls of each service, and how long they took");
-  command->add_option("--wait", arguments->seconds, "Seconds to listen")->capture_default_str();
-  command->callback([arguments, &result] {
-    print(*arguments);
-    result = 0;
-  });
+  return 0;
 }
 
 }  // namespace skein::command

@@ -83,7 +83,7 @@ HOMES = {
     "pugixml": (r"pugixml", ["src/profile", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "src/command", "test", "benchmarks"]),
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
-    "the command line": (r"CLI/", ["src/command", "benchmarks", "examples"]),
+    "the command line": (r"CLI/", ["src/command/main.cpp", "src/command/grid/main.cpp", "benchmarks"]),
 }
 
 
