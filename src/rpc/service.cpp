@@ -204,7 +204,7 @@ void Service::refuse_self_wait(const Invocation& invocation) const {
       "make the inner call asynchronous or give the service more threads");
 }
 
-// What an implementation returns because it saw its deadline pass is no result.
+// What an implementation returns, or gives up, because it saw its deadline pass is no result.
 void Service::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
   if (frame.ended < frame.deadline) return;
   throw TimedOut(std::string(interface_info().name) + " finished " + std::string(operation.name) +
@@ -310,6 +310,11 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
   };
   try {
     call_servant(*servant_, operation, in, out);
+  } catch (const Cancelled&) {
+    outcome = &meter.failed;
+    end();
+    refuse_too_late(operation, frame);
+    throw;
   } catch (const UserException&) {
     outcome = &meter.raised;
     end();
