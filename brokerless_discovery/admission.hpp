@@ -39,7 +39,7 @@ inline bool speaks_for(const Guid& writer, const Guid& provider) {
 bool is_name(const std::string& text);
 
 /// The largest message that a description may be, and the most that it may hold of a kind.
-inline constexpr std::size_t kMaxDescriptionBytes = 64 * 1024;
+inline constexpr std::size_t kMaxDescriptionBytes = 64u << 10;
 inline constexpr std::size_t kMaxBases = 64;
 inline constexpr std::size_t kMaxOperations = 1024;
 inline constexpr std::size_t kMaxAttributes = 256;
@@ -54,7 +54,7 @@ std::size_t weight_of(const discovery::ServiceDescription& description);
 class Room {
  public:
   static constexpr std::size_t kEntriesOfOne = 1024;
-  static constexpr std::size_t kEntriesOfAll = 16 * 1024;
+  static constexpr std::size_t kEntriesOfAll = 16u << 10;
   static constexpr std::size_t kBytesOfOne = 8u << 20;
   static constexpr std::size_t kBytesOfAll = 64u << 20;
 

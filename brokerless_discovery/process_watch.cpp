@@ -143,7 +143,7 @@ struct ProcessWatch::State {
         !control(EPOLL_CTL_ADD, listener.socket, id, EPOLLIN)) {
       throw_unavailable();
     }
-    const std::string address = listener.address;
+    std::string address = listener.address;
     listeners.emplace(id, std::move(listener));
     return address;
   }

@@ -115,9 +115,8 @@ class Connector {
   /// for a nil reference.
   template <class Interface>
   typename Interface::Proxy connect(const Reference<Interface>& reference,
-                                    ConnectOptions options = {}) {
-    return typename Interface::Proxy(
-        open(Interface::interface_info(), to(reference, std::move(options))));
+                                    const ConnectOptions& options = {}) {
+    return typename Interface::Proxy(open(Interface::interface_info(), to(reference, options)));
   }
 
   /// Returns a proxy for each provider that matches now, in the Broker's order, for gather(). Each

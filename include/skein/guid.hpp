@@ -15,7 +15,7 @@ namespace skein {
 struct Guid {
   std::array<std::uint8_t, 16> bytes{};
 
-  auto operator<=>(const Guid&) const = default;
+  auto operator<=>(const Guid&) const = default;  // NOLINT(modernize-use-nullptr): it has none
   bool is_nil() const noexcept { return *this == Guid{}; }
 
   /// The first 12 bytes, which all endpoints of an RTPS participant share; the rest is zero.

@@ -12,7 +12,7 @@ using bench::Rows;
 
 Rows load(const std::string& path) {
   std::ifstream file(path);
-  const Rows rows = Rows::parse(file, nullptr, false);
+  Rows rows = Rows::parse(file, nullptr, false);
   bool good = rows.is_array();
   for (const Rows& row : rows) {
     good = good && row.is_object() && row.contains("what") && row.contains("vendor") &&
