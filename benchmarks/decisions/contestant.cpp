@@ -131,7 +131,7 @@ Contestant::Contestant(std::string name, HeadOptions head, const std::vector<Alg
 Answer Contestant::answer(const Request& request) {
   const auto terrain = terrains_->load(request.problem.terrain);
   Answer answer;
-  DecisionRecord record;
+  introspection::Decision record;
   const auto begin = steady_clock::now();
   try {
     const auto task = task_of(request.problem, *terrain);
@@ -145,9 +145,9 @@ Answer Contestant::answer(const Request& request) {
   }
   answer.time_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - begin).count();
   answer.attempts = record.attempts.size();
-  for (const Attempt& attempt : record.attempts) {
+  for (const introspection::Attempt& attempt : record.attempts) {
     answer.chosen = attempt.csp;
-    if (attempt.outcome == Attempt::Outcome::Accepted) break;
+    if (attempt.outcome == introspection::Outcome::Accepted) break;
   }
   return answer;
 }

@@ -24,7 +24,7 @@ class BatteryBody : public battery::IBattery {
     task.evaluate = [](const double& minutes) {
       return minutes > 0 ? std::nullopt : std::optional<std::string>("no battery lasts so short");
     };
-    skein::DecisionRecord record;
+    skein::introspection::Decision record;
     const double minutes = head_.perform(task, &record);
     estimated_by = record.attempts.back().csp + ": " + record.attempts.back().reason;
     return minutes;

@@ -80,7 +80,7 @@ class Head {
   /// agree; TimedOut if there was no time to ask a CSP; otherwise the error of the last attempt.
   /// `record` receives the decision, also if this throws.
   template <class Interface, class Result>
-  Result perform(const Task<Interface, Result>& task, DecisionRecord* record = nullptr,
+  Result perform(const Task<Interface, Result>& task, introspection::Decision* record = nullptr,
                  Duration limit = std::chrono::seconds(60)) {
     task_run::TypedRun<Interface, Result> run(task);
     decide(Interface::interface_info(), run, limit, record);
@@ -102,7 +102,7 @@ class Head {
   std::vector<Current> running() const;
 
   /// The last 64 decisions, oldest first. `skein decisions` shows those of all entities live.
-  std::vector<DecisionRecord> decisions() const;
+  std::vector<introspection::Decision> decisions() const;
 
   /// A copy of the current history.
   History history() const;
@@ -115,10 +115,11 @@ class Head {
   struct State;
   class Run;
 
-  DecisionRecord open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
-                             const Features& features, Instant begin, Duration limit) const;
+  introspection::Decision open_record(const InterfaceInfo& interface,
+                                      const SelectionStrategy& strategy, const Features& features,
+                                      Instant begin, Duration limit) const;
   void decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
-              DecisionRecord* wanted);
+              introspection::Decision* wanted);
   std::shared_ptr<Channel> preselect(const InterfaceInfo& interface, const Features& features,
                                      Duration limit);
 

@@ -102,17 +102,6 @@ class StrategyFactory {
   std::map<std::string, std::shared_ptr<const SelectionStrategy>> strategies_;
 };
 
-/// A strategy's answer, as the record of a decision keeps it.
-struct Choice {
-  std::string csp;
-  Duration remaining{};  ///< The time left when the strategy was asked.
-  Duration slice{};
-  Duration expected{};  ///< Expected time to an answer. Zero: unknown.
-  bool explores = false;
-  std::string reason;  ///< Why it was chosen.
-  bool operator==(const Choice&) const = default;
-};
-
 /// The CSPs for one request, in the order that the strategy selects. CSPs in quarantine are
 /// skipped; if all are, the one whose quarantine ends first is tried.
 class CandidateIterator {
@@ -128,9 +117,10 @@ class CandidateIterator {
 
   struct Next {
     Candidate candidate;
-    Choice choice;
+    Selection selection;  ///< Its slice is at most the time left.
   };
-  /// Only if not done().
+  /// `remaining` is the time left. Only if not done(). Throws Internal if the strategy selects a
+  /// candidate that does not exist.
   Next next(Duration remaining);
 
  private:

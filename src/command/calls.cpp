@@ -21,11 +21,11 @@ const char* word_of(introspection::CallStep step) {
       return "received";
     case introspection::CallStep::Replied:
       return "replied";
-    case introspection::CallStep::Refused:
+    case introspection::CallStep::RepliedError:
       return "refused";
     case introspection::CallStep::Answered:
       return "answered";
-    case introspection::CallStep::Failed:
+    case introspection::CallStep::EndedInError:
       break;
   }
   return "failed";

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kLongestDifference = 4096;
 
-void print(const DecisionRecord& record) {
+void print(const introspection::Decision& record) {
   std::fputs(explain(record).c_str(), stdout);
   std::fflush(stdout);
 }
@@ -27,23 +27,18 @@ void print(const DecisionRecord& record) {
 void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("decisions"));
-  introspection::Reader<introspection::Decision> reader(
-      entity.participant(), introspection::kDecisions, [](const introspection::Decision& decision) {
-        try {
-          print(record_of(decision));
-        } catch (const InvalidArgument& error) {
-          std::fprintf(stderr, "skein: %s\n", printable(error.what()).c_str());
-        }
-      });
+  introspection::Reader<introspection::Decision> reader(entity.participant(),
+                                                        introspection::kDecisions, print);
   interruption.wait(arguments.seconds);
 }
 
 // What comes out differently, in words; empty where nothing does.
-std::string difference(const DecisionRecord& record, const StrategyFactory& strategies) try {
-  const auto choices = replay(record, strategies);
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    const Choice& was = record.attempts[i];
-    const Choice& is = choices[i];
+std::string difference(const introspection::Decision& record,
+                       const StrategyFactory& strategies) try {
+  const auto attempts = replay(record, strategies);
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    const introspection::Attempt& was = record.attempts[i];
+    const introspection::Attempt& is = attempts[i];
     if (is == was) continue;
     return "choice " + std::to_string(i + 1) + " was " + was.csp + " (" + was.reason +
            "), and is now " + is.csp + " (" + is.reason + ")";
@@ -61,9 +56,9 @@ StrategyFactory strategies_of(const DecisionsArguments& arguments) {
   return strategies;
 }
 
-DecisionRecord parse(const std::string& line, const std::string& place) {
+introspection::Decision parse(const std::string& line, const std::string& place) {
   try {
-    return record_of(idl::from_json<introspection::Decision>(line));
+    return idl::from_json<introspection::Decision>(line);
   } catch (const InvalidArgument& error) {
     throw InvalidArgument(place + ": " + error.what());
   }
@@ -77,7 +72,7 @@ int read(const DecisionsArguments& arguments) {
   std::size_t count = 0, different = 0;
   for (std::string line; std::getline(file, line);) {
     const std::string place = arguments.log + ":" + std::to_string(++count);
-    const DecisionRecord record = parse(line, place);
+    const introspection::Decision record = parse(line, place);
     if (!arguments.replays) {
       print(record);
     } else if (const std::string what = difference(record, strategies); !what.empty()) {

@@ -4,18 +4,6 @@
 
 namespace skein {
 
-const char* to_string(CircuitBreaker::State state) noexcept {
-  switch (state) {
-    case CircuitBreaker::State::Closed:
-      return "closed";
-    case CircuitBreaker::State::Open:
-      return "open";
-    case CircuitBreaker::State::HalfOpen:
-      break;
-  }
-  return "half-open";
-}
-
 CircuitBreaker::State CircuitBreaker::state(Instant now) const noexcept {
   if (quarantine_ == Duration::zero()) return State::Closed;
   return probing_ || now < opened_ + quarantine_ ? State::Open : State::HalfOpen;

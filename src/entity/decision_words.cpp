@@ -1,13 +1,15 @@
 #include "core/printable.hpp"
 #include "selection_text.hpp"
 #include "skein/decision.hpp"
+#include "wire_values.hpp"
 
 namespace skein {
 namespace {
 
-using selection_text::in_ms;
 using selection_text::number;
 using selection_text::percent;
+
+std::string in_ms(std::int64_t ns) { return selection_text::in_ms(wire_values::duration(ns)); }
 
 /// Records come from the network and from files, too.
 std::string shown(const std::string& text) {
@@ -15,60 +17,62 @@ std::string shown(const std::string& text) {
   return printable(text, kLongest);
 }
 
-std::string learned_text(const Prediction& learned) {
+std::string learned_text(const introspection::LearnedFigures& learned) {
   std::string text = "over " + std::to_string(learned.samples) +
                      (learned.samples == 1 ? " similar request:" : " similar requests:");
-  if (learned.median) text += " median " + in_ms(*learned.median) + ",";
-  if (learned.p95) text += " p95 " + in_ms(*learned.p95) + ",";
-  if (learned.quality) text += " quality " + number(*learned.quality) + ",";
+  if (!learned.median.empty()) text += " median " + in_ms(learned.median[0]) + ",";
+  if (!learned.p95.empty()) text += " p95 " + in_ms(learned.p95[0]) + ",";
+  if (!learned.quality.empty()) text += " quality " + number(learned.quality[0]) + ",";
   return text + " " + percent(learned.reliability) + " accepted";
 }
 
-std::string line_of(const Features& features) {
+std::string line_of(const std::vector<introspection::NamedValue>& features) {
   std::string text;
-  for (const Feature& feature : features)
+  for (const auto& feature : features)
     text += (text.empty() ? "  for " : ", ") + shown(feature.name) + " " + number(feature.value);
   return text.empty() ? text : text + "\n";
 }
 
-std::string line_of(const Candidate& candidate) {
-  std::string text = "  " + shown(candidate.name);
+std::string line_of(const introspection::CandidateReport& candidate) {
+  std::string text = "  " + shown(candidate.csp);
   text +=
       candidate.in_process ? " (in the process)" : " (pid " + std::to_string(candidate.pid) + ")";
-  text += candidate.latency ? " declares " + in_ms(*candidate.latency) : " declares no latency";
+  text += candidate.latency.empty() ? " declares no latency"
+                                    : " declares " + in_ms(candidate.latency[0]);
   text += ", quality " + number(candidate.quality);
-  text += candidate.learned ? "; " + learned_text(*candidate.learned) : "; has not run before";
-  if (candidate.breaker == CircuitBreaker::State::Open) {
+  text += candidate.learned.empty() ? "; has not run before"
+                                    : "; " + learned_text(candidate.learned[0]);
+  if (candidate.breaker == introspection::BreakerState::Open) {
     text += "; in quarantine for " + in_ms(candidate.quarantine) + " more";
-  } else if (candidate.breaker == CircuitBreaker::State::HalfOpen) {
+  } else if (candidate.breaker == introspection::BreakerState::HalfOpen) {
     text += "; may be probed after quarantine";
   }
   return text + "\n";
 }
 
-std::string line_of(const Attempt& attempt) {
+std::string line_of(const introspection::Attempt& attempt) {
   std::string text = "  at " + in_ms(attempt.began) + " " + shown(attempt.csp) + ", for " +
                      in_ms(attempt.slice) + ": " + shown(attempt.reason) + "\n    " +
-                     to_string(attempt.outcome) + " after " + in_ms(attempt.took);
+                     in_words(attempt.outcome) + " after " + in_ms(attempt.took);
   if (!attempt.check.empty()) text += " by the check '" + shown(attempt.check) + "'";
-  if (attempt.quality) text += ", quality " + number(*attempt.quality);
+  if (!attempt.quality.empty()) text += ", quality " + number(attempt.quality[0]);
   if (!attempt.text.empty()) text += ": " + shown(attempt.text);
   return text + "\n";
 }
 
 }  // namespace
 
-std::string explain(const DecisionRecord& record) {
+std::string explain(const introspection::Decision& record) {
   const bool preselected = record.execution == "none";
   std::string text = "decision " + std::to_string(record.number) + " of " + shown(record.entity);
   if (!record.request.empty()) text += " on '" + shown(record.request) + "'";
-  text += ": " + shown(record.interface) + " within " + in_ms(record.available) + ", strategy " +
+  text += ": " + shown(record.service) + " within " + in_ms(record.available) + ", strategy " +
           shown(record.strategy) +
           (preselected ? ", for the Body to call itself\n"
                        : ", " + shown(record.execution) + " at a time\n");
-  text += line_of(record.situation.features);
-  for (const Candidate& candidate : record.candidates) text += line_of(candidate);
-  for (const Attempt& attempt : record.attempts) text += line_of(attempt);
+  text += line_of(record.features);
+  for (const auto& candidate : record.candidates) text += line_of(candidate);
+  for (const auto& attempt : record.attempts) text += line_of(attempt);
   if (record.stuck > 0)
     text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";
   text += !record.failure.empty() ? "  failed" : preselected ? "  selected" : "  answered";

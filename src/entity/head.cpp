@@ -4,6 +4,7 @@
 
 #include "core/log.hpp"
 #include "dds/port.hpp"
+#include "decision_record.hpp"
 #include "head_run.hpp"
 #include "head_session.hpp"
 #include "rpc/local_directory.hpp"
@@ -12,6 +13,10 @@
 #include "skein/error.hpp"
 
 namespace skein {
+
+using introspection::Decision;
+using introspection::Outcome;
+
 namespace {
 
 // What carrying the answer back to the caller may take of the time that it has given.
@@ -67,30 +72,34 @@ std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const
       request.strategy.empty() ? state_->options.strategy : request.strategy));
 }
 
-DecisionRecord Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
-                                 const Features& features, Instant begin, Duration limit) const {
-  DecisionRecord record;
+Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
+                           const Features& features, Instant begin, Duration limit) const {
+  Decision record;
   record.entity = state_->parts.entity;
   record.time = unix_time();
-  record.interface = interface.name;
+  record.service = interface.name;
   record.strategy = strategy.name();
-  record.available = time_left(begin, limit);
-  record.situation = state_->situation(interface, features, record.available);
+  record.features = wire_values::list(features);
+  record.available = wire_values::ns(time_left(begin, limit));
+  record.exploration = state_->options.exploration;
+  const auto past = state_->past(interface);
+  record.decided = past.made;
+  record.explored = past.explored;
   return record;
 }
 
 void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
-                  DecisionRecord* wanted) {
+                  Decision* wanted) {
   const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
   const TaskOptions& options = task.options();
-  DecisionRecord record = open_record(interface, *strategy, options.features, begin, limit);
+  Decision record = open_record(interface, *strategy, options.features, begin, limit);
   record.request = options.request;
   record.execution = to_string(options.execution);
   state_->record(record, begin, wanted, [&] {
-    record.candidates = state_->candidates(interface, options.only, options.features, begin);
-    if (record.candidates.empty()) state_->refuse_without(interface, options.only);
-    Run run(*state_, interface, *strategy, task, record, begin);
+    auto candidates = state_->candidates(interface, options.only, options.features, begin);
+    if (candidates.empty()) state_->refuse_without(interface, options.only);
+    Run run(*state_, interface, *strategy, task, std::move(candidates), record, begin);
     if (!run.run()) run.fail();
   });
 }
@@ -99,19 +108,22 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
                                          Duration limit) {
   const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
-  DecisionRecord record = open_record(interface, *strategy, features, begin, limit);
+  Decision record = open_record(interface, *strategy, features, begin, limit);
   record.execution = "none";
   std::shared_ptr<Channel> channel;
   state_->record(record, begin, nullptr, [&] {
-    record.candidates = state_->candidates(interface, {}, features, begin);
-    if (record.candidates.empty()) state_->refuse_without(interface, {});
-    CandidateIterator iterator(*strategy, record.candidates, record.situation);
-    auto next = iterator.next(record.available);
-    Attempt& attempt = record.attempts.emplace_back();
-    static_cast<Choice&>(attempt) = std::move(next.choice);
+    auto candidates = state_->candidates(interface, {}, features, begin);
+    if (candidates.empty()) state_->refuse_without(interface, {});
+    for (const Candidate& candidate : candidates)
+      record.candidates.push_back(decision_record::report_of(candidate));
+    const Situation situation = decision_record::situation_of(record);
+    CandidateIterator iterator(*strategy, std::move(candidates), situation);
+    const auto next = iterator.next(situation.remaining);
+    introspection::Attempt& attempt = record.attempts.emplace_back();
+    decision_record::note_choice(attempt, next, situation.remaining);
     Instant reached = begin;
-    channel = state_->channel_to(next.candidate, record.available, reached);
-    attempt.outcome = Attempt::Outcome::Preselected;
+    channel = state_->channel_to(next.candidate, situation.remaining, reached);
+    attempt.outcome = Outcome::Preselected;
   });
   return channel;
 }
@@ -124,7 +136,7 @@ std::vector<Head::Current> Head::running() const {
   return running;
 }
 
-std::vector<DecisionRecord> Head::decisions() const {
+std::vector<Decision> Head::decisions() const {
   std::lock_guard lock(state_->mutex);
   return {state_->decisions.begin(), state_->decisions.end()};
 }

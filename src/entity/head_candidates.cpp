@@ -108,10 +108,9 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
                                        std::string(interface.name));
 }
 
-Situation Head::State::situation(const InterfaceInfo& interface, const Features& features,
-                                 Duration remaining) const {
+History::Decisions Head::State::past(const InterfaceInfo& interface) const {
   std::lock_guard lock(mutex);
-  return {features, remaining, options.exploration, history.decisions(interface.name)};
+  return history.decisions(interface.name);
 }
 
 std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration patience,

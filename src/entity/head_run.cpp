@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "decision_record.hpp"
 #include "rpc/local_directory.hpp"
 #include "skein/error.hpp"
 #include "slice.hpp"
@@ -9,7 +10,8 @@
 namespace skein {
 namespace {
 
-using Outcome = Attempt::Outcome;
+using introspection::Attempt;
+using introspection::Outcome;
 using task_run::Verdict;
 
 // A CSP whose connection is not open by then is passed over: it is about to leave, or was not
@@ -54,14 +56,22 @@ void Head::Run::Bell::await() {
 }
 
 Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
-               task_run::TaskRun& task, DecisionRecord& record, Instant begin)
+               task_run::TaskRun& task, std::vector<Candidate> candidates,
+               introspection::Decision& record, Instant begin)
     : state_(state),
       interface_(interface),
       task_(task),
       record_(record),
       begin_(begin),
-      deadline_(begin + record.available),
-      iterator_(strategy, record.candidates, record.situation) {}
+      deadline_(begin + wire_values::duration(record.available)),
+      iterator_(strategy, candidates, decision_record::situation_of(record)) {
+  list(candidates);
+}
+
+void Head::Run::list(const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates)
+    record_.candidates.push_back(decision_record::report_of(candidate));
+}
 
 bool Head::Run::run() {
   try {
@@ -101,12 +111,12 @@ bool Head::Run::look_again() {
   std::erase_if(joined, [&](const Candidate& candidate) {
     return std::any_of(
         record_.candidates.begin(), record_.candidates.end(),
-        [&](const Candidate& known) { return known.provider == candidate.provider; });
+        [&](const auto& known) { return known.provider == candidate.provider.bytes; });
   });
   if (joined.empty()) return false;
   ++round_;
   for (Candidate& candidate : joined) candidate.round = round_;
-  record_.candidates.insert(record_.candidates.end(), joined.begin(), joined.end());
+  list(joined);
   iterator_.add(std::move(joined));
   return true;
 }
@@ -126,22 +136,28 @@ bool Head::Run::begin_another() {
 
 void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   Attempt& attempt = record_.attempts.emplace_back();
-  static_cast<Choice&>(attempt) = std::move(next.choice);
+  decision_record::note_choice(attempt, next, deadline_ - began);
   attempt.round = round_;
-  attempt.began = began - begin_;
+  attempt.began = wire_values::ns(began - begin_);
   const auto run = state_.begin(interface_, next.candidate, began);
   if (!run) {
     attempt.outcome = Outcome::Cancelled;
     attempt.text = "it has been quarantined meanwhile";
     return;
   }
-  Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr};
+  const Selection& selection = next.selection;
+  Live live{record_.attempts.size() - 1,
+            std::move(next.candidate),
+            began,
+            selection.expected,
+            *run,
+            nullptr};
   const Instant end =
-      task_.options().execution == Execution::One ? began + attempt.slice : deadline_;
+      task_.options().execution == Execution::One ? began + selection.slice : deadline_;
   // What is late before the next may begin is late only by what it was expected to take.
   late_at_ =
-      began + (attempt.expected > Duration::zero() ? std::min(attempt.expected, attempt.slice)
-                                                   : attempt.slice);
+      began + (selection.expected > Duration::zero() ? std::min(selection.expected, selection.slice)
+                                                     : selection.slice);
   try {
     Instant reached = began;
     auto channel = state_.channel_to(live.candidate,
@@ -197,16 +213,17 @@ void Head::Run::judge_ready() {
 
 void Head::Run::note(Live& live, Verdict verdict) {
   Attempt& attempt = record_.attempts[live.attempt];
-  attempt.took = now() - begin_ - attempt.began;
+  const Duration took = now() - live.began;
+  attempt.took = wire_values::ns(took);
   attempt.outcome = verdict.outcome;
   attempt.check = std::move(verdict.check);
   attempt.text = verdict.text;
-  attempt.quality = verdict.quality;
+  attempt.quality = wire_values::list(verdict.quality);
   // Late by less is a matter of load, and for the history.
-  const bool hardly_late =
-      verdict.outcome == Outcome::TimedOut && attempt.took < kHangs * attempt.expected;
-  state_.end(interface_, live.candidate, record_.situation.features, live.run, attempt,
-             verdict.fault && !hardly_late);
+  const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * live.expected;
+  state_.end(
+      interface_, live.candidate, task_.options().features, live.run,
+      {verdict.outcome, took, live.expected, verdict.quality, verdict.fault && !hardly_late});
   settled_ = verdict.settled;
   last_ = std::move(verdict);
 }

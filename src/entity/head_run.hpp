@@ -10,9 +10,10 @@ namespace skein {
 /// One request on its way through the Head, on the caller's thread.
 class Head::Run {
  public:
-  /// All arguments outlive the run. `record` has the candidates.
+  /// All references outlive the run. `record` says what the strategy is told of the request.
   Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
-      task_run::TaskRun& task, DecisionRecord& record, Instant begin);
+      task_run::TaskRun& task, std::vector<Candidate> candidates, introspection::Decision& record,
+      Instant begin);
 
   /// Until there is a result, no CSP is left, or the time is up. Whether there is a result.
   bool run();
@@ -25,6 +26,8 @@ class Head::Run {
   struct Live {
     std::size_t attempt;  // index into the record's
     Candidate candidate;
+    Instant began;
+    Duration expected;  // as Selection::expected
     std::uint64_t run;
     std::unique_ptr<task_run::Work> work;
   };
@@ -45,6 +48,7 @@ class Head::Run {
   void run_all();
   bool begin_another();
   bool look_again();
+  void list(const std::vector<Candidate>& candidates);
   void begin(CandidateIterator::Next next, Instant began);
   void await();
   void judge_ready();
@@ -56,7 +60,7 @@ class Head::Run {
   State& state_;
   const InterfaceInfo& interface_;
   task_run::TaskRun& task_;
-  DecisionRecord& record_;
+  introspection::Decision& record_;
   const Instant begin_;
   const Instant deadline_;
   CandidateIterator iterator_;

@@ -13,7 +13,8 @@
 namespace skein {
 namespace {
 
-using Outcome = Attempt::Outcome;
+using introspection::Decision;
+using introspection::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
 
@@ -67,10 +68,9 @@ std::optional<std::uint64_t> Head::State::begin(const InterfaceInfo& interface,
 }
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
-                      const Features& features, std::uint64_t run, const Attempt& attempt,
-                      bool fault) {
-  const bool timed_out = attempt.outcome == Outcome::TimedOut;
-  const bool is_told = timed_out && fault && attempt.expected > Duration::zero() &&
+                      const Features& features, std::uint64_t run, const Ending& ending) {
+  const bool timed_out = ending.outcome == Outcome::TimedOut;
+  const bool is_told = timed_out && ending.fault && ending.expected > Duration::zero() &&
                        !candidate.in_process && options.on_hang;
   {
     std::lock_guard lock(mutex);
@@ -78,28 +78,27 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
     CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);
     if (is_told) {  // it may be ended
       breaker.trip(parts.clock.now());
-    } else if (fault) {
+    } else if (ending.fault) {
       breaker.fail(parts.clock.now());
-    } else if (attempt.outcome == Outcome::Accepted || attempt.outcome == Outcome::Refused) {
+    } else if (ending.outcome == Outcome::Accepted || ending.outcome == Outcome::Refused) {
       breaker.succeed();
     } else {
       breaker.end();
     }
-    learn(interface, candidate, features, attempt);
+    learn(interface, candidate, features, ending);
     if (timed_out && candidate.in_process) hung.insert(candidate.provider);
   }
   if (is_told) options.on_hang(candidate);
 }
 
 void Head::State::learn(const InterfaceInfo& interface, const Candidate& candidate,
-                        const Features& features, const Attempt& attempt) {
-  const bool overran = attempt.expected > Duration::zero() && attempt.took > attempt.expected;
+                        const Features& features, const Ending& ending) {
+  const bool overran = ending.expected > Duration::zero() && ending.took > ending.expected;
   const bool late =
-      attempt.outcome == Outcome::TimedOut || (attempt.outcome == Outcome::Cancelled && overran);
-  if (attempt.outcome == Outcome::Cancelled && !late) return;
-  history.add(
-      interface.name, candidate.name,
-      {features, attempt.took, attempt.outcome == Outcome::Accepted, late, attempt.quality});
+      ending.outcome == Outcome::TimedOut || (ending.outcome == Outcome::Cancelled && overran);
+  if (ending.outcome == Outcome::Cancelled && !late) return;
+  history.add(interface.name, candidate.name,
+              {features, ending.took, ending.outcome == Outcome::Accepted, late, ending.quality});
 }
 
 std::size_t Head::State::count_stuck() {
@@ -123,17 +122,17 @@ std::size_t Head::State::stuck() {
   return stuck;
 }
 
-void Head::State::conclude(DecisionRecord&& record, DecisionRecord* wanted) {
+void Head::State::conclude(Decision&& record, Decision* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
-                                    [](const Attempt& attempt) { return attempt.explores; });
+                                    [](const auto& attempt) { return attempt.explores; });
   const bool read = publisher.on();
   const bool told = read || !options.log.empty();
-  std::optional<DecisionRecord> copy;
-  std::optional<DecisionRecord> dropped;  // outside the lock
+  std::optional<Decision> copy;
+  std::optional<Decision> dropped;  // outside the lock
   {
     std::lock_guard lock(mutex);
-    record.stuck = stuck();
-    history.count(record.interface, explored);
+    record.stuck = static_cast<std::uint32_t>(stuck());
+    history.count(record.service, explored);
     record.number = ++last_decision;
     if (told || wanted) copy = record;
     decisions.push_back(std::move(record));
@@ -142,13 +141,13 @@ void Head::State::conclude(DecisionRecord&& record, DecisionRecord* wanted) {
       decisions.pop_front();
     }
   }
-  if (read) publisher.publish(report_of(*copy));
+  if (read) publisher.publish(*copy);
   if (!options.log.empty()) write_log(*copy);
   if (wanted) *wanted = std::move(*copy);
 }
 
-void Head::State::write_log(const DecisionRecord& record) {
-  const std::string line = idl::to_json(report_of(record));
+void Head::State::write_log(const Decision& record) {
+  const std::string line = idl::to_json(record);
   std::lock_guard lock(log_mutex);
   log_file << line << std::endl;
   if (log_file) return;

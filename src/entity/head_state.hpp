@@ -12,6 +12,7 @@
 #include "rpc/introspection_topic.hpp"
 #include "rpc/service.hpp"
 #include "skein/head.hpp"
+#include "wire_values.hpp"
 
 namespace skein {
 
@@ -25,8 +26,7 @@ struct Head::State {
                                     const Features& features, Instant now);
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only) const;
-  Situation situation(const InterfaceInfo& interface, const Features& features,
-                      Duration remaining) const;
+  History::Decisions past(const InterfaceInfo& interface) const;
   /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
   std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 
@@ -34,14 +34,22 @@ struct Head::State {
   /// quarantined since it was listed.
   std::optional<std::uint64_t> begin(const InterfaceInfo& interface, const Candidate& candidate,
                                      Instant now);
+  struct Ending {
+    introspection::Outcome outcome;
+    Duration took;
+    Duration expected;  ///< As Selection::expected.
+    std::optional<double> quality;
+    bool fault;
+  };
   /// What came of it: for the breaker, the history, and whoever is told of hangs.
   void end(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
-           std::uint64_t run, const Attempt& attempt, bool fault);
+           std::uint64_t run, const Ending& ending);
   /// Runs `decide()`, which fills the record, and concludes that, also where it throws.
   template <class Decide>
-  void record(DecisionRecord& record, Instant begin, DecisionRecord* wanted, Decide decide);
+  void record(introspection::Decision& record, Instant begin, introspection::Decision* wanted,
+              Decide decide);
   /// Numbers the decision, keeps it and tells of it; a copy to whom `wanted` belongs, if anybody.
-  void conclude(DecisionRecord&& record, DecisionRecord* wanted = nullptr);
+  void conclude(introspection::Decision&& record, introspection::Decision* wanted = nullptr);
   std::size_t count_stuck();
 
   /// A CSP as its description tells of it.
@@ -78,7 +86,7 @@ struct Head::State {
   bool was_degraded = false;
   std::uint64_t last_run = 0;
   std::uint64_t last_decision = 0;
-  std::deque<DecisionRecord> decisions;
+  std::deque<introspection::Decision> decisions;
   std::mutex log_mutex;
   std::ofstream log_file;
   introspection::Publisher<introspection::Decision> publisher;
@@ -91,14 +99,14 @@ struct Head::State {
                                              const Guid& provider) const;
   CircuitBreaker& breaker(std::string_view interface, std::string_view csp);
   void learn(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
-             const Attempt& attempt);
+             const Ending& ending);
   std::size_t stuck();
-  void write_log(const DecisionRecord& record);
+  void write_log(const introspection::Decision& record);
 };
 
 template <class Decide>
-void Head::State::record(DecisionRecord& record, Instant begin, DecisionRecord* wanted,
-                         Decide decide) {
+void Head::State::record(introspection::Decision& record, Instant begin,
+                         introspection::Decision* wanted, Decide decide) {
   std::exception_ptr failure;
   try {
     decide();
@@ -106,7 +114,7 @@ void Head::State::record(DecisionRecord& record, Instant begin, DecisionRecord* 
     failure = std::current_exception();
     record.failure = task_run::verdict_of_current_exception().text;
   }
-  record.took = parts.clock.now() - begin;
+  record.took = wire_values::ns(parts.clock.now() - begin);
   conclude(std::move(record), wanted);
   if (failure) std::rethrow_exception(failure);
 }

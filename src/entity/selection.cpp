@@ -158,10 +158,8 @@ CandidateIterator::Next CandidateIterator::next(Duration remaining) {
   selection.slice =
       std::clamp(selection.slice, Duration::zero(), std::max(remaining, Duration::zero()));
   const auto chosen = left_.begin() + static_cast<std::ptrdiff_t>(selection.candidate);
-  Next next{std::move(*chosen), {}};
+  Next next{std::move(*chosen), std::move(selection)};
   left_.erase(chosen);
-  next.choice = {next.candidate.name, remaining,          selection.slice,
-                 selection.expected,  selection.explores, std::move(selection.reason)};
   return next;
 }
 

@@ -44,8 +44,8 @@ void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t num
   using introspection::CallStep;
   if (!on()) return;
   if (error && !declared(error)) {
-    record(at_server ? CallStep::Refused : CallStep::Failed, client, number, service, operation,
-           error);
+    record(at_server ? CallStep::RepliedError : CallStep::EndedInError, client, number, service,
+           operation, error);
   } else {
     record(at_server ? CallStep::Replied : CallStep::Answered, client, number, service, operation,
            nullptr);

@@ -79,11 +79,13 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
   CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
   CHECK(eventually([&] { return heard.last("divide") == whole; }));
   CHECK_THROWS_AS(echo.fail("standard"), Internal);
-  const Steps refused{CallStep::Sent, CallStep::Received, CallStep::Refused, CallStep::Failed};
+  const Steps refused{CallStep::Sent, CallStep::Received, CallStep::RepliedError,
+                      CallStep::EndedInError};
   CHECK(eventually([&] { return heard.last("fail") == refused; }));
 
   CHECK_THROWS_AS(echo.within(50ms).wait(20'000), TimedOut);
-  const Steps late{CallStep::Sent, CallStep::Received, CallStep::Failed, CallStep::Refused};
+  const Steps late{CallStep::Sent, CallStep::Received, CallStep::EndedInError,
+                   CallStep::RepliedError};
   CHECK(eventually([&] {
     auto steps = heard.last("wait");
     std::sort(steps.begin(), steps.end());
@@ -93,7 +95,7 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
   }));
   for (const CallEvent& event : heard.all()) {
     const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered ||
-                           event.step == CallStep::Failed;
+                           event.step == CallStep::EndedInError;
     CHECK(event.entity == (at_client ? "uav-1/client" : "uav-1/server"));
     CHECK(event.service == "test::LouderEcho");
     CHECK(event.dropped == 0);

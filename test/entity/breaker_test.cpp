@@ -58,7 +58,7 @@ TEST_CASE("where every CSP is quarantined the one whose quarantine ends first is
     CHECK_THROWS_WITH(office.perform(Office::task(), 10s), "work failed: a bug");
   *sick = false;
   CHECK(office.perform(Office::task(), 10s) == "patient did it");
-  CHECK(office.record.candidates[0].breaker == CircuitBreaker::State::Open);
+  CHECK(office.record.candidates[0].breaker == introspection::BreakerState::Open);
 }
 
 TEST_CASE("what is late by less than four times what was expected of it is not quarantined") {
@@ -66,7 +66,7 @@ TEST_CASE("what is late by less than four times what was expected of it is not q
   Office office;
   office.add("thorough", Place::Outside, hang.script(), declared("60000", "0.9"));
   for (int i = 0; i < 4; ++i) CHECK_THROWS_AS(office.perform(Office::task(), 30ms), TimedOut);
-  CHECK(office.record.candidates[0].breaker == CircuitBreaker::State::Closed);
+  CHECK(office.record.candidates[0].breaker == introspection::BreakerState::Closed);
   hang.release();
 }
 

@@ -34,10 +34,10 @@ TEST_CASE(
   office.add("wrong", Place::Inside, say("wrong"), declared("10", "0.8"));
   office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.1"));
   CHECK(office.perform(task(Execution::All), 60s) == "quick did it");
-  CHECK(office.attempt_of("slow").outcome == Attempt::Outcome::Cancelled);
-  CHECK(office.attempt_of("quick").outcome == Attempt::Outcome::Accepted);
+  CHECK(office.attempt_of("slow").outcome == introspection::Outcome::Cancelled);
+  CHECK(office.attempt_of("quick").outcome == introspection::Outcome::Accepted);
   CHECK(office.record.execution == "all");
-  CHECK(office.record.took < 30s);
+  CHECK(office.took() < 30s);
   hang.release();
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("the next CSP begins when the first is late, and the late one may stil
     hang.release();
   }
   REQUIRE(both);
-  CHECK(office.record.attempts[1].began >= 50ms);
+  CHECK(std::chrono::nanoseconds(office.record.attempts[1].began) >= 50ms);
 }
 
 TEST_CASE("where the first is not late no other CSP begins") {
@@ -110,7 +110,7 @@ TEST_CASE("the best of all results is taken when all have answered, or the time 
   SECTION("by quality") {
     best.quality = [](const std::string& result) { return static_cast<double>(result.size()); };
     CHECK(office.perform(best, 1s) == "xxxx");
-    CHECK(office.attempt_of("long").quality == 4.0);
+    CHECK(office.attempt_of("long").quality == std::vector{4.0});
   }
   SECTION("by cost") {
     best.synthesis = best_by_cost<std::string>(
@@ -140,8 +140,8 @@ TEST_CASE("the answer is there at the deadline although every CSP hangs") {
   for (const char* name : {"a", "b", "c"})
     office.add(name, place, hang.script(), declared("10", "0.5"));
   CHECK_THROWS_AS(office.perform(task(execution), 300ms), TimedOut);
-  CHECK(office.record.took < 10s);
-  CHECK(office.record.took >= 300ms);
+  CHECK(office.took() < 10s);
+  CHECK(office.took() >= 300ms);
   // On a loaded machine not every CSP that was tried has also begun by then.
   const bool inside = place == Place::Inside;
   CHECK(office.record.stuck <= (inside ? office.record.attempts.size() : 0));

@@ -68,8 +68,8 @@ TEST_CASE("a CSP that hangs is given up in time for the next best") {
   FirstFails team(place, hang.script());
   CHECK(team.office.perform(Office::task(), 1s) == "second did it");
   CHECK(team.office.attempts() == Lines{"first timed out", "second accepted"});
-  CHECK(team.office.record.attempts[0].slice <= 900ms);
-  CHECK(team.office.record.took < 1s);
+  CHECK(std::chrono::nanoseconds(team.office.record.attempts[0].slice) <= 900ms);
+  CHECK(team.office.took() < 1s);
   hang.release();
 }
 

@@ -151,8 +151,8 @@ TEST_CASE("only the first choice for a request explores") {
                              {candidate("a", 1ms, 0.9, shown(1ms, 1ms, 0.9)),
                               candidate("b", 1ms, 0.5), candidate("c", 1ms, 0.5)},
                              {{}, 1s, 1.0, {}});
-  CHECK(iterator.next(1s).choice.explores);
-  CHECK_FALSE(iterator.next(900ms).choice.explores);
+  CHECK(iterator.next(1s).selection.explores);
+  CHECK_FALSE(iterator.next(900ms).selection.explores);
 }
 
 TEST_CASE("a strategy that is not there is refused with those that are") {

@@ -92,23 +92,26 @@ class Office {
   /// `NAME outcome` of each attempt, in order.
   std::vector<std::string> attempts() const {
     std::vector<std::string> lines;
-    for (const Attempt& attempt : record.attempts)
-      lines.push_back(attempt.csp + " " + to_string(attempt.outcome));
+    for (const introspection::Attempt& attempt : record.attempts)
+      lines.push_back(attempt.csp + " " + in_words(attempt.outcome));
     return lines;
   }
 
   /// The attempt of that CSP; throws where there is none.
-  const Attempt& attempt_of(const std::string& csp) const {
-    for (const Attempt& attempt : record.attempts) {
+  const introspection::Attempt& attempt_of(const std::string& csp) const {
+    for (const introspection::Attempt& attempt : record.attempts) {
       if (attempt.csp == csp) return attempt;
     }
     throw std::runtime_error(csp + " was not tried");
   }
 
+  /// What the last decision took.
+  std::chrono::nanoseconds took() const { return std::chrono::nanoseconds(record.took); }
+
   std::unique_ptr<Entity> owner;
   std::vector<std::unique_ptr<Entity>> outside;
   std::map<std::string, std::pair<Entity*, Guid>> ids;
-  DecisionRecord record;
+  introspection::Decision record;
 };
 
 /// The Body of an office.

@@ -52,7 +52,7 @@ TEST_CASE("a slice is never longer than the time left") {
   };
   const Generous generous;
   CandidateIterator iterator(generous, {candidate("only", 10ms, 1)}, {});
-  CHECK(iterator.next(1s).choice.slice == 1s);
+  CHECK(iterator.next(1s).selection.slice == 1s);
 }
 
 TEST_CASE("the best declared quality that fits into the time left is selected") {

@@ -45,7 +45,7 @@ TEST_CASE("the Head asks the next CSP where a result is not good enough, and say
   auto navigator = site.station.connect<survey::INavigator>();
   CHECK(navigator.within(30s).plan(kField).planner == "Rows");
 
-  const skein::DecisionRecord last = drone.head().decisions().back();
+  const skein::introspection::Decision last = drone.head().decisions().back();
   std::fputs(skein::explain(last).c_str(), stdout);
 
   CHECK_THAT(skein::explain(last), Catch::Contains("rejected") &&

@@ -94,14 +94,14 @@ TEST_CASE("what a peer says of itself cannot drive a terminal, nor fill it") {
 }
 
 TEST_CASE("decisions from a log cannot drive a terminal either") {
-  DecisionRecord record;
+  introspection::Decision record;
   record.entity = "uav\x1b[2J";
   record.strategy = "declared";
   record.execution = "one";
   record.failure = "no\nanswer";
   const auto file = std::filesystem::temp_directory_path() /
                     ("skein-decisions-" + std::to_string(getpid()) + ".jsonl");
-  std::ofstream(file) << idl::to_json(report_of(record)) << '\n';
+  std::ofstream(file) << idl::to_json(record) << '\n';
   CommandRun run({"decisions", "--log", file});
   CHECK(run.wait() == 0);
   std::filesystem::remove(file);

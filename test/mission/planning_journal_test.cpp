@@ -4,36 +4,42 @@
 
 using namespace skein;
 using namespace skein::navigation;
+using introspection::Attempt;
+using introspection::BreakerState;
+using introspection::CandidateReport;
+using introspection::Decision;
+using introspection::Outcome;
 using namespace std::chrono_literals;
 
 namespace {
 
-Candidate candidate(const std::string& name, Duration latency, double quality) {
-  Candidate candidate;
-  candidate.name = name;
-  candidate.latency = latency;
+constexpr std::int64_t kMs = 1'000'000;
+
+CandidateReport candidate(const std::string& csp, std::int64_t latency_ms, double quality) {
+  CandidateReport candidate;
+  candidate.csp = csp;
+  candidate.latency = {latency_ms * kMs};
   candidate.quality = quality;
   return candidate;
 }
 
-Attempt attempt(const std::string& csp, const std::string& reason, Duration took,
-                Attempt::Outcome outcome, const std::string& text) {
+Attempt attempt(const std::string& csp, const std::string& reason, std::int64_t took_ms,
+                Outcome outcome, const std::string& text) {
   Attempt attempt;
   attempt.csp = csp;
   attempt.reason = reason;
-  attempt.took = took;
+  attempt.took = took_ms * kMs;
   attempt.outcome = outcome;
   attempt.text = text;
   return attempt;
 }
 
-DecisionRecord record() {
-  DecisionRecord record;
-  record.candidates = {candidate("RRTstar", 1500ms, 0.95), candidate("AStar", 300ms, 0.9)};
-  record.attempts = {
-      attempt("RRTstar", "it is the best", 200ms, Attempt::Outcome::Disconnected, "it died"),
-      attempt("AStar", "it is the next best", 100ms, Attempt::Outcome::Accepted, "")};
-  record.took = 301ms;
+Decision record() {
+  Decision record;
+  record.candidates = {candidate("RRTstar", 1500, 0.95), candidate("AStar", 300, 0.9)};
+  record.attempts = {attempt("RRTstar", "it is the best", 200, Outcome::Disconnected, "it died"),
+                     attempt("AStar", "it is the next best", 100, Outcome::Accepted, "")};
+  record.took = 301 * kMs;
   return record;
 }
 
@@ -60,9 +66,9 @@ TEST_CASE("a request's report tells who was available, who was tried, why and wh
 }
 
 TEST_CASE("what a planner has shown is reported beside what it declares") {
-  DecisionRecord shown = record();
-  shown.candidates[1].learned = Prediction{7, 120ms, 250ms, 0.8, 0.875, 0};
-  shown.candidates[1].breaker = CircuitBreaker::State::Open;
+  Decision shown = record();
+  shown.candidates[1].learned = {{7, {120 * kMs}, {250 * kMs}, {0.8}, 0.875, 0}};
+  shown.candidates[1].breaker = BreakerState::Open;
   PlanningJournal journal;
   journal.begin("one");
   journal.end("one", {{0, shown}}, "");
@@ -92,7 +98,7 @@ TEST_CASE("a planner that was available once and is gone is reported as not avai
   PlanningJournal journal;
   journal.begin("one");
   journal.end("one", {{0, record()}}, "");
-  DecisionRecord later = record();
+  Decision later = record();
   later.candidates.erase(later.candidates.begin());
   journal.begin("two");
   journal.end("two", {{0, later}}, "");

@@ -44,6 +44,4 @@ class CircuitBreaker {
   bool probing_ = false;
 };
 
-const char* to_string(CircuitBreaker::State state) noexcept;
-
 }  // namespace skein

@@ -15,7 +15,7 @@ namespace skein::task_run {
 
 /// The judgement of a CSP's answer.
 struct Verdict {
-  Attempt::Outcome outcome = Attempt::Outcome::Failed;
+  introspection::Outcome outcome = introspection::Outcome::Failed;
   std::string check{};
   std::string text{};
   std::optional<double> quality{};
@@ -117,13 +117,13 @@ class TypedRun final : public TaskRun {
   Verdict judge(const Candidate& candidate, Result result) {
     Verdict verdict;
     if (auto rejection = task_.evaluate(result)) {
-      verdict.outcome = Attempt::Outcome::Rejected;
+      verdict.outcome = introspection::Outcome::Rejected;
       verdict.check = std::move(rejection->check);
       verdict.text = std::move(rejection->reason);
       verdict.fault = rejection->fault;
       return verdict;
     }
-    verdict.outcome = Attempt::Outcome::Accepted;
+    verdict.outcome = introspection::Outcome::Accepted;
     verdict.fault = false;
     if (task_.quality) verdict.quality = task_.quality(result);
     const double quality = verdict.quality.value_or(0);

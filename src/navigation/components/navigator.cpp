@@ -78,17 +78,17 @@ Route best_of(Stream<Route> routes) {
   return std::move(*best);
 }
 
-void use_own_words(DecisionRecord& record, const Refusals& refusals) {
-  for (Attempt& attempt : record.attempts) {
+void use_own_words(introspection::Decision& record, const Refusals& refusals) {
+  for (introspection::Attempt& attempt : record.attempts) {
     const auto refusal = refusals.find(attempt.csp);
     if (refusal != refusals.end()) attempt.text = refusal->second;
   }
 }
 
-[[noreturn]] void throw_no_usable_route(const DecisionRecord& record) {
+[[noreturn]] void throw_no_usable_route(const introspection::Decision& record) {
   std::string reason = "no planner had a usable route in time:";
-  for (const Attempt& attempt : record.attempts) {
-    reason += fmt::format(" {} {}", attempt.csp, to_string(attempt.outcome));
+  for (const introspection::Attempt& attempt : record.attempts) {
+    reason += fmt::format(" {} {}", attempt.csp, in_words(attempt.outcome));
     reason += attempt.text.empty() ? ";" : fmt::format(" ({});", attempt.text);
   }
   reason.pop_back();
@@ -198,15 +198,16 @@ Route Navigator::plan(const Question& question, std::vector<Planning>& plannings
 
 // A planner that the caller chose: no candidates, no choice, but the same judgement.
 Route Navigator::ask(const Reference<IPlanner>& planner, const Problem& problem, Duration limit,
-                     DecisionRecord& record) {
+                     introspection::Decision& record) {
   const Instant began = entity_.clock().now();
-  Attempt attempt;
+  introspection::Attempt attempt;
   attempt.csp = to_string(planner);
   attempt.reason = "the caller brought it";
-  const auto note = [&](Attempt::Outcome outcome, const std::string& text) {
+  const auto note = [&](introspection::Outcome outcome, const std::string& text) {
     attempt.outcome = outcome;
     attempt.text = text;
-    attempt.took = record.took = entity_.clock().now() - began;
+    const std::chrono::nanoseconds took = entity_.clock().now() - began;
+    attempt.took = record.took = took.count();
     record.attempts.push_back(attempt);
   };
   const auto terrain = terrains_->load(problem.terrain);
@@ -216,10 +217,10 @@ Route Navigator::ask(const Reference<IPlanner>& planner, const Problem& problem,
   const auto judge = judgement(*terrain, problem, [&] { return threats_.epoch(problem.terrain); });
   if (const auto rejection = judge(route)) {
     attempt.check = rejection->check;
-    note(Attempt::Outcome::Rejected, rejection->reason);
+    note(introspection::Outcome::Rejected, rejection->reason);
     throw_no_usable_route(record);
   }
-  note(Attempt::Outcome::Accepted, "");
+  note(introspection::Outcome::Accepted, "");
   return route;
 }
 

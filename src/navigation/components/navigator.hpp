@@ -56,7 +56,7 @@ class Navigator final : public AE_navigatorI::INavigator {
   bool renew_threats(AE_navigator::Problem& problem, Instant end);
   AE_navigator::Route ask(const skein::Reference<AE_navigator::IPlanner>& planner,
                           const AE_navigator::Problem& problem, Duration limit,
-                          DecisionRecord& record);
+                          introspection::Decision& record);
   AE_flightControllerI::FlightLimits flight_limits();
 
   Entity& entity_;

@@ -12,23 +12,24 @@ using AE_navigatorI::PlanningReport;
 
 constexpr std::size_t kKept = 64;
 
-double in_ms(Duration duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
+double in_ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
-PlannerCandidate candidate_of(const Candidate& candidate) {
+/// 0 where it is not known.
+double in_ms(const std::vector<std::int64_t>& ns) { return ns.empty() ? 0 : in_ms(ns.front()); }
+
+PlannerCandidate candidate_of(const introspection::CandidateReport& candidate) {
   PlannerCandidate planner;
-  planner.planner = candidate.name;
+  planner.planner = candidate.csp;
   planner.available = true;
-  planner.quarantined = candidate.breaker == CircuitBreaker::State::Open;
-  planner.declared_ms = in_ms(candidate.latency.value_or(Duration::zero()));
+  planner.quarantined = candidate.breaker == introspection::BreakerState::Open;
+  planner.declared_ms = in_ms(candidate.latency);
   planner.declared_quality = candidate.quality;
-  if (const auto& learned = candidate.learned) {
-    planner.runs = static_cast<std::uint32_t>(learned->samples);
-    planner.median_ms = in_ms(learned->median.value_or(Duration::zero()));
-    planner.p95_ms = in_ms(learned->p95.value_or(Duration::zero()));
-    planner.measured_quality = learned->quality.value_or(0);
-    planner.accepted = learned->reliability;
+  for (const introspection::LearnedFigures& learned : candidate.learned) {
+    planner.runs = learned.samples;
+    planner.median_ms = in_ms(learned.median);
+    planner.p95_ms = in_ms(learned.p95);
+    planner.measured_quality = learned.quality.empty() ? 0 : learned.quality.front();
+    planner.accepted = learned.reliability;
   }
   return planner;
 }
@@ -41,10 +42,10 @@ PlanningReport report_of(const std::string& request_id, const std::vector<Planni
     report.strategy = record.strategy;
     report.elapsed_ms += in_ms(record.took);
     report.candidates.clear();
-    for (const Candidate& candidate : record.candidates)
+    for (const auto& candidate : record.candidates)
       report.candidates.push_back(candidate_of(candidate));
-    for (const Attempt& attempt : record.attempts) {
-      report.attempts.push_back({attempt.csp, epoch, attempt.reason, to_string(attempt.outcome),
+    for (const introspection::Attempt& attempt : record.attempts) {
+      report.attempts.push_back({attempt.csp, epoch, attempt.reason, in_words(attempt.outcome),
                                  attempt.check, attempt.text, in_ms(attempt.took)});
     }
   }

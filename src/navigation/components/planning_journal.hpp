@@ -15,7 +15,7 @@ namespace skein::navigation {
 /// One of the decisions on a request, and the threats that it rested on.
 struct Planning {
   std::uint32_t threat_epoch = 0;
-  DecisionRecord record;
+  introspection::Decision record;
 };
 
 /// What the navigator remembers of its requests: those that it works on, and how the last 64 were
