@@ -4,7 +4,7 @@
 # include folders (a.idl becomes a.idl.hpp). The flattened IDL for DDS without Skein (a.dds.idl) lies beside them, in the folder
 # that the target's property SKEIN_IDL_DIRECTORY names. A file below one of INCLUDES keeps its path from there: with
 # INCLUDES idl, idl/geo/point.idl becomes geo/point.idl.hpp. Outputs are made anew when the file, what it includes, or
-# the compiler changes. The target links Skein itself.
+# the compiler changes. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
 # The same in Skein's own tree and in an installed package.
 get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
@@ -52,6 +52,7 @@ function(skein_add_idl)
   add_custom_target(${IDL_TARGET}_generated DEPENDS ${outputs})
   add_dependencies(skein_generated ${IDL_TARGET}_generated)
   target_include_directories(${IDL_TARGET} PUBLIC $<BUILD_INTERFACE:${directory}>)
+  set_target_properties(${IDL_TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   set_property(TARGET ${IDL_TARGET} PROPERTY SKEIN_IDL_DIRECTORY ${directory})
 endfunction()
 
