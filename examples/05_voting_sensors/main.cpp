@@ -109,5 +109,5 @@ int main(int argc, char** argv) {
                   unclear.why.c_str());
     }
   }
-  std::fputs(explain(warner.head().decisions().front()).c_str(), stdout);
+  std::fputs(skein::explain(warner.head().decisions().front()).c_str(), stdout);
 }
