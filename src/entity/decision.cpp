@@ -45,9 +45,7 @@ To breaker(From state) {
   return To::HalfOpen;
 }
 
-}  // namespace
-
-CandidateReport decision_record::report_of(const Candidate& candidate) {
+CandidateReport report_of(const Candidate& candidate) {
   CandidateReport report;
   report.csp = candidate.name;
   report.provider = candidate.provider.bytes;
@@ -60,6 +58,12 @@ CandidateReport decision_record::report_of(const Candidate& candidate) {
   report.quarantine = wire_values::ns(candidate.quarantine);
   report.round = candidate.round;
   return report;
+}
+
+}  // namespace
+
+void decision_record::list(Decision& record, const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates) record.candidates.push_back(report_of(candidate));
 }
 
 Candidate decision_record::candidate_of(const CandidateReport& report) {

@@ -6,7 +6,8 @@
 /// Between what strategies are given and what a decision's record says of it.
 namespace skein::decision_record {
 
-introspection::CandidateReport report_of(const Candidate& candidate);
+/// Lists the candidates as they are now.
+void list(introspection::Decision& record, const std::vector<Candidate>& candidates);
 Candidate candidate_of(const introspection::CandidateReport& report);
 
 /// What the strategy was told of the request.

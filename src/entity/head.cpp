@@ -114,8 +114,7 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
   state_->record(record, begin, nullptr, [&] {
     auto candidates = state_->candidates(interface, {}, features, begin);
     if (candidates.empty()) state_->refuse_without(interface, {});
-    for (const Candidate& candidate : candidates)
-      record.candidates.push_back(decision_record::report_of(candidate));
+    decision_record::list(record, candidates);
     const Situation situation = decision_record::situation_of(record);
     CandidateIterator iterator(*strategy, std::move(candidates), situation);
     const auto next = iterator.next(situation.remaining);

@@ -65,12 +65,7 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       begin_(begin),
       deadline_(begin + wire_values::duration(record.available)),
       iterator_(strategy, candidates, decision_record::situation_of(record)) {
-  list(candidates);
-}
-
-void Head::Run::list(const std::vector<Candidate>& candidates) {
-  for (const Candidate& candidate : candidates)
-    record_.candidates.push_back(decision_record::report_of(candidate));
+  decision_record::list(record_, candidates);
 }
 
 bool Head::Run::run() {
@@ -116,7 +111,7 @@ bool Head::Run::look_again() {
   if (joined.empty()) return false;
   ++round_;
   for (Candidate& candidate : joined) candidate.round = round_;
-  list(joined);
+  decision_record::list(record_, joined);
   iterator_.add(std::move(joined));
   return true;
 }
@@ -146,12 +141,7 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     return;
   }
   const Selection& selection = next.selection;
-  Live live{record_.attempts.size() - 1,
-            std::move(next.candidate),
-            began,
-            selection.expected,
-            *run,
-            nullptr};
+  Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr};
   const Instant end =
       task_.options().execution == Execution::One ? began + selection.slice : deadline_;
   // What is late before the next may begin is late only by what it was expected to take.
@@ -213,17 +203,17 @@ void Head::Run::judge_ready() {
 
 void Head::Run::note(Live& live, Verdict verdict) {
   Attempt& attempt = record_.attempts[live.attempt];
-  const Duration took = now() - live.began;
+  const Duration took = now() - begin_ - wire_values::duration(attempt.began);
+  const Duration expected = wire_values::duration(attempt.expected);
   attempt.took = wire_values::ns(took);
   attempt.outcome = verdict.outcome;
   attempt.check = std::move(verdict.check);
   attempt.text = verdict.text;
   attempt.quality = wire_values::list(verdict.quality);
   // Late by less is a matter of load, and for the history.
-  const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * live.expected;
-  state_.end(
-      interface_, live.candidate, task_.options().features, live.run,
-      {verdict.outcome, took, live.expected, verdict.quality, verdict.fault && !hardly_late});
+  const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * expected;
+  state_.end(interface_, live.candidate, task_.options().features, live.run,
+             {verdict.outcome, took, expected, verdict.quality, verdict.fault && !hardly_late});
   settled_ = verdict.settled;
   last_ = std::move(verdict);
 }

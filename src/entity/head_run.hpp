@@ -26,8 +26,6 @@ class Head::Run {
   struct Live {
     std::size_t attempt;  // index into the record's
     Candidate candidate;
-    Instant began;
-    Duration expected;  // as Selection::expected
     std::uint64_t run;
     std::unique_ptr<task_run::Work> work;
   };
@@ -48,7 +46,6 @@ class Head::Run {
   void run_all();
   bool begin_another();
   bool look_again();
-  void list(const std::vector<Candidate>& candidates);
   void begin(CandidateIterator::Next next, Instant began);
   void await();
   void judge_ready();
