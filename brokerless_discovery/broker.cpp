@@ -143,6 +143,7 @@ Query Broker::query(const std::string& name) const {
   query.name = name;
   query.system = state_->options.system;
   query.asker = state_->asker;
+  query.place = state_->options.place;
   return query;
 }
 

@@ -27,6 +27,7 @@ class Broker {
     std::string vendor;  ///< For people.
     /// How long a peer that is not heard of is trusted.
     std::chrono::milliseconds lease{1000};
+    std::string place{};  ///< Query::place of all queries.
   };
 
   /// A description that stands until this is destroyed or withdrawn.

@@ -234,6 +234,13 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
   if (entry.suspect) return who + " has not been heard of for its lease";
   if (const auto* operation =
           query.client ? missing_operation(*query.client, description) : nullptr) {
+    const std::string wanted = canonical_interface_name(query.client->name);
+    const auto names = names_of(description);
+    const bool known = std::find(names.begin(), names.end(), wanted) != names.end();
+    if (query.name == description.entity && !known) {
+      return who + " offers " + scoped_interface_name(description.service) + ", not " +
+             scoped_interface_name(wanted);
+    }
     return who + " offers another version of it: operation '" + std::string(operation->name) +
            "' is missing there or has another signature; build both sides from the same IDL";
   }
@@ -277,7 +284,7 @@ std::string Table::explain(const Query& query) const {
   for (const auto& [name, list] : short_names_) known.push_back(name);
   std::sort(known.begin(), known.end());
   return "no provider of '" + query.name + "'" + place + ": nothing of that name is known" +
-         suggestion(query.name, known);
+         (query.place.empty() ? "" : " in " + query.place) + suggestion(query.name, known);
 }
 
 Table::Found Table::all() const {

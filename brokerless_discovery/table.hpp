@@ -41,6 +41,8 @@ struct Query {
   std::vector<Constraint> constraints{};
   /// Providers whose description names this host come first; empty means none.
   std::string preferred_host{};
+  /// Where the asker looks, for explain(): `domain 0 on 127.0.0.1`; may be empty.
+  std::string place{};
 };
 
 /// Why a description is no longer in the table.

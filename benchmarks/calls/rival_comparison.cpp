@@ -7,7 +7,6 @@
 namespace skein::benchmarks {
 namespace {
 
-constexpr const char* kSkeins[]{"skein fastdds", "skein cyclonedds"};
 constexpr std::size_t kSmall = 64;
 
 std::string words(std::initializer_list<std::size_t> numbers) {
@@ -81,7 +80,8 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
   contest.enter(configurations.shared_memory());
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
-  for (const char* skein : kSkeins) {
+  for (const char* vendor : kVendors) {
+    const std::string skein = std::string("skein ") + vendor;
     for (const std::string& rival : rivals) append(comparisons, contest.compare(skein, rival));
     for (const char* floor : {"unix socket", "spinning shared memory"}) {
       append(comparisons, contest.compare(skein, std::string(floor)));

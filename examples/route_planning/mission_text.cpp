@@ -73,7 +73,7 @@ void print_planners(const Answer& answer) {
   print_line(fmt::format("  {:<22}{:>17}   {:>31}", "planners", "declared",
                          "measured on similar requests"));
   print_line(fmt::format("{:24}{:>9}{:>8}   {:>5}{:>7}{:>11}{:>6}{:>10}   {}", "", "latency",
-                         "quality", "p50", "p95", "quality", "runs", "accepted", "here"));
+                         "quality", "p50", "p95", "quality", "runs", "reliable", "here"));
   for (const auto& planner : planners) {
     print_line(fmt::format("{:12}{:<12}{:>6.0f} ms{:>8.2f}   {}   {}", "", planner.planner,
                            planner.declared_ms, planner.declared_quality, measured(planner),

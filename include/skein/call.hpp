@@ -15,9 +15,9 @@
 namespace skein {
 
 /// An asynchronous call and its result. Move-only; destroying it cancels the call. Use each call
-/// once: by get(), then() or co_await.
+/// once: by get(), then() or co_await; a call that was used or moved from throws InvalidArgument.
 template <class Result>
-class Call {
+class [[nodiscard]] Call {
   using Stored = std::conditional_t<std::is_void_v<Result>, char, Result>;
 
  public:
@@ -39,23 +39,23 @@ class Call {
   }
 
   /// Whether the call has ended.
-  bool ready() const { return pending_->finished(); }
+  bool ready() const { return pending().finished(); }
 
   /// Waits until the call ends, at the latest at its deadline. Returns the result or throws the
   /// error that ended the call.
   Result get() {
-    const auto pending = std::move(pending_);
-    pending->wait();
-    return take(*pending);
+    pending().wait();
+    const auto ended = std::move(pending_);
+    return take(*ended);
   }
 
   /// Cancels the call, unless it has ended, and notifies the server. get() then throws Cancelled.
-  void cancel() { pending_->cancel(); }
+  void cancel() { pending().cancel(); }
 
   /// Runs `action` when the call is finished; at once if it already is. It runs on the thread that
   /// finishes the call, possibly a vendor's, so it must neither block nor run user code. At most
   /// one action; do not combine it with then() or co_await.
-  void notify(Action action) { pending_->on_finished(std::move(action)); }
+  void notify(Action action) { pending().on_finished(std::move(action)); }
 
   /// A function that does what cancel() does. Any thread may call it at any time; it has no effect
   /// after the call has ended.
@@ -70,7 +70,7 @@ class Call {
   /// does a coroutine that awaits the call. It must not throw.
   template <class Continuation>
   void then(Continuation continuation) && {
-    auto pending = pending_;
+    const auto pending = this->pending().shared_from_this();
     auto shared = make_shared_in_call_memory<Call>(std::move(*this));
     auto run = [shared, continuation = std::move(continuation)]() mutable {
       continuation(std::move(*shared));
@@ -95,6 +95,13 @@ class Call {
   }
 
  private:
+  PendingCall& pending() const {
+    if (pending_) return *pending_;
+    throw InvalidArgument(
+        "this call was used before, by get(), then() or co_await, or moved from; use each call "
+        "once");
+  }
+
   Result take(PendingCall& pending) const {
     if (auto error = pending.take_error()) std::rethrow_exception(std::move(error));
     if constexpr (!std::is_void_v<Result>) return std::move(*result_);

@@ -24,8 +24,9 @@ class Session {
 /// blocking ones also inherit the chain.
 class CallContext {
  public:
-  /// Who waits for the answer: the chain of `outer`, the call on whose thread this one runs, or
-  /// else the services that the request `named`; then this service, identified by its `strand`.
+  /// The services that wait for the answer: first the chain of `outer`, if this call runs on the
+  /// thread of another one, or else those that the request names; last this service, whose identity
+  /// is `strand`.
   struct Waiting {
     const CallContext* outer = nullptr;
     std::span<const Guid> named{};

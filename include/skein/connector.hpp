@@ -77,10 +77,10 @@ struct Connected {
   typename Interface::Proxy proxy;
 };
 
-/// The paper's connector: `connect(name)` returns a typed proxy. It looks the name up in the
-/// Broker's local table, chooses the transport (same process or DDS), opens the session, and
-/// connects to another provider if the current one is lost. Thread-safe. connect() blocks; do not
-/// call it from a DDS listener or from a timer's action.
+/// The connector of Oswald's architecture (2004): connect() returns a typed proxy. It looks
+/// `ConnectOptions::name` up in the Broker's local table, chooses the transport (same process or
+/// DDS), opens the session, and connects to another provider if the current one is lost.
+/// Thread-safe. connect() blocks; do not call it from a DDS listener or from a timer's action.
 class Connector {
  public:
   struct Parts {

@@ -28,7 +28,7 @@ struct EntityOptions {
   std::shared_ptr<dds::Vendor> vendor{};
   /// The DDS domain of the mission, 0 to 232.
   std::uint32_t domain = 0;
-  /// By default loopback only.
+  /// By default 127.0.0.1 only.
   dds::Network network{};
   /// Share one among entities that are to call each other without leaving the process. nullptr: the
   /// entity makes its own.
@@ -60,8 +60,8 @@ struct ServiceOptions {
   /// Scheduling of these threads.
   ThreadSettings scheduling{};
   /// Capacity of the request queue, for all clients together; further requests are refused as
-  /// Overloaded. A peer may have no more requests waiting than there are free places: alone it gets
-  /// half, and a new peer finds room.
+  /// Overloaded. So is a request of a peer that has as many waiting as there are free places: a
+  /// single peer fills at most half of the queue, and there is always room for a new one.
   std::size_t queue = 2048;
   /// The component description as XML, for clients that look the service up.
   std::string component{};
@@ -100,8 +100,9 @@ class Entity {
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
   /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. If the owner is
-  /// this entity, the CSP is called without leaving the process. `name` is the CSP's own. Returns
-  /// and throws as provide() does.
+  /// this entity, the CSP is called without leaving the process. `name` is the CSP's, not the
+  /// entity's; an entity cannot provide two CSPs of the same name, interface and owner. Returns and
+  /// throws as provide() does.
   template <class Interface>
   Guid provide_csp(const std::string& name, const std::string& owner,
                    std::shared_ptr<Interface> csp, const ServiceOptions& options = {}) {
@@ -178,10 +179,13 @@ class Entity {
 
   template <class Interface>
   static std::shared_ptr<Servant> skeleton_of(std::shared_ptr<Interface> implementation) {
+    if (!implementation) return nullptr;
     return std::make_shared<typename Interface::Skeleton>(std::move(implementation));
   }
   Guid add(std::shared_ptr<Servant> servant, const ServiceOptions& options, const std::string& name,
            const std::string& owner);
+  void refuse_second_csp(const InterfaceInfo& interface, const std::string& name,
+                         const std::string& owner) const;
   std::unique_ptr<State> state_;
 };
 

@@ -25,8 +25,8 @@ std::string_view to_string(ErrorCode code) noexcept;
 /// Overloaded.
 bool is_refusal(ErrorCode code) noexcept;
 
-/// Base of all errors that Skein itself reports. The text names the cause, the place and, if there
-/// is one, the remedy. Exceptions declared in IDL derive from UserException instead.
+/// Base of all errors that Skein itself reports. The text names the cause, and the place and the
+/// remedy where there are any. Exceptions declared in IDL derive from UserException instead.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
@@ -36,20 +36,45 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-template <ErrorCode kCode>
-class ErrorOf : public Error {
+class Unavailable : public Error {
  public:
-  explicit ErrorOf(const std::string& text) : Error(kCode, text) {}
+  explicit Unavailable(const std::string& text) : Error(ErrorCode::Unavailable, text) {}
 };
 
-using Unavailable = ErrorOf<ErrorCode::Unavailable>;
-using Overloaded = ErrorOf<ErrorCode::Overloaded>;
-using Disconnected = ErrorOf<ErrorCode::Disconnected>;
-using TimedOut = ErrorOf<ErrorCode::TimedOut>;
-using Cancelled = ErrorOf<ErrorCode::Cancelled>;
-using Unimplemented = ErrorOf<ErrorCode::Unimplemented>;
-using InvalidArgument = ErrorOf<ErrorCode::InvalidArgument>;
-using Internal = ErrorOf<ErrorCode::Internal>;
+class Overloaded : public Error {
+ public:
+  explicit Overloaded(const std::string& text) : Error(ErrorCode::Overloaded, text) {}
+};
+
+class Disconnected : public Error {
+ public:
+  explicit Disconnected(const std::string& text) : Error(ErrorCode::Disconnected, text) {}
+};
+
+class TimedOut : public Error {
+ public:
+  explicit TimedOut(const std::string& text) : Error(ErrorCode::TimedOut, text) {}
+};
+
+class Cancelled : public Error {
+ public:
+  explicit Cancelled(const std::string& text) : Error(ErrorCode::Cancelled, text) {}
+};
+
+class Unimplemented : public Error {
+ public:
+  explicit Unimplemented(const std::string& text) : Error(ErrorCode::Unimplemented, text) {}
+};
+
+class InvalidArgument : public Error {
+ public:
+  explicit InvalidArgument(const std::string& text) : Error(ErrorCode::InvalidArgument, text) {}
+};
+
+class Internal : public Error {
+ public:
+  explicit Internal(const std::string& text) : Error(ErrorCode::Internal, text) {}
+};
 
 /// Throws the class for `code`; an unknown code (from a newer peer) becomes Internal.
 [[noreturn]] void throw_error(ErrorCode code, const std::string& text);

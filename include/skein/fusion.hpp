@@ -58,9 +58,10 @@ struct Intersection {
 Intersection intersect(std::span<const Estimate> estimates, Measure measure = Measure::Determinant);
 
 /// For estimates of which some may be wrong, and it is unknown which: covariance union (Uhlmann
-/// 2003). The result covers Pᵢ + (x − xᵢ)(x − xᵢ)ᵀ of each. For two estimates it has the least
-/// determinant for its mean x; further ones are added one after the other, which is not always the
-/// least. The mean is found by line searches from the average of all means towards each in turn.
+/// 2003). The result covers Pᵢ + (x − xᵢ)(x − xᵢ)ᵀ of each. For two estimates, the covariance
+/// has the least determinant that is possible with its mean x; further estimates are added one
+/// after the other, and then it is not always the least. The mean is found by line searches from
+/// the average of all means towards each in turn.
 Estimate unite(std::span<const Estimate> estimates);
 
 /// Intersects the estimates if they agree; otherwise unites all. No estimate is discarded. Each

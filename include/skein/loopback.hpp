@@ -70,8 +70,8 @@ class LoopbackNetwork {
   LoopbackNetwork& operator=(const LoopbackNetwork&) = delete;
 
   /// The vendor of this network. Its participants keep the network alive. A write that finds no
-  /// room waits for it with a SystemClock; with any other clock, and in a listener, it throws
-  /// Overloaded at once, since nobody could make room.
+  /// room waits for room if the clock is a SystemClock. With any other clock, and in a listener, it
+  /// throws Overloaded at once, since nobody could make room meanwhile.
   std::shared_ptr<Vendor> vendor();
 
   /// Asks `judge` about every transfer from now on; nullptr: all arrive. It is called with the
@@ -88,8 +88,8 @@ class LoopbackNetwork {
   /// Cuts two participants off from each other.
   void separate(const Guid& one, const Guid& other);
 
-  /// Ends all isolate() and separate(). A participant that was forgotten is discovered again. One
-  /// that was not goes on where it was, and reliable readers lose nothing.
+  /// Ends all isolate() and separate(). A participant that others have forgotten is discovered
+  /// again. If they have not, communication continues, and reliable readers lose nothing.
   void heal();
 
   /// Stops a participant as SIGSTOP does. The others see its lease expire; it does not see theirs

@@ -70,8 +70,9 @@ class SelectionStrategy {
 
 /// Selects the best declared quality among the CSPs whose declared latency fits into the time left;
 /// if none fits, the fastest. An undeclared latency counts as 0. If the time suffices, the latency
-/// of the fastest other CSP is reserved for a fall-back; the slice is then at most half of the
-/// time, or four times the declared latency if that is longer. Name: `declared`.
+/// of the fastest other CSP is reserved for a fall-back, or an even share of the time if no other
+/// declares one; the slice is then at most half of the time, or four times the declared latency if
+/// that is longer. Name: `declared`.
 std::shared_ptr<const SelectionStrategy> make_declared_selection();
 
 /// Uses the Broker's order, whatever is declared, and shares the time left evenly. Name:
@@ -81,10 +82,11 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 /// Selects by what each CSP's history predicts for such a request; a CSP that has not run counts as
 /// it declares. Among the CSPs whose p95 latency fits into the time left, it selects the greatest
 /// utility, reliability times quality; among those within 5 % of it, the least median latency. A
-/// reserve is kept as by `declared`. Another CSP may go first, for its p95 latency, if its quality
-/// is at most 5 % lower, the time suffices for both, and it is expected to take less time per
-/// accepted result (Smith's rule). Within the budget for exploration, the CSP that has not run for
-/// longest goes first, if the time suffices for it and the best one. Name: `learned`.
+/// reserve is kept as by `declared`. Another CSP may run before it, with its own p95 latency as
+/// time slice, if its quality is at most 5 % lower, the time suffices for both, and its expected
+/// time per accepted result is shorter (Smith's rule). Within the budget for exploration, the CSP
+/// that has not run for longest goes first, if the time suffices for it and the best one. Name:
+/// `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 
 /// The selection strategies by name; the three above from the start.

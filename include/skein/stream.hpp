@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "skein/detail/channel.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
@@ -69,12 +70,12 @@ class PendingStream final : public PendingCall {
 
 /// The results of an operation that `#pragma stream` declares, as they arrive. Move-only;
 /// destroying it cancels the operation. One thread at a time. The deadline of the call applies to
-/// the whole stream.
+/// the whole stream. A stream that was moved from throws InvalidArgument.
 ///
 /// A slow reader slows the provider: the provider may be PendingStream::kWindow results ahead, then
 /// it waits.
 template <class T>
-class Stream {
+class [[nodiscard]] Stream {
  public:
   /// `take` moves the result out of an out struct. Used by generated code.
   Stream(std::shared_ptr<PendingStream> pending, std::shared_ptr<Channel> channel, T (*take)(void*))
@@ -96,7 +97,7 @@ class Stream {
   /// Waits for the next result; nullopt at the end of the stream. Throws the error that ended it
   /// otherwise: an exception that the interface declares, or an Error (TimedOut at the deadline).
   std::optional<T> next() {
-    const auto item = pending_->next();
+    const auto item = pending().next();
     if (!item) return std::nullopt;
     return take_(item.get());
   }
@@ -106,10 +107,10 @@ class Stream {
   auto next_async() {
     struct Awaiter {
       Stream& stream;
-      bool await_ready() const { return stream.pending_->ready(); }
+      bool await_ready() const { return stream.pending().ready(); }
       void await_suspend(std::coroutine_handle<> waiting) {
         Executor& executor = stream.channel_->continuations();
-        stream.pending_->on_ready(
+        stream.pending().on_ready(
             [&executor, waiting] { executor.post_or_run([waiting] { waiting.resume(); }); });
       }
       std::optional<T> await_resume() { return stream.next(); }
@@ -118,15 +119,15 @@ class Stream {
   }
 
   /// Whether next() would return at once.
-  bool ready() const { return pending_->ready(); }
+  bool ready() const { return pending().ready(); }
 
   /// Runs `action` when ready(): at once, or on the thread that delivers, possibly a vendor's. It
   /// must neither block nor run user code. One action at a time, and no next_async() beside it.
-  void notify(std::function<void()> action) { pending_->on_ready(std::move(action)); }
+  void notify(std::function<void()> action) { pending().on_ready(std::move(action)); }
 
   /// Cancels the operation, unless it has ended, notifies the provider, and drops the results that
   /// were not taken. next() then throws Cancelled.
-  void cancel() { pending_->drop(); }
+  void cancel() { pending().drop(); }
 
   /// For a range-for, which takes the results that are left and throws as next() does.
   class Iterator {
@@ -150,6 +151,11 @@ class Stream {
   std::default_sentinel_t end() const { return {}; }
 
  private:
+  PendingStream& pending() const {
+    if (pending_) return *pending_;
+    throw InvalidArgument("this stream was moved from; use the object that it was moved to");
+  }
+
   std::shared_ptr<PendingStream> pending_;
   std::shared_ptr<Channel> channel_;
   T (*take_)(void*);

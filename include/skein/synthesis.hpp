@@ -45,8 +45,8 @@ Synthesis<Result> best_by_cost(std::function<double(const Result&)> cost) {
   };
 }
 
-/// The result with the greatest sum of votes, the weights of all CSPs that gave the same result;
-/// nullopt if the sum is below `quorum`. `same` must be an equivalence; with a tolerance use
+/// The result with the most votes: the sum of the weights of all CSPs that gave the same result.
+/// nullopt if these are fewer than `quorum`. `same` must be an equivalence; with a tolerance use
 /// mid_value().
 template <class Result>
 Synthesis<Result> weighted_vote(

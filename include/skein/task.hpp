@@ -72,8 +72,8 @@ struct TaskOptions {
 /// A task for a CSP that the Head selects. Its functions run on the thread that performs it.
 template <class Interface, class Result>
 struct Task : TaskOptions {
-  /// Calls the CSP by its proxy, whose calls time out after `budget`. With several CSPs at a time
-  /// it must not wait, but return what an `async_` function returned.
+  /// Required. Calls the CSP by its proxy, whose calls time out after `budget`. With several CSPs
+  /// at a time it must not wait, but return what an `async_` function returned.
   std::function<Awaited<Result>(typename Interface::Proxy& csp, Duration budget)> run{};
   Evaluation<Result> evaluate{};
   /// Whether an exception that the interface declares is final, so that no other CSP is asked.

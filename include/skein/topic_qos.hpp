@@ -11,13 +11,15 @@ namespace skein {
 /// data, the same on both sides, and change what must differ. A subscriber that requests more than
 /// a publisher offers gets nothing from it; both log the reason.
 ///
-/// By default every value reaches every matched subscriber, in order. A publisher that is 1024
-/// values ahead of one waits, then throws Overloaded. A subscriber with 1024 waiting values loses
-/// the oldest.
+/// By default every value reaches every matched subscriber that keeps up, in order. A publisher
+/// that is 1024 values ahead of one waits, then throws Overloaded. A subscriber with 1024 waiting
+/// values loses the oldest.
 struct TopicQos : dds::Qos {
-  /// The vehicles and stations whose topic of that name it is; empty: the entity's own. A system's
-  /// name is the DDS partition: peers without Skein use that partition, or are reached in the
-  /// default one, "", if it is named here.
+  /// The systems (vehicles and stations) in which the topic is published or read. Empty: the
+  /// entity's own, or, for a Publisher or Subscription made without an entity, the default
+  /// partition
+  /// "". A system's name is the DDS partition: peers without Skein use that partition, or are
+  /// reached in the default one if "" is named here.
   std::vector<std::string> systems{};
 
   TopicQos() {

@@ -18,7 +18,8 @@ struct Network {
   bool multicast_discovery = false;
   /// On a named interface without multicast: the hosts on which to look for participants.
   std::vector<std::string> peers;
-  /// Maximum number of participants per host for unicast discovery, 1 to 120.
+  /// Maximum number of participants per host for unicast discovery, 1 to 120; at most 63 in domain
+  /// 232, which has no ports for more.
   std::uint32_t max_participants = 120;
   /// Samples between two participants of this host that both set this go through the vendor's
   /// shared memory; discovery and everything else does not. A vendor without shared memory throws

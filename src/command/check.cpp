@@ -1,8 +1,10 @@
 #include "profile/check.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "commands.hpp"
+#include "launch/launch_plan.hpp"
 #include "launch/machine_check.hpp"
 #include "launch/supervisor.hpp"
 
@@ -14,6 +16,12 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
   // Of a profile with gaps it cannot be said what it needs here.
   if (profile::has_errors(findings)) return findings;
   const auto mission = profile::read_mission_profile(arguments.profile);
+  const bool nobody_here = std::ranges::none_of(
+      mission.peers, [&](const auto& peer) { return launch::is_here(peer.host, arguments.host); });
+  if (nobody_here) {
+    findings.push_back({profile::Severity::Warning, mission.peers.front().where,
+                        launch::nobody_here(mission, arguments.host), ""});
+  }
   for (const auto& more : {launch::check_machine(mission, arguments.host),
                            launch::check_hosts(mission, arguments.host),
                            launch::check_plugins(mission, arguments.host)}) {

@@ -232,10 +232,13 @@ int run(CLI::App& app, int argc, char** argv, const int& result) {
 
 /// What was printed and did not arrive (a full disk, say) must not pass for success.
 int with_output_checked(int code) {
+  const bool failed_before = std::ferror(stdout) != 0;
+  errno = 0;
   std::cout.flush();
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+  if (std::fflush(stdout) == 0 && !failed_before && std::cout.good()) return code;
   complain(std::string("the output could not be written: ") +
-           (errno != 0 ? std::strerror(errno) : "an earlier write failed"));
+           (failed_before || errno == 0 ? "its reader has gone, or an earlier write failed"
+                                        : std::strerror(errno)));
   return code == 0 ? launch::kOutputLost : code;
 }
 

@@ -63,7 +63,8 @@ int list_services(const ServicesArguments& arguments) {
                   printable(attribute.value).c_str());
     }
   }
-  std::printf("%zu services on domain %u\n", services.size(), arguments.watched_domain());
+  std::printf("%zu %s in %s\n", services.size(), services.size() == 1 ? "service" : "services",
+              entity.broker().options().place.c_str());
   return 0;
 }
 

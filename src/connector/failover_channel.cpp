@@ -138,7 +138,7 @@ ProviderConnection FailoverChannel::acquire(const ProviderQuery& wanted) {
   if (auto connection = ready(wanted)) return *connection;
   std::lock_guard one_at_a_time(connecting_);
   if (auto connection = ready(wanted)) return *connection;
-  const ProviderConnection main = [&] {
+  ProviderConnection main = [&] {
     std::lock_guard lock(mutex_);
     return main_;
   }();
@@ -148,7 +148,7 @@ ProviderConnection FailoverChannel::acquire(const ProviderQuery& wanted) {
   if (fall_back) next.wait = false;
   if (!main.channel->connected()) next.last.push_back(main.provider);
   try {
-    const ProviderConnection connection = connect_(next);
+    ProviderConnection connection = connect_(next);
     keep(connection);
     return connection;
   } catch (const Error& error) {

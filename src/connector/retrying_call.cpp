@@ -107,7 +107,7 @@ void RetryingCall::hedge() {
 }
 
 // `why` is what the last provider failed with, null where there was none.
-void RetryingCall::move(std::exception_ptr why) {
+void RetryingCall::move(const std::exception_ptr& why) {
   {
     std::lock_guard lock(mutex_);
     // While no provider has the call, nobody else watches its deadline.

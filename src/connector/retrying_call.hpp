@@ -48,7 +48,7 @@ class RetryingCall final : public std::enable_shared_from_this<RetryingCall> {
   bool others_run() const;
   void hedge_later(Duration delay);
   void hedge();
-  void move(std::exception_ptr why);
+  void move(const std::exception_ptr& why);
   void go_on(std::exception_ptr why);
   void cancel();
 

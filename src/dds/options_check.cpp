@@ -46,6 +46,15 @@ bool is_topic_name(const std::string& name) {
 
 }  // namespace
 
+// A participant has two unicast ports, one above the other: DDSI-RTPS 2.3, 9.6.1.1.
+std::uint32_t max_participants(const ParticipantOptions& options) {
+  constexpr std::uint32_t kMost = 120;
+  constexpr std::uint32_t kHighestPort = 65535;
+  const std::uint32_t first = 7400 + 250 * options.domain + 10;
+  const std::uint32_t with_ports = (kHighestPort - first + 1) / 2;
+  return std::clamp(options.network.max_participants, 1u, std::min(kMost, with_ports));
+}
+
 void check_domain(const ParticipantOptions& options) {
   if (options.domain <= kMaxDomain) return;
   throw InvalidArgument("domain " + std::to_string(options.domain) + " is out of range: 0 to " +
@@ -60,6 +69,15 @@ void check_options(const ParticipantOptions& options) {
     if (!is_host_name(peer)) {
       throw InvalidArgument("peer '" + peer + "' is neither an address nor a host's name");
     }
+  }
+  const Network& network = options.network;
+  if (network.interfaces.empty() && (network.multicast_discovery || !network.peers.empty())) {
+    throw InvalidArgument(
+        "other hosts are to be found, by network." +
+        std::string(network.multicast_discovery ? "multicast_discovery" : "peers") +
+        ", but network.interfaces is empty, which is this host's 127.0.0.1 alone; name the "
+        "interface that leads to them. This host has " +
+        to_text(interfaces_of_this_host()));
   }
   if (options.lease < std::chrono::milliseconds(20)) {
     throw InvalidArgument("a participant's lease of " + std::to_string(options.lease.count()) +
@@ -80,6 +98,16 @@ std::vector<std::string> interface_addresses(const Network& network) {
   for (const std::string& wanted : network.interfaces)
     addresses.push_back(address_of(wanted, host));
   return addresses;
+}
+
+std::string place_of(const ParticipantOptions& options) {
+  std::string place = "domain " + std::to_string(options.domain);
+  std::string_view separator = " on ";
+  for (const std::string& address : interface_addresses(options.network)) {
+    place.append(separator).append(address);
+    separator = " and ";
+  }
+  return place;
 }
 
 AllowedSources allowed_sources(const Network& network) {

@@ -9,8 +9,9 @@ namespace skein::dds {
 /// RTPS maps domains to ports; beyond 232 there are none left.
 inline constexpr std::uint32_t kMaxDomain = 232;
 
-/// So many participants of one domain have ports on one host.
-inline constexpr std::uint32_t kMaxParticipants = 120;
+/// So many participants of the domain can be on one host: `network.max_participants`, but no more
+/// than 120, nor than have ports below 65536 (63 in domain 232).
+std::uint32_t max_participants(const ParticipantOptions& options);
 
 void check_domain(const ParticipantOptions& options);
 
@@ -22,6 +23,9 @@ void refuse_shared_memory(const ParticipantOptions& options, const std::string& 
 
 /// The IPv4 addresses of `network.interfaces`, in dotted form; 127.0.0.1 where none is named.
 std::vector<std::string> interface_addresses(const Network& network);
+
+/// Where such a participant looks for others, for messages: `domain 0 on 127.0.0.1`.
+std::string place_of(const ParticipantOptions& options);
 
 /// `network.allowed_sources`, with the addresses of its interfaces.
 AllowedSources allowed_sources(const Network& network);

@@ -23,7 +23,7 @@ std::string learned_text(const introspection::LearnedFigures& learned) {
   if (!learned.median.empty()) text += " median " + in_ms(learned.median[0]) + ",";
   if (!learned.p95.empty()) text += " p95 " + in_ms(learned.p95[0]) + ",";
   if (!learned.quality.empty()) text += " quality " + number(learned.quality[0]) + ",";
-  return text + " " + percent(learned.reliability) + " accepted";
+  return text + " reliability " + percent(learned.reliability);
 }
 
 std::string line_of(const std::vector<introspection::NamedValue>& features) {
@@ -39,7 +39,7 @@ std::string line_of(const introspection::CandidateReport& candidate) {
       candidate.in_process ? " (in the process)" : " (pid " + std::to_string(candidate.pid) + ")";
   text += candidate.latency.empty() ? " declares no latency"
                                     : " declares " + in_ms(candidate.latency[0]);
-  text += ", quality " + number(candidate.quality);
+  text += candidate.quality == 0 ? ", no quality" : ", quality " + number(candidate.quality);
   text += candidate.learned.empty() ? "; has not run before"
                                     : "; " + learned_text(candidate.learned[0]);
   if (candidate.breaker == introspection::BreakerState::Open) {

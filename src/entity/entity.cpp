@@ -12,6 +12,7 @@
 #include "core/interface_name.hpp"
 #include "core/leave_behind.hpp"
 #include "core/log.hpp"
+#include "dds/options_check.hpp"
 #include "dds/port.hpp"
 #include "dds/vendor_names.hpp"
 #include "entity/statistics_topic.hpp"
@@ -51,6 +52,31 @@ ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider
   return description;
 }
 
+void check_servant(const std::shared_ptr<Servant>& servant, const std::string& who) {
+  if (!servant) throw InvalidArgument("the service of '" + who + "' has no implementation: null");
+}
+
+void check_owner(const std::string& owner, const std::string& csp) {
+  const auto slash = owner.find('/');
+  if (slash != std::string::npos && slash > 0 && slash + 1 < owner.size()) return;
+  throw InvalidArgument("the owner '" + owner + "' of the CSP '" + csp +
+                        "' is no entity: write SYSTEM/ENTITY, as Entity::id() returns it");
+}
+
+// A Head reads these two, whether or not a dictionary describes them.
+void check_attributes(const ServiceOptions& options, const std::string& who) {
+  using Kind = brokerless_discovery::Quantity::Kind;
+  for (const auto& [name, value] : options.attributes) {
+    const Kind kind = brokerless_discovery::quantity_of(value).kind;
+    const bool latency = name == "latency";
+    if (!latency && name != "quality") continue;
+    if (kind == Kind::Number || (latency && kind == Kind::Time)) continue;
+    throw InvalidArgument("the attribute " + name + " of '" + who + "' is '" + value +
+                          "'; write a number" +
+                          (latency ? " of milliseconds, or a duration: 0.3 s" : ""));
+  }
+}
+
 // A service of its own strand is known by its provider; empty where this entity does not know it.
 std::string name_of(const Broker& broker, const Guid& provider) {
   for (const auto& description : broker.all()) {
@@ -71,7 +97,7 @@ struct Entity::Provided {
   std::unique_ptr<rpc::DdsServer> server;
   Broker::Registration load;
   Broker::Registration registration;
-  bool is_body = false;
+  std::string owner;  // empty for a Body
   bool awaited = false;
 
   ~Provided() {
@@ -108,7 +134,8 @@ struct Entity::State {
         journal(std::make_shared<rpc::CallJournal>(*participant, control,
                                                    options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
-               {options.system, options.name, options.vendor->name(), options.lease}),
+               {options.system, options.name, options.vendor->name(), options.lease,
+                dds::place_of(participant_options())}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
                    process->shared_clock(), options.spin, journal}),
@@ -122,12 +149,16 @@ struct Entity::State {
                             "' has no vendor; pass dds::load_vendor(\"" +
                             dds::vendor_names().front() + "\") or another");
     }
+    return options.vendor->create_participant(participant_options());
+  }
+
+  dds::ParticipantOptions participant_options() const {
     dds::ParticipantOptions participant_options;
     participant_options.domain = options.domain;
     participant_options.name = options.system + "/" + options.name;
     participant_options.network = options.network;
     participant_options.lease = options.lease;
-    return options.vendor->create_participant(participant_options);
+    return participant_options;
   }
 
   const EntityOptions options;
@@ -178,7 +209,7 @@ Entity::~Entity() {
   const auto deadline = std::chrono::steady_clock::now() + kStopPatience;  // of all together
   bool stuck = false;
   for (const auto& [id, service] : provided) {
-    if (!service->await_end(deadline) && service->is_body) stuck = true;
+    if (!service->await_end(deadline) && service->owner.empty()) stuck = true;
   }
   provided.clear();
   state_->continuations->finish();
@@ -214,17 +245,21 @@ Guid Entity::provide(std::shared_ptr<Servant> servant, const ServiceOptions& opt
 
 Guid Entity::provide_csp(const std::string& name, const std::string& owner,
                          std::shared_ptr<Servant> servant, const ServiceOptions& options) {
+  check_owner(owner, name);
   return add(std::move(servant), options, name, owner);
 }
 
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
+  check_servant(servant, name);
+  check_attributes(options, name);
   const InterfaceInfo& interface = servant->interface_info();
+  if (!owner.empty()) refuse_second_csp(interface, name, owner);
   auto executor =
       std::make_shared<ThreadExecutor>(name, options.threads, options.queue, options.scheduling);
   auto provided = std::make_unique<Provided>();
   provided->name = name;
-  provided->is_body = owner.empty();
+  provided->owner = owner;
   provided->executor = std::move(executor);
   rpc::Service::Options service_options;
   service_options.id = state_->broker.new_provider();
@@ -265,6 +300,20 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   std::lock_guard lock(state_->mutex);
   state_->provided.emplace(id, std::move(provided));
   return id;
+}
+
+// A Head knows a CSP again by its name: two of one name would share a history and a quarantine.
+void Entity::refuse_second_csp(const InterfaceInfo& interface, const std::string& name,
+                               const std::string& owner) const {
+  std::lock_guard lock(state_->mutex);
+  for (const auto& [id, other] : state_->provided) {
+    if (other->name != name || other->owner != owner ||
+        other->service->interface_info().name != interface.name)
+      continue;
+    throw InvalidArgument("'" + this->id() + "' already provides a CSP '" + name + "' for " +
+                          scoped_interface_name(std::string(interface.name)) + " to " + owner +
+                          "; give this one another name");
+  }
 }
 
 std::vector<introspection::ServiceStatistics> Entity::statistics() const {

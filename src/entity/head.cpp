@@ -97,9 +97,9 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   record.request = options.request;
   record.execution = to_string(options.execution);
   state_->record(record, begin, wanted, [&] {
-    auto candidates = state_->candidates(interface, options.only, options.features, begin);
+    const auto candidates = state_->candidates(interface, options.only, options.features, begin);
     if (candidates.empty()) state_->refuse_without(interface, options.only);
-    Run run(*state_, interface, *strategy, task, std::move(candidates), record, begin);
+    Run run(*state_, interface, *strategy, task, candidates, record, begin);
     if (!run.run()) run.fail();
   });
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brokerless_discovery/broker.hpp"
+#include "core/suggestion.hpp"
 #include "head_state.hpp"
 #include "rpc/local_directory.hpp"
 #include "skein/constraint.hpp"
@@ -100,12 +101,32 @@ std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
   return candidates;
 }
 
-void Head::State::refuse_without(const InterfaceInfo& interface, const std::string& only) const {
-  auto query = parts.broker.query(std::string(interface.name));
+// There may be some that have not returned from an earlier request, and are not to be called again.
+void Head::State::refuse_without(const InterfaceInfo& interface, const std::string& only) {
+  std::vector<std::string> names;
+  std::string hung;
+  {
+    std::lock_guard lock(mutex);
+    for (const Known& known : roster(interface).csps) {
+      const std::string& name = known.candidate.name;
+      names.push_back(name);
+      const auto service = known.service.lock();
+      if ((only.empty() || name == only) && service && service->overdue())
+        hung += (hung.empty() ? "" : ", ") + name;
+    }
+  }
+  const std::string task(interface.name);
+  if (!hung.empty()) {
+    throw NoCandidate("no CSP is free for " + task + ": " + hung +
+                      " has not returned from an earlier request whose time is over; it hangs in "
+                      "this process, and is called again once it returns");
+  }
+  if (!only.empty()) {
+    throw NoCandidate("there is no CSP '" + only + "' for " + task + suggestion(only, names));
+  }
+  auto query = parts.broker.query(task);
   query.client = &interface;
-  throw NoCandidate(only.empty() ? parts.broker.explain(query)
-                                 : "the planner or other CSP '" + only + "' is not available for " +
-                                       std::string(interface.name));
+  throw NoCandidate(parts.broker.explain(query));
 }
 
 History::Decisions Head::State::past(const InterfaceInfo& interface) const {

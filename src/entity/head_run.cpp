@@ -56,7 +56,7 @@ void Head::Run::Bell::await() {
 }
 
 Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
-               task_run::TaskRun& task, std::vector<Candidate> candidates,
+               task_run::TaskRun& task, const std::vector<Candidate>& candidates,
                introspection::Decision& record, Instant begin)
     : state_(state),
       interface_(interface),

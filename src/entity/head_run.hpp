@@ -12,8 +12,8 @@ class Head::Run {
  public:
   /// All references outlive the run. `record` says what the strategy is told of the request.
   Run(State& state, const InterfaceInfo& interface, const SelectionStrategy& strategy,
-      task_run::TaskRun& task, std::vector<Candidate> candidates, introspection::Decision& record,
-      Instant begin);
+      task_run::TaskRun& task, const std::vector<Candidate>& candidates,
+      introspection::Decision& record, Instant begin);
 
   /// Until there is a result, no CSP is left, or the time is up. Whether there is a result.
   bool run();

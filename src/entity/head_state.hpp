@@ -25,7 +25,7 @@ struct Head::State {
   std::vector<Candidate> candidates(const InterfaceInfo& interface, const std::string& only,
                                     const Features& features, Instant now);
   /// Throws NoCandidate: there is none.
-  [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only) const;
+  [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
   History::Decisions past(const InterfaceInfo& interface) const;
   /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
   std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);

@@ -20,11 +20,13 @@ constexpr double kLeastQuality = 1e-9;
 // What is expected of a candidate: of its history, or of its description where it has none.
 struct Outlook {
   explicit Outlook(const Candidate& candidate) {
+    timed = candidate.latency.has_value();
     typical = safe = candidate.latency.value_or(Duration::zero());
     quality = candidate.quality;
     if (const auto& learned = candidate.learned) {
       typical = learned->median.value_or(typical);
       safe = learned->p95.value_or(safe);
+      timed |= learned->p95.has_value();
       quality = learned->quality.value_or(quality);
       reliability = learned->reliability;
     }
@@ -39,6 +41,7 @@ struct Outlook {
            (1 - reliability) / reliability * static_cast<double>(safe.count());
   }
 
+  bool timed;  // declared or measured
   Duration typical;
   Duration safe;
   double quality;
@@ -128,8 +131,7 @@ class Choice {
   }
 
   Selection take(std::size_t best) const {
-    const Duration slice =
-        slice_beside(outlooks_[best].safe, reserve_beside(best), situation_.remaining);
+    const Duration slice = slice_beside(outlooks_[best].safe, reserve(best), situation_.remaining);
     const Duration kept = situation_.remaining - slice;
     const bool keeps = kept > Duration::zero();
     std::string reason =
@@ -149,17 +151,17 @@ class Choice {
     }
     return joined({p95, " over ", std::to_string(learned->samples),
                    learned->samples == 1 ? " similar request" : " similar requests", ", quality ",
-                   number(learned->quality.value_or(candidate.quality)), ", ",
-                   percent(learned->reliability), " accepted"});
+                   number(learned->quality.value_or(candidate.quality)), ", reliability ",
+                   percent(learned->reliability)});
   }
 
-  Duration reserve_beside(std::size_t best) const {
+  Duration reserve(std::size_t best) const {
     std::optional<Duration> least;
     for (std::size_t i = 0; i < outlooks_.size(); ++i) {
-      if (i != best) least = std::min(least.value_or(Duration::max()), outlooks_[i].safe);
+      if (i != best && outlooks_[i].timed)
+        least = std::min(least.value_or(Duration::max()), outlooks_[i].safe);
     }
-    const Duration reserve = least.value_or(Duration::zero());
-    return outlooks_[best].safe + reserve <= situation_.remaining ? reserve : Duration::zero();
+    return reserve_beside(outlooks_[best].safe, least, outlooks_.size() - 1, situation_.remaining);
   }
 
   Selection fastest_anyway() const {

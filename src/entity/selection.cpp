@@ -33,7 +33,7 @@ class DeclaredSelection final : public SelectionStrategy {
     }
     if (!best) return fastest_anyway(candidates, remaining);
     const Duration slice =
-        slice_beside(latency_of(*best), reserve_beside(*best, candidates, remaining), remaining);
+        slice_beside(latency_of(*best), reserve(*best, candidates, remaining), remaining);
     const Duration kept = remaining - slice;
     const bool keeps = kept > Duration::zero();
     std::string reason =
@@ -55,15 +55,14 @@ class DeclaredSelection final : public SelectionStrategy {
     return static_cast<std::size_t>(&candidate - candidates.data());
   }
 
-  static Duration reserve_beside(const Candidate& best, const std::vector<Candidate>& candidates,
-                                 Duration remaining) {
+  static Duration reserve(const Candidate& best, const std::vector<Candidate>& candidates,
+                          Duration remaining) {
     std::optional<Duration> least;
     for (const Candidate& candidate : candidates) {
       if (&candidate == &best || !candidate.latency) continue;
       least = std::min(least.value_or(Duration::max()), *candidate.latency);
     }
-    const Duration reserve = least.value_or(Duration::zero());
-    return latency_of(best) + reserve <= remaining ? reserve : Duration::zero();
+    return reserve_beside(latency_of(best), least, candidates.size() - 1, remaining);
   }
 
   static Selection fastest_anyway(const std::vector<Candidate>& candidates, Duration remaining) {
@@ -107,6 +106,7 @@ StrategyFactory::StrategyFactory() {
 }
 
 void StrategyFactory::add(std::shared_ptr<const SelectionStrategy> strategy) {
+  if (!strategy) throw InvalidArgument("a selection strategy to be added is null");
   const std::string name = strategy->name();
   strategies_[name] = std::move(strategy);
 }

@@ -6,7 +6,7 @@ namespace skein::idl {
 
 DeclaredException& DeclaredException::operator=(const DeclaredException& other) {
   UserException::operator=(other);
-  text_.reset();
+  if (this != &other) text_.reset();
   return *this;
 }
 

@@ -171,13 +171,12 @@ class PluginCheck {
     for (const auto& [plugin, where] : plugins) {
       if (!load(registry, plugin, where)) return;
     }
-    if (plugins.size() > 1 || !peer.plugin.empty()) check_strategy(peer, registry);
+    check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner && !csp.plugin.empty())
+      if (csp.process == CspProcess::InOwner)
         demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
                csp.where, registry);
     }
-    if (peer.plugin.empty()) return;
     const std::string& component = peer.component->name;
     if (!peer.component->interfaces.empty()) {
       demand(registry.find_body(component), component, "component", peer.plugin, peer.where,
@@ -201,7 +200,7 @@ class PluginCheck {
 
   void check_own(const CspProfile& csp) {
     ComponentRegistry registry;
-    if (csp.plugin.empty() || !load(registry, csp.plugin, csp.where)) return;
+    if (!load(registry, csp.plugin, csp.where)) return;
     demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
            csp.where, registry);
   }
@@ -210,6 +209,11 @@ class PluginCheck {
               const std::string& plugin, const profile::SourcePosition& where,
               const ComponentRegistry& registry) {
     if (found) return;
+    if (plugin.empty()) {
+      add(where, "no plugin is named for the " + kind + " '" + component + "'",
+          "name the one that implements it: plugin=\"...\"");
+      return;
+    }
     const auto known = registry.names();
     const bool other_kind = std::ranges::count(known, component) > 0;
     std::string names;

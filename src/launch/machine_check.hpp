@@ -24,8 +24,8 @@ std::vector<profile::Finding> check_hosts(const profile::MissionProfile& mission
                                           const std::string& host);
 
 /// Plugins of those peers that cannot be opened, components that no plugin of theirs implements,
-/// and selection strategies that neither their plugins nor Skein hold. Loads the plugins into this
-/// process, for good. Peers without a plugin are passed over: their program brings what they need.
+/// components for which no plugin is named, and selection strategies that neither their plugins nor
+/// Skein hold. Loads the plugins into this process, for good.
 std::vector<profile::Finding> check_plugins(const profile::MissionProfile& mission,
                                             const std::string& host);
 

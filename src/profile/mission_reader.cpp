@@ -38,7 +38,7 @@ std::vector<std::string_view> joined(const Lists&... lists) {
 /// What a peer has unless it says otherwise.
 struct Defaults {
   std::string vendor = dds::vendor_names().front();
-  std::string system;
+  std::string system = "default";
   std::string host;
   std::string interface;
   std::vector<std::string> peers;
@@ -102,9 +102,10 @@ class MissionReader {
     }
   }
 
-  static std::string value_or(const XmlElement& element, const char* name, std::string fallback) {
+  static std::string value_or(const XmlElement& element, const char* name,
+                              const std::string& fallback) {
     const auto attribute = element.maybe_attribute(name);
-    return attribute ? attribute->value : std::move(fallback);
+    return attribute ? attribute->value : fallback;
   }
 
   std::string vendor_of(const XmlElement& element, std::string fallback) {

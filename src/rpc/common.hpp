@@ -13,6 +13,9 @@ namespace skein::rpc {
 /// A message that needed more is not kept for the next one.
 inline constexpr std::size_t kKeptCapacity = 4 << 20;
 
+/// What a TimedOut ends with, for the caller.
+inline constexpr const char* kMoreTime = "; within() on the proxy sets a longer limit";
+
 inline dds::Qos call_qos(std::vector<std::string> partitions) {
   dds::Qos qos;
   qos.partitions = std::move(partitions);

@@ -124,7 +124,7 @@ void DdsChannel::State::expire(std::uint64_t number) {
   }
   auto error = std::make_exception_ptr(
       TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
-               " before its deadline; whether it ran is unknown" + hint));
+               " before its deadline; whether it ran is unknown" + hint + kMoreTime));
   note_end(number, call->operation(), error);
   call->finish(std::move(error));
   tell_server(number);

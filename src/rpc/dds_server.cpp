@@ -153,7 +153,8 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   invocation->server = weak_from_this();
   invocation->client = client;
   invocation->id = head.id;
-  invocation->respond = [request = invocation.get()](const void* out, std::exception_ptr error) {
+  invocation->respond = [request = invocation.get()](const void* out,
+                                                     const std::exception_ptr& error) {
     if (const auto self = request->server.lock()) self->respond(*request, out, error);
   };
   {
@@ -227,7 +228,7 @@ Duration DdsServer::State::remaining(Client& client, const wire::RequestTrailer&
 }
 
 DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& clock,
-                     std::shared_ptr<Service> service, Options options)
+                     std::shared_ptr<Service> service, const Options& options)
     : state_(std::make_shared<State>(participant, control, clock, std::move(service), options)) {
   State& state = *state_;
   if (options.foreign_clients) {

@@ -62,7 +62,7 @@ class DdsServer {
 
   /// `participant`, `control` and `clock` outlive the server. Throws what the port throws.
   DdsServer(dds::Participant& participant, Executor& control, Clock& clock,
-            std::shared_ptr<Service> service, Options options);
+            std::shared_ptr<Service> service, const Options& options);
   /// Ends all sessions; nothing of the participant is in use any more. Not from a task of `control`
   /// or of the service's executor.
   ~DdsServer();

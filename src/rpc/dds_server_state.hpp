@@ -73,7 +73,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
         control(control_),
         clock(clock_),
         service(std::move(service_)),
-        options(options_),
+        options(std::move(options_)),
         address{std::string(service->interface_info().name), service->id()} {}
 
   dds::Participant& participant;

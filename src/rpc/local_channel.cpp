@@ -24,8 +24,9 @@ struct QueuedCall final : Invocation {
 
   void expire(const std::string& peer) {
     cancel();
-    call->fail(std::make_exception_ptr(
-        TimedOut(peer + " did not answer " + std::string(operation->name) + " in time")));
+    call->fail(
+        std::make_exception_ptr(TimedOut(peer + " did not answer " + std::string(operation->name) +
+                                         " before its deadline" + kMoreTime)));
   }
 
   const std::shared_ptr<PendingCall> call;
@@ -51,7 +52,7 @@ void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& 
 
 }  // namespace
 
-std::shared_ptr<LocalChannel> LocalChannel::open(std::weak_ptr<Service> service,
+std::shared_ptr<LocalChannel> LocalChannel::open(const std::weak_ptr<Service>& service,
                                                  std::shared_ptr<Clock> clock,
                                                  std::shared_ptr<Executor> continuations,
                                                  const std::string& strategy) {

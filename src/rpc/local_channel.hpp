@@ -15,7 +15,7 @@ namespace skein::rpc {
 class LocalChannel final : public Channel, public std::enable_shared_from_this<LocalChannel> {
  public:
   /// Opens a session at the service; throws what the Head throws to refuse it.
-  static std::shared_ptr<LocalChannel> open(std::weak_ptr<Service> service,
+  static std::shared_ptr<LocalChannel> open(const std::weak_ptr<Service>& service,
                                             std::shared_ptr<Clock> clock,
                                             std::shared_ptr<Executor> continuations,
                                             const std::string& strategy);

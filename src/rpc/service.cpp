@@ -101,7 +101,7 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
   return options_.open ? options_.open(request) : nullptr;
 }
 
-void Service::submit(std::shared_ptr<Invocation> invocation) {
+void Service::submit(const std::shared_ptr<Invocation>& invocation) {
   OperationMeter& meter = meter_.of(*invocation->operation);
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();

@@ -107,7 +107,7 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
   /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
   /// for itself; respond() is not called then.
-  void submit(std::shared_ptr<Invocation> invocation);
+  void submit(const std::shared_ptr<Invocation>& invocation);
 
   /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
   /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too

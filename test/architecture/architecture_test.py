@@ -69,6 +69,11 @@ class PublicHeaders(TreeTest):
         for folder, headers in (("", include_rules.USERS_HEADERS), ("detail/", include_rules.DETAIL_HEADERS)):
             for name in " ".join(headers.values()).split():
                 self.write(f"include/skein/{folder}{name}.hpp", "")
+        self.names = " ".join(include_rules.USERS_HEADERS.values()).split()
+        self.write_umbrella(self.names)
+
+    def write_umbrella(self, names):
+        self.write("include/skein/skein.hpp", "".join(f'#include "skein/{name}.hpp"\n' for name in names))
 
     def test_those_that_are_named_are_taken(self):
         self.assertFindsNothing(include_rules.public_headers(self.tree))
@@ -80,6 +85,14 @@ class PublicHeaders(TreeTest):
     def test_one_that_is_gone_is_found(self):
         os.remove(os.path.join(self.root, "include/skein/call.hpp"))
         self.assertFinds(include_rules.public_headers(self.tree), "include/skein/call.hpp", "does not exist")
+
+    def test_one_that_the_umbrella_lacks_is_found(self):
+        self.write_umbrella([name for name in self.names if name != "call"])
+        self.assertFinds(include_rules.public_headers(self.tree), "skein.hpp: does not include skein/call.hpp")
+
+    def test_those_that_need_another_library_may_lack(self):
+        self.write_umbrella([name for name in self.names if name not in ("asio", "fusion", "skein")])
+        self.assertFindsNothing(include_rules.public_headers(self.tree))
 
     def test_too_many_are_found(self):
         most, include_rules.MAX_USERS_HEADERS = include_rules.MAX_USERS_HEADERS, 5

@@ -57,7 +57,7 @@ def linked_vendors(library):
     """A vendor that libskein needs, though it is to be loaded at run time."""
     ran = subprocess.run(["readelf", "--dynamic", library], text=True, capture_output=True, check=True)
     for needed in re.findall(r"\(NEEDED\).*\[(.+)\]", ran.stdout):
-        if re.match(r"lib(fastrtps|fastdds|ddsc|ompl)", needed):
+        if re.match(include_rules.LOADED_LIBRARIES, needed):
             yield f"{library}: needs {needed}"
 
 

@@ -43,6 +43,8 @@ USERS_HEADERS = {
     "Asio": "asio",
 }
 MAX_USERS_HEADERS = 30
+# Those that skein/skein.hpp does not include: they need another library, or are that header.
+BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
     "core": "abi action bytes call_memory channel operation",
@@ -62,14 +64,8 @@ _FLOOR_OF_HEADER = {
 BACK_END = 2.5
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("launch", "profile")}
-# Headers that are generated, by the floor of their IDL.
-GENERATED = {
-    "skein/discovery.idl.hpp": "brokerless_discovery",
-    "skein/introspection.idl.hpp": "rpc",
-    "navigator.idl.hpp": "navigation",
-    "flight_controller.idl.hpp": "navigation",
-    "ad_manager.idl.hpp": "navigation",
-}
+# Headers that are generated, by the floor of their IDL; all of idl/navigation are of `navigation`.
+GENERATED = {"skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc"}
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from
 # outside, are built on the vendors' own headers.
@@ -85,6 +81,8 @@ HOMES = {
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
     "the command line": (r"CLI/", ["src/command/main.cpp", "src/command/grid/main.cpp", "benchmarks"]),
 }
+# What libskein must not link: modules bring it, or plugins.
+LOADED_LIBRARIES = r"lib(fastrtps|fastdds|ddsc|ompl)"
 
 
 def homes(tree):
@@ -97,12 +95,17 @@ def homes(tree):
 
 
 def public_headers(tree):
-    """A header that is installed and not named above, and too many of a user's."""
+    """A header that is installed and not named above, one that skein.hpp lacks, and too many of a user's."""
     headers = {path.removeprefix("include/") for path in tree.files((".hpp",), "include")}
     for header in sorted(headers - set(_FLOOR_OF_HEADER)):
         yield f"include/{header}: is nowhere in USERS_HEADERS or DETAIL_HEADERS; internals lie beside their sources"
     for header in sorted(set(_FLOOR_OF_HEADER) - headers):
         yield f"include/{header}: is named as a public header and does not exist"
+    umbrella = {included for _, included, _ in tree.includes("include/skein/skein.hpp")}
+    for floor, names in USERS_HEADERS.items():
+        for header in (f"skein/{name}.hpp" for name in names.split() if floor not in BESIDE_THE_UMBRELLA):
+            if header not in umbrella:
+                yield f"include/skein/skein.hpp: does not include {header}"
     count = sum(len(names.split()) for names in USERS_HEADERS.values())
     if count > MAX_USERS_HEADERS:
         yield f"{count} headers are a user's; {MAX_USERS_HEADERS} are enough"
@@ -153,6 +156,8 @@ def floor_of_header(included):
 def _module_of_include(tree, path, included, quoted):
     if included in GENERATED:
         return GENERATED[included]
+    if tree.exists(f"idl/navigation/{included.removesuffix('.hpp')}"):
+        return "navigation"
     if included in _FLOOR_OF_HEADER:
         return floor_of_header(included)
     for folder in (os.path.dirname(path), "src", ""):

@@ -167,6 +167,18 @@ TEST_CASE("where nothing is found the reason is given", "[R9]") {
   CHECK_THAT(table.explain(query("A/INavigator")), Catch::Contains("has not been heard of"));
 }
 
+TEST_CASE("an entity of the wanted name with another interface is said to offer that", "[R7][R9]") {
+  const OperationInfo wanted[] = {
+      {"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
+  const InterfaceInfo client{"A/IPlanner", {}, wanted, ""};
+  Query asked = query("navigator");
+  asked.client = &client;
+  Table table;
+  table.on_description(description(1, "A/INavigator", "navigator"), kWriter);
+  CHECK_THAT(table.explain(asked),
+             Catch::Contains("navigator (uav-1) offers A::INavigator, not A::IPlanner"));
+}
+
 TEST_CASE("a withdrawn description goes at once", "[R10]") {
   Table table;
   table.on_description(description(1, "A/I", "one"), kWriter);

@@ -44,6 +44,17 @@ TEST_CASE("a domain beyond the last one is refused") {
                     Contains("233") && Contains("232"));
 }
 
+TEST_CASE("other hosts cannot be looked for without an interface") {
+  ParticipantOptions with_peers;
+  with_peers.network.peers = {"10.0.0.2"};
+  CHECK_THROWS_WITH(load_vendor(kPairing.writing)->create_participant(with_peers),
+                    Contains("network.peers") && Contains("interfaces is empty"));
+  ParticipantOptions with_multicast;
+  with_multicast.network.multicast_discovery = true;
+  CHECK_THROWS_WITH(load_vendor(kPairing.writing)->create_participant(with_multicast),
+                    Contains("network.multicast_discovery") && Contains("interfaces is empty"));
+}
+
 TEST_CASE("an unknown interface is refused with the known ones") {
   ParticipantOptions options;
   options.network.interfaces = {"lo0"};

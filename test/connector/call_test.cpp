@@ -249,6 +249,15 @@ TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
   CHECK_THROWS_AS(cancelled.get(), Cancelled);
 }
 
+TEST_CASE("a call is used once, and says so the second time") {
+  Pair pair;
+  auto call = pair.echo->async_echo("once");
+  CHECK(call.get() == "once");
+  CHECK_THROWS_AS(call.get(), InvalidArgument);
+  CHECK_THROWS_AS(call.cancel(), InvalidArgument);
+  CHECK_THROWS_WITH(call.ready(), Catch::Contains("used before"));
+}
+
 TEST_CASE("oneway calls are executed in order without an answer") {
   Pair pair;
   for (int i = 0; i < 20; ++i) pair.echo->note("n");
@@ -365,6 +374,24 @@ TEST_CASE("a service whose threads can never run as told is not provided, and th
   CHECK(pair.echo->echo("still here") == "still here");
 }
 
+TEST_CASE("a service that cannot work is refused with the reason") {
+  Pair pair;
+  const auto provide = [&](const std::string& name, const std::string& owner,
+                           const ServiceOptions& options = {}) {
+    pair.server->provide_csp<Echo>(name, owner, pair.service, options);
+  };
+  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(nullptr),
+                    Catch::Contains("'server' has no implementation"));
+  CHECK_THROWS_WITH(provide("csp", "owner"), Catch::Contains("SYSTEM/ENTITY"));
+  CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.attributes = {{"latency", "quick"}}}),
+                    Catch::Contains("latency of 'csp' is 'quick'"));
+  CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.attributes = {{"quality", "3 s"}}}),
+                    Catch::Contains("quality of 'csp' is '3 s'"));
+  provide("csp", "uav-1/owner");
+  CHECK_THROWS_WITH(provide("csp", "uav-1/owner"), Catch::Contains("another name"));
+  CHECK_NOTHROW(provide("csp", "uav-1/other"));
+}
+
 TEST_CASE(
     "connecting by interface, entity and base finds the provider; what is not there gives the "
     "reason") {
@@ -377,6 +404,8 @@ TEST_CASE(
                     Catch::Contains("did you mean 'server'"));
   CHECK_THROWS_WITH(pair.client->connect<Echo>({.system = "uav-9", .timeout = 50ms}),
                     Catch::Contains("system 'uav-9'"));
+  CHECK_THROWS_WITH(pair.client->connect<Echo>({.name = "nobody", .timeout = 50ms}),
+                    Catch::Contains("in domain 17 on 127.0.0.1"));
 }
 
 TEST_CASE(

@@ -73,6 +73,16 @@ TEST_CASE("a CSP that hangs is given up in time for the next best") {
   hang.release();
 }
 
+TEST_CASE("where the only CSP has not returned, the next request says which") {
+  Hang hang;
+  Office office;
+  office.add("stuck", Place::Inside, hang.script(), declared("1", "0.9"));
+  CHECK_THROWS_AS(office.perform(Office::task(), 100ms), TimedOut);
+  CHECK_THROWS_WITH(office.perform(Office::task(), 100ms),
+                    Catch::Contains("stuck has not returned from an earlier request"));
+  hang.release();
+}
+
 TEST_CASE("an instance in the process that is stuck is not entered again before it has come back") {
   Hang hang;
   FirstFails team(Place::Inside, hang.script());

@@ -78,6 +78,18 @@ TEST_CASE("of plenty of time half is kept in reserve: who needs more than that h
   CHECK(declared(8s).slice == 6s);  // four times its latency
 }
 
+TEST_CASE("where no other declares a latency, each has an even share of the time kept for it") {
+  const auto slice = [](std::optional<Duration> latency) {
+    return make_declared_selection()
+        ->select({candidate("best", latency, 0.9), candidate("silent", std::nullopt, 0.5)},
+                 {.remaining = 1s})
+        .slice;
+  };
+  CHECK(slice(std::nullopt) == 500ms);
+  CHECK(slice(100ms) == 500ms);
+  CHECK(slice(800ms) == 800ms);
+}
+
 TEST_CASE("equal quality is decided by latency") {
   CHECK(chosen({candidate("slow", 30ms, 0.5), candidate("fast", 10ms, 0.5)}, 1s) == "fast");
 }

@@ -74,6 +74,19 @@ TEST_CASE("a domain out of range is refused with the range") {
   }
 }
 
+TEST_CASE("in the last domain, which has ports for fewer participants, peers find each other") {
+  std::vector<std::unique_ptr<Entity>> entities;
+  for (const auto& vendor : {Pairing::get().server, Pairing::get().client}) {
+    EntityOptions options;
+    options.name = entities.empty() ? "server" : "client";
+    options.vendor = vendor;
+    options.domain = 232;
+    entities.push_back(std::make_unique<Entity>(options));
+  }
+  entities[0]->provide<LouderEcho>(std::make_shared<EchoService>());
+  CHECK(entities[1]->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
+}
+
 TEST_CASE("an interface that the host does not have is refused with those that it has") {
   for (const auto& vendor : {Pairing::get().server, Pairing::get().client}) {
     EntityOptions options;

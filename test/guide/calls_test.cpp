@@ -22,7 +22,7 @@ std::optional<double> ask(survey::ISurveyor::Proxy& surveyor, const survey::Area
     return std::nullopt;
   } catch (const skein::Overloaded&) {  // it was refused, and not executed
     return std::nullopt;
-  } catch (const skein::Error& error) {  // the text names cause, place and remedy
+  } catch (const skein::Error& error) {  // all others
     std::fprintf(stderr, "%s\n", error.what());
     throw;
   }

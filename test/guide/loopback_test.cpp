@@ -40,7 +40,7 @@ TEST_CASE("a call whose answer is lost ends at its limit") {
                                               : skein::dds::Fate::deliver();
   });
   auto call = navigator.within(2s).async_plan({.length_m = 10, .width_m = 10});
-  test.clock->advance(2s);  // no time passes
+  test.clock->advance(2s);  // at once
   CHECK_THROWS_AS(call.get(), skein::TimedOut);
 }
 

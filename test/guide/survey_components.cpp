@@ -12,6 +12,9 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   registry.add_csp("Rows", [](const skein::ParameterValues&) {
     return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Rows>());
   });
+  registry.add_csp("Spiral", [](const skein::ParameterValues&) {
+    return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Spiral>());
+  });
   registry.add_body("Navigator", [](skein::Entity& entity, const skein::ParameterValues&) {
     return skein::ComponentRegistry::Body{
         std::make_shared<survey::INavigator::Skeleton>(std::make_shared<Navigator>(entity.head()))};
@@ -21,8 +24,5 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     const auto track = navigator.plan({.length_m = 400, .width_m = 300});
     std::printf("%s: %.0f m\n", track.planner.c_str(), track.length_m);
     return 0;  // the mission's exit code
-  });
-  registry.add_csp("Spiral", [](const skein::ParameterValues&) {
-    return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Spiral>());
   });
 }

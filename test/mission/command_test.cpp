@@ -71,7 +71,7 @@ TEST_CASE("commands that watch end in order when they are interrupted") {
   }));
   run.signal(signal);
   CHECK(run.wait() == 0);
-  if (command == "services") CHECK_THAT(run.output(), Contains("0 services on domain 0"));
+  if (command == "services") CHECK_THAT(run.output(), Contains("0 services in domain 0"));
 }
 
 TEST_CASE("what a peer says of itself cannot drive a terminal, nor fill it") {
@@ -87,7 +87,7 @@ TEST_CASE("what a peer says of itself cannot drive a terminal, nor fill it") {
   REQUIRE(eventually([&] {
     CommandRun run({"services", "--domain", "49"});
     output = run.wait() == 0 ? run.output() : "";
-    return output.find("1 services on domain 49") != std::string::npos;
+    return output.find("1 service in domain 49") != std::string::npos;
   }));
   CHECK_THAT(output, Contains("xxx... (4096 bytes)"));
   CHECK(output.size() < 4096);

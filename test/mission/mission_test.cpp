@@ -57,7 +57,7 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
         Contains("RRTstar has the best declared quality (0.95) of those whose latency fits"));
   }
   SECTION("what planners declare stands beside what they have shown") {
-    CHECK_THAT(run.output(), Contains("latency quality p50 p95 quality runs accepted here"));
+    CHECK_THAT(run.output(), Contains("latency quality p50 p95 quality runs reliable here"));
     CHECK_THAT(run.output(), Matches(".* AStar 300 ms 0\\.90 [0-9]+ [0-9]+ ms 0\\.[0-9]+ .*"));
     CHECK_THAT(run.output(), Matches(".*[A-Za-z]+: p95 [0-9]+ ms over [0-9]+ similar requests.*"));
   }

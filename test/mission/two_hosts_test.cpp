@@ -123,13 +123,13 @@ TEST_CASE("whose address a profile does not allow never finds the service, and i
   CHECK(office.writes(refused + "10)"));
   stranger->signal(SIGINT);
   stranger->wait();
-  CHECK_THAT(stranger->output(), Contains("0 services on domain 48"));
+  CHECK_THAT(stranger->output(), Contains("0 services in domain 48"));
 
   hosts.beta.run("ip addr flush dev skein0 && ip addr add 10.78.0.2/24 dev skein0");
   CHECK(eventually([&] {
     const auto friendly = look("2");
     return friendly->wait() == 0 &&
-           friendly->output().find("1 services on domain 48") != std::string::npos;
+           friendly->output().find("1 service in domain 48") != std::string::npos;
   }));
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("an onlooker of a mission sees the services of both hosts, by the miss
     CHECK(eventually([&] {
       CommandRun services(way, {.network = hosts.alpha.descriptor()});
       return services.wait() == 0 &&
-             services.output().find("2 services on domain 48") != std::string::npos;
+             services.output().find("2 services in domain 48") != std::string::npos;
     }));
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skein/decision.hpp"
+#include "skein/error.hpp"
 #include "skein/task.hpp"
 
 /// A running task as the Head sees it, without its types. Used by Head::perform().
@@ -52,7 +53,9 @@ class TaskRun {
 template <class Interface, class Result>
 class TypedRun final : public TaskRun {
  public:
-  explicit TypedRun(const Task<Interface, Result>& task) : task_(task) {}
+  explicit TypedRun(const Task<Interface, Result>& task) : task_(task) {
+    if (!task.run) throw InvalidArgument("the task has no `run`, which calls the CSP");
+  }
 
   const TaskOptions& options() const noexcept override { return task_; }
   std::unique_ptr<Work> begin(std::shared_ptr<Channel> channel, Duration budget,

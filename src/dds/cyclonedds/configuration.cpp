@@ -45,7 +45,7 @@ std::string discovery(const ParticipantOptions& options,
     for (const std::string& peer : list) peers += "<Peer Address=\"" + peer + "\"/>";
   }
   // One more than the highest index: Cyclone 0.10 reports the last one as taken after taking it.
-  const auto highest = std::clamp(options.network.max_participants, 1u, kMaxParticipants);
+  const auto highest = max_participants(options);
   return element("Discovery", element("ExternalDomainId", std::to_string(options.domain)) +
                                   element("ParticipantIndex", "auto") +
                                   element("MaxAutoParticipantIndex", std::to_string(highest)) +

@@ -18,7 +18,7 @@ std::vector<std::string> partitions_of(const dds_qos_t* from) {
   std::uint32_t count = 0;
   char** names = nullptr;
   if (!dds_qget_partition(from, &count, &names)) return {};
-  const std::vector<std::string> partitions(names, names + count);
+  std::vector<std::string> partitions(names, names + count);
   for (std::uint32_t i = 0; i < count; ++i) dds_free(names[i]);
   dds_free(names);
   return partitions;

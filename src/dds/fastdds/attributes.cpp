@@ -131,7 +131,7 @@ std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOpti
   // The kernel gives what it may; with 208 KiB a mebibyte takes three times as long.
   udp->sendBufferSize = kSendBuffer;
   udp->receiveBufferSize = kReceiveBuffer;
-  udp->maxInitialPeersRange = std::clamp(network.max_participants, 1u, kMaxParticipants);
+  udp->maxInitialPeersRange = max_participants(options);
   return std::make_shared<StartupTransportDescriptor>(
       std::move(udp), options.lease, announcement_period(options.lease), allowed_sources(network));
 }
@@ -150,7 +150,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
   discovery.leaseDuration_announcementperiod = duration(announcement_period(options.lease));
   discovery.initial_announcements = {5, duration(10ms)};
   builtin.avoid_builtin_multicast = true;
-  builtin.mutation_tries = std::clamp(options.network.max_participants, 1u, kMaxParticipants) - 1;
+  builtin.mutation_tries = max_participants(options) - 1;
 
   // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over
   // all domains of the process and soon listens where no peer looks.

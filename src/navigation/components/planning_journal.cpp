@@ -93,8 +93,9 @@ PlanningReport PlanningJournal::report(const std::string& request_id) const {
 
 void PlanningJournal::add_absent(PlanningReport& report) const {
   for (const auto& [name, candidate] : known_) {
-    const bool present = std::any_of(report.candidates.begin(), report.candidates.end(),
-                                     [&](const PlannerCandidate& c) { return c.planner == name; });
+    const bool present =
+        std::any_of(report.candidates.begin(), report.candidates.end(),
+                    [&name = name](const PlannerCandidate& c) { return c.planner == name; });
     if (present) continue;
     report.candidates.push_back(candidate);
     report.candidates.back().available = false;

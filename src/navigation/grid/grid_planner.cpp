@@ -37,7 +37,7 @@ std::vector<std::string> grid_planner_names(const GridMap& map) {
   return names;
 }
 
-std::unique_ptr<GridPlanner> make_grid_planner(std::string_view name, SharedMap map) {
+std::unique_ptr<GridPlanner> make_grid_planner(std::string_view name, const SharedMap& map) {
   for (const Maker& maker : kMakers) {
     if (name == maker.name && (map->is_plane() || maker.in_spaces)) return maker.make(map);
   }

@@ -54,6 +54,6 @@ std::vector<std::string> grid_planner_names(const GridMap& map);
 /// Throws InvalidArgument for a name that is not among grid_planner_names(map), and says which is
 /// near.
 std::unique_ptr<GridPlanner> make_grid_planner(std::string_view name,
-                                               std::shared_ptr<const GridMap> map);
+                                               const std::shared_ptr<const GridMap>& map);
 
 }  // namespace skein::navigation::grid

@@ -17,7 +17,7 @@ double distance(const Cell& a, const Cell& b) { return std::hypot(a.x - b.x, a.y
 /// on the grid; then that one is given, pulled taut.
 class LazyThetaStar : public GridPlanner {
  public:
-  explicit LazyThetaStar(SharedMap shared)
+  explicit LazyThetaStar(const SharedMap& shared)
       : GridPlanner(shared),
         on_grid_(make_jump_point_search(shared)),
         nodes_(static_cast<std::size_t>(map().width()) * static_cast<std::size_t>(map().height())) {

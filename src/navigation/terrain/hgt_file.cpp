@@ -52,7 +52,7 @@ std::vector<float> read_posts(const std::filesystem::path& file, int side) {
       if (value != kVoidPost) {
         require_earthly(file, value, fmt::format("row {}, column {}", row + 1, column + 1));
       }
-      heights[(width - 1 - row) * width + column] = value;
+      heights[(width - 1 - row) * width + column] = static_cast<float>(value);
     }
   }
   return heights;
