@@ -70,7 +70,7 @@ void RetryingCall::ended(Attempt& attempt, const Guid& provider) {
     if (again && others_run()) return;
   }
   if (again) {
-    move(std::move(error));
+    move(error);
   } else {
     call_->fail(std::move(error));
     cancel();

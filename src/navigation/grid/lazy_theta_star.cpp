@@ -17,9 +17,9 @@ double distance(const Cell& a, const Cell& b) { return std::hypot(a.x - b.x, a.y
 /// on the grid; then that one is given, pulled taut.
 class LazyThetaStar : public GridPlanner {
  public:
-  explicit LazyThetaStar(const SharedMap& shared)
+  explicit LazyThetaStar(SharedMap shared)
       : GridPlanner(shared),
-        on_grid_(make_jump_point_search(shared)),
+        on_grid_(make_jump_point_search(std::move(shared))),
         nodes_(static_cast<std::size_t>(map().width()) * static_cast<std::size_t>(map().height())) {
   }
 

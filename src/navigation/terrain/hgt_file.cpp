@@ -48,11 +48,12 @@ std::vector<float> read_posts(const std::filesystem::path& file, int side) {
   for (std::size_t row = 0; row < width; ++row) {
     for (std::size_t column = 0; column < width; ++column) {
       const std::size_t from = 2 * (row * width + column);
-      const auto value = static_cast<std::int16_t>((bytes[from] << 8) | bytes[from + 1]);
+      const int height = static_cast<std::int16_t>((bytes[from] << 8) | bytes[from + 1]);
+      const auto value = static_cast<float>(height);
       if (value != kVoidPost) {
-        require_earthly(file, value, fmt::format("row {}, column {}", row + 1, column + 1));
+        require_earthly(file, height, fmt::format("row {}, column {}", row + 1, column + 1));
       }
-      heights[(width - 1 - row) * width + column] = static_cast<float>(value);
+      heights[(width - 1 - row) * width + column] = value;
     }
   }
   return heights;
