@@ -16,10 +16,9 @@ namespace skein {
 /// values loses the oldest.
 struct TopicQos : dds::Qos {
   /// The systems (vehicles and stations) in which the topic is published or read. Empty: the
-  /// entity's own, or, for a Publisher or Subscription made without an entity, the default
-  /// partition
-  /// "". A system's name is the DDS partition: peers without Skein use that partition, or are
-  /// reached in the default one if "" is named here.
+  /// entity's own; without an entity, the default partition "". A system's name is the DDS
+  /// partition: peers without Skein use that partition, or are reached in the default one if "" is
+  /// named here.
   std::vector<std::string> systems{};
 
   TopicQos() {

@@ -134,8 +134,7 @@ struct Entity::State {
         journal(std::make_shared<rpc::CallJournal>(*participant, control,
                                                    options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
-               {options.system, options.name, options.vendor->name(), options.lease,
-                dds::place_of(participant_options())}),
+               {options.system, options.name, options.vendor->name(), options.lease, place()}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
                    process->shared_clock(), options.spin, journal}),
@@ -159,6 +158,11 @@ struct Entity::State {
     participant_options.network = options.network;
     participant_options.lease = options.lease;
     return participant_options;
+  }
+
+  std::string place() const {
+    if (options.vendor->name() != dds::kLoopback) return dds::place_of(participant_options());
+    return "domain " + std::to_string(options.domain) + " of the loopback network";
   }
 
   const EntityOptions options;

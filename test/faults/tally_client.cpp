@@ -12,7 +12,7 @@ using ::test::Tally;
 
 constexpr auto kConnectPatience = 30s;
 
-std::shared_ptr<rpc::DdsChannel> open_lane(Entity& entity, Duration patience) {
+std::shared_ptr<rpc::DdsChannel> open_channel(Entity& entity, Duration patience) {
   const auto deadline = entity.clock().now() + patience;
   const auto& broker = entity.broker();
   const auto found = broker.await_service(broker.query("test::Tally"), deadline);
@@ -25,7 +25,7 @@ std::shared_ptr<rpc::DdsChannel> open_lane(Entity& entity, Duration patience) {
 TallyClient::TallyClient(Entity& entity, Journal& journal, std::uint64_t first, bool exposed)
     : entity_(entity), journal_(journal), next_(first), exposed_(exposed) {
   if (exposed_) {
-    lane_ = open_lane(entity, kConnectPatience);
+    channel_ = open_channel(entity, kConnectPatience);
   } else {
     connected_.emplace(entity.connect<Tally>({.timeout = kConnectPatience}));
   }
@@ -35,8 +35,8 @@ TallyClient::~TallyClient() { stop(); }
 
 Tally::Proxy TallyClient::proxy(std::chrono::milliseconds timeout) {
   if (!exposed_) return connected_->within(timeout);
-  if (!lane_->connected()) lane_ = open_lane(entity_, timeout);
-  return Tally::Proxy(lane_, timeout);
+  if (!channel_->connected()) channel_ = open_channel(entity_, timeout);
+  return Tally::Proxy(channel_, timeout);
 }
 
 template <class Action>

@@ -48,7 +48,7 @@ class TallyClient {
   std::string call_and_kill(std::chrono::milliseconds timeout);
 
   /// Calls of the exposed transport that have no answer yet.
-  std::size_t pending() const { return lane_ ? lane_->pending() : 0; }
+  std::size_t pending() const { return channel_ ? channel_->pending() : 0; }
 
  private:
   struct Pending {
@@ -64,7 +64,7 @@ class TallyClient {
   Journal& journal_;
   std::uint64_t next_;
   const bool exposed_;
-  std::shared_ptr<rpc::DdsChannel> lane_;
+  std::shared_ptr<rpc::DdsChannel> channel_;
   std::optional<::test::Tally::Proxy> connected_;
   std::vector<Pending> pending_;
   std::uint64_t succeeded_ = 0;

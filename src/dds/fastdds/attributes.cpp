@@ -109,9 +109,9 @@ std::uint32_t unused_port() {
   return kBeyondUdp + random() / 2;
 }
 
-// Beside UDP, and for samples alone: discovery, and with it the repairs and signs of life of
-// `transport`, goes by UDP. Fast DDS then speaks to who has such a locator, on this host, by
-// nothing else.
+// Beside UDP, and for samples alone: discovery goes by UDP, and so do the packets that `transport`
+// repairs, or takes for liveliness. To a reader on this host that has such a locator, Fast DDS then
+// writes by nothing else.
 void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
   const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
   memory->segment_size(kSharedMemory);

@@ -21,7 +21,7 @@ namespace skein::dds::fastdds {
 /// the transport receives is watched here instead.
 ///
 /// Time counts only while it is watched: a pause between two calls of watch() that is much longer
-/// than the one asked for says that this process did not run, and that others' signs of life may
+/// than the one asked for says that this process did not run, and that others' packets may
 /// wait in its sockets. Thread-safe.
 class LivelinessTracker {
  public:

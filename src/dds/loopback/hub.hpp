@@ -34,7 +34,7 @@ using MessagePtr = std::shared_ptr<const Message>;
 
 /// What one participant knows of another.
 struct View {
-  bool heard = false;            // its signs of life arrive
+  bool heard = false;            // its announcements arrive
   bool known = false;            // found, and its lease has not expired
   std::uint64_t generation = 0;  // outdates the timers of earlier silences
 };
