@@ -46,11 +46,10 @@ bool is_topic_name(const std::string& name) {
 
 }  // namespace
 
-// A participant has two unicast ports, one above the other: DDSI-RTPS 2.3, 9.6.1.1.
 std::uint32_t max_participants(const ParticipantOptions& options) {
   constexpr std::uint32_t kMost = 120;
   constexpr std::uint32_t kHighestPort = 65535;
-  const std::uint32_t first = 7400 + 250 * options.domain + 10;
+  const std::uint32_t first = domain_port(options.domain) + kDiscoveryOffset;
   const std::uint32_t with_ports = (kHighestPort - first + 1) / 2;
   return std::clamp(options.network.max_participants, 1u, std::min(kMost, with_ports));
 }

@@ -9,6 +9,12 @@ namespace skein::dds {
 /// RTPS maps domains to ports; beyond 232 there are none left.
 inline constexpr std::uint32_t kMaxDomain = 232;
 
+/// RTPS 9.6.1: the domain's first port, and how far behind it the first participant listens; the
+/// next ones have the next pairs.
+constexpr std::uint32_t domain_port(std::uint32_t domain) { return 7400 + 250 * domain; }
+inline constexpr std::uint32_t kDiscoveryOffset = 10;
+inline constexpr std::uint32_t kUserOffset = 11;
+
 /// So many participants of the domain can be on one host: `network.max_participants`, but no more
 /// than 120, nor than have ports below 65536 (63 in domain 232).
 std::uint32_t max_participants(const ParticipantOptions& options);

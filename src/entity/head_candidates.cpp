@@ -55,6 +55,11 @@ Head::State::Known Head::State::known(const InterfaceInfo& interface,
   return known;
 }
 
+bool Head::State::Known::hangs() const {
+  const auto instance = service.lock();
+  return instance && instance->overdue();
+}
+
 // Under the lock. The Broker is asked again once its table has changed.
 const Head::State::Roster& Head::State::roster(const InterfaceInfo& interface) {
   Roster& roster = rosters[&interface];
@@ -89,9 +94,7 @@ std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
   candidates.reserve(roster.csps.size());
   for (const Known& known : roster.csps) {
     if (!only.empty() && known.candidate.name != only) continue;
-    // An instance that overran its time is never entered again before it has come back.
-    const auto service = known.service.lock();
-    if (service && service->overdue()) continue;
+    if (known.hangs()) continue;
     Candidate& candidate = candidates.emplace_back(known.candidate);
     candidate.learned = history.predict(interface.name, candidate.name, features);
     candidate.breaker = known.breaker->state(now);
@@ -110,8 +113,7 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
     for (const Known& known : roster(interface).csps) {
       const std::string& name = known.candidate.name;
       names.push_back(name);
-      const auto service = known.service.lock();
-      if ((only.empty() || name == only) && service && service->overdue())
+      if ((only.empty() || name == only) && known.hangs())
         hung += (hung.empty() ? "" : ", ") + name;
     }
   }

@@ -58,6 +58,9 @@ struct Head::State {
     std::shared_ptr<const std::string> host;  ///< Where it lives.
     std::weak_ptr<rpc::Service> service;      ///< In this process.
     const CircuitBreaker* breaker;
+
+    /// An instance that overran its time is never entered again before it has come back.
+    bool hangs() const;
   };
 
   /// The CSPs of an interface, for as long as the Broker's table stays as it is.

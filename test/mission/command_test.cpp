@@ -210,6 +210,27 @@ TEST_CASE("a component that its plugin does not implement is a finding with what
                       "'office'; it implements client, clumsy, office"));
 }
 
+TEST_CASE("a component for which no plugin is named is a finding, as it could not be launched") {
+  const Errand errand;
+  CommandRun run({"check", errand.profile("", kClient + "<peer name='office' plugin='' "
+                                                        "component='office.xml'/>")});
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(), Contains("errand.xml:1:") &&
+                               Contains("no plugin is named for the component 'office'"));
+}
+
+TEST_CASE("a profile without a peer on this host is complete, with a warning") {
+  const Errand errand;
+  CommandRun run({"check", "--host", "elsewhere",
+                  errand.profile("interface='eth0'",
+                                 "<peer name='office' component='office.xml' host='192.0.2.1'/>"
+                                 "<peer name='client' component='client.xml' host='192.0.2.2' "
+                                 "role='mission'/>")});
+  CHECK(run.wait() == 0);
+  CHECK_THAT(run.output(), Contains("warning: no peer of mission 'errand' is of this host") &&
+                               Contains("its hosts are 192.0.2.1 (office); 192.0.2.2 (client)"));
+}
+
 TEST_CASE(
     "a strategy that neither its plugin nor Skein holds is a finding with those that there are") {
   const Errand errand;

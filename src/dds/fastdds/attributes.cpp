@@ -52,11 +52,6 @@ std::chrono::milliseconds announcement_period(std::chrono::milliseconds lease) {
   return std::min<std::chrono::milliseconds>(kAnnouncementPeriod, lease * 2 / 5);
 }
 
-// RTPS 9.6.1: where a domain's participants listen.
-std::uint32_t domain_port(std::uint32_t domain) { return 7400 + 250 * domain; }
-constexpr std::uint32_t kDiscoveryOffset = 10;
-constexpr std::uint32_t kUserOffset = 11;
-
 template <class EndpointQos>
 void fill_common(EndpointQos& endpoint, const Qos& qos) {
   endpoint.m_reliability.kind = qos.reliable ? eprosima::fastrtps::RELIABLE_RELIABILITY_QOS
