@@ -258,7 +258,9 @@ struct ProcessWatch::State {
     leave(other);
     if (!other.greeted) {
       // The process turned this connection away, or is ending, and closed it before its listener.
-      // Then nobody takes the next one, which ends with the listener.
+      // Then nobody takes the next one, which ends with the listener. That one needs a descriptor,
+      // and this connection's may be the last.
+      other.socket = {};
       const bool first = !std::exchange(other.second, true);
       const Connected again =
           first ? join(other, position->first) : connect_to(local_socket(), position->first);

@@ -300,6 +300,9 @@ TEST_CASE("a process without a free descriptor waits for one in peace, and hears
           "[R27]") {
   constexpr rlim_t kDescriptors = 64;
   Child watched;
+  const bool greets = GENERATE(true, false);
+  CAPTURE(greets);
+  if (!greets) kill(watched.pid, SIGSTOP);
   Child full(watched.address, [] {
     const rlimit limit{kDescriptors, kDescriptors};
     REQUIRE(setrlimit(RLIMIT_NOFILE, &limit) == 0);
