@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <numeric>
+#include <sstream>
 #include <string>
+#include <tuple>
 
 #include "matrices.hpp"
 #include "skein/error.hpp"
@@ -10,15 +13,57 @@
 namespace skein::fusion {
 namespace {
 
-// What a sender's rounding may leave.
+// What a sender's rounding may leave, as a share of the two standard deviations.
 constexpr double kAsymmetry = 1e-9;
+// Between these, no square, quotient or sum of squares leaves the range of double.
+constexpr double kGreatestValue = 1e50;
+constexpr double kLeastVariance = 1e-100;
+constexpr double kGreatestVariance = 1e100;
+// Of the correlation matrix. The inverse of one that has less keeps fewer than some four digits.
+constexpr double kLeastEigenvalue = 1e-12;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::string numbers(std::size_t count) { return std::to_string(count); }
 
+std::string text(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
 [[noreturn]] void refuse(const char* who, const std::string& why) {
   throw InvalidArgument(std::string(who) + " cannot be fused: " + why);
+}
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+void check_means(const std::vector<double>& means, const char* who) {
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    if (std::abs(means[i]) <= kGreatestValue) continue;
+    refuse(who, "its mean [" + numbers(i) + "] is " + text(means[i]) +
+                    ", and its size must be at most " + text(kGreatestValue) +
+                    ": use a larger unit");
+  }
+}
+
+void check_variances(const Eigen::VectorXd& variances, const char* who) {
+  for (Eigen::Index i = 0; i < variances.size(); ++i) {
+    if (variances[i] <= 0) {
+      refuse(who, "its covariance is not positive definite: variance [" + std::to_string(i) +
+                      "] is " + text(variances[i]));
+    }
+    if (variances[i] >= kLeastVariance && variances[i] <= kGreatestVariance) continue;
+    refuse(who, "its variance [" + std::to_string(i) + "] is " + text(variances[i]) +
+                    ", and must be between " + text(kLeastVariance) + " and " +
+                    text(kGreatestVariance) + ": use a unit of another size");
+  }
+}
+
+double squared_norm(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+  return error.dot(covariance.llt().solve(error));
 }
 
 }  // namespace
@@ -37,15 +82,28 @@ Gaussian gaussian_of(const Estimate& estimate, const char* who) {
   }
   const auto size = static_cast<Eigen::Index>(n);
   const RowMajor given = Eigen::Map<const RowMajor>(estimate.covariance.data(), size, size);
-  if (!given.isApprox(given.transpose(), kAsymmetry)) {
-    refuse(who, "its covariance is not symmetric");
-  }
-  Gaussian gaussian{Eigen::Map<const Eigen::VectorXd>(estimate.mean.data(), size),
-                    (given + given.transpose()) / 2};
-  if (Eigen::LLT<Eigen::MatrixXd>(gaussian.covariance).info() != Eigen::Success) {
+  check_means(estimate.mean, who);
+  check_variances(given.diagonal(), who);
+  const Eigen::VectorXd scale = given.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * given * scale.asDiagonal();
+  if (!(correlation.cwiseAbs().maxCoeff() <= 1 + kAsymmetry)) {
     refuse(who, "its covariance is not positive definite");
   }
-  return gaussian;
+  if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kAsymmetry) {
+    refuse(who, "its covariance is not symmetric");
+  }
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                           (correlation + correlation.transpose()) / 2, Eigen::EigenvaluesOnly)
+                           .eigenvalues()[0];
+  if (!(least > 0)) refuse(who, "its covariance is not positive definite");
+  if (least < kLeastEigenvalue) {
+    refuse(who,
+           "its covariance is too near to singular: the least eigenvalue of its correlation matrix "
+           "is " +
+               text(least) + ", and must be at least " + text(kLeastEigenvalue) +
+               "; leave out a quantity that follows from the others, or enlarge the variances");
+  }
+  return {vector_of(estimate.mean), (given + given.transpose()) / 2};
 }
 
 std::vector<Gaussian> gaussians_of(std::span<const Estimate> estimates) {
@@ -63,6 +121,23 @@ std::vector<Gaussian> gaussians_of(std::span<const Estimate> estimates) {
   return gaussians;
 }
 
+std::vector<std::size_t> order_of(std::span<const Estimate> estimates) {
+  std::vector<std::size_t> order(estimates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(estimates[a].mean, estimates[a].covariance) <
+           std::tie(estimates[b].mean, estimates[b].covariance);
+  });
+  return order;
+}
+
+std::vector<Gaussian> ordered_gaussians(std::span<const Estimate> estimates) {
+  const auto given = gaussians_of(estimates);
+  std::vector<Gaussian> gaussians;
+  for (const std::size_t i : order_of(estimates)) gaussians.push_back(given[i]);
+  return gaussians;
+}
+
 Estimate estimate_of(const Gaussian& gaussian) {
   Estimate estimate;
   estimate.mean.assign(gaussian.mean.begin(), gaussian.mean.end());
@@ -75,8 +150,8 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& covariance) {
   return covariance.llt().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
-double squared_norm(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
-  return error.dot(covariance.llt().solve(error));
+double squared_distance(const Gaussian& a, const Gaussian& b) {
+  return squared_norm(a.mean - b.mean, a.covariance + b.covariance);
 }
 
 void check(const Estimate& estimate, const char* who) { gaussian_of(estimate, who); }
@@ -84,8 +159,7 @@ void check(const Estimate& estimate, const char* who) { gaussian_of(estimate, wh
 double squared_distance(const Estimate& a, const Estimate& b) {
   const Estimate both[]{a, b};
   const auto gaussians = gaussians_of(both);
-  return squared_norm(gaussians[0].mean - gaussians[1].mean,
-                      gaussians[0].covariance + gaussians[1].covariance);
+  return squared_distance(gaussians[0], gaussians[1]);
 }
 
 double nees(const Estimate& estimate, const std::vector<double>& truth) {
@@ -94,9 +168,12 @@ double nees(const Estimate& estimate, const std::vector<double>& truth) {
     throw InvalidArgument("the truth has " + numbers(truth.size()) + " values, the estimate " +
                           numbers(estimate.size()));
   }
-  const auto size = static_cast<Eigen::Index>(truth.size());
-  return squared_norm(gaussian.mean - Eigen::Map<const Eigen::VectorXd>(truth.data(), size),
-                      gaussian.covariance);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (std::abs(truth[i]) <= kGreatestValue) continue;
+    throw InvalidArgument("value [" + numbers(i) + "] of the truth is " + text(truth[i]) +
+                          "; its size must be at most " + text(kGreatestValue));
+  }
+  return squared_norm(gaussian.mean - vector_of(truth), gaussian.covariance);
 }
 
 double chi_square_quantile(double probability, std::size_t degrees_of_freedom) {

@@ -21,6 +21,33 @@ TEST_CASE("an estimate that cannot be one is refused with what is wrong with it"
   CHECK_THROWS_AS(intersect({}), skein::InvalidArgument);
 }
 
+TEST_CASE("what double cannot compute with is refused with its place and a remedy") {
+  const auto refusal = [](const Estimate& estimate) {
+    const std::vector<Estimate> estimates{{{0, 0}, {1, 0, 0, 1}}, estimate};
+    std::string texts;
+    for (const auto fuse : {fuse_independent, unite}) {
+      try {
+        fuse(estimates);
+      } catch (const skein::InvalidArgument& error) {
+        texts = error.what();
+      }
+    }
+    CHECK_THROWS_AS(fuse_cautiously(estimates), skein::InvalidArgument);
+    CHECK_THROWS_AS(intersect(estimates), skein::InvalidArgument);
+    CHECK_THROWS_AS(squared_distance(estimates[0], estimate), skein::InvalidArgument);
+    CHECK_THROWS_AS(nees(estimate, {0, 0}), skein::InvalidArgument);
+    return texts;
+  };
+  CHECK_THAT(refusal({{0, 1e160}, {1, 0, 0, 1}}),
+             Contains("estimate 2 of 2") && Contains("mean [1] is 1e+160") && Contains("unit"));
+  CHECK_THAT(refusal({{0, 0}, {1e-310, 0, 0, 1}}),
+             Contains("estimate 2 of 2") && Contains("variance [0]") && Contains("unit"));
+  CHECK_THAT(refusal({{0, 0}, {1, 0, 0, 1e300}}), Contains("variance [1] is 1e+300"));
+  CHECK_THAT(refusal({{0, 0}, {1, 1e308, 1e308, 1}}), Contains("not positive definite"));
+  CHECK_THAT(refusal({{0, 0}, {1, 1 - 1e-14, 1 - 1e-14, 1}}),
+             Contains("near to singular") && Contains("leave out"));
+}
+
 TEST_CASE("chi-square quantiles are those of the tables") {
   CHECK(chi_square_quantile(0.95, 1) == Approx(3.841).margin(5e-4));
   CHECK(chi_square_quantile(0.99, 2) == Approx(9.210).margin(5e-4));
@@ -34,4 +61,5 @@ TEST_CASE("distances are measured in the errors that are to be expected") {
   CHECK(squared_distance(near, {{3, 0}, {5, 0, 0, 1}}) == Approx(1));
   CHECK(nees(near, {4, 3}) == Approx(4 + 9));
   CHECK_THROWS_AS(nees(near, {4}), skein::InvalidArgument);
+  CHECK_THROWS_WITH(nees(near, {4, NAN}), Contains("value [1] of the truth is nan"));
 }
