@@ -39,8 +39,8 @@ double squared_distance(const Estimate& a, const Estimate& b);
 double nees(const Estimate& estimate, const std::vector<double>& truth);
 
 /// The value that a chi-square distributed variable exceeds with probability 1 − `probability`.
-/// Throws InvalidArgument if `probability` is not between 0 and 1, both exclusive, and for 0
-/// degrees of freedom.
+/// Throws InvalidArgument if `probability` is not between 0 and 1, both exclusive, and for 0 or
+/// more than a million degrees of freedom.
 double chi_square_quantile(double probability, std::size_t degrees_of_freedom);
 
 /// For independent errors: P⁻¹ = Σ Pᵢ⁻¹, x = P Σ Pᵢ⁻¹ xᵢ (information filter).
@@ -58,7 +58,7 @@ struct Intersection {
 /// their sender. Covariance intersection: P⁻¹ = Σ ωᵢ Pᵢ⁻¹, x = P Σ ωᵢ Pᵢ⁻¹ xᵢ, with the weights
 /// that minimise the measure of P. Consistent for every correlation if the estimates are (Julier
 /// and Uhlmann 1997). All weights are found together, so that the measure is the least to 1e-6 of
-/// it; to 1e-4, if correlation matrices have eigenvalues below 1e-9. For the least determinant,
+/// it; to 1e-3, if correlation matrices have eigenvalues below 1e-9. For the least determinant,
 /// tr(P Pᵢ⁻¹) ≤ n for each (Kiefer and Wolfowitz 1960). An estimate without use has a weight near
 /// 0, not 0.
 Intersection intersect(std::span<const Estimate> estimates, Measure measure = Measure::Determinant);

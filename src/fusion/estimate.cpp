@@ -21,6 +21,8 @@ constexpr double kLeastVariance = 1e-100;
 constexpr double kGreatestVariance = 1e100;
 // Of the correlation matrix. The inverse of one that has less keeps fewer than some four digits.
 constexpr double kLeastEigenvalue = 1e-12;
+// The series for the quantile converge up to here.
+constexpr std::size_t kMostDegreesOfFreedom = 1'000'000;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -177,9 +179,11 @@ double nees(const Estimate& estimate, const std::vector<double>& truth) {
 }
 
 double chi_square_quantile(double probability, std::size_t degrees_of_freedom) {
-  if (!(probability > 0 && probability < 1) || degrees_of_freedom == 0) {
+  if (!(probability > 0 && probability < 1) || degrees_of_freedom == 0 ||
+      degrees_of_freedom > kMostDegreesOfFreedom) {
     throw InvalidArgument("a chi-square quantile needs a probability between 0 and 1, not " +
-                          std::to_string(probability) + ", and at least one degree of freedom");
+                          text(probability) + ", and 1 to " + numbers(kMostDegreesOfFreedom) +
+                          " degrees of freedom, not " + numbers(degrees_of_freedom));
   }
   return boost::math::quantile(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)),
                                probability);

@@ -54,6 +54,7 @@ TEST_CASE("chi-square quantiles are those of the tables") {
   CHECK(chi_square_quantile(0.975, 10) == Approx(20.483).margin(5e-4));
   CHECK_THROWS_AS(chi_square_quantile(1, 2), skein::InvalidArgument);
   CHECK_THROWS_AS(chi_square_quantile(0.5, 0), skein::InvalidArgument);
+  CHECK_THROWS_AS(chi_square_quantile(0.5, std::size_t{1} << 40), skein::InvalidArgument);
 }
 
 TEST_CASE("distances are measured in the errors that are to be expected") {
