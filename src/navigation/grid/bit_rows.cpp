@@ -15,7 +15,7 @@ RayEnd BitRows::ray_up(int x, int y) const {
     const std::uint64_t above = bits(begin, y - 1);
     const std::uint64_t below = bits(begin, y + 1);
     const std::uint64_t turns = ((above << 1) & ~above) | ((below << 1) & ~below);
-    const std::uint64_t ends = (row | turns) & ((std::uint64_t{1} << kSeen) - 1);
+    const std::uint64_t ends = (row | turns) & kSeenBits;
     if (ends == 0) continue;
     const int end = std::countr_zero(ends);
     return {begin + end - x, (row >> end & 1) == 0};
@@ -34,6 +34,26 @@ RayEnd BitRows::ray_down(int x, int y) const {
     const int end = std::countl_zero(ends);
     return {x - begin + end, (row << end >> 63) == 0};
   }
+}
+
+BitRows rows_of(const GridMap& plane) {
+  BitRows rows(plane.width(), plane.height());
+  for (int y = 0; y < plane.height(); ++y) {
+    for (int x = 0; x < plane.width(); ++x) {
+      if (plane.is_free({x, y})) rows.set_free(x, y);
+    }
+  }
+  return rows;
+}
+
+BitRows columns_of(const GridMap& plane) {
+  BitRows columns(plane.height(), plane.width());
+  for (int y = 0; y < plane.height(); ++y) {
+    for (int x = 0; x < plane.width(); ++x) {
+      if (plane.is_free({x, y})) columns.set_free(y, x);
+    }
+  }
+  return columns;
 }
 
 }  // namespace skein::navigation::grid

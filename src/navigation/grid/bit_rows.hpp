@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "navigation/grid/grid_map.hpp"
+
 namespace skein::navigation::grid {
 
 /// What a ray along a row meets first.
@@ -27,6 +29,21 @@ class BitRows {
 
   bool is_free(int x, int y) const { return (bytes_[byte_of(x, y)] >> (x & 7) & 1) == 0; }
 
+  /// Whether the cells of a row from `first` to `last`, which lie in the map, are free.
+  bool are_free(int first, int last, int y) const {
+    for (; last - first >= kSeen; first += kSeen) {
+      if ((bits(first, y) & kSeenBits) != 0) return false;
+    }
+    return (bits(first, y) << (63 - (last - first))) == 0;
+  }
+
+  /// The blocked cells of the nine around and including (x, y), which lies in the map: three bits
+  /// for each row, the lowest for the smallest x and y.
+  unsigned blocked_around(int x, int y) const {
+    const auto three = [&](int row) { return static_cast<unsigned>(bits(x - 1, row) & 7); };
+    return three(y - 1) | three(y) << 3 | three(y + 1) << 6;
+  }
+
   /// From the free cell (x, y) towards greater x. The cell itself does not end it.
   RayEnd ray_up(int x, int y) const;
 
@@ -35,6 +52,7 @@ class BitRows {
 
  private:
   static constexpr int kSeen = 57;
+  static constexpr std::uint64_t kSeenBits = (std::uint64_t{1} << kSeen) - 1;
   static constexpr int kMargin = 64;
 
   std::size_t byte_of(int x, int y) const {
@@ -52,5 +70,11 @@ class BitRows {
   std::size_t row_bytes_;
   std::vector<std::uint8_t> bytes_;
 };
+
+/// The rows of a plane.
+BitRows rows_of(const GridMap& plane);
+
+/// The columns of a plane, as rows whose x is the plane's y.
+BitRows columns_of(const GridMap& plane);
 
 }  // namespace skein::navigation::grid

@@ -27,16 +27,9 @@ class JumpPointSearch : public GridPlanner {
   explicit JumpPointSearch(SharedMap shared)
       : GridPlanner(std::move(shared)),
         regions_(map()),
-        rows_(map().width(), map().height()),
-        columns_(map().height(), map().width()),
+        rows_(rows_of(map())),
+        columns_(columns_of(map())),
         nodes_(static_cast<std::size_t>(map().width()) * static_cast<std::size_t>(map().height())) {
-    for (int y = 0; y < map().height(); ++y) {
-      for (int x = 0; x < map().width(); ++x) {
-        if (!map().is_free({x, y})) continue;
-        rows_.set_free(x, y);
-        columns_.set_free(y, x);
-      }
-    }
   }
 
  private:

@@ -1,91 +1,121 @@
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
-#include <queue>
 
+#include "bucket_queue.hpp"
 #include "moves.hpp"
 #include "planners.hpp"
 #include "sight.hpp"
+#include "zeroed_array.hpp"
 
 namespace skein::navigation::grid {
 namespace {
 
-double distance(const Cell& a, const Cell& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+/// The moves on a plane by their place in kMoves, one bit each.
+using PlaneMoves = std::uint32_t;
+
+/// The moves that fit, by BitRows::blocked_around().
+constexpr std::array<PlaneMoves, 512> all_fitting_moves() {
+  std::array<PlaneMoves, 512> fitting{};
+  for (unsigned blocked = 0; blocked < fitting.size(); ++blocked) {
+    const Neighbourhood free = (~blocked & 0x1ffU) << neighbour_bit(-1, -1, 0);
+    for (std::size_t i = 0; i < kMoveCount; ++i) {
+      if (kMoves[i].fits(free)) fitting[blocked] |= PlaneMoves{1} << i;
+    }
+  }
+  return fitting;
+}
+
+constexpr std::array<PlaneMoves, 512> kFitting = all_fitting_moves();
+
+/// In the units of kPlaneCosts.
+std::uint32_t distance(const Cell& a, const Cell& b) {
+  const double dx = a.x - b.x;
+  const double dy = a.y - b.y;
+  return static_cast<std::uint32_t>(kPlaneCosts.one * std::sqrt(dx * dx + dy * dy) + 0.5);
+}
 
 /// Lazy Theta* (Nash, Koenig and Tovey, AAAI 2010): a cell's parent is its predecessor's parent,
-/// which is checked only when the cell is expanded. It may come out longer than the shortest path
-/// on the grid; then that one is given, pulled taut.
+/// which is checked only when the cell is expanded. The shortest path on the grid, pulled taut, is
+/// found first: cells that promise nothing shorter are left out, and it is the answer where there
+/// is nothing shorter.
 class LazyThetaStar : public GridPlanner {
  public:
   explicit LazyThetaStar(SharedMap shared)
       : GridPlanner(shared),
         on_grid_(make_jump_point_search(std::move(shared))),
+        sight_(map()),
         nodes_(static_cast<std::size_t>(map().width()) * static_cast<std::size_t>(map().height())) {
   }
 
  private:
   struct Node {
-    double cost;
-    int parent;
-    unsigned task;
+    std::uint32_t task;
+    std::uint32_t cost;
+    std::uint32_t parent;
     bool closed;
-  };
-  struct Open {
-    double estimate;
-    double cost;
-    int node;
-    bool operator<(const Open& other) const {
-      return estimate != other.estimate ? estimate > other.estimate : cost < other.cost;
-    }
   };
 
   std::optional<GridPath> find_path(const Cell& start, const Cell& goal) override {
-    std::optional<GridPath> on_grid = on_grid_->plan(start, goal);
+    const std::optional<GridPath> on_grid = on_grid_->plan(start, goal);
     if (!on_grid) return std::nullopt;
-    GridPath taut = pulled_taut(*on_grid);
-    GridPath any_angle = search(start, goal);
+    GridPath taut = pulled_taut(on_grid->corners);
+    if (taut.corners.size() == 2 || !search(start, goal, taut)) return taut;
+    GridPath any_angle = pulled_taut(corners_to(goal));
     return any_angle.length < taut.length ? any_angle : taut;
   }
 
-  GridPath search(const Cell& start, const Cell& goal) {
+  /// Whether the goal was reached by what promised to be shorter than `known`.
+  bool search(const Cell& start, const Cell& goal, const GridPath& known) {
     ++task_;
-    std::priority_queue<Open> open;
-    nodes_[index(start)] = {0, number(start), task_, false};
-    open.push({distance(start, goal), 0, number(start)});
-    while (true) {  // Start and goal are connected.
-      const Open best = open.top();
-      open.pop();
-      Node& node = nodes_[static_cast<std::size_t>(best.node)];
-      if (node.closed || best.cost != node.cost) continue;
-      const Cell cell = cell_at(best.node);
-      const Neighbourhood free = neighbourhood(map(), cell);
+    const auto best = static_cast<std::uint32_t>(kPlaneCosts.one * known.length);
+    const std::uint32_t least = distance(start, goal);
+    open_.reset(least);
+    nodes_[number(start)] = {task_, 0, number(start), false};
+    open_.push({least, 0, number(start)});
+    BucketQueue::Entry entry;
+    while (open_.pop(entry)) {
+      Node& node = nodes_[entry.node];
+      if (node.closed || node.cost != entry.cost) continue;
       node.closed = true;
-      see_parent(node, cell, free);
-      if (cell == goal) return path_to(best.node);
-      const Cell parent = cell_at(node.parent);
-      const double parent_cost = nodes_[static_cast<std::size_t>(node.parent)].cost;
-      for (const Move& move : kMoves) {
-        if (!move.fits(free)) continue;
-        const Cell to{cell.x + move.dx, cell.y + move.dy};
-        const double cost = parent_cost + distance(parent, to);
-        Node& next = nodes_[index(to)];
-        if (next.task == task_ && (next.closed || next.cost <= cost)) continue;
-        next = {cost, node.parent, task_, false};
-        open.push({cost + distance(to, goal), cost, number(to)});
-      }
+      const Cell cell = cell_at(entry.node);
+      const PlaneMoves moves = kFitting[sight_.rows().blocked_around(cell.x, cell.y)];
+      see_parent(node, cell, moves);
+      if (cell == goal) return true;
+      expand(node, cell, moves, goal, best);
+    }
+    return false;
+  }
+
+  void expand(const Node& node, const Cell& cell, PlaneMoves moves, const Cell& goal,
+              std::uint32_t best) {
+    const Cell parent = cell_at(node.parent);
+    const std::uint32_t parent_cost = nodes_[node.parent].cost;
+    for (; moves != 0; moves &= moves - 1) {
+      const Cell to = after(cell, moves);
+      Node& next = nodes_[number(to)];
+      const bool is_new = next.task != task_;
+      if (!is_new && (next.closed || next.parent == node.parent)) continue;
+      const std::uint32_t cost = parent_cost + distance(parent, to);
+      if (!is_new && next.cost <= cost) continue;
+      const std::uint32_t estimate = cost + distance(to, goal);
+      if (estimate >= best) continue;
+      next = {task_, cost, node.parent, false};
+      // A parent that was out of sight made the estimates before too high.
+      open_.push({std::max(estimate, open_.least_left()), cost, number(to)});
     }
   }
 
   /// Where the parent is out of sight, the best closed neighbour takes its place.
-  void see_parent(Node& node, const Cell& cell, Neighbourhood free) {
-    if (in_sight(map(), cell_at(node.parent), cell)) return;
-    node.cost = std::numeric_limits<double>::infinity();
-    for (const Move& move : kMoves) {
-      if (!move.fits(free)) continue;
-      const Cell from{cell.x + move.dx, cell.y + move.dy};
-      const Node& neighbour = nodes_[index(from)];
+  void see_parent(Node& node, const Cell& cell, PlaneMoves moves) {
+    if (sight_.clear(cell_at(node.parent), cell)) return;
+    node.cost = UINT32_MAX;
+    for (; moves != 0; moves &= moves - 1) {
+      const Cell from = after(cell, moves);
+      const Node& neighbour = nodes_[number(from)];
       if (neighbour.task != task_ || !neighbour.closed) continue;
-      const double cost = neighbour.cost + distance(from, cell);
+      const std::uint32_t cost = neighbour.cost + distance(from, cell);
       if (cost < node.cost) {
         node.cost = cost;
         node.parent = number(from);
@@ -93,37 +123,46 @@ class LazyThetaStar : public GridPlanner {
     }
   }
 
-  /// Without the corners that are not needed.
-  GridPath pulled_taut(const GridPath& path) const {
-    GridPath taut{0, {path.corners.front()}};
-    for (std::size_t i = 1; i + 1 < path.corners.size(); ++i) {
-      if (!in_sight(map(), taut.corners.back(), path.corners[i + 1])) {
-        taut.corners.push_back(path.corners[i]);
-      }
+  /// By the first of the moves.
+  static Cell after(const Cell& cell, PlaneMoves moves) {
+    const Move& move = kMoves[static_cast<std::size_t>(std::countr_zero(moves))];
+    return {cell.x + move.dx, cell.y + move.dy};
+  }
+
+  /// The path without the corners that are not needed.
+  GridPath pulled_taut(const std::vector<Cell>& corners) const {
+    GridPath taut{0, {corners.front()}};
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      if (!sight_.clear(taut.corners.back(), corners[i + 1])) taut.corners.push_back(corners[i]);
     }
-    taut.corners.push_back(path.corners.back());
+    taut.corners.push_back(corners.back());
     taut.length = length_of(taut.corners);
     return taut;
   }
 
-  GridPath path_to(int last) const {
-    GridPath path{0, {cell_at(last)}};
-    for (int node = last; nodes_[static_cast<std::size_t>(node)].parent != node;) {
-      node = nodes_[static_cast<std::size_t>(node)].parent;
-      path.corners.push_back(cell_at(node));
+  std::vector<Cell> corners_to(const Cell& goal) const {
+    std::vector<Cell> corners{goal};
+    for (std::uint32_t node = number(goal); nodes_[node].parent != node;) {
+      node = nodes_[node].parent;
+      corners.push_back(cell_at(node));
     }
-    std::reverse(path.corners.begin(), path.corners.end());
-    path.length = length_of(path.corners);
-    return path;
+    std::reverse(corners.begin(), corners.end());
+    return corners;
   }
 
-  int number(const Cell& cell) const { return cell.x + map().width() * cell.y; }
-  std::size_t index(const Cell& cell) const { return static_cast<std::size_t>(number(cell)); }
-  Cell cell_at(int node) const { return {node % map().width(), node / map().width()}; }
+  std::uint32_t number(const Cell& cell) const {
+    return static_cast<std::uint32_t>(cell.x + map().width() * cell.y);
+  }
+  Cell cell_at(std::uint32_t number) const {
+    const auto width = static_cast<std::uint32_t>(map().width());
+    return {static_cast<int>(number % width), static_cast<int>(number / width)};
+  }
 
   std::unique_ptr<GridPlanner> on_grid_;
-  std::vector<Node> nodes_;
-  unsigned task_ = 0;
+  Sight sight_;
+  ZeroedArray<Node> nodes_;
+  BucketQueue open_{9};
+  std::uint32_t task_ = 0;
 };
 
 }  // namespace

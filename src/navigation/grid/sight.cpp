@@ -1,37 +1,52 @@
 #include "sight.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace skein::navigation::grid {
+namespace {
 
-bool in_sight(const GridMap& map, const Cell& a, const Cell& b) {
-  const int sides_x = std::abs(b.x - a.x);
-  const int sides_y = std::abs(b.y - a.y);
-  const int dx = b.x > a.x ? 1 : -1;
-  const int dy = b.y > a.y ? 1 : -1;
-  Cell cell = a;
-  // Times at which the line crosses the next side of either kind, in units of 1 / (2 sides_x
-  // sides_y).
-  long next_x = sides_y;
-  long next_y = sides_x;
-  for (int left = sides_x + sides_y; left > 0; --left) {
-    if (!map.is_free(cell)) return false;
-    const bool meets_corner = next_x == next_y && sides_x > 0 && sides_y > 0;
-    if (meets_corner) {
-      if (!map.is_free({cell.x + dx, cell.y}) || !map.is_free({cell.x, cell.y + dy})) return false;
-      --left;
+/// As Sight::clear(), for lines that run at least as far along the rows as across them.
+bool clear_along(const BitRows& rows, int ax, int ay, int bx, int by) {
+  if (ay > by) {
+    std::swap(ax, bx);
+    std::swap(ay, by);
+  }
+  const long along = std::abs(bx - ax);
+  const long across = by - ay;
+  if (across == 0) return rows.are_free(std::min(ax, bx), std::max(ax, bx), ay);
+  // The line leaves the k-th row (2k + 1) along / (2 across) cells from where it began. A cell's
+  // sides belong to it: it has touched all cells up to `farthest`, rounded down, and where nothing
+  // is rounded off it passes through a corner, and touches one cell more in the next row.
+  const long unit = 2 * across;
+  long farthest = (along + across) / unit;
+  long rest = (along + across) % unit;
+  const long step = 2 * along / unit;
+  const long step_rest = 2 * along % unit;
+  long nearest = 0;
+  for (int y = ay; y <= by; ++y) {
+    const int first = static_cast<int>(nearest);
+    const int last = static_cast<int>(std::min(farthest, along));
+    if (!(bx > ax ? rows.are_free(ax + first, ax + last, y)
+                  : rows.are_free(ax - last, ax - first, y))) {
+      return false;
     }
-    const bool crosses_x = sides_x > 0 && (sides_y == 0 || next_x <= next_y);
-    if (crosses_x) {
-      cell.x += dx;
-      next_x += 2L * sides_y;
-    }
-    if (!crosses_x || meets_corner) {
-      cell.y += dy;
-      next_y += 2L * sides_x;
+    nearest = farthest - (rest == 0 ? 1 : 0);
+    farthest += step;
+    rest += step_rest;
+    if (rest >= unit) {
+      rest -= unit;
+      ++farthest;
     }
   }
-  return map.is_free(b);
+  return true;
+}
+
+}  // namespace
+
+bool Sight::clear(const Cell& a, const Cell& b) const {
+  return std::abs(b.x - a.x) >= std::abs(b.y - a.y) ? clear_along(rows_, a.x, a.y, b.x, b.y)
+                                                    : clear_along(columns_, a.y, a.x, b.y, b.x);
 }
 
 }  // namespace skein::navigation::grid
