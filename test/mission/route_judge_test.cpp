@@ -88,6 +88,28 @@ TEST_CASE("a route with one flaw is stopped, and the flaw and its place are name
   }
 }
 
+TEST_CASE("a turn is judged as it is flown, inside of its waypoint") {
+  // The turn of 90 degrees passes 263 m inside of its waypoint.
+  Route around = route();
+  around.waypoints = {{1000, 1000, 300}, {1000, 9000, 300}, {9000, 9000, 300}};
+  Problem task = problem();
+  CHECK(flaw(around, task) == "none");
+  SECTION("a zone there") {
+    task.no_fly_zones.push_back({"Tower", {{1250, 8750}}, 150, 0, 1000});
+    CHECK(flaw(around, task) ==
+          "turn: in the turn at waypoint 1 it enters the no-fly zone 'Tower'");
+  }
+  SECTION("a mountain there") {
+    std::vector<float> posts(121, 100);
+    posts[2 * 11 + 8] = 2800;
+    const Terrain mountain("mountain", 11, 11, 1000, 1000, posts);
+    const auto rejection = judgement(mountain, task, [] { return 0u; })(around);
+    REQUIRE(rejection);
+    CHECK_THAT(rejection->reason,
+               Contains("in the turn at waypoint 1 it comes within") && Contains("120.0 m"));
+  }
+}
+
 TEST_CASE("a route over the cap is stopped by the exposure that it has, not by what it claims") {
   Problem watched = problem();
   watched.radar_sites = {{"Alpha", {5000, 8000}, 20, 3000, 1}};

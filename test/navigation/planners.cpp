@@ -36,6 +36,21 @@ TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whate
   }
 }
 
+TEST_CASE("Routes keep clear in their turns too, wide or narrow, close above the ground or not") {
+  for (const std::uint32_t seed : {1u, 3u, 6u}) {
+    for (const double speed : {40.0, 60.0, 100.0}) {
+      for (const double height : {60.0, 150.0}) {
+        Demo demo(seed);
+        demo.problem.limits.speed_m_s = speed;
+        demo.problem.minimum_height_above_ground_m = height;
+        INFO("seed " << seed << ", " << speed << " m/s, " << height << " m above the ground");
+        const Route route = make_a_star(demo.terrains)->plan(demo.problem);
+        CHECK(violations(demo.problem, route, demo.ground) == "");
+      }
+    }
+  }
+}
+
 TEST_CASE("Samplers give valid routes whatever their seed") {
   const Demo demo;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {

@@ -157,6 +157,37 @@ TEST_CASE("A zone inside of a bend is entered by the turn though not by the edge
   CHECK(rules(bend) == Rules{});
 }
 
+TEST_CASE("A zone inside of a turn that its arc passes by is not entered") {
+  Flight bend = flight();
+  // Half way the turn is some 34 m inside of the waypoint; the zone begins 40 m inside of it.
+  bend.problem.no_fly_zones = {{"Z", {{4114, 9962}}, 80, 0, 1000}};
+  CHECK(rules(bend) == Rules{});
+}
+
+TEST_CASE("A hill inside of a bend is too close to the turn though not to the edges") {
+  // Posts every 10 m; one of them stands out 30 m inside of the bend, where only the arc passes.
+  Flight bend = flight();
+  bend.problem.start = {400, 200, 300};
+  bend.problem.goal = {1000, 1800, 300};
+  bend.route.waypoints = {{400, 200, 300}, {400, 1000, 300}, {1000, 1800, 300}};
+  bend.route.length_m = 1800;
+  HeightGrid ground{201, 201, 10, 10, std::vector<float>(201 * 201, 100)};
+  ground.heights_m[43 * 201 + 99] = 105;
+  const auto found = check_route(bend.problem, bend.route, ground);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].rule == RouteRule::Ground);
+  CHECK_THAT(found[0].text, Catch::Contains("the turn at waypoint 1") &&
+                                Catch::Contains("the minimum is 200.0 m"));
+  // Half way round the aircraft is at the waypoint's altitude.
+  bend.route.waypoints[1].altitude_m = 310;
+  bend.route.length_m = std::hypot(800, 10) + std::hypot(1000, 10);
+  CHECK(rules(bend, ground) == Rules{});
+  bend.route.waypoints[1].altitude_m = 300;
+  bend.route.length_m = 1800;
+  bend.problem.limits.maximum_bank_angle_deg = 0;
+  CHECK(rules(bend, ground) == Rules{});
+}
+
 TEST_CASE("Two turns must fit on the edge between them") {
   Flight zigzag = flight();
   // Two turns of 90 degrees with a radius of 636 m take 1272 m.

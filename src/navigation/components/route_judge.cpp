@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "navigation/planners/problem_rules.hpp"
+#include "navigation/planners/turn_arc.hpp"
 #include "navigation/terrain/ground_clearance.hpp"
 #include "navigation/threats/keep_out.hpp"
 #include "navigation/threats/radar_exposure.hpp"
@@ -64,6 +66,28 @@ Flaw judge_edges(const Route& route, Judge judge) {
   return std::nullopt;
 }
 
+/// The same along the turns, as they are flown.
+template <class Judge>
+Flaw judge_arcs(const Problem& problem, const Route& route, Judge judge) {
+  const auto& points = route.waypoints;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const auto arc =
+        turn_arc(points[i - 1], points[i], points[i + 1], turn_radius_m(problem.limits));
+    for (std::size_t point = 1; point < arc.size(); ++point) {
+      if (const Flaw flaw = judge(arc[point - 1], arc[point]))
+        return fmt::format("in the turn at waypoint {} {}", i, *flaw);
+    }
+  }
+  return std::nullopt;
+}
+
+Flaw judge_zones(const std::vector<KeepOut>& zones, const Position& a, const Position& b) {
+  for (const KeepOut& zone : zones) {
+    if (zone.crossed_by(a, b)) return fmt::format("it enters the no-fly zone '{}'", zone.name());
+  }
+  return std::nullopt;
+}
+
 Flaw judge_height(const Terrain& terrain, const Problem& problem, const Position& a,
                   const Position& b) {
   const double height_m = ground_clearance(terrain, a, b).lowest_m;
@@ -95,8 +119,7 @@ double heading(const Position& a, const Position& b) {
 Flaw judge_turns(const Problem& problem, const Route& route) {
   const auto& limits = problem.limits;
   if (limits.maximum_bank_angle_deg == 0) return std::nullopt;
-  const double radius_m = limits.speed_m_s * limits.speed_m_s /
-                          (9.80665 * std::tan(limits.maximum_bank_angle_deg * kDegree));
+  const double radius_m = turn_radius_m(limits);
   const auto& points = route.waypoints;
   double before_m = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -149,13 +172,8 @@ Evaluation<Route> judgement(const Terrain& terrain, const Problem& problem,
                if (terrain.contains(b.north_m, b.east_m)) return std::nullopt;
                return "it leaves the terrain";
              }))
-      .check("no-fly zone",
-             by_edges([zones = std::move(zones)](const Position& a, const Position& b) -> Flaw {
-               for (const KeepOut& zone : zones) {
-                 if (zone.crossed_by(a, b))
-                   return fmt::format("it enters the no-fly zone '{}'", zone.name());
-               }
-               return std::nullopt;
+      .check("no-fly zone", by_edges([zones](const Position& a, const Position& b) {
+               return judge_zones(zones, a, b);
              }))
       .check("height above ground", by_edges([&](const Position& a, const Position& b) {
                return judge_height(terrain, problem, a, b);
@@ -167,6 +185,13 @@ Evaluation<Route> judgement(const Terrain& terrain, const Problem& problem,
                return judge_climb(problem, a, b);
              }))
       .check("turn radius", [&](const Route& route) { return judge_turns(problem, route); })
+      .check("turn",
+             [&, zones = std::move(zones)](const Route& route) {
+               return judge_arcs(problem, route, [&](const Position& a, const Position& b) {
+                 const Flaw flaw = judge_zones(zones, a, b);
+                 return flaw ? flaw : judge_height(terrain, problem, a, b);
+               });
+             })
       .admitted("exposure cap",
                 [&](const Route& route) { return judge_exposure(terrain, problem, route); })
       .admitted("threat epoch", [&problem, epoch = std::move(epoch)](const Route& route) {

@@ -23,6 +23,9 @@ std::vector<Pose> poses_along(const GroundPath& path) {
 
 std::optional<GroundPath> curve(const PlanningScene& scene, const GroundPath& path,
                                 double turn_radius_m) {
+  // Where two pieces meet, their ends differ by rounding; the edge between them would have any
+  // heading.
+  constexpr double kSamePlace_m = 0.01;
   if (turn_radius_m == 0) return std::nullopt;
   const std::vector<Pose> poses = poses_along(path);
   GroundPath curved{path.front()};
@@ -30,7 +33,7 @@ std::optional<GroundPath> curve(const PlanningScene& scene, const GroundPath& pa
     const GroundPath piece = DubinsPath(poses[i - 1], poses[i], turn_radius_m).waypoints();
     for (std::size_t point = 1; point < piece.size(); ++point) {
       if (!scene.free(curved.back(), piece[point], Berth::Least)) return std::nullopt;
-      if (distance_m(curved.back(), piece[point]) > 0) curved.push_back(piece[point]);
+      if (distance_m(curved.back(), piece[point]) > kSamePlace_m) curved.push_back(piece[point]);
     }
   }
   return curved;

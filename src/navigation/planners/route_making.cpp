@@ -8,6 +8,7 @@
 
 #include "navigation/planners/curved_path.hpp"
 #include "navigation/planners/problem_rules.hpp"
+#include "navigation/planners/turn_arc.hpp"
 #include "navigation/terrain/ground_clearance.hpp"
 #include "navigation/threats/radar_exposure.hpp"
 #include "navigation/threats/threat_models.hpp"
@@ -41,15 +42,57 @@ GroundPath flyable_path(const PlanningScene& scene, const GroundPath& path, cons
       radius));
 }
 
-void require_clear(const PlanningScene& scene, const std::vector<Position>& waypoints) {
-  for (std::size_t i = 1; i < waypoints.size(); ++i) {
-    for (const auto& zone : scene.problem().no_fly_zones) {
-      if (KeepOut(zone, 0).crossed_by(waypoints[i - 1], waypoints[i])) {
-        throw Unflyable(fmt::format("a turn or a descent enters the no-fly zone '{}'", zone.name));
+/// Both the edges and the turns between them, as they are flown, must keep clear of zones and
+/// ground.
+class LastLook {
+ public:
+  LastLook(const PlanningScene& scene, const std::vector<Position>& waypoints)
+      : scene_(scene), waypoints_(waypoints), radius_m_(turn_radius_m(scene.problem().limits)) {
+    for (const auto& zone : scene.problem().no_fly_zones) zones_.emplace_back(zone, 0);
+  }
+
+  /// Throws Unflyable.
+  void take() const {
+    double turned_m = 0;  // How much of the edge the turn at its begin takes.
+    for (std::size_t i = 1; i < waypoints_.size(); ++i) {
+      require_outside_zones(waypoints_[i - 1], waypoints_[i]);
+      const double to_turn_m = i + 1 < waypoints_.size() ? turn(i) : 0;
+      if (turned_m + to_turn_m > distance_m(on_map(waypoints_[i - 1]), on_map(waypoints_[i]))) {
+        throw Unflyable("two turns follow each other too closely");
       }
+      turned_m = to_turn_m;
     }
   }
-}
+
+ private:
+  /// How much of either edge the turn at the waypoint takes.
+  double turn(std::size_t i) const {
+    const Position& before = waypoints_[i - 1];
+    const Position& after = waypoints_[i + 1];
+    const auto arc = turn_arc(before, waypoints_[i], after, radius_m_);
+    for (std::size_t point = 1; point < arc.size(); ++point) {
+      require_outside_zones(arc[point - 1], arc[point]);
+      if (ground_clearance(scene_.terrain(), arc[point - 1], arc[point]).lowest_m <
+          scene_.problem().minimum_height_above_ground_m) {
+        throw Unflyable("the ground inside of a turn is too high for the minimum height");
+      }
+    }
+    if (radius_m_ == 0) return 0;
+    return radius_m_ * tangent_share(on_map(before), on_map(waypoints_[i]), on_map(after));
+  }
+
+  void require_outside_zones(const Position& a, const Position& b) const {
+    for (const KeepOut& zone : zones_) {
+      if (!zone.crossed_by(a, b)) continue;
+      throw Unflyable(fmt::format("a turn or a descent enters the no-fly zone '{}'", zone.name()));
+    }
+  }
+
+  const PlanningScene& scene_;
+  const std::vector<Position>& waypoints_;
+  double radius_m_;
+  std::vector<KeepOut> zones_;
+};
 
 }  // namespace
 
@@ -60,7 +103,7 @@ AE_navigator::Route make_route(const PlanningScene& scene, const GroundPath& pat
   route.waypoints = fly_over(scene, flyable_path(scene, path, cost, max_points));
   route.waypoints.front() = scene.problem().start;
   route.waypoints.back() = scene.problem().goal;
-  require_clear(scene, route.waypoints);
+  LastLook(scene, route.waypoints).take();
 
   route.length_m = 0;
   route.lowest_height_above_ground_m = std::numeric_limits<double>::infinity();

@@ -10,8 +10,8 @@ namespace skein::navigation {
 
 /// Makes a route of what a search has found: draws the path taut by `cost`, rounds its turns (where
 /// they do not fit, the path is flown by Dubins curves), gives it altitudes, measures it, and looks
-/// at the result once more, edge by edge. Throws Unflyable where the path has no such route,
-/// NoRoute when the budget is spent.
+/// at the result once more, edge by edge and turn by turn. Throws Unflyable where the path has no
+/// such route, NoRoute when the budget is spent.
 ///
 /// `max_points` bounds the work: the path is divided into about as many points, and the work grows
 /// with their square.

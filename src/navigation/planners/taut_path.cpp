@@ -5,23 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "navigation/planners/turn_arc.hpp"
+
 namespace skein::navigation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// How far before the corner b the turn from a-b to b-c begins, per metre of turn radius: the
-/// tangent of half the change of heading. Infinite for a reversal.
-double tangent_share(const GroundPoint& a, const GroundPoint& b, const GroundPoint& c) {
-  const double north1 = b.north_m - a.north_m;
-  const double east1 = b.east_m - a.east_m;
-  const double north2 = c.north_m - b.north_m;
-  const double east2 = c.east_m - b.east_m;
-  const double lengths = std::hypot(north1, east1) * std::hypot(north2, east2);
-  const double along = lengths + north1 * north2 + east1 * east2;
-  const double across = std::abs(north1 * east2 - east1 * north2);
-  return along > 1e-9 * lengths ? across / along : kInfinity;
-}
 
 /// The table of the dynamic programme: the cheapest way to arrive at point `to` by the leg from
 /// `from`, and from which leg.

@@ -53,6 +53,19 @@ double air_length(const Position& a, const Position& b) {
   return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m, b.altitude_m - a.altitude_m);
 }
 
+/// Whether the whole zone is further away than `distance` from the point, to the north, south, east
+/// or west.
+bool is_far(const AE_navigator::NoFlyZone& zone, const Position& point, double distance) {
+  const double reach = distance + zone.margin_m;
+  const auto all = [&](auto beyond) {
+    return std::all_of(zone.outline.begin(), zone.outline.end(), beyond);
+  };
+  return all([&](const auto& c) { return c.north_m > point.north_m + reach; }) ||
+         all([&](const auto& c) { return c.north_m < point.north_m - reach; }) ||
+         all([&](const auto& c) { return c.east_m > point.east_m + reach; }) ||
+         all([&](const auto& c) { return c.east_m < point.east_m - reach; });
+}
+
 Position towards(const Position& a, const Position& b, double share) {
   return {a.north_m + share * (b.north_m - a.north_m), a.east_m + share * (b.east_m - a.east_m),
           a.altitude_m + share * (b.altitude_m - a.altitude_m)};
@@ -228,28 +241,72 @@ class Check {
                "edge {} is {:.0f} m long; the turns at its ends take {:.0f} m and {:.0f} m with a "
                "radius of {:.0f} m",
                i - 1, available, before, needed, radius);
-      } else if (!last) {
-        check_cut_corner(i, needed);
+      } else if (turn > 0) {
+        check_arc(i, turn, needed, radius);
       }
       before = needed;
     }
   }
 
-  /// A turn leaves the edges before its waypoint; between corner and chord lies all that it may
-  /// touch.
-  void check_cut_corner(std::size_t i, double tangent) {
-    const double in = map_length(points_[i], points_[i - 1]);
-    const double out = map_length(points_[i], points_[i + 1]);
-    if (!(in > 0 && out > 0)) return;
-    const Position begin = towards(points_[i], points_[i - 1], std::min(1.0, tangent / in));
-    const Position end = towards(points_[i], points_[i + 1], std::min(1.0, tangent / out));
+  /// The arc of the turn at waypoint i, which begins `tangent` before it, as chords that nowhere
+  /// leave it by more than the tolerance. Its first half has the altitudes of the edge before, its
+  /// second half those of the edge after.
+  std::vector<Position> arc_at(std::size_t i, double turn, double tangent, double radius) const {
+    const Position& corner = points_[i];
+    const double in = map_length(points_[i - 1], corner);
+    const double out = map_length(corner, points_[i + 1]);
+    const Position begin = towards(corner, points_[i - 1], std::min(1.0, tangent / in));
+    const Position end = towards(corner, points_[i + 1], std::min(1.0, tangent / out));
+    const double longest = 2 * std::acos(1 - std::min(1.0, tolerances_.position_m / radius));
+    const int chords = 2 * static_cast<int>(std::clamp(std::ceil(turn / 2 / longest), 1.0, 1000.0));
+    std::vector<Position> arc{begin};
+    for (int chord = 1; chord < chords; ++chord) {
+      const double share = static_cast<double>(chord) / chords;
+      Position point =
+          share <= 0.5 ? towards(begin, corner, 2 * share) : towards(corner, end, 2 * share - 1);
+      // From the corner, along the two tangents, which are skew axes.
+      const double to_begin = along_tangent(turn, 1 - share);
+      const double to_end = along_tangent(turn, share);
+      point.north_m = corner.north_m + to_begin * (begin.north_m - corner.north_m) +
+                      to_end * (end.north_m - corner.north_m);
+      point.east_m = corner.east_m + to_begin * (begin.east_m - corner.east_m) +
+                     to_end * (end.east_m - corner.east_m);
+      arc.push_back(point);
+    }
+    arc.push_back(end);
+    return arc;
+  }
+
+  /// How far a place on an arc is displaced along the tangent at its end, as a share of that
+  /// tangent: (1 - cos(share * turn)) / (1 - cos(turn)).
+  static double along_tangent(double turn, double share) {
+    const double ratio = std::sin(share * turn / 2) / std::sin(turn / 2);
+    return ratio * ratio;
+  }
+
+  void check_arc(std::size_t i, double turn, double tangent, double radius) {
+    const std::vector<Position> arc = arc_at(i, turn, tangent, radius);
     for (const auto& zone : problem_.no_fly_zones) {
-      if (route_checker::entry_into(zone, begin, end) >= 0) {
+      if (is_far(zone, points_[i], tangent)) continue;
+      for (std::size_t piece = 1; piece < arc.size(); ++piece) {
+        if (route_checker::entry_into(zone, arc[piece - 1], arc[piece]) < 0) continue;
         report(
             RouteRule::Zone,
             "the turn at waypoint {}, which begins {:.0f} m before it, enters the no-fly zone '{}'",
             i, tangent, zone.name);
+        break;
       }
+    }
+    if (off_terrain_) return;
+    double height = std::numeric_limits<double>::infinity();
+    for (std::size_t piece = 1; piece < arc.size(); ++piece) {
+      height = std::min(height, route_checker::lowest_height(ground_, arc[piece - 1], arc[piece]));
+    }
+    if (!(height >= problem_.minimum_height_above_ground_m - tolerances_.height_m)) {
+      report(RouteRule::Ground,
+             "the turn at waypoint {}, which begins {:.0f} m before it, comes down to {:.1f} m "
+             "above the ground; the minimum is {:.1f} m",
+             i, tangent, height, problem_.minimum_height_above_ground_m);
     }
   }
 

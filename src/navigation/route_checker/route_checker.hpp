@@ -16,8 +16,8 @@ enum class RouteRule {
   Start,         ///< The first waypoint is the start.
   Goal,          ///< The last waypoint is the goal.
   Terrain,       ///< Every waypoint is over the terrain.
-  Zone,          ///< No edge, and no turn cut short, enters a no-fly zone.
-  Ground,        ///< Every edge keeps the minimum height above ground.
+  Zone,          ///< No edge and no turn's arc enters a no-fly zone.
+  Ground,        ///< Every edge and every turn's arc keeps the minimum height above ground.
   Altitude,      ///< No waypoint is above the maximum altitude.
   Climb,         ///< No edge is steeper than the aircraft climbs.
   Turn,          ///< The turns fit between each other.
@@ -54,7 +54,9 @@ struct RouteTolerances {
 ///
 /// It trusts nobody: it has its own ground, geometry and integration, and shares nothing with the
 /// planners but the types of the IDL. Ground and zones are checked exactly, edge by edge, not by
-/// sampling; a turn is taken as an arc of the least radius inside of its corner.
+/// sampling; so are turns, each as the arc of the least radius that touches both edges, to
+/// `position_m`. Half way round a turn the aircraft is at its waypoint's altitude, before and after
+/// it climbs as along the edges.
 std::vector<RouteViolation> check_route(const AE_navigator::Problem& problem,
                                         const AE_navigator::Route& route, const HeightGrid& ground,
                                         const RouteTolerances& tolerances = {});
