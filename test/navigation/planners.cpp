@@ -11,12 +11,14 @@
 #include <thread>
 
 #include "demo.hpp"
+#include "flat_crossing.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;
 using AE_navigator::NoRoute;
+using AE_navigator::Problem;
 using AE_navigator::Route;
 
 TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whatever terrain") {
@@ -101,19 +103,6 @@ TEST_CASE(
     CHECK(violations(demo.problem, route, demo.ground) == "");
     CHECK(route.planner == name);
     CHECK(cost_m(demo.problem, route) < 1.2 * best);
-  }
-}
-
-TEST_CASE("AITstar makes a valid route or none") {
-  Demo demo;
-  for (const std::uint32_t limit_ms : {50u, 400u}) {
-    demo.problem.time_limit_ms = limit_ms;
-    try {
-      const Route route = make_ait_star(demo.terrains)->plan(demo.problem);
-      CHECK(violations(demo.problem, route, demo.ground) == "");
-    } catch (const NoRoute& refusal) {
-      CHECK_FALSE(refusal.proven);
-    }
   }
 }
 
@@ -228,6 +217,42 @@ TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
       CHECK_THAT(refusal.reason, Catch::Contains("40 ms"));
       CHECK_FALSE(refusal.proven);
     }
+  }
+}
+
+TEST_CASE("A planner ends when its time is up, however hard the problem") {
+  FlatCrossing crossing;
+  Problem& problem = crossing.problem;
+  problem.time_limit_ms = 200;
+  const auto wall = [](const char* name, double south_m, double north_m) {
+    return AE_navigator::NoFlyZone{
+        name, {{south_m, 54000}, {north_m, 54000}, {north_m, 56000}, {south_m, 56000}}, 0, 0, 9000};
+  };
+  SECTION("no way through") { problem.no_fly_zones = {wall("Wall", -1000, 112000)}; }
+  SECTION("a narrow gap far away") {
+    problem.no_fly_zones = {wall("South", -1000, 90000), wall("North", 90300, 112000)};
+  }
+  SECTION("a start that is boxed in") {
+    for (const double corner : {-2000.0, 2000.0}) {
+      const double north = problem.start.north_m;
+      const double east = problem.start.east_m;
+      problem.no_fly_zones.push_back(
+          {"Bar", {{north + corner, east - 2000}, {north + corner, east + 2000}}, 300, 0, 9000});
+      problem.no_fly_zones.push_back(
+          {"Bar", {{north - 2000, east + corner}, {north + 2000, east + corner}}, 300, 0, 9000});
+    }
+  }
+  SECTION("a path that can be made better by no more than a trifle") {
+    problem.radar_sites = {{"Faint", {100000, 60000}, 3000, 1000, 1e-3}};
+  }
+  for (const std::string& name : planner_names()) {
+    INFO(name);
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+      make_planner(name, crossing.terrains)->plan(problem);
+    } catch (const NoRoute&) {
+    }
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200 + 2000));
   }
 }
 

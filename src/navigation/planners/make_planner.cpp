@@ -21,7 +21,6 @@ constexpr Maker kMakers[] = {
     {"InformedRRTstar", make_informed_rrt_star},
     {"BITstar", make_bit_star},
     {"PRMstar", make_prm_star},
-    {"AITstar", make_ait_star},
 };
 
 }  // namespace

@@ -77,11 +77,6 @@ std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainPro
 std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options = {});
 
-/// As BITstar, with a second search backwards that tells what is left. In the library's version
-/// 1.5.2 it often finds no route among narrow gaps in time that suffices for all others.
-std::unique_ptr<AE_navigator::IPlanner> make_ait_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options = {});
-
 /// A tree of the Dubins paths of OMPL 1.5.2: an old library behind the interface of today, and a
 /// real danger. Sooner or later an assertion in it aborts the process, so it is for processes of
 /// their own alone: its component says `isolated`, and a profile that has it work in its entity's
@@ -91,7 +86,7 @@ std::unique_ptr<AE_navigator::IPlanner> make_legacy_dubins(
 
 /// The planners that may share a process with others, by the names that make_planner knows and that
 /// the routes carry: AStar, CappedAStar, RRTConnect, RRTstar,
-/// InformedRRTstar, BITstar, PRMstar, AITstar.
+/// InformedRRTstar, BITstar, PRMstar.
 const std::vector<std::string>& planner_names();
 
 /// Makes one by its name. Throws InvalidArgument for an unknown one, with the nearest known.

@@ -1,4 +1,3 @@
-#include <ompl/geometric/planners/informedtrees/AITstar.h>
 #include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/prm/PRMstar.h>
 #include <ompl/geometric/planners/rrt/InformedRRTstar.h>
@@ -76,10 +75,9 @@ ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
   return std::make_shared<Seeded<Planner>>(sampling.space(), seed);
 }
 
-/// Those that draw random numbers from the sampler alone.
-template <class Planner>
+/// Draws random numbers from the sampler alone.
 ob::PlannerPtr make_batches(const Sampling& sampling, std::uint32_t) {
-  return std::make_shared<Planner>(sampling.space());
+  return std::make_shared<og::BITstar>(sampling.space());
 }
 
 class ImprovingPlanner final : public AE_navigator::IPlanner {
@@ -173,19 +171,13 @@ std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
 
 std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"BITstar", make_batches<og::BITstar>},
-                                            std::move(terrains), std::move(options));
+  return std::make_unique<ImprovingPlanner>(Improver{"BITstar", make_batches}, std::move(terrains),
+                                            std::move(options));
 }
 
 std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options) {
   return std::make_unique<ImprovingPlanner>(Improver{"PRMstar", make_roadmap<og::PRMstar>},
-                                            std::move(terrains), std::move(options));
-}
-
-std::unique_ptr<AE_navigator::IPlanner> make_ait_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"AITstar", make_batches<og::AITstar>},
                                             std::move(terrains), std::move(options));
 }
 
