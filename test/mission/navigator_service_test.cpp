@@ -202,3 +202,17 @@ TEST_CASE("the best route so far is taken when a planner's time is up") {
   flight.request.problem.time_limit_ms = 500;
   CHECK(flight.ask() == planner->route);
 }
+
+TEST_CASE("the best route so far of those that improve theirs is taken when their time is up") {
+  Flight flight;
+  flight.navigator->provide<IFlightController>(flying_at("60"));
+  PlannerOptions endless;
+  endless.now = [] { return Instant(); };  // For all that it knows there is time.
+  for (const char* name : {"RRTstar", "InformedRRTstar", "BITstar"}) {
+    flight.navigator->provide_csp<IPlanner>(name, flight.navigator->id(),
+                                            make_planner(name, flight.terrains, endless), {});
+    flight.request.planner = name;
+    flight.request.problem.time_limit_ms = 5000;
+    CHECK(flight.ask().planner == name);
+  }
+}

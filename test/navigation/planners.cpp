@@ -220,6 +220,37 @@ TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
   }
 }
 
+TEST_CASE("A planner that improves its route answers with the best so far when its time is up") {
+  Demo demo;
+  demo.problem.time_limit_ms = 60'000;
+  for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"}) {
+    INFO(name);
+    // Time is counted in looks at the clock. The search takes all but what its last path needs to
+    // become a route.
+    PlannerOptions options;
+    int looks = 0;
+    options.now = [&] { return skein::Instant(std::chrono::milliseconds(++looks * 20)); };
+    const Route route = make_planner(name, demo.terrains, options)->plan(demo.problem);
+    CHECK(violations(demo.problem, route, demo.ground) == "");
+  }
+}
+
+TEST_CASE("A planner that is stopped while it improves its route answers with the best so far") {
+  const Demo demo;
+  for (const std::string name : {"RRTstar", "InformedRRTstar", "BITstar"}) {
+    INFO(name);
+    struct FirstRoute final : skein::StreamSink<Route> {
+      bool put(Route, bool) override { return there = true; }
+      bool there = false;
+    } routes;
+    PlannerOptions options;
+    options.now = [] { return skein::Instant(); };
+    options.stop = [&] { return routes.there; };
+    CHECK_NOTHROW(make_planner(name, demo.terrains, options)->improve(demo.problem, routes));
+    CHECK(routes.there);
+  }
+}
+
 TEST_CASE("A planner ends when its time is up, however hard the problem") {
   FlatCrossing crossing;
   Problem& problem = crossing.problem;

@@ -19,7 +19,8 @@ namespace skein::navigation {
 bool current_call_cancelled();
 
 struct PlannerOptions {
-  /// Polled every few hundred steps at least; true ends the planning with NoRoute.
+  /// Polled every few hundred steps at least; true ends the planning, with NoRoute where there is
+  /// no route yet.
   std::function<bool()> stop = current_call_cancelled;
   /// Against this the Problem's time limit is measured.
   std::function<Instant()> now = std::chrono::steady_clock::now;
@@ -60,7 +61,8 @@ std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
 std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
                                                          PlannerOptions options = {});
 
-/// A tree that is improved for as long as there is time: the more time, the cheaper the route.
+/// A tree that is improved for as long as there is time: the more time, the cheaper the route. When
+/// its time is up the best route so far is the answer; so it is with the two that follow.
 std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options = {});
 

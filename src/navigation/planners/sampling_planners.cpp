@@ -87,22 +87,13 @@ class ImprovingPlanner final : public AE_navigator::IPlanner {
       : improver_(improver), terrains_(std::move(terrains)), options_(std::move(options)) {}
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    return search(problem, nullptr);
+    return search(problem, [](const AE_navigator::Route&) {});
   }
 
   void improve(const AE_navigator::Problem& problem,
                StreamSink<AE_navigator::Route>& sink) override {
-    bool any = false;
-    std::optional<AE_navigator::Route> best;
-    try {
-      best = search(problem, [&](const AE_navigator::Route& route) {
-        // A route that the caller has no room for is overtaken by the next.
-        if (sink.try_push(route)) any = true;
-      });
-    } catch (const AE_navigator::NoRoute&) {
-      if (!any) throw;
-    }
-    if (best) sink.push(std::move(*best));
+    // A route that the caller has no room for is overtaken by the next.
+    sink.push(search(problem, [&](const AE_navigator::Route& route) { sink.try_push(route); }));
   }
 
  private:
@@ -112,30 +103,35 @@ class ImprovingPlanner final : public AE_navigator::IPlanner {
 
   using Report = std::function<void(const AE_navigator::Route&)>;
 
+  /// Where the last path comes to no route, in time or at all, the best before it is the answer.
   AE_navigator::Route search(const AE_navigator::Problem& problem, const Report& report) {
     const PlanningScene scene(*terrains_, problem, options_);
     const Sampling sampling(scene, options_.seed, Berth::ForTurns);
     sampling.count_exposure();
     const ob::PlannerPtr planner = improver_.make(sampling, options_.seed);
     planner->setProblemDefinition(sampling.problem());
-    double reported = std::numeric_limits<double>::infinity();
-    if (report) {
-      sampling.on_better_path([&](const GroundPath& path, double cost) {
-        if (cost > kWorthwhile * reported) return;
-        reported = cost;
-        report(route_of(scene, path));
-      });
-    }
+    double tried = std::numeric_limits<double>::infinity();
+    std::optional<AE_navigator::Route> best;
+    sampling.on_better_path([&](const GroundPath& path, double cost) {
+      if (cost > kWorthwhile * tried) return;
+      tried = cost;
+      best = route_of(scene, path);
+      report(*best);
+    });
     const Instant end = scene.budget().search_end(10);
     const auto path = sampling.solve(
         *planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
-    scene.budget().require_time();
-    if (!path) throw scene.budget().nothing_found();
     try {
+      scene.budget().require_time();
+      if (!path) throw scene.budget().nothing_found();
       return route_of(scene, *path);
     } catch (const Unflyable& reason) {
+      if (best) return std::move(*best);
       throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
                                   false);
+    } catch (const AE_navigator::NoRoute&) {
+      if (best) return std::move(*best);
+      throw;
     }
   }
 
