@@ -208,7 +208,7 @@ TEST_CASE("the best route so far of those that improve theirs is taken when thei
   flight.navigator->provide<IFlightController>(flying_at("60"));
   PlannerOptions endless;
   endless.now = [] { return Instant(); };  // For all that it knows there is time.
-  for (const char* name : {"RRTstar", "InformedRRTstar", "BITstar"}) {
+  for (const char* name : {"RRTstar", "InformedRRTstar"}) {
     flight.navigator->provide_csp<IPlanner>(name, flight.navigator->id(),
                                             make_planner(name, flight.terrains, endless), {});
     flight.request.planner = name;

@@ -52,8 +52,7 @@ TEST_CASE("Samplers do not find what is not there, and claim no proof") {
   const Demo demo;
   Problem problem = unreachable_demo_problem(*demo.terrain);
   problem.time_limit_ms = 150;
-  for (const auto make :
-       {make_rrt_connect, make_rrt_star, make_informed_rrt_star, make_bit_star, make_prm_star}) {
+  for (const auto make : {make_rrt_connect, make_rrt_star, make_informed_rrt_star, make_prm_star}) {
     try {
       make(demo.terrains, {})->plan(problem);
       FAIL("it found a route");

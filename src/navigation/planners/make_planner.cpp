@@ -19,7 +19,6 @@ constexpr Maker kMakers[] = {
     {"RRTConnect", make_rrt_connect},
     {"RRTstar", make_rrt_star},
     {"InformedRRTstar", make_informed_rrt_star},
-    {"BITstar", make_bit_star},
     {"PRMstar", make_prm_star},
 };
 

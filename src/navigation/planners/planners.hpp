@@ -62,18 +62,13 @@ std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<Terrain
                                                          PlannerOptions options = {});
 
 /// A tree that is improved for as long as there is time: the more time, the cheaper the route. When
-/// its time is up the best route so far is the answer; so it is with the two that follow.
+/// its time is up the best route so far is the answer; so it is with InformedRRTstar.
 std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options = {});
 
 /// As RRTstar, but as soon as there is a route it samples only where a cheaper one may lead.
 std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
     std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
-
-/// Looks at ever denser batches of samples in the order of what they promise: a good first route
-/// and a quick improvement.
-std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options = {});
 
 /// A map of roads that grows denser for as long as there is time. Brings only its last route.
 std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
@@ -86,9 +81,9 @@ std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainPro
 std::unique_ptr<AE_navigator::IPlanner> make_legacy_dubins(
     std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
 
-/// The planners that may share a process with others, by the names that make_planner knows and that
-/// the routes carry: AStar, CappedAStar, RRTConnect, RRTstar,
-/// InformedRRTstar, BITstar, PRMstar.
+/// The planners that may share a process with others (of OMPL 1.5.2, BITstar and AITstar may not:
+/// they do not return in their time, and BITstar crashes), by the names that make_planner knows and
+/// that the routes carry: AStar, CappedAStar, RRTConnect, RRTstar, InformedRRTstar, PRMstar.
 const std::vector<std::string>& planner_names();
 
 /// Makes one by its name. Throws InvalidArgument for an unknown one, with the nearest known.

@@ -4,15 +4,12 @@
 #include <ompl/base/OptimizationObjective.h>
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/goals/GoalRegion.h>
-#include <ompl/base/samplers/InformedStateSampler.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/util/Console.h>
 
 #include <atomic>
-#include <cmath>
 #include <mutex>
-#include <numbers>
 #include <thread>
 
 namespace skein::navigation {
@@ -48,71 +45,10 @@ class LegValidator final : public ob::MotionValidator {
   Berth berth_;
 };
 
-/// Samples where a path by way of the sample may be cheaper than a cost, which is no less than its
-/// length: in an ellipse around start and goal. The library's own sampler draws from the whole map
-/// until it meets the ellipse, which for a path that is straight but for a metre takes it minutes,
-/// and asks nobody whether there is time; this one gives up after a few hundred draws.
-class EllipseSampler final : public ob::InformedSampler {
- public:
-  EllipseSampler(const ob::ProblemDefinitionPtr& problem, const PlanningScene& scene,
-                 std::uint32_t seed)
-      : InformedSampler(problem, kDraws),
-        everywhere_(space_->allocDefaultStateSampler()),
-        start_(on_map(scene.problem().start)),
-        goal_(on_map(scene.problem().goal)),
-        random_(seed) {}
-
-  bool sampleUniform(ob::State* state, const ob::Cost& below) override {
-    return sampleUniform(state, ob::Cost(0), below);
-  }
-
-  bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& below) override {
-    for (unsigned draw = 0; draw < kDraws; ++draw) {
-      if (std::isfinite(below.value())) {
-        draw_in_ellipse(*state->as<ob::RealVectorStateSpace::StateType>(), below.value());
-      } else {
-        everywhere_->sampleUniform(state);
-      }
-      const GroundPoint point = point_of(state);
-      const double by_way = distance_m(start_, point) + distance_m(point, goal_);
-      if (space_->satisfiesBounds(state) && by_way >= least.value()) return true;
-    }
-    return false;
-  }
-
-  bool hasInformedMeasure() const override { return false; }
-  double getInformedMeasure(const ob::Cost&) const override { return space_->getMeasure(); }
-
- private:
-  static constexpr unsigned kDraws = 200;
-
-  /// The points of which the distances from both ends sum up to no more than `length_m`.
-  void draw_in_ellipse(ob::RealVectorStateSpace::StateType& state, double length_m) {
-    const double air_line_m = distance_m(start_, goal_);
-    const double half_length = std::max(length_m, air_line_m) / 2;
-    const double half_width =
-        std::sqrt(std::max(0.0, half_length * half_length - air_line_m * air_line_m / 4));
-    const double radius = std::sqrt(random_.uniform01());
-    const double angle = random_.uniformReal(-std::numbers::pi, std::numbers::pi);
-    const double along = half_length * radius * std::cos(angle);
-    const double across = half_width * radius * std::sin(angle);
-    const GroundPoint middle = between(start_, goal_, 0.5);
-    const double heading = std::atan2(goal_.east_m - start_.east_m, goal_.north_m - start_.north_m);
-    state[0] = middle.north_m + along * std::cos(heading) - across * std::sin(heading);
-    state[1] = middle.east_m + along * std::sin(heading) + across * std::cos(heading);
-  }
-
-  ob::StateSamplerPtr everywhere_;
-  GroundPoint start_;
-  GroundPoint goal_;
-  ompl::RNG random_;
-};
-
 class RiskObjective final : public ob::OptimizationObjective {
  public:
-  RiskObjective(const ob::SpaceInformationPtr& space, const PlanningScene& scene,
-                std::uint32_t seed)
-      : OptimizationObjective(space), scene_(scene), seed_(seed) {
+  RiskObjective(const ob::SpaceInformationPtr& space, const PlanningScene& scene)
+      : OptimizationObjective(space), scene_(scene) {
     setCostToGoHeuristic(ob::goalRegionCostToGo);
   }
 
@@ -123,14 +59,9 @@ class RiskObjective final : public ob::OptimizationObjective {
   ob::Cost motionCostHeuristic(const ob::State* from, const ob::State* to) const override {
     return ob::Cost(si_->distance(from, to));
   }
-  ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& problem,
-                                                   unsigned) const override {
-    return std::make_shared<EllipseSampler>(problem, scene_, seed_);
-  }
 
  private:
   const PlanningScene& scene_;
-  std::uint32_t seed_;
 };
 
 class SeededSampler final : public ob::RealVectorStateSampler {
@@ -167,8 +98,7 @@ ob::ScopedState<> state_at(const ob::SpaceInformationPtr& space, const Position&
 
 }  // namespace
 
-Sampling::Sampling(const PlanningScene& scene, std::uint32_t seed, Berth berth)
-    : scene_(scene), seed_(seed) {
+Sampling::Sampling(const PlanningScene& scene, std::uint32_t seed, Berth berth) : scene_(scene) {
   static std::once_flag quiet;  // The library writes to standard output otherwise.
   std::call_once(quiet, [] { ompl::msg::noOutputHandler(); });
   space_ =
@@ -183,7 +113,7 @@ Sampling::Sampling(const PlanningScene& scene, std::uint32_t seed, Berth berth)
 }
 
 void Sampling::count_exposure() const {
-  problem_->setOptimizationObjective(std::make_shared<RiskObjective>(space_, scene_, seed_ + 2));
+  problem_->setOptimizationObjective(std::make_shared<RiskObjective>(space_, scene_));
   // The scene makes its map of risks at first use, which a planner's second thread must not be.
   scene_.cost(on_map(scene_.problem().start), on_map(scene_.problem().goal));
 }

@@ -49,7 +49,6 @@ class Sampling {
   GroundPath start_to_goal(const std::vector<const ompl::base::State*>& states) const;
 
   const PlanningScene& scene_;
-  std::uint32_t seed_;
   ompl::base::SpaceInformationPtr space_;
   ompl::base::ProblemDefinitionPtr problem_;
 };

@@ -1,4 +1,3 @@
-#include <ompl/geometric/planners/informedtrees/BITstar.h>
 #include <ompl/geometric/planners/prm/PRMstar.h>
 #include <ompl/geometric/planners/rrt/InformedRRTstar.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -73,11 +72,6 @@ ob::PlannerPtr make_tree(const Sampling& sampling, std::uint32_t seed) {
 template <class Planner>
 ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
   return std::make_shared<Seeded<Planner>>(sampling.space(), seed);
-}
-
-/// Draws random numbers from the sampler alone.
-ob::PlannerPtr make_batches(const Sampling& sampling, std::uint32_t) {
-  return std::make_shared<og::BITstar>(sampling.space());
 }
 
 class ImprovingPlanner final : public AE_navigator::IPlanner {
@@ -163,12 +157,6 @@ std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
   return std::make_unique<ImprovingPlanner>(
       Improver{"InformedRRTstar", make_tree<og::InformedRRTstar>}, std::move(terrains),
       std::move(options));
-}
-
-std::unique_ptr<AE_navigator::IPlanner> make_bit_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"BITstar", make_batches}, std::move(terrains),
-                                            std::move(options));
 }
 
 std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
