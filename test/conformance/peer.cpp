@@ -15,9 +15,9 @@ namespace {
 
 void say(const std::string& line) { std::cout << line << std::endl; }
 
-int write_on_demand(Participant& participant) {
+int write_on_demand(Participant& participant, std::chrono::milliseconds liveliness) {
   Qos qos = last_state();
-  qos.liveliness_lease = 300ms;
+  qos.liveliness_lease = liveliness;
   Outbox outbox(participant, keyed(), qos);
   outbox.writer().write(make_number(0), make_key(1));
   say("writer " + outbox.writer().guid().hex());
@@ -41,12 +41,15 @@ int count_on_demand(Participant& participant) {
 
 int main(int count, char** arguments) {
   if (count != 5) {
-    std::fprintf(stderr, "usage: %s write|read VENDOR DOMAIN LEASE_MS\n", arguments[0]);
+    std::fprintf(stderr, "usage: %s write|write_rarely|read VENDOR DOMAIN LEASE_MS\n",
+                 arguments[0]);
     return 2;
   }
   const std::string role(arguments[1]);
   const auto participant =
       make_participant(arguments[2], static_cast<std::uint32_t>(std::stoul(arguments[3])),
                        std::chrono::milliseconds(std::stoul(arguments[4])));
-  return role == "write" ? write_on_demand(*participant) : count_on_demand(*participant);
+  if (role == "write") return write_on_demand(*participant, 300ms);
+  if (role == "write_rarely") return write_on_demand(*participant, 60s);
+  return count_on_demand(*participant);
 }

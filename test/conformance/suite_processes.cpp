@@ -38,8 +38,16 @@ Qos watched_state() {
   return qos;
 }
 
-bool told_last(const std::vector<std::pair<Guid, bool>>& events, const Guid& guid, bool what) {
+using Events = std::vector<std::pair<Guid, bool>>;
+
+bool told_last(const Events& events, const Guid& guid, bool what) {
   return !events.empty() && events.back() == std::pair{guid, what};
+}
+
+/// Whether it was told since there were so many events; it may have been taken back already.
+bool told_since(std::size_t count, const Events& events, const Guid& guid, bool what) {
+  return std::find(events.begin() + static_cast<std::ptrdiff_t>(count), events.end(),
+                   std::pair{guid, what}) != events.end();
 }
 
 }  // namespace
@@ -50,12 +58,11 @@ TEST_CASE("a killed process loses its liveliness, then its place") {
   Inbox inbox(*participant, keyed(), watched_state());
   Child peer = start("write", domain, "1000");
   const Guid writer = endpoint(peer);
-  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  REQUIRE(eventually([&] { return inbox.count() >= 1; }));
   CHECK(inbox.received()[0].writer == writer);
   peer.signal(SIGKILL);
   REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
   REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
-  CHECK(inbox.count() == 1);
   CHECK(inbox.reader().matched_writers().empty());
 }
 
@@ -69,9 +76,10 @@ TEST_CASE("a process that is stopped shortly is silent, and alive again when it 
   peer.stop();
   REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
   CHECK(inbox.reader().matched_writers() == std::vector{writer});
+  const std::size_t before = inbox.liveliness().size();
   peer.signal(SIGCONT);
   peer.send("write");
-  REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, true); }));
+  REQUIRE(eventually([&] { return told_since(before, inbox.liveliness(), writer, true); }));
   REQUIRE(eventually([&] { return inbox.count() == 2; }));
 }
 
@@ -81,11 +89,12 @@ TEST_CASE("a process that is stopped beyond its lease is found again, and heard"
   Inbox inbox(*participant, keyed(), watched_state());
   Child peer = start("write", domain, "1000");
   const Guid writer = endpoint(peer);
-  REQUIRE(eventually([&] { return inbox.count() == 1; }));
+  REQUIRE(eventually([&] { return inbox.count() >= 1; }));
   peer.stop();
   REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
+  const std::size_t before = inbox.matches().size();
   peer.signal(SIGCONT);
-  REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, true); }));
+  REQUIRE(eventually([&] { return told_since(before, inbox.matches(), writer, true); }));
   // A single sample may go down while only one side has forgotten the other (seen from Cyclone to
   // Fast DDS on a loaded machine): who keeps state writes it again.
   REQUIRE(eventually([&] {
@@ -99,7 +108,7 @@ TEST_CASE("a process that ends in order is gone at once") {
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain, 60s);
   Inbox inbox(*participant, keyed(), last_state());
-  Child peer = start("write", domain, "60000");
+  Child peer = start("write_rarely", domain, "60000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(peer.finish() == 0);
