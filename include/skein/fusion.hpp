@@ -68,7 +68,7 @@ Intersection intersect(std::span<const Estimate> estimates, Measure measure = Me
 /// determinant of P, to 1e-6 of its logarithm; x and P are found together (as the least ellipsoid
 /// about ellipsoids: Boyd and Vandenberghe 2004, 8.4.1). Before that, each variance is widened by
 /// 1e-10 of the spread of all estimates in that quantity. The time grows with n⁶: milliseconds up
-/// to n = 10, a second at n = 30.
+/// to n = 10, 0.4 s for three estimates of n = 30.
 Estimate unite(std::span<const Estimate> estimates);
 
 /// Intersects the estimates if they agree; otherwise unites all. No estimate is discarded. They
