@@ -186,7 +186,7 @@ Evaluation<Route> judgement(const Terrain& terrain, const Problem& problem,
              }))
       .check("turn radius", [&](const Route& route) { return judge_turns(problem, route); })
       .check("turn",
-             [&, zones = std::move(zones)](const Route& route) {
+             [&, zones](const Route& route) {
                return judge_arcs(problem, route, [&](const Position& a, const Position& b) {
                  const Flaw flaw = judge_zones(zones, a, b);
                  return flaw ? flaw : judge_height(terrain, problem, a, b);

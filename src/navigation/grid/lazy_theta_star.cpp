@@ -33,7 +33,7 @@ constexpr std::array<PlaneMoves, 512> kFitting = all_fitting_moves();
 std::uint32_t distance(const Cell& a, const Cell& b) {
   const double dx = a.x - b.x;
   const double dy = a.y - b.y;
-  return static_cast<std::uint32_t>(kPlaneCosts.one * std::sqrt(dx * dx + dy * dy) + 0.5);
+  return static_cast<std::uint32_t>(std::lround(kPlaneCosts.one * std::sqrt(dx * dx + dy * dy)));
 }
 
 /// Lazy Theta* (Nash, Koenig and Tovey, AAAI 2010): a cell's parent is its predecessor's parent,
