@@ -116,7 +116,7 @@ class Head {
   class Run;
 
   introspection::Decision open_record(const InterfaceInfo& interface,
-                                      const SelectionStrategy& strategy, const Features& features,
+                                      const SelectionStrategy& strategy, const TaskOptions& task,
                                       Instant begin, Duration limit) const;
   void decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
               introspection::Decision* wanted);

@@ -38,6 +38,26 @@ struct Candidate {
   std::uint32_t round = 0;
 };
 
+/// What a task is worth, by its result.
+struct Utility {
+  enum class Aim {
+    BestByDeadline,  ///< First an answer by the deadline, then its quality, then its time.
+    AnyByDeadline,   ///< An answer by the deadline, whatever its quality; then its time.
+    GoodEnoughSoon,  ///< A quality of `good_enough`, soon; what is less counts half.
+  };
+  Aim aim = Aim::BestByDeadline;
+  double good_enough = 0;  ///< On the scale of the attribute `quality`; with GoodEnoughSoon.
+  bool operator==(const Utility&) const = default;
+};
+
+const char* to_string(Utility::Aim aim) noexcept;
+
+/// A candidate that has been tried for this request, without success.
+struct Tried {
+  Candidate candidate;
+  Duration took{};  ///< It has not answered within this time.
+};
+
 /// What a strategy knows about a request, beside the candidates.
 struct Situation {
   Features features{};
@@ -45,6 +65,8 @@ struct Situation {
   /// The share of decisions that may try a CSP only to learn about it, and the decisions so far.
   double exploration = 0;
   History::Decisions past{};
+  Utility utility{};
+  std::vector<Tried> tried{};  ///< In this order. Filled by CandidateIterator.
 };
 
 /// A strategy's decision: which candidate runs next, for how long at most (with Execution::One),
@@ -63,6 +85,8 @@ class SelectionStrategy {
  public:
   virtual ~SelectionStrategy() = default;
   virtual std::string name() const = 0;
+  /// Whether Candidate::learned is to be filled, which takes some 10 µs.
+  virtual bool reads_history() const { return true; }
   /// `candidates` is not empty.
   virtual Selection select(const std::vector<Candidate>& candidates,
                            const Situation& situation) const = 0;
@@ -79,13 +103,13 @@ std::shared_ptr<const SelectionStrategy> make_declared_selection();
 /// `fixed_order`.
 std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 
-/// Selects by what each CSP's history predicts for such a request; a CSP that has not run counts as
-/// it declares. Among the CSPs whose p95 latency fits into the time left, it selects the greatest
-/// utility, reliability times quality; among those within 5 % of it, the least median latency. A
-/// reserve is kept as by `declared`. Another CSP may run before it, with its own p95 latency as
-/// time slice, if its quality is at most 5 % lower, the time suffices for both, and its expected
-/// time per accepted result is shorter (Smith's rule). Within the budget for exploration, the CSP
-/// that has not run for longest goes first, if the time suffices for it and the best one. Name:
+/// Makes a schedule, a sequence of CSPs with a time slice each, and returns its first step: the one
+/// with the greatest expected utility (Situation::utility) by what CSPs made of similar requests;
+/// asked again after a failure, it takes into account who has failed for how long. The chance that
+/// a CSP answers within a slice is the share of similar requests for which it did; a run that was
+/// stopped earlier counts by those that went on; a CSP that has not run counts as it declares. The
+/// slices are even unless others are clearly better. Within the budget for exploration, the CSP
+/// that has not run for longest goes first, where half of the time is left for the best one. Name:
 /// `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 

@@ -59,6 +59,8 @@ struct TaskOptions {
   std::string only{};
   /// Properties of the request that may matter for the choice.
   Features features{};
+  /// What the result is worth, for `learned`.
+  Utility utility{};
   Execution execution = Execution::One;
   /// Maximum number of CSPs that work at a time.
   std::size_t width = SIZE_MAX;

@@ -15,7 +15,14 @@ using introspection::Outcome;
 namespace {
 
 introspection::LearnedFigures figures_of(const Prediction& prediction) {
-  return {static_cast<std::uint32_t>(prediction.samples),
+  std::vector<introspection::SimilarRun> runs;
+  runs.reserve(prediction.runs.size());
+  for (const SimilarRun& run : prediction.runs) {
+    runs.push_back({run.request, run.weight, wire_values::ns(run.took), run.accepted, run.late,
+                    wire_values::list(run.quality)});
+  }
+  return {std::move(runs),
+          static_cast<std::uint32_t>(prediction.similar),
           wire_values::list(prediction.median),
           wire_values::list(prediction.p95),
           wire_values::list(prediction.quality),
@@ -24,7 +31,13 @@ introspection::LearnedFigures figures_of(const Prediction& prediction) {
 }
 
 Prediction prediction_of(const introspection::LearnedFigures& figures) {
-  return {figures.samples,
+  std::vector<SimilarRun> runs;
+  for (const auto& run : figures.runs) {
+    runs.push_back({run.request, run.weight, wire_values::duration(run.took), run.accepted,
+                    run.late, wire_values::maybe(run.quality)});
+  }
+  return {std::move(runs),
+          figures.similar,
           wire_values::maybe(figures.median),
           wire_values::maybe(figures.p95),
           wire_values::maybe(figures.quality),
@@ -43,6 +56,13 @@ To breaker(From state) {
       break;
   }
   return To::HalfOpen;
+}
+
+Utility::Aim aim_of(const std::string& name) {
+  for (const auto aim : {Utility::Aim::AnyByDeadline, Utility::Aim::GoodEnoughSoon}) {
+    if (name == to_string(aim)) return aim;
+  }
+  return Utility::Aim::BestByDeadline;
 }
 
 CandidateReport report_of(const Candidate& candidate) {
@@ -85,7 +105,9 @@ Situation decision_record::situation_of(const Decision& record) {
   return {wire_values::features(record.features),
           wire_values::duration(record.available),
           record.exploration,
-          {record.decided, record.explored}};
+          {record.decided, record.explored},
+          {aim_of(record.utility), record.good_enough},
+          {}};
 }
 
 void decision_record::note_choice(Attempt& attempt, const CandidateIterator::Next& next,

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/printable.hpp"
 #include "selection_text.hpp"
 #include "skein/decision.hpp"
@@ -18,8 +20,8 @@ std::string shown(const std::string& text) {
 }
 
 std::string learned_text(const introspection::LearnedFigures& learned) {
-  std::string text = "over " + std::to_string(learned.samples) +
-                     (learned.samples == 1 ? " similar request:" : " similar requests:");
+  std::string text = "over " + std::to_string(learned.similar) +
+                     (learned.similar == 1 ? " similar request:" : " similar requests:");
   if (!learned.median.empty()) text += " median " + in_ms(learned.median[0]) + ",";
   if (!learned.p95.empty()) text += " p95 " + in_ms(learned.p95[0]) + ",";
   if (!learned.quality.empty()) text += " quality " + number(learned.quality[0]) + ",";
@@ -33,15 +35,18 @@ std::string line_of(const std::vector<introspection::NamedValue>& features) {
   return text.empty() ? text : text + "\n";
 }
 
-std::string line_of(const introspection::CandidateReport& candidate) {
+std::string line_of(const introspection::CandidateReport& candidate, bool histories_were_read) {
   std::string text = "  " + shown(candidate.csp);
   text +=
       candidate.in_process ? " (in the process)" : " (pid " + std::to_string(candidate.pid) + ")";
   text += candidate.latency.empty() ? " declares no latency"
                                     : " declares " + in_ms(candidate.latency[0]);
   text += candidate.quality == 0 ? ", no quality" : ", quality " + number(candidate.quality);
-  text += candidate.learned.empty() ? "; has not run before"
-                                    : "; " + learned_text(candidate.learned[0]);
+  if (!candidate.learned.empty()) {
+    text += "; " + learned_text(candidate.learned[0]);
+  } else if (histories_were_read) {
+    text += "; has not run before";
+  }
   if (candidate.breaker == introspection::BreakerState::Open) {
     text += "; in quarantine for " + in_ms(candidate.quarantine) + " more";
   } else if (candidate.breaker == introspection::BreakerState::HalfOpen) {
@@ -71,7 +76,10 @@ std::string explain(const introspection::Decision& record) {
           (preselected ? ", for the Body to call itself\n"
                        : ", " + shown(record.execution) + " at a time\n");
   text += line_of(record.features);
-  for (const auto& candidate : record.candidates) text += line_of(candidate);
+  const bool histories_were_read =
+      std::any_of(record.candidates.begin(), record.candidates.end(),
+                  [](const auto& candidate) { return !candidate.learned.empty(); });
+  for (const auto& candidate : record.candidates) text += line_of(candidate, histories_were_read);
   for (const auto& attempt : record.attempts) text += line_of(attempt);
   if (record.stuck > 0)
     text += "  " + std::to_string(record.stuck) + " CSPs in the process do not return\n";

@@ -52,6 +52,7 @@ Head::Head(const Parts& parts, HeadOptions options)
     : state_(std::make_unique<State>(parts, std::move(options))) {}
 
 Head::~Head() {
+  state_->learner.reset();
   const auto& file = state_->options.history;
   if (file.empty()) return;
   try {
@@ -73,16 +74,18 @@ std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const
 }
 
 Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
-                           const Features& features, Instant begin, Duration limit) const {
+                           const TaskOptions& task, Instant begin, Duration limit) const {
   Decision record;
   record.entity = state_->parts.entity;
   record.time = unix_time();
   record.service = interface.name;
   record.strategy = strategy.name();
-  record.features = wire_values::list(features);
+  record.features = wire_values::list(task.features);
+  record.utility = to_string(task.utility.aim);
+  record.good_enough = task.utility.good_enough;
   record.available = wire_values::ns(time_left(begin, limit));
   record.exploration = state_->options.exploration;
-  const auto past = state_->past(interface);
+  const auto past = state_->count_request(interface);
   record.decided = past.made;
   record.explored = past.explored;
   return record;
@@ -93,11 +96,11 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
   const TaskOptions& options = task.options();
-  Decision record = open_record(interface, *strategy, options.features, begin, limit);
+  Decision record = open_record(interface, *strategy, options, begin, limit);
   record.request = options.request;
   record.execution = to_string(options.execution);
   state_->record(record, begin, wanted, [&] {
-    const auto candidates = state_->candidates(interface, options.only, options.features, begin);
+    const auto candidates = state_->candidates(interface, options, *strategy, begin);
     if (candidates.empty()) state_->refuse_without(interface, options.only);
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
     if (!run.run()) run.fail();
@@ -108,11 +111,13 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
                                          Duration limit) {
   const Instant begin = state_->parts.clock.now();
   const auto strategy = state_->strategy();
-  Decision record = open_record(interface, *strategy, features, begin, limit);
+  TaskOptions options;
+  options.features = features;
+  Decision record = open_record(interface, *strategy, options, begin, limit);
   record.execution = "none";
   std::shared_ptr<Channel> channel;
   state_->record(record, begin, nullptr, [&] {
-    auto candidates = state_->candidates(interface, {}, features, begin);
+    auto candidates = state_->candidates(interface, options, *strategy, begin);
     if (candidates.empty()) state_->refuse_without(interface, {});
     decision_record::list(record, candidates);
     const Situation situation = decision_record::situation_of(record);

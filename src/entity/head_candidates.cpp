@@ -86,21 +86,27 @@ std::shared_ptr<const std::string> Head::State::host_of(const InterfaceInfo& int
 }
 
 std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
-                                               const std::string& only, const Features& features,
-                                               Instant now) {
+                                               const TaskOptions& task,
+                                               const SelectionStrategy& strategy, Instant now) {
   std::lock_guard lock(mutex);
   const Roster& roster = this->roster(interface);
   std::vector<Candidate> candidates;
   candidates.reserve(roster.csps.size());
   for (const Known& known : roster.csps) {
-    if (!only.empty() && known.candidate.name != only) continue;
+    if (!task.only.empty() && known.candidate.name != task.only) continue;
     if (known.hangs()) continue;
     Candidate& candidate = candidates.emplace_back(known.candidate);
-    candidate.learned = history.predict(interface.name, candidate.name, features);
     candidate.breaker = known.breaker->state(now);
     if (candidate.breaker != CircuitBreaker::State::Closed)
       candidate.quarantine = known.breaker->quarantine(now);
   }
+  if (!strategy.reads_history()) return candidates;
+  std::vector<std::string_view> names;
+  names.reserve(candidates.size());
+  for (const Candidate& candidate : candidates) names.push_back(candidate.name);
+  auto predictions = history.predict(interface.name, names, task.features);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    candidates[i].learned = std::move(predictions[i]);
   return candidates;
 }
 
@@ -131,9 +137,11 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
   throw NoCandidate(parts.broker.explain(query));
 }
 
-History::Decisions Head::State::past(const InterfaceInfo& interface) const {
+History::Decisions Head::State::count_request(const InterfaceInfo& interface) {
   std::lock_guard lock(mutex);
-  return history.decisions(interface.name);
+  const History::Decisions before = history.decisions(interface.name);
+  history.begin(interface.name);
+  return before;
 }
 
 std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration patience,

@@ -64,6 +64,8 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       record_(record),
       begin_(begin),
       deadline_(begin + wire_values::duration(record.available)),
+      strategy_(strategy),
+      features_(std::make_shared<const Features>(task.options().features)),
       iterator_(strategy, candidates, decision_record::situation_of(record)) {
   decision_record::list(record_, candidates);
 }
@@ -98,15 +100,25 @@ void Head::Run::run_all() {
   }
 }
 
+// Whether it was stopped at the end of its slice, while more time than that is left.
+bool Head::Run::may_have_another_turn(const std::string& csp) const {
+  const Duration left = deadline_ - now();
+  const auto last = std::find_if(record_.attempts.rbegin(), record_.attempts.rend(),
+                                 [&](const Attempt& attempt) { return attempt.csp == csp; });
+  return last != record_.attempts.rend() && last->outcome == Outcome::TimedOut &&
+         wire_values::duration(last->slice) < left;
+}
+
 // Where all have failed others may have joined: those that left, say, have been replaced.
 bool Head::Run::look_again() {
   if (done_ || settled_ || now() >= deadline_) return false;
   const auto& options = task_.options();
-  auto joined = state_.candidates(interface_, options.only, options.features, now());
+  auto joined = state_.candidates(interface_, options, strategy_, now());
   std::erase_if(joined, [&](const Candidate& candidate) {
-    return std::any_of(
-        record_.candidates.begin(), record_.candidates.end(),
-        [&](const auto& known) { return known.provider == candidate.provider.bytes; });
+    const bool known =
+        std::any_of(record_.candidates.begin(), record_.candidates.end(),
+                    [&](const auto& each) { return each.provider == candidate.provider.bytes; });
+    return known && !may_have_another_turn(candidate.name);
   });
   if (joined.empty()) return false;
   ++round_;
@@ -212,8 +224,9 @@ void Head::Run::note(Live& live, Verdict verdict) {
   attempt.quality = wire_values::list(verdict.quality);
   // Late by less is a matter of load, and for the history.
   const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * expected;
-  state_.end(interface_, live.candidate, task_.options().features, live.run,
-             {verdict.outcome, took, expected, verdict.quality, verdict.fault && !hardly_late});
+  state_.end(interface_, live.candidate, features_, live.run,
+             {verdict.outcome, took, expected, verdict.quality, verdict.fault && !hardly_late,
+              verdict.settled, record_.decided + 1, static_cast<std::uint32_t>(live.attempt)});
   settled_ = verdict.settled;
   last_ = std::move(verdict);
 }

@@ -46,6 +46,7 @@ class Head::Run {
   void run_all();
   bool begin_another();
   bool look_again();
+  bool may_have_another_turn(const std::string& csp) const;
   void begin(CandidateIterator::Next next, Instant began);
   void await();
   void judge_ready();
@@ -60,6 +61,8 @@ class Head::Run {
   introspection::Decision& record_;
   const Instant begin_;
   const Instant deadline_;
+  const SelectionStrategy& strategy_;
+  const std::shared_ptr<const Features> features_;
   CandidateIterator iterator_;
   std::uint32_t round_ = 0;
   std::vector<Live> live_;

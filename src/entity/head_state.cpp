@@ -5,6 +5,7 @@
 #include "core/log.hpp"
 #include "head_session.hpp"
 #include "rpc/local_directory.hpp"
+#include "service_history.hpp"
 #include "skein/call_context.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
@@ -27,6 +28,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
   for (const auto& strategy : options.strategies) strategies.add(strategy);
   strategies.make(options.strategy);
   if (!options.history.empty()) history = History::load(options.history);
+  history.learn();
   if (options.log.empty()) return;
   log_file.open(options.log, std::ios::app | std::ios::binary);
   if (!log_file) {
@@ -68,7 +70,8 @@ std::optional<std::uint64_t> Head::State::begin(const InterfaceInfo& interface,
 }
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
-                      const Features& features, std::uint64_t run, const Ending& ending) {
+                      const std::shared_ptr<const Features>& features, std::uint64_t run,
+                      const Ending& ending) {
   const bool timed_out = ending.outcome == Outcome::TimedOut;
   const bool is_told = timed_out && ending.fault && ending.expected > Duration::zero() &&
                        !candidate.in_process && options.on_hang;
@@ -85,20 +88,36 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
     } else {
       breaker.end();
     }
-    learn(interface, candidate, features, ending);
+    remember(interface, candidate, features, ending);
     if (timed_out && candidate.in_process) hung.insert(candidate.provider);
   }
   if (is_told) options.on_hang(candidate);
 }
 
-void Head::State::learn(const InterfaceInfo& interface, const Candidate& candidate,
-                        const Features& features, const Ending& ending) {
+void Head::State::remember(const InterfaceInfo& interface, const Candidate& candidate,
+                           const std::shared_ptr<const Features>& features, const Ending& ending) {
   const bool overran = ending.expected > Duration::zero() && ending.took > ending.expected;
   const bool late =
       ending.outcome == Outcome::TimedOut || (ending.outcome == Outcome::Cancelled && overran);
   if (ending.outcome == Outcome::Cancelled && !late) return;
+  const bool answered = ending.outcome == Outcome::Accepted || ending.settled;
   history.add(interface.name, candidate.name,
-              {features, ending.took, ending.outcome == Outcome::Accepted, late, ending.quality});
+              {features, ending.took, answered, late, ending.quality, ending.request, ending.after},
+              candidate.learned ? &*candidate.learned : nullptr);
+}
+
+// Under the lock. One lesson at a time.
+void Head::State::begin_learning(const std::string& service) {
+  if (learns) return;
+  const auto lesson = history.next_lesson(service);
+  if (!lesson) return;
+  if (!learner) learner = std::make_unique<ThreadExecutor>("skein-learn");
+  learns = learner->post([this, lesson] {
+    lesson->learn();
+    std::lock_guard lock(mutex);
+    history.take(*lesson);
+    learns = false;
+  });
 }
 
 std::size_t Head::State::count_stuck() {
@@ -132,7 +151,8 @@ void Head::State::conclude(Decision&& record, Decision* wanted) {
   {
     std::lock_guard lock(mutex);
     record.stuck = static_cast<std::uint32_t>(stuck());
-    history.count(record.service, explored);
+    if (explored) history.note_exploration(record.service);
+    begin_learning(record.service);
     record.number = ++last_decision;
     if (told || wanted) copy = record;
     decisions.push_back(std::move(record));

@@ -22,11 +22,12 @@ struct Head::State {
 
   std::shared_ptr<const SelectionStrategy> strategy() const;
   /// Those that are available; perhaps none.
-  std::vector<Candidate> candidates(const InterfaceInfo& interface, const std::string& only,
-                                    const Features& features, Instant now);
+  std::vector<Candidate> candidates(const InterfaceInfo& interface, const TaskOptions& task,
+                                    const SelectionStrategy& strategy, Instant now);
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
-  History::Decisions past(const InterfaceInfo& interface) const;
+  /// A request has come: how many there were before, which is its number less 1.
+  History::Decisions count_request(const InterfaceInfo& interface);
   /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
   std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 
@@ -40,10 +41,14 @@ struct Head::State {
     Duration expected;  ///< As Selection::expected.
     std::optional<double> quality;
     bool fault;
+    bool settled;           ///< A refusal that is the answer.
+    std::uint64_t request;  ///< Its number.
+    std::uint32_t after;    ///< As History::Sample::after.
   };
   /// What came of it: for the breaker, the history, and whoever is told of hangs.
-  void end(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
-           std::uint64_t run, const Ending& ending);
+  void end(const InterfaceInfo& interface, const Candidate& candidate,
+           const std::shared_ptr<const Features>& features, std::uint64_t run,
+           const Ending& ending);
   /// Runs `decide()`, which fills the record, and concludes that, also where it throws.
   template <class Decide>
   void record(introspection::Decision& record, Instant begin, introspection::Decision* wanted,
@@ -93,6 +98,8 @@ struct Head::State {
   std::mutex log_mutex;
   std::ofstream log_file;
   introspection::Publisher<introspection::Decision> publisher;
+  bool learns = false;
+  std::unique_ptr<ThreadExecutor> learner;  // once there is something to learn; ends first
 
  private:
   const Roster& roster(const InterfaceInfo& interface);
@@ -101,8 +108,9 @@ struct Head::State {
   std::shared_ptr<const std::string> host_of(const InterfaceInfo& interface,
                                              const Guid& provider) const;
   CircuitBreaker& breaker(std::string_view interface, std::string_view csp);
-  void learn(const InterfaceInfo& interface, const Candidate& candidate, const Features& features,
-             const Ending& ending);
+  void remember(const InterfaceInfo& interface, const Candidate& candidate,
+                const std::shared_ptr<const Features>& features, const Ending& ending);
+  void begin_learning(const std::string& service);
   std::size_t stuck();
   void write_log(const introspection::Decision& record);
 };

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "skein/detail/history.hpp"
+#include "service_history.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 #include "wire_values.hpp"
@@ -12,24 +12,26 @@ namespace {
 
 using introspection::Experience;
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 introspection::PastRun run_of(const History::Sample& sample) {
-  return {wire_values::list(sample.features),
+  return {wire_values::list(*sample.features),
           wire_values::ns(sample.took),
           sample.accepted,
           sample.late,
           wire_values::list(sample.quality),
-          sample.decision};
+          sample.request,
+          sample.after};
 }
 
 History::Sample sample_of(const introspection::PastRun& run) {
-  return {wire_values::features(run.features),
+  return {std::make_shared<const Features>(wire_values::features(run.features)),
           wire_values::duration(run.took),
           run.accepted,
           run.late,
           wire_values::maybe(run.quality),
-          run.decision};
+          run.request,
+          run.after};
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -41,14 +43,16 @@ History::Sample sample_of(const introspection::PastRun& run) {
 std::string History::to_json() const {
   Experience experience;
   experience.version = kVersion;
-  for (const auto& [key, record] : records_) {
-    auto& csp = experience.csps.emplace_back();
-    csp.service = key.first;
-    csp.csp = key.second;
-    csp.surprises = record.surprises;
-    for (const Sample& sample : record.samples) csp.runs.push_back(run_of(sample));
-  }
-  for (const auto& [interface, decisions] : decisions_) {
+  for (const auto& [interface, service] : services_) {
+    for (const auto& record : service->records()) {
+      auto& csp = experience.csps.emplace_back();
+      csp.service = interface;
+      csp.csp = record.csp;
+      csp.changes = {record.drift.slower, record.drift.faster, record.drift.slower_since,
+                     record.drift.faster_since};
+      for (const Sample& sample : record.samples) csp.runs.push_back(run_of(sample));
+    }
+    const Decisions& decisions = service->decisions;
     experience.decisions.push_back({interface, decisions.made, decisions.explored});
   }
   return idl::to_json(experience);
@@ -66,13 +70,14 @@ History History::from_json(const std::string& text) {
       throw InvalidArgument("$.csps: '" + csp.csp + "' has " + std::to_string(csp.runs.size()) +
                             " runs; there are 1 to " + std::to_string(kKept));
     }
-    Record& record = history.records_[{csp.service, csp.csp}];
-    record.surprises = csp.surprises;
+    entity::ServiceHistory::Record record{csp.csp, {}, {}};
+    record.drift = {csp.changes.slower, csp.changes.faster, csp.changes.slower_since,
+                    csp.changes.faster_since};
     for (const auto& run : csp.runs) record.samples.push_back(sample_of(run));
+    history.service(csp.service).restore(std::move(record));
   }
-  for (const auto& decisions : experience.decisions) {
-    history.decisions_[decisions.service] = {decisions.made, decisions.explored};
-  }
+  for (const auto& decisions : experience.decisions)
+    history.service(decisions.service).decisions = {decisions.made, decisions.explored};
   return history;
 }
 

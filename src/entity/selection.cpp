@@ -22,6 +22,7 @@ Duration latency_of(const Candidate& candidate) {
 class DeclaredSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "declared"; }
+  bool reads_history() const override { return false; }
 
   Selection select(const std::vector<Candidate>& candidates,
                    const Situation& situation) const override {
@@ -79,6 +80,7 @@ class DeclaredSelection final : public SelectionStrategy {
 class FixedOrderSelection final : public SelectionStrategy {
  public:
   std::string name() const override { return "fixed_order"; }
+  bool reads_history() const override { return false; }
 
   Selection select(const std::vector<Candidate>& candidates,
                    const Situation& situation) const override {
@@ -132,6 +134,18 @@ CandidateIterator::CandidateIterator(const SelectionStrategy& strategy,
   add(std::move(candidates));
 }
 
+const char* to_string(Utility::Aim aim) noexcept {
+  switch (aim) {
+    case Utility::Aim::AnyByDeadline:
+      return "any_by_deadline";
+    case Utility::Aim::GoodEnoughSoon:
+      return "good_enough_soon";
+    case Utility::Aim::BestByDeadline:
+      break;
+  }
+  return "best_by_deadline";
+}
+
 void CandidateIterator::add(std::vector<Candidate> candidates) {
   left_ = std::move(candidates);
   const auto closed = [](const Candidate& candidate) {
@@ -148,6 +162,7 @@ void CandidateIterator::add(std::vector<Candidate> candidates) {
 }
 
 CandidateIterator::Next CandidateIterator::next(Duration remaining) {
+  if (!situation_.tried.empty()) situation_.tried.back().took = situation_.remaining - remaining;
   situation_.remaining = remaining;
   Selection selection = strategy_.select(left_, situation_);
   situation_.exploration = 0;  // only a request's first choice explores
@@ -158,6 +173,7 @@ CandidateIterator::Next CandidateIterator::next(Duration remaining) {
   selection.slice =
       std::clamp(selection.slice, Duration::zero(), std::max(remaining, Duration::zero()));
   const auto chosen = left_.begin() + static_cast<std::ptrdiff_t>(selection.candidate);
+  situation_.tried.push_back({*chosen});
   Next next{std::move(*chosen), std::move(selection)};
   left_.erase(chosen);
   return next;

@@ -67,7 +67,7 @@ TEST_CASE("a request's report tells who was available, who was tried, why and wh
 
 TEST_CASE("what a planner has shown is reported beside what it declares") {
   Decision shown = record();
-  shown.candidates[1].learned = {{7, {120 * kMs}, {250 * kMs}, {0.8}, 0.875, 0}};
+  shown.candidates[1].learned = {{{}, 7, {120 * kMs}, {250 * kMs}, {0.8}, 0.875, 0}};
   shown.candidates[1].breaker = BreakerState::Open;
   PlanningJournal journal;
   journal.begin("one");

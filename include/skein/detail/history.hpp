@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,16 +22,33 @@ struct Feature {
 };
 using Features = std::vector<Feature>;
 
+/// A run of at least this weight is on a similar request; others are all that there is.
+inline constexpr double kSimilar = 0.1;
+
+/// A past run.
+struct SimilarRun {
+  std::uint64_t request = 0;  ///< The request's number: equal for CSPs that ran on the same one.
+  /// 0 to 1: how similar; less if it ran only since others had failed, which most requests do not
+  /// come to; 0 if the request is only there since another CSP ran on it, too.
+  double weight = 0;
+  Duration took{};
+  bool accepted = false;
+  bool late = false;  ///< Given up: an answer would have taken longer than `took`.
+  std::optional<double> quality;
+  bool operator==(const SimilarRun&) const = default;
+};
+
 /// What a CSP's own history predicts for a request.
 struct Prediction {
-  std::size_t samples = 0;  ///< Number of most similar runs that it is based on: 1 to 12.
-  /// Time to an accepted result; unset if none of these runs was accepted or late. A late run,
-  /// which was given up, counts with twice its time.
+  std::vector<SimilarRun> runs;  ///< The most similar first; 1 to 16 with a weight.
+  std::size_t similar = 0;       ///< How many of these have a weight of at least kSimilar.
+  /// Time to an accepted result, by weight; unset if none of these runs was accepted or late. A
+  /// late run counts with twice its time.
   std::optional<Duration> median;
   std::optional<Duration> p95;
-  std::optional<double> quality;  ///< Mean of the measured values.
+  std::optional<double> quality;  ///< Mean of the measured values, by weight.
   double reliability = 1;         ///< Share of accepted results, with one success added.
-  std::uint64_t idle = 0;         ///< Decisions since it last ran.
+  std::uint64_t idle = 0;         ///< Requests since it last ran.
   bool operator==(const Prediction&) const = default;
 };
 
@@ -45,22 +63,27 @@ struct ByCsp {
   bool operator()(const auto& left, const auto& right) const { return view(left) < view(right); }
 };
 
-/// What each CSP made of past requests: Rice's model (features to performance) by nearest
-/// neighbours. A run is near if its features differ little in proportion to their size, and if it
-/// is recent. The last 256 runs of each CSP are kept. After five runs in a row that all took more
-/// than twice the predicted time, or all less than half, only these five are kept. Pure and
-/// deterministic: the same samples give the same predictions. Not thread-safe, including the const
-/// functions.
+namespace entity {
+class ServiceHistory;
+}  // namespace entity
+
+/// What each CSP made of past requests: Rice's model (features to performance) by the most similar
+/// ones. Requests are similar if they fall into the same leaves of a forest that is grown from what
+/// CSPs made of them (entity::Forest), so that features count by what they tell; of equally similar
+/// ones the latest are taken. The last 1000 runs of each CSP are kept; where a cumulative sum shows
+/// that a CSP has become slower or faster, only those since then. Pure and deterministic: the same
+/// calls give the same predictions. Not thread-safe.
 class History {
  public:
   struct Sample {
-    Features features;
+    std::shared_ptr<const Features> features;  ///< Not null; requests share theirs.
     Duration took{};
     bool accepted = false;
     bool late = false;              ///< Given up: an answer would have taken longer than `took`.
     std::optional<double> quality;  ///< Of an accepted result.
-    std::uint64_t decision = 0;     ///< Set by add().
-    bool operator==(const Sample&) const = default;
+    std::uint64_t request = 0;      ///< As begin() numbered it.
+    std::uint32_t after = 0;        ///< How many CSPs had failed at this request before.
+    bool operator==(const Sample& other) const;
   };
   struct Decisions {
     std::uint64_t made = 0;
@@ -68,16 +91,38 @@ class History {
     bool operator==(const Decisions&) const = default;
   };
 
-  static constexpr std::size_t kKept = 256;
-  static constexpr std::size_t kNeighbours = 12;
+  static constexpr std::size_t kKept = 1000;
+  static constexpr std::size_t kNeighbours = 16;
+  static constexpr std::size_t kListed = 2 * kNeighbours;  ///< With those without a weight.
 
-  void add(std::string_view interface, std::string_view csp, Sample sample);
-  void count(std::string_view interface, bool explored);
+  History();
+  History(const History& other);
+  History(History&& other) noexcept;
+  History& operator=(History other) noexcept;
+  ~History();
 
-  /// nullopt for a CSP that has never run.
-  std::optional<Prediction> predict(std::string_view interface, std::string_view csp,
-                                    const Features& features) const;
+  /// A request has come; the number of the first is 1.
+  std::uint64_t begin(std::string_view interface);
+  void note_exploration(std::string_view interface);
   Decisions decisions(std::string_view interface) const;
+
+  /// `predicted` is what was predicted for this run, to be compared with it; null if nothing was.
+  void add(std::string_view interface, std::string_view csp, Sample sample,
+           const Prediction* predicted = nullptr);
+
+  /// In the order of `csps`; nullopt for one that has never run.
+  std::vector<std::optional<Prediction>> predict(std::string_view interface,
+                                                 const std::vector<std::string_view>& csps,
+                                                 const Features& features) const;
+
+  /// What is to be learned from on another thread, so that later predictions rest on it: call its
+  /// learn() there, and then take(). nullptr if too little was added since the last one, or nobody
+  /// has asked for a prediction.
+  class Lesson;
+  std::shared_ptr<Lesson> next_lesson(std::string_view interface) const;
+  void take(Lesson& lesson);
+  /// Learns now, of all interfaces, however little was added.
+  void learn();
 
   /// To JSON and back without loss. from_json() throws InvalidArgument with the place for invalid
   /// text and for another version.
@@ -90,22 +135,14 @@ class History {
   void save(const std::string& path) const;
   static History load(const std::string& path);
 
-  bool operator==(const History&) const = default;
+  /// Whether they hold the same runs and decisions, learned from or not.
+  bool operator==(const History& other) const;
 
  private:
-  struct Record {
-    std::deque<Sample> samples;  // oldest first
-    int surprises = 0;           // in a row: positive if slower than predicted, negative if faster
-    mutable std::optional<std::pair<Features, Prediction>> predicted{};  // for the present samples
-    bool operator==(const Record& other) const {
-      return samples == other.samples && surprises == other.surprises;
-    }
-  };
-  static Prediction predict(const std::deque<Sample>& samples, const Features& features);
-  static void note_surprise(Record& record, const Prediction& before, const Sample& sample);
+  entity::ServiceHistory& service(std::string_view interface);
+  const entity::ServiceHistory* find(std::string_view interface) const;
 
-  std::map<std::pair<std::string, std::string>, Record, ByCsp> records_;
-  std::map<std::string, Decisions, std::less<>> decisions_;
+  std::map<std::string, std::unique_ptr<entity::ServiceHistory>, std::less<>> services_;
 };
 
 }  // namespace skein

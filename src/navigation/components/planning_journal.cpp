@@ -25,7 +25,7 @@ PlannerCandidate candidate_of(const introspection::CandidateReport& candidate) {
   planner.declared_ms = in_ms(candidate.latency);
   planner.declared_quality = candidate.quality;
   for (const introspection::LearnedFigures& learned : candidate.learned) {
-    planner.runs = learned.samples;
+    planner.runs = learned.similar;
     planner.median_ms = in_ms(learned.median);
     planner.p95_ms = in_ms(learned.p95);
     planner.measured_quality = learned.quality.empty() ? 0 : learned.quality.front();

@@ -1,0 +1,168 @@
+#include "outlook.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace skein::entity {
+namespace {
+
+// A missed deadline beside an answer at the last moment, as fields score it (PAR10) and twice.
+constexpr double kMiss = 20;
+constexpr double kQuality = 10;
+// The weight of what is assumed without any run, beside that of a run on an equal request.
+constexpr double kPrior = 0.25;
+// Chance of a CSP that has not run: within what it declares, and before.
+constexpr double kKeepsWord = 0.8;
+constexpr double kBeforeWord = 0.1;
+constexpr double kUnknown = 0.5;
+// Chance that a CSP that was stopped would have answered, had it had ever so long.
+constexpr float kLater = 0.7f;
+
+double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+Cases::Cases(std::size_t runs) : slots_(std::bit_ceil(2 * runs + 2), {0, 0}) {}
+
+std::uint32_t Cases::index_of(std::uint64_t request) {
+  const std::size_t mask = slots_.size() - 1;
+  const std::uint64_t key = request + 1;  // 0 is an empty slot
+  for (std::size_t slot = (key * 0x9e3779b97f4a7c15u >> 32) & mask;; slot = (slot + 1) & mask) {
+    if (slots_[slot].first == key) return slots_[slot].second;
+    if (slots_[slot].first != 0) continue;
+    slots_[slot] = {key, count_};
+    return count_++;
+  }
+}
+
+Losses::Losses(const Situation& situation, std::span<const Candidate> candidates) {
+  const double whole = std::max(seconds(situation.remaining), 1e-9);
+  miss = kMiss;
+  per_second = 1 / whole;
+  if (situation.utility.aim == Utility::Aim::GoodEnoughSoon) {
+    poor = kMiss / 2;
+    good_enough = situation.utility.good_enough;
+  }
+  if (situation.utility.aim != Utility::Aim::BestByDeadline) return;
+  for (const Candidate& candidate : candidates) {
+    double quality = candidate.quality;
+    if (candidate.learned) quality = candidate.learned->quality.value_or(quality);
+    best_quality = std::max(best_quality, quality);
+  }
+  if (best_quality > 0) per_quality = kQuality / best_quality;
+}
+
+double Losses::of_quality(double quality) const {
+  return per_quality * std::max(0.0, best_quality - quality) + (quality < good_enough ? poor : 0);
+}
+
+Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases) {
+  declared_ = candidate.latency ? seconds(*candidate.latency) : 0;
+  double quality = candidate.quality;
+  if (candidate.learned) {
+    quality = candidate.learned->quality.value_or(quality);
+    for (const SimilarRun& run : candidate.learned->runs) {
+      if (count_ == runs_.size()) break;
+      runs_[count_++] = {static_cast<float>(seconds(run.took)),
+                         static_cast<float>(run.weight),
+                         static_cast<float>(losses.of_quality(run.quality.value_or(quality))),
+                         cases.index_of(run.request),
+                         run.accepted,
+                         run.late,
+                         0,
+                         0};
+    }
+  }
+  declared_loss_ = losses.of_quality(quality);
+  rank();
+}
+
+void Outlook::rank() {
+  std::array<float, History::kListed> times;
+  std::size_t answers = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (runs_[i].accepted && runs_[i].weight > 0) times[answers++] = runs_[i].took;
+    if (!runs_[i].late) continue;
+    for (std::size_t k = 0; k < count_; ++k) {
+      runs_[i].beyond += runs_[k].took > runs_[i].took && (runs_[k].accepted || runs_[k].late);
+      runs_[i].before += runs_[k].took <= runs_[i].took && runs_[k].accepted;
+    }
+  }
+  typical_ = longest_ = declared_;
+  if (answers == 0) return;
+  std::sort(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(answers));
+  typical_ = times[answers / 2];
+  longest_ = times[answers - 1];
+}
+
+std::size_t Outlook::answers_within(float slice) const {
+  std::size_t answers = 0;
+  for (std::size_t i = 0; i < count_; ++i) answers += runs_[i].accepted && runs_[i].took <= slice;
+  return answers;
+}
+
+// Whether it would have answered within the slice. Where that is not known, since it was stopped
+// before: as those runs that went on (Kaplan and Meier 1958), and one that may be anything.
+float Outlook::answered(const Run& run, float slice, std::size_t by_then) const {
+  if (run.accepted) return run.took <= slice ? 1 : 0;
+  if (!run.late || run.took >= slice) return 0;
+  const float later = kLater * (1 - run.took / slice);
+  return (later + static_cast<float>(by_then - run.before)) / (1 + static_cast<float>(run.beyond));
+}
+
+double Outlook::prior(double slice) const {
+  if (declared_ == 0) return kUnknown;
+  return slice >= declared_ ? kKeepsWord : kBeforeWord;
+}
+
+Outlook::Chance Outlook::within(double slice, const Losses& losses,
+                                const Cases::Weights& weights) const {
+  const auto limit = static_cast<float>(slice);
+  const std::size_t by_then = answers_within(limit);
+  float usual = 0, usual_of = 0, now = 0, now_of = 0, took = 0, quality_loss = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Run& run = runs_[i];
+    const float answers = run.weight * answered(run, limit, by_then);
+    const float weight = weights[run.request];
+    usual += answers;
+    usual_of += run.weight;
+    now += weight * answers;
+    now_of += weight * run.weight;
+    took += weight * answers * std::min(run.took, limit);
+    quality_loss += weight * answers * run.quality_loss;
+  }
+  const double assumed = (usual + kPrior * prior(slice)) / (usual_of + kPrior);
+  const double all = now_of + kPrior;
+  const double assumed_took = longest_ > 0 ? std::min(longest_, slice) : slice / 2;
+  const double by_time = (took + kPrior * assumed * assumed_took) / all;
+  const double by_quality = (quality_loss + kPrior * assumed * declared_loss_) / all;
+  return {(now + kPrior * assumed) / all, by_time * losses.per_second + by_quality};
+}
+
+Cases::Weights Outlook::after_failing(double slice, double answers,
+                                      const Cases::Weights& weights) const {
+  Cases::Weights after = weights;
+  for (float& weight : after) weight *= static_cast<float>(1 - answers);
+  const auto limit = static_cast<float>(slice);
+  const std::size_t by_then = answers_within(limit);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Run& run = runs_[i];
+    after[run.request] = weights[run.request] * (1 - answered(run, limit, by_then));
+  }
+  return after;
+}
+
+Outlook::Count Outlook::count(double slice, const Cases::Weights& weights) const {
+  constexpr float kCounts = 0.5f;
+  Count count;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (runs_[i].weight < static_cast<float>(kSimilar) || weights[runs_[i].request] < kCounts)
+      continue;
+    ++count.known;
+    count.answered += runs_[i].accepted && runs_[i].took <= static_cast<float>(slice);
+  }
+  return count;
+}
+
+}  // namespace skein::entity
