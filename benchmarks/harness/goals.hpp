@@ -12,6 +12,7 @@ namespace skein::benchmarks {
 /// Promises that are times, in microseconds: rivals with one sample.
 inline constexpr double kCallInProcessUs = 1;
 inline constexpr double kHeadUs = 2;
+inline constexpr double kLearnedDecisionUs = 20;
 inline constexpr double kLookUpUs = 1;
 inline constexpr double kToldOnOneHostUs = 20'000;
 inline constexpr double kToldBeyondLeaseUs = 50'000;

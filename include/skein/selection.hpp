@@ -108,9 +108,10 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 /// asked again after a failure, it takes into account who has failed for how long. The chance that
 /// a CSP answers within a slice is the share of similar requests for which it did; a run that was
 /// stopped earlier counts by those that went on; a CSP that has not run counts as it declares. The
-/// slices are even unless others are clearly better. Within the budget for exploration, the CSP
-/// that has not run for longest goes first, where half of the time is left for the best one. Name:
-/// `learned`.
+/// slices of up to three CSPs are even unless others are clearly better; of more, the first one
+/// gets all of the time, or as much as costs it no chance, unless a shorter slice is clearly
+/// better. Within the budget for exploration, the CSP that has not run for longest goes first,
+/// where half of the time is enough for the best one. Name: `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 
 /// The selection strategies by name; the three above from the start.

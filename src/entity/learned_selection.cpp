@@ -97,11 +97,12 @@ class Choice {
             ? " (it has not run for " + std::to_string(candidate.learned->idle) + " decisions)"
             : " (it has not run before)";
     const Duration slice = situation_.remaining / 2;
-    return {other, slice,
-            joined({candidate.name, " is tried to learn of it", why, "; ", in_ms(slice),
-                    " are kept for ", candidates_[schedule.first.candidate].name,
-                    ", which is the best by its history"}),
-            duration(outlooks_[other].longest()), true};
+    return {
+        other, slice,
+        joined({candidate.name, " is tried to learn of it", why, "; ",
+                in_ms(situation_.remaining - slice), " are kept for ",
+                candidates_[schedule.first.candidate].name, ", which is the best by its history"}),
+        duration(outlooks_[other].longest()), true};
   }
 
   Selection take(const Schedule& schedule) const {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
+#include <limits>
 
 namespace skein::entity {
 namespace {
@@ -16,8 +16,9 @@ constexpr double kPrior = 0.25;
 constexpr double kKeepsWord = 0.8;
 constexpr double kBeforeWord = 0.1;
 constexpr double kUnknown = 0.5;
+constexpr float kNever = std::numeric_limits<float>::infinity();
 // Chance that a CSP that was stopped would have answered, had it had ever so long.
-constexpr float kLater = 0.7f;
+constexpr float kLater = 0.95f;
 
 double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -64,14 +65,14 @@ Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases)
     quality = candidate.learned->quality.value_or(quality);
     for (const SimilarRun& run : candidate.learned->runs) {
       if (count_ == runs_.size()) break;
-      runs_[count_++] = {static_cast<float>(seconds(run.took)),
+      const auto took = static_cast<float>(seconds(run.took));
+      runs_[count_++] = {took,
+                         run.accepted ? took : kNever,
                          static_cast<float>(run.weight),
                          static_cast<float>(losses.of_quality(run.quality.value_or(quality))),
                          cases.index_of(run.request),
-                         run.accepted,
-                         run.late,
-                         0,
-                         0};
+                         run.late};
+      has_late_ = has_late_ || run.late;
     }
   }
   declared_loss_ = losses.of_quality(quality);
@@ -79,37 +80,54 @@ Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases)
 }
 
 void Outlook::rank() {
+  longest_ = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (runs_[i].answer < kNever && runs_[i].weight > 0)
+      longest_ = std::max<double>(longest_, runs_[i].took);
+    if (!runs_[i].late) continue;
+    for (std::size_t k = 0; k < count_; ++k) {
+      runs_[i].beyond +=
+          runs_[k].took > runs_[i].took && (runs_[k].answer < kNever || runs_[k].late);
+      runs_[i].before += runs_[k].answer <= runs_[i].took;
+    }
+  }
+  if (longest_ == 0) longest_ = declared_;
+}
+
+double Outlook::typical() const {
   std::array<float, History::kListed> times;
   std::size_t answers = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (runs_[i].accepted && runs_[i].weight > 0) times[answers++] = runs_[i].took;
-    if (!runs_[i].late) continue;
-    for (std::size_t k = 0; k < count_; ++k) {
-      runs_[i].beyond += runs_[k].took > runs_[i].took && (runs_[k].accepted || runs_[k].late);
-      runs_[i].before += runs_[k].took <= runs_[i].took && runs_[k].accepted;
-    }
+    if (runs_[i].answer < kNever && runs_[i].weight > 0) times[answers++] = runs_[i].took;
   }
-  typical_ = longest_ = declared_;
-  if (answers == 0) return;
-  std::sort(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(answers));
-  typical_ = times[answers / 2];
-  longest_ = times[answers - 1];
+  if (answers == 0) return declared_;
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(answers / 2);
+  std::nth_element(times.begin(), middle, times.begin() + static_cast<std::ptrdiff_t>(answers));
+  return *middle;
 }
 
-std::size_t Outlook::answers_within(float slice) const {
-  std::size_t answers = 0;
-  for (std::size_t i = 0; i < count_; ++i) answers += runs_[i].accepted && runs_[i].took <= slice;
-  return answers;
-}
+/// Whether runs would have answered within a slice.
+class Outlook::Answers {
+ public:
+  Answers(const Outlook& outlook, float slice) : slice_(slice) {
+    if (!outlook.has_late_) return;
+    for (std::size_t i = 0; i < outlook.count_; ++i)
+      by_then_ += outlook.runs_[i].answer <= slice ? 1.0f : 0.0f;
+  }
 
-// Whether it would have answered within the slice. Where that is not known, since it was stopped
-// before: as those runs that went on (Kaplan and Meier 1958), and one that may be anything.
-float Outlook::answered(const Run& run, float slice, std::size_t by_then) const {
-  if (run.accepted) return run.took <= slice ? 1 : 0;
-  if (!run.late || run.took >= slice) return 0;
-  const float later = kLater * (1 - run.took / slice);
-  return (later + static_cast<float>(by_then - run.before)) / (1 + static_cast<float>(run.beyond));
-}
+  // Where that is not known, since it was stopped before: as those runs that went on (Kaplan and
+  // Meier 1958), and one that may be anything.
+  float of(const Run& run) const {
+    if (!run.late) return run.answer <= slice_ ? 1.0f : 0.0f;
+    if (run.took >= slice_) return 0;
+    const float later = kLater * (1 - run.took / slice_);
+    return (later + by_then_ - run.before) / (1 + static_cast<float>(run.beyond));
+  }
+
+ private:
+  float slice_;
+  float by_then_ = 0;
+};
 
 double Outlook::prior(double slice) const {
   if (declared_ == 0) return kUnknown;
@@ -119,18 +137,18 @@ double Outlook::prior(double slice) const {
 Outlook::Chance Outlook::within(double slice, const Losses& losses,
                                 const Cases::Weights& weights) const {
   const auto limit = static_cast<float>(slice);
-  const std::size_t by_then = answers_within(limit);
+  const Answers answers(*this, limit);
   float usual = 0, usual_of = 0, now = 0, now_of = 0, took = 0, quality_loss = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Run& run = runs_[i];
-    const float answers = run.weight * answered(run, limit, by_then);
+    const float answered = run.weight * answers.of(run);
     const float weight = weights[run.request];
-    usual += answers;
+    usual += answered;
     usual_of += run.weight;
-    now += weight * answers;
+    now += weight * answered;
     now_of += weight * run.weight;
-    took += weight * answers * std::min(run.took, limit);
-    quality_loss += weight * answers * run.quality_loss;
+    took += weight * answered * std::min(run.took, limit);
+    quality_loss += weight * answered * run.quality_loss;
   }
   const double assumed = (usual + kPrior * prior(slice)) / (usual_of + kPrior);
   const double all = now_of + kPrior;
@@ -144,23 +162,26 @@ Cases::Weights Outlook::after_failing(double slice, double answers,
                                       const Cases::Weights& weights) const {
   Cases::Weights after = weights;
   for (float& weight : after) weight *= static_cast<float>(1 - answers);
-  const auto limit = static_cast<float>(slice);
-  const std::size_t by_then = answers_within(limit);
+  const Answers known(*this, static_cast<float>(slice));
   for (std::size_t i = 0; i < count_; ++i) {
     const Run& run = runs_[i];
-    after[run.request] = weights[run.request] * (1 - answered(run, limit, by_then));
+    after[run.request] = weights[run.request] * (1 - known.of(run));
   }
   return after;
 }
 
 Outlook::Count Outlook::count(double slice, const Cases::Weights& weights) const {
-  constexpr float kCounts = 0.5f;
+  const auto similar = [](const Run& run) { return run.weight >= static_cast<float>(kSimilar); };
+  float most = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (similar(runs_[i])) most = std::max(most, weights[runs_[i].request]);
+  }
   Count count;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (runs_[i].weight < static_cast<float>(kSimilar) || weights[runs_[i].request] < kCounts)
-      continue;
+    const float weight = weights[runs_[i].request];
+    if (!similar(runs_[i]) || weight == 0 || weight < most / 2) continue;
     ++count.known;
-    count.answered += runs_[i].accepted && runs_[i].took <= static_cast<float>(slice);
+    count.answered += runs_[i].answer <= static_cast<float>(slice);
   }
   return count;
 }

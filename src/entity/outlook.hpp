@@ -55,8 +55,8 @@ class Outlook {
   /// The weights if it has not answered within the slice, for which its chance was `answers`.
   Cases::Weights after_failing(double slice, double answers, const Cases::Weights& weights) const;
 
-  /// Similar requests, and those of them that it answered within the slice, as far as the weight
-  /// of a case is at least `least`.
+  /// Similar requests that are as likely as any to be like the present one, and those of them that
+  /// it answered within the slice.
   struct Count {
     std::size_t answered = 0;
     std::size_t known = 0;
@@ -66,31 +66,30 @@ class Outlook {
   bool has_run() const { return count_ > 0; }
   /// Time to an answer: of half of the answers, and of all; the declared one if there are none, and
   /// if that is missing 0.
-  double typical() const { return typical_; }
+  double typical() const;
   double longest() const { return longest_; }
 
  private:
   struct Run {
     float took;
+    float answer;  // when it answered; never: infinity
     float weight;
     float quality_loss;
     std::uint32_t request;
-    bool accepted;
     bool late;
     // Of a late one: runs that took longer, and answers that came sooner.
-    std::uint8_t beyond;
-    std::uint8_t before;
+    std::uint8_t beyond = 0;
+    std::uint8_t before = 0;
   };
-  float answered(const Run& run, float slice, std::size_t by_then) const;
-  std::size_t answers_within(float slice) const;
+  class Answers;
   double prior(double slice) const;
   void rank();
 
   std::array<Run, History::kListed> runs_;
   std::size_t count_ = 0;
+  bool has_late_ = false;
   double declared_ = 0;  // 0: not declared
   double declared_loss_ = 0;
-  double typical_ = 0;
   double longest_ = 0;
 };
 

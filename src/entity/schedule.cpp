@@ -1,6 +1,7 @@
 #include "schedule.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "slice.hpp"
 
@@ -13,42 +14,41 @@ constexpr double kLoad = 0.005;
 // How many times less loss a schedule must promise than one that risks nothing new: what is best of
 // many by few runs is seldom as good as it looks. Among few, an even share is what risks least;
 // among many, all of the time, or a slice that costs the first one next to nothing.
-constexpr double kClearlyOfFew = 1.4;
+constexpr double kClearlyOfFew = 1.55;
 constexpr double kClearlyOfMany = 1.6;
 constexpr double kNothing = 0.01;
-// First steps are tried of so many candidates; a further step is looked at for so many schedules.
-constexpr std::size_t kFirst = 6;
-constexpr std::size_t kLooks = 3;
-// Among how many the time is shared evenly at most.
-constexpr std::size_t kSharers = 3;
+// First steps are tried of so many candidates.
+constexpr std::size_t kFirst = 3;
 
 }  // namespace
 
 Scheduler::Scheduler(std::span<const Outlook> outlooks, const Losses& losses, double remaining)
     : outlooks_(outlooks), losses_(losses), remaining_(remaining) {}
 
-// An even share first.
-std::vector<double> Scheduler::slices(std::size_t candidate, double left,
-                                      std::size_t others) const {
-  if (others == 0) return {left};
+std::vector<double> Scheduler::slices(std::size_t candidate) const {
   const Outlook& outlook = outlooks_[candidate];
-  std::vector<double> slices{left / static_cast<double>(std::min(others + 1, kSharers))};
-  for (const double slice : {left, left / 2, kStretch * outlook.longest() + kLoad,
-                             kStretch * outlook.typical() + kLoad}) {
-    if (slice > left) continue;
-    const bool near = std::any_of(slices.begin(), slices.end(), [&](double known) {
-      return slice > 0.9 * known && slice < 1.1 * known;
+  std::vector<double> slices;
+  const auto offer = [&](double slice) {
+    const bool known = std::any_of(slices.begin(), slices.end(), [&](double other) {
+      return slice > 0.9 * other && slice < 1.1 * other;
     });
-    if (!near) slices.push_back(slice);
+    if (!known && slice <= remaining_) slices.push_back(slice);
+  };
+  offer(remaining_ / static_cast<double>(std::min(outlooks_.size(), kSharers)));
+  offer(remaining_);
+  offer(remaining_ / 2);
+  if (outlook.longest() > 0) {  // something is known
+    offer(kStretch * outlook.longest() + kLoad);
+    offer(kStretch * outlook.typical() + kLoad);
   }
   return slices;
 }
 
 std::optional<Scheduler::Follower> Scheduler::best_follower(const Cases::Weights& weights,
-                                                            const Asked& asked, double left) const {
+                                                            std::size_t first, double left) const {
   std::optional<Follower> best;
   for (std::size_t i = 0; i < outlooks_.size(); ++i) {
-    if (asked[i]) continue;
+    if (i == first) continue;
     const auto chance = outlooks_[i].within(left, losses_, weights);
     const double loss = chance.loss + (1 - chance.answers) * losses_.miss;
     if (!best || loss < best->loss) best = {i, loss, chance};
@@ -56,18 +56,15 @@ std::optional<Scheduler::Follower> Scheduler::best_follower(const Cases::Weights
   return best;
 }
 
-Schedule Scheduler::try_pair(const Step& step, const Cases::Weights& weights, const Asked& asked,
-                             double left) const {
+Schedule Scheduler::try_pair(const Step& step, const Cases::Weights& weights) const {
   const Outlook& outlook = outlooks_[step.candidate];
   const auto chance = outlook.within(step.slice, losses_, weights);
   const double fails = 1 - chance.answers;
   Schedule schedule{step, std::nullopt, chance.loss + fails * losses_.miss};
-  if (step.slice >= left) return schedule;
-  Asked others = asked;
-  others[step.candidate] = true;
-  const double rest = left - step.slice;
+  if (step.slice >= remaining_) return schedule;
+  const double rest = remaining_ - step.slice;
   const auto after = outlook.after_failing(step.slice, chance.answers, weights);
-  const auto follower = best_follower(after, others, rest);
+  const auto follower = best_follower(after, step.candidate, rest);
   if (!follower) return schedule;
   schedule.second = follower->candidate;
   // That both fail is as likely in the one order as in the other: so it must not decide on it.
@@ -80,26 +77,6 @@ Schedule Scheduler::try_pair(const Step& step, const Cases::Weights& weights, co
   const double later = step.slice * losses_.per_second;
   schedule.loss = chance.loss + fails * (follower->chance.loss + later) + missed * losses_.miss;
   return schedule;
-}
-
-// The second one need not get all of the time that is left.
-Schedule Scheduler::look_further(const Schedule& pair, const Cases::Weights& weights) const {
-  if (!pair.second || outlooks_.size() < 3) return pair;
-  const Outlook& outlook = outlooks_[pair.first.candidate];
-  const auto chance = outlook.within(pair.first.slice, losses_, weights);
-  const auto after = outlook.after_failing(pair.first.slice, chance.answers, weights);
-  const double left = remaining_ - pair.first.slice;
-  Asked asked(outlooks_.size(), false);
-  asked[pair.first.candidate] = true;
-  Schedule best = pair;
-  for (const double slice : {left / 2, kStretch * outlooks_[*pair.second].longest() + kLoad}) {
-    if (slice >= left) continue;
-    const Schedule rest = try_pair({*pair.second, slice}, after, asked, left);
-    const double otherwise = rest.loss + pair.first.slice * losses_.per_second;
-    const double loss = chance.loss + (1 - chance.answers) * otherwise;
-    if (loss < best.loss) best.loss = loss;
-  }
-  return best;
 }
 
 std::vector<std::size_t> Scheduler::most_promising(const Cases::Weights& weights) const {
@@ -126,27 +103,29 @@ bool Scheduler::is_cautious(const Step& step, const Cases::Weights& weights) con
              outlook.within(step.slice, losses_, weights).answers + kNothing;
 }
 
-Schedule Scheduler::best(const Cases::Weights& weights) const {
-  const Asked nobody(outlooks_.size(), false);
+// The slice that is best for a first step of this candidate.
+Schedule Scheduler::best_with(std::size_t candidate, const Cases::Weights& weights) const {
   const double clearly = outlooks_.size() <= kSharers ? kClearlyOfFew : kClearlyOfMany;
-  std::vector<std::pair<double, Schedule>> found;  // by loss, times what it must be better
-  for (const std::size_t candidate : most_promising(weights)) {
-    for (const double slice : slices(candidate, remaining_, outlooks_.size() - 1)) {
-      const Step step{candidate, slice};
-      const Schedule schedule = try_pair(step, weights, nobody, remaining_);
-      const double factor = is_cautious(step, weights) ? 1 : clearly;
-      found.emplace_back(factor * schedule.loss, schedule);
-    }
+  Schedule best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double slice : slices(candidate)) {
+    const Step step{candidate, slice};
+    const Schedule schedule = try_pair(step, weights);
+    const double loss = (is_cautious(step, weights) ? 1 : clearly) * schedule.loss;
+    if (loss >= least) continue;
+    least = loss;
+    best = schedule;
   }
-  const auto by_loss = [](const auto& a, const auto& b) { return a.first < b.first; };
-  std::stable_sort(found.begin(), found.end(), by_loss);
-  for (std::size_t i = 0; i < std::min(kLooks, found.size()); ++i) {
-    auto& [loss, schedule] = found[i];
-    const Schedule further = look_further(schedule, weights);
-    loss *= further.loss / schedule.loss;
-    schedule = further;
-  }
-  return std::min_element(found.begin(), found.end(), by_loss)->second;
+  return best;
+}
+
+Schedule Scheduler::best(const Cases::Weights& weights) const {
+  std::vector<Schedule> schedules;
+  for (const std::size_t candidate : most_promising(weights))
+    schedules.push_back(best_with(candidate, weights));
+  return *std::min_element(
+      schedules.begin(), schedules.end(),
+      [](const Schedule& one, const Schedule& other) { return one.loss < other.loss; });
 }
 
 }  // namespace skein::entity

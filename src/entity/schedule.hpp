@@ -20,10 +20,13 @@ struct Schedule {
   double loss = 0;                    ///< Expected.
 };
 
-/// Finds the schedule of least expected loss among those of two steps, and looks a step further
-/// where that may change the order.
+/// Finds the schedule of least expected loss among those of two steps; what follows is decided when
+/// the first has failed.
 class Scheduler {
  public:
+  /// Among how many the time is shared evenly at most.
+  static constexpr std::size_t kSharers = 3;
+
   /// The arguments must outlive it. `remaining` in seconds.
   Scheduler(std::span<const Outlook> outlooks, const Losses& losses, double remaining);
 
@@ -35,15 +38,12 @@ class Scheduler {
     double loss = 0;  // with all of the time that is left
     Outlook::Chance chance{};
   };
-  /// Who has not been asked, as a bit each.
-  using Asked = std::vector<bool>;
 
   bool is_cautious(const Step& step, const Cases::Weights& weights) const;
-  std::vector<double> slices(std::size_t candidate, double left, std::size_t others) const;
-  Schedule try_pair(const Step& step, const Cases::Weights& weights, const Asked& asked,
-                    double left) const;
-  Schedule look_further(const Schedule& pair, const Cases::Weights& weights) const;
-  std::optional<Follower> best_follower(const Cases::Weights& weights, const Asked& asked,
+  std::vector<double> slices(std::size_t candidate) const;
+  Schedule best_with(std::size_t candidate, const Cases::Weights& weights) const;
+  Schedule try_pair(const Step& step, const Cases::Weights& weights) const;
+  std::optional<Follower> best_follower(const Cases::Weights& weights, std::size_t first,
                                         double left) const;
   std::vector<std::size_t> most_promising(const Cases::Weights& weights) const;
 

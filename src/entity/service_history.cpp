@@ -171,7 +171,10 @@ void Experience::Request::add(Run run) {
 
 Experience::Experience(std::vector<Run> runs) {
   std::map<std::uint64_t, Request> by_number;
-  for (Run& run : runs) by_number[run.sample.request].add(std::move(run));
+  for (Run& run : runs) {
+    Request& request = by_number[run.sample.request];
+    request.add(std::move(run));
+  }
   for (auto& [number, request] : by_number) requests_.push_back(std::move(request));
   for (const Request& request : requests_) {
     for (const Feature& feature : request.features()) {
