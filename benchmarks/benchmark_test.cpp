@@ -375,6 +375,23 @@ TEST_CASE("each strategy is scored, and decisions.csv has a row for each request
   CHECK(requests > 20);
 }
 
+TEST_CASE("each strategy is scored on recorded problems, which are skipped without the test data") {
+  const json& results = QuickRun::get().results;
+  const std::string claim = "recorded problems: PAR10 beyond the virtual best";
+  if (std::getenv("SKEIN_TEST_DATA") == nullptr) {
+    CHECK(has(results, claim, "skein learned", json::object(), "single best"));
+    return;
+  }
+  for (const char* strategy : {"skein learned", "skein declared", "skein fixed_order"}) {
+    for (const char* mode : {"learned from the other folds", "online, from nothing"}) {
+      CHECK(has(results, claim, strategy, {{"mode", mode}}, "single best"));
+      CHECK(has(results, "recorded problems: share of the gap left open", strategy,
+                {{"mode", mode}}));
+    }
+  }
+  CHECK(has(results, claim, "skein learned", json::object(), "random forests"));
+}
+
 TEST_CASE("a user measures calls by the command, and compares what it saved") {
   const auto folder = std::filesystem::current_path() / "command_bench";
   std::filesystem::remove_all(folder);

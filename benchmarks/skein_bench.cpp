@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 
@@ -16,6 +17,7 @@
 #include "report/goals.hpp"
 #include "report/report.hpp"
 #include "report/sections.hpp"
+#include "selection/compare_selection.hpp"
 #include "skein/error.hpp"
 
 namespace skein::benchmarks {
@@ -36,6 +38,7 @@ struct Plan {
   FaultPlan faults;
   GridPlan grids;
   DecisionPlan decisions;
+  SelectionPlan selection;
   std::filesystem::path output{};
 };
 
@@ -56,7 +59,8 @@ Plan full_plan() {
           5,
           {2, 5, 2, std::chrono::seconds(5)},
           {300, 1},
-          {1}};
+          {1},
+          {SIZE_MAX}};
 }
 
 /// Shows that everything runs; its figures mean nothing.
@@ -75,7 +79,8 @@ Plan quick_plan() {
           1,
           {1, 2, 1, std::chrono::milliseconds(1500)},
           {3, 100},
-          {60}};
+          {60},
+          {1}};
 }
 
 void print_summary(const std::vector<Comparison>& comparisons) {
@@ -134,6 +139,8 @@ const std::vector<Part> kParts{
     {"grids", [](Configurations&, const Plan& plan) { return compare_grids(plan.grids); }},
     {"decisions", [](Configurations&,
                      const Plan& plan) { return compare_decisions(plan.decisions, plan.output); }},
+    {"selection",
+     [](Configurations&, const Plan& plan) { return compare_selection(plan.selection); }},
 };
 
 std::vector<std::string> names_of_parts() {

@@ -22,8 +22,6 @@ using navigation::grid::Cell;
 using navigation::grid::GridMap;
 using std::chrono::steady_clock;
 
-constexpr double kPatienceMs = 40;
-
 /// The cells that a zone's box touches are blocked: zones here are boxes of whole cells.
 std::shared_ptr<const GridMap> cells_of(const Problem& problem,
                                         const navigation::Terrain& terrain) {
@@ -45,6 +43,20 @@ Cell cell_at(const AE_navigator::Position& position) {
   return {static_cast<int>(position.east_m / kCellM), static_cast<int>(position.north_m / kCellM)};
 }
 
+Route route_along(std::vector<AE_navigator::Position> waypoints, const Problem& problem,
+                  const navigation::Terrain& terrain) {
+  Route route;
+  route.waypoints = std::move(waypoints);
+  for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
+    const auto &from = route.waypoints[i - 1], &to = route.waypoints[i];
+    route.length_m += std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
+  }
+  route.lowest_height_above_ground_m = problem.start.altitude_m - terrain.highest_m();
+  route.radar_exposure =
+      navigation::RadarExposure(terrain, problem.radar_sites).along(route.waypoints);
+  return route;
+}
+
 /// A planner on grids, over flat land.
 class GridPlanner final : public IPlanner {
  public:
@@ -56,19 +68,40 @@ class GridPlanner final : public IPlanner {
     const auto planner = navigation::grid::make_grid_planner(planner_, cells_of(problem, *terrain));
     const auto path = planner->plan(cell_at(problem.start), cell_at(problem.goal));
     if (!path) throw NoRoute("there is no way from cell to cell", false);
-    Route route;
-    route.planner = planner_;
-    for (const Cell& cell : path->corners) route.waypoints.push_back(middle_of(cell));
-    route.length_m = path->length * kCellM;
-    route.lowest_height_above_ground_m = problem.start.altitude_m - terrain->highest_m();
-    route.radar_exposure =
-        navigation::RadarExposure(*terrain, problem.radar_sites).along(route.waypoints);
-    return route;
+    std::vector<AE_navigator::Position> waypoints;
+    for (const Cell& cell : path->corners) waypoints.push_back(middle_of(cell));
+    return route_along(std::move(waypoints), problem, *terrain);
   }
 
  private:
   const std::string planner_;
   const std::shared_ptr<TerrainProvider> terrains_;
+};
+
+class Direct final : public IPlanner {
+ public:
+  explicit Direct(std::shared_ptr<TerrainProvider> terrains) : terrains_(std::move(terrains)) {}
+
+  Route plan(const Problem& problem) override {
+    return route_along({problem.start, problem.goal}, problem, *terrains_->load(problem.terrain));
+  }
+
+ private:
+  const std::shared_ptr<TerrainProvider> terrains_;
+};
+
+class Boaster final : public IPlanner {
+ public:
+  explicit Boaster(std::unique_ptr<IPlanner> planner) : planner_(std::move(planner)) {}
+
+  Route plan(const Problem& problem) override {
+    Route route = planner_->plan(problem);
+    route.radar_exposure = 0;
+    return route;
+  }
+
+ private:
+  const std::unique_ptr<IPlanner> planner_;
 };
 
 /// An algorithm on a bad day: takes a multiple of its time, or for ever.
@@ -117,25 +150,31 @@ class Staged final : public IPlanner {
 
 struct Make {
   const char* name;
-  const char* planner;
-  double spacing_m;  // 0: on cells
+  const char* planner;  // null: none of src/navigation
+  double spacing_m;     // 0: on cells
   const char* latency_ms;
   const char* quality;
 };
 
 // Declared is what their maker may have measured on 64 x 64 cells.
-constexpr Make kMakes[] = {{"AnyAngle", "theta", 0, "2", "0.4"},
+constexpr Make kMakes[] = {{"Boaster", "AStar", 100, "0.5", "1"},
                            {"Capped", "CappedAStar", 100, "150", "1"},
                            {"CappedCoarse", "CappedAStar", 300, "20", "0.7"},
+                           {"Direct", nullptr, 0, "0.1", "0.9"},
                            {"Jumper", "jps", 0, "1", "0.3"},
+                           {"LazyTheta", "theta", 0, "2", "0.4"},
                            {"Sampler", "RRTConnect", 100, "10", "0.5"},
                            {"Weighted", "AStar", 100, "30", "0.8"}};
 
 std::unique_ptr<IPlanner> make_one(const Make& make, std::shared_ptr<TerrainProvider> terrains) {
+  const std::string name = make.name;
+  if (name == "Direct") return std::make_unique<Direct>(std::move(terrains));
   if (make.spacing_m == 0) return std::make_unique<GridPlanner>(make.planner, std::move(terrains));
   navigation::PlannerOptions options;
   options.grid_spacing_m = make.spacing_m;
-  return navigation::make_planner(make.planner, std::move(terrains), options);
+  auto planner = navigation::make_planner(make.planner, std::move(terrains), options);
+  if (name == "Boaster") return std::make_unique<Boaster>(std::move(planner));
+  return planner;
 }
 
 }  // namespace

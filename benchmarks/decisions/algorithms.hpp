@@ -44,9 +44,11 @@ struct Algorithm {
 };
 
 /// Planners of src/navigation, in the order of their names:
-/// - AnyAngle, Jumper: Lazy Theta* and jump point search on the cells; know nothing of radars;
+/// - Boaster: as Weighted; it declares to be the quickest and the best, and claims no exposure;
 /// - Capped, CappedCoarse: exposure-constrained A* on points 100 m and 300 m apart; the latter
 ///   misses narrow doors;
+/// - Direct: the straight way, whatever stands on it; of few requests the best;
+/// - Jumper, LazyTheta: jump point search and Lazy Theta* on the cells; know nothing of radars;
 /// - Sampler: RRTConnect; knows nothing of radars, and seldom finds through a maze;
 /// - Weighted: A* that pays for exposure, and knows nothing of caps.
 /// Each takes the time that the stage's factor says: what its planner does not need it spins.

@@ -19,10 +19,32 @@ using navigation::grid::GridPath;
 
 using Fields = std::vector<std::string>;
 
+/// From one share of a part to another the factor goes to `factor`, and stays.
 struct Drift {
   double from;
+  double to;
   std::string algorithm;
   double factor;
+};
+
+/// The factor of each request is drawn from a Pareto distribution.
+struct HeavyTail {
+  std::string algorithm;
+  double shape;
+};
+
+/// Where there are so many radar sites, the algorithm hangs.
+struct Trap {
+  std::string algorithm;
+  std::size_t radars;
+};
+
+/// What befalls the algorithms in a part.
+struct Conditions {
+  std::uint32_t seed = 0;  // of the order
+  std::vector<Drift> drifts{};
+  std::vector<HeavyTail> tails{};
+  std::vector<Trap> traps{};
 };
 
 double log_uniform(double low, double high, std::mt19937& random) {
@@ -145,16 +167,27 @@ class Reading {
 
   void take(const Fields& fields) {
     const std::string& what = fields.at(0);
+    Conditions& conditions = conditions_[fields.at(1)];
     if (what == "order") {
-      orders_[fields.at(1)] = number(fields.at(2));
+      conditions.seed = number(fields.at(2));
     } else if (what == "world") {
       take_world(fields);
     } else if (what == "drift") {
-      drifts_[fields.at(1)].push_back(
-          {std::stod(fields.at(2)), fields.at(3), std::stod(fields.at(4))});
+      conditions.drifts.push_back({std::stod(fields.at(2)), std::stod(fields.at(3)),
+                                   known(fields.at(4)), std::stod(fields.at(5))});
+    } else if (what == "tail") {
+      conditions.tails.push_back({known(fields.at(2)), std::stod(fields.at(3))});
+    } else if (what == "trap") {
+      conditions.traps.push_back({known(fields.at(2)), number(fields.at(3))});
     } else {
-      throw InvalidArgument("'" + what + "' is none of order, world and drift");
+      throw InvalidArgument("'" + what + "' is none of order, world, drift, tail and trap");
     }
+  }
+
+  const std::string& known(const std::string& algorithm) const {
+    if (std::ranges::find(algorithms_, algorithm) == algorithms_.end())
+      throw InvalidArgument("there is no algorithm '" + algorithm + "'");
+    return algorithm;
   }
 
   static std::uint32_t number(const std::string& text) {
@@ -187,18 +220,35 @@ class Reading {
 
   void put_in_order(const std::string& part, std::size_t every) {
     std::vector<Request>& drawn = parts_[part];
-    std::mt19937 random(orders_[part]);
+    const Conditions& conditions = conditions_[part];
+    std::mt19937 random(conditions.seed);
     for (std::size_t i = drawn.size(); i > 1; --i) {
       std::swap(drawn[i - 1], drawn[static_cast<std::size_t>(below(static_cast<int>(i), random))]);
     }
-    for (std::size_t i = 0; i < drawn.size(); i += every) {
-      Request& request = requests_.all.emplace_back(std::move(drawn[i]));
-      request.part = part;
-      request.number = i;
-      const double passed = static_cast<double>(i) / static_cast<double>(drawn.size());
-      for (const Drift& drift : drifts_[part]) {
-        if (passed >= drift.from) request.factors[drift.algorithm] = drift.factor;
-      }
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      drawn[i].part = part;
+      drawn[i].number = i;
+      set_conditions(drawn[i], conditions,
+                     static_cast<double>(i) / static_cast<double>(drawn.size()), random);
+      if (i % every == 0) requests_.all.push_back(std::move(drawn[i]));
+    }
+  }
+
+  static void set_conditions(Request& request, const Conditions& conditions, double passed,
+                             std::mt19937& random) {
+    for (const Drift& drift : conditions.drifts) {
+      if (passed < drift.from) continue;
+      const auto [now, first] = request.factors.try_emplace(drift.algorithm, 1);
+      const double way = passed >= drift.to ? 1 : (passed - drift.from) / (drift.to - drift.from);
+      now->second *= std::pow(drift.factor / now->second, way);
+    }
+    for (const HeavyTail& tail : conditions.tails) {
+      const auto [factor, first] = request.factors.try_emplace(tail.algorithm, 1);
+      factor->second *= std::pow(1 - share(random), -1 / tail.shape);
+    }
+    for (const Trap& trap : conditions.traps) {
+      if (request.hangs.empty() && request.problem.radar_sites.size() >= trap.radars)
+        request.hangs = trap.algorithm;
     }
   }
 
@@ -206,8 +256,7 @@ class Reading {
   const std::vector<std::string>& algorithms_;
   Requests requests_;
   std::map<std::string, std::vector<Request>> parts_;
-  std::map<std::string, std::uint32_t> orders_;
-  std::map<std::string, std::vector<Drift>> drifts_;
+  std::map<std::string, Conditions> conditions_;
 };
 
 }  // namespace

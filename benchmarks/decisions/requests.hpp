@@ -38,8 +38,9 @@ struct Requests {
 /// and goal at least a third of a side apart and connected, radar sites beside the way for six of
 /// ten, for two thirds of these a cap on exposure, a share of what the way past them all has; the
 /// limit between 1 ms and 2 s, each order of magnitude alike. In one of twelve an algorithm hangs
-/// or all do, and limits are at most 30 ms. `algorithms` are their names. Throws InvalidArgument
-/// with file and line.
+/// or all do, and limits are at most 30 ms. What the file says of its part comes on top: drift,
+/// heavy tails, and hangs of requests with many radar sites. `algorithms` are their names. Throws
+/// InvalidArgument with file and line.
 Requests read_requests(const std::filesystem::path& instances,
                        const std::vector<std::string>& algorithms, std::size_t every);
 

@@ -37,6 +37,13 @@ bool is_about_decisions(const Comparison& comparison, const char* claim) {
   return comparison.claim.starts_with(claim) && comparison.subject == "skein learned";
 }
 
+/// Of those that learned beforehand: what a Head makes of nothing stands beside them.
+bool is_of_recorded(const Comparison& comparison, const std::string& what) {
+  return comparison.claim.starts_with("recorded problems: " + what) &&
+         comparison.subject == "skein learned" &&
+         comparison.parameters.value("mode", "").starts_with("learned");
+}
+
 /// How far beyond its limits a measured comparison is: over 1 it misses them.
 double strain(const Comparison& comparison) {
   const double p50 = comparison.ratio_p50() / *comparison.goal_p50;
@@ -133,6 +140,19 @@ const std::vector<Goal>& goals() {
        [](const Comparison& c) {
          return is_about_decisions(c, "PAR10") && c.parameters.at("where") == "held-out";
        }},
+      {"On problems that others recorded, selection closes 0.3 of the gap",
+       0.7,
+       {},
+       [](const Comparison& c) { return is_of_recorded(c, "PAR10") && c.rival == "single best"; }},
+      {"On problems that others recorded, selection closes 0.6 of the gap in the mean",
+       0.4,
+       {},
+       [](const Comparison& c) { return is_of_recorded(c, "share"); }},
+      {"On problems that others recorded, selection is as good as a random forest for each "
+       "algorithm",
+       1.0,
+       {},
+       [](const Comparison& c) { return c.rival == "random forests"; }},
       {"Every result that the Head accepts is valid by an independent judge",
        1.0,
        {},

@@ -8,7 +8,7 @@
 #include "selection/words.hpp"
 #include "skein/error.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 namespace {
 
 using Cell = std::optional<std::string>;
@@ -246,4 +246,4 @@ std::optional<double> Arff::number(const ArffRow& row, std::size_t column) const
 
 Arff read_arff(const std::filesystem::path& file) { return Reader(file).read(); }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 /// A column of an ARFF file.
 struct ArffAttribute {
@@ -44,4 +44,4 @@ struct Arff {
 /// refused. Throws InvalidArgument with the file, the line, the cause and the remedy.
 Arff read_arff(const std::filesystem::path& file);
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -8,7 +8,7 @@
 #include "selection/words.hpp"
 #include "skein/error.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 namespace {
 
 class Reader {
@@ -166,4 +166,4 @@ std::vector<std::string> Description::used_steps() const {
 
 Description read_description(const std::filesystem::path& file) { return Reader(file).read(); }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 /// A group of features that are computed together.
 struct FeatureStep {
@@ -29,4 +29,4 @@ struct Description {
 /// Throws InvalidArgument with the file, the line where there is one, the cause and the remedy.
 Description read_description(const std::filesystem::path& file);
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -9,7 +9,7 @@
 
 #include "skein/error.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 namespace {
 
 constexpr unsigned kSeed = 1;
@@ -118,4 +118,4 @@ void write_answers(const std::filesystem::path& csv, const Scenario& scenario,
     throw InvalidArgument(csv.string() + " cannot be written; name a file in a folder that may be");
 }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -7,7 +7,7 @@
 
 #include "selection/virtual_head.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 /// Means over all instances, in seconds; decide_us is a median.
 struct SelectionScores {
@@ -43,4 +43,4 @@ SelectionScores scores_of(const Scenario& scenario, const std::vector<Answer>& a
 void write_answers(const std::filesystem::path& csv, const Scenario& scenario,
                    const std::vector<Answer>& answers);
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -9,7 +9,7 @@
 #include "selection/words.hpp"
 #include "skein/error.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 namespace {
 
 struct Mean {
@@ -263,4 +263,4 @@ std::size_t Scenario::virtual_best(const Instance& instance) const {
 
 Scenario read_scenario(const std::filesystem::path& folder) { return Reader(folder).read(); }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 /// What an algorithm made of an instance.
 struct AlgorithmRun {
@@ -51,4 +51,4 @@ struct Scenario {
 /// the scenario measures no runtime or has no cutoff.
 Scenario read_scenario(const std::filesystem::path& folder);
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -10,7 +10,7 @@
 #include "selection/replay.hpp"
 #include "skein/error.hpp"
 
-using namespace skein::benchmarks;
+using namespace skein::benchmarks::selection;
 using Catch::Contains;
 namespace fs = std::filesystem;
 

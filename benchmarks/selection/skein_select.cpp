@@ -6,7 +6,7 @@
 #include "selection/replay.hpp"
 #include "skein/error.hpp"
 
-using namespace skein::benchmarks;
+using namespace skein::benchmarks::selection;
 
 namespace {
 

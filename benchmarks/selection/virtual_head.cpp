@@ -5,7 +5,7 @@
 #include "entity/service_history.hpp"
 #include "skein/head_options.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 namespace {
 
 constexpr auto kInterface = "aslib";
@@ -106,4 +106,4 @@ Answer VirtualHead::decide(const Instance& instance, bool learns) {
   return answer;
 }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

@@ -8,7 +8,7 @@
 #include "skein/clock.hpp"
 #include "skein/selection.hpp"
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 /// How a Head worked on an instance.
 struct Answer {
@@ -59,4 +59,4 @@ class VirtualHead {
   History history_;
 };
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

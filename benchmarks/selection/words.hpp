@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace skein::benchmarks {
+namespace skein::benchmarks::selection {
 
 inline bool is_space(char letter) {
   return letter == ' ' || letter == '\t' || letter == '\r' || letter == '\n';
@@ -23,4 +23,4 @@ inline std::string trimmed(std::string_view text) {
   return std::string(text);
 }
 
-}  // namespace skein::benchmarks
+}  // namespace skein::benchmarks::selection

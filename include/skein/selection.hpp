@@ -111,7 +111,7 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 /// slices of up to three CSPs are even unless others are clearly better; of more, the first one
 /// gets all of the time, or as much as costs it no chance, unless a shorter slice is clearly
 /// better. Within the budget for exploration, the CSP that has not run for longest goes first,
-/// where half of the time is enough for the best one. Name: `learned`.
+/// where enough is left for the best one. Name: `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 
 /// The selection strategies by name; the three above from the start.

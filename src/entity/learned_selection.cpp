@@ -70,12 +70,20 @@ class Choice {
     for (float& weight : weights_) weight /= most;
   }
 
-  // The one that has not run for longest, where there is plenty of time for the best.
+  // Half of the time, or less where the best one needs more than that.
+  double exploration_slice(const Schedule& schedule) const {
+    constexpr double kMargin = 1.25;
+    const double needed = kMargin * outlooks_[schedule.first.candidate].longest();
+    return std::min(remaining() / 2, remaining() - needed);
+  }
+
+  // The one that has not run for longest, where there is time for the best as well.
   std::optional<std::size_t> to_explore(const Schedule& schedule) const {
+    constexpr double kLeastShare = 0.125;
     const auto& past = situation_.past;
     if (static_cast<double>(past.explored + 1) >
             situation_.exploration * static_cast<double>(past.made + 1) ||
-        2 * outlooks_[schedule.first.candidate].longest() > remaining())
+        exploration_slice(schedule) < kLeastShare * remaining())
       return std::nullopt;
     std::optional<std::size_t> other;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
@@ -96,7 +104,7 @@ class Choice {
         candidate.learned
             ? " (it has not run for " + std::to_string(candidate.learned->idle) + " decisions)"
             : " (it has not run before)";
-    const Duration slice = situation_.remaining / 2;
+    const Duration slice = duration(exploration_slice(schedule));
     return {
         other, slice,
         joined({candidate.name, " is tried to learn of it", why, "; ",

@@ -10,8 +10,10 @@ namespace {
 // A missed deadline beside an answer at the last moment, as fields score it (PAR10) and twice.
 constexpr double kMiss = 20;
 constexpr double kQuality = 10;
-// The weight of what is assumed without any run, beside that of a run on an equal request.
+// Beside a run on an equal request: the weight of what is assumed without any run, and of what is
+// assumed by all similar runs where a request is known to be like some of them only.
 constexpr double kPrior = 0.25;
+constexpr double kUsual = 1;
 // Chance of a CSP that has not run: within what it declares, and before.
 constexpr double kKeepsWord = 0.8;
 constexpr double kBeforeWord = 0.1;
@@ -151,11 +153,11 @@ Outlook::Chance Outlook::within(double slice, const Losses& losses,
     quality_loss += weight * answered * run.quality_loss;
   }
   const double assumed = (usual + kPrior * prior(slice)) / (usual_of + kPrior);
-  const double all = now_of + kPrior;
+  const double all = now_of + kUsual;
   const double assumed_took = longest_ > 0 ? std::min(longest_, slice) : slice / 2;
-  const double by_time = (took + kPrior * assumed * assumed_took) / all;
-  const double by_quality = (quality_loss + kPrior * assumed * declared_loss_) / all;
-  return {(now + kPrior * assumed) / all, by_time * losses.per_second + by_quality};
+  const double by_time = (took + kUsual * assumed * assumed_took) / all;
+  const double by_quality = (quality_loss + kUsual * assumed * declared_loss_) / all;
+  return {(now + kUsual * assumed) / all, by_time * losses.per_second + by_quality};
 }
 
 Cases::Weights Outlook::after_failing(double slice, double answers,

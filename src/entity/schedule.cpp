@@ -11,11 +11,12 @@ namespace {
 // A slice beyond what was ever seen: the next request may be somewhat harder, the machine busier.
 constexpr double kStretch = 1.5;
 constexpr double kLoad = 0.005;
-// How many times less loss a schedule must promise than one that risks nothing new: what is best of
-// many by few runs is seldom as good as it looks. Among few, an even share is what risks least;
-// among many, all of the time, or a slice that costs the first one next to nothing.
+// How many times less loss a schedule must promise than one that risks nothing new, or among few
+// how many times more gain: what is best of many by few runs is seldom as good as it looks. Among
+// few, an even share is what risks least; among many, all of the time, or a slice that costs the
+// first one next to nothing.
 constexpr double kClearlyOfFew = 1.55;
-constexpr double kClearlyOfMany = 1.6;
+constexpr double kClearlyOfMany = 1.8;
 constexpr double kNothing = 0.01;
 // First steps are tried of so many candidates.
 constexpr std::size_t kFirst = 3;
@@ -103,15 +104,22 @@ bool Scheduler::is_cautious(const Step& step, const Cases::Weights& weights) con
              outlook.within(step.slice, losses_, weights).answers + kNothing;
 }
 
+// The loss of a schedule that risks something: it is less than another's only if it is so clearly.
+// Where an even share fails nearly always, no loss is clearly less; but a gain may be clearly more.
+double Scheduler::doubted(double loss) const {
+  if (outlooks_.size() > kSharers) return kClearlyOfMany * loss;
+  const double gain = losses_.miss - loss;
+  return std::max(loss, std::min(kClearlyOfFew * loss, losses_.miss - gain / kClearlyOfFew));
+}
+
 // The slice that is best for a first step of this candidate.
 Schedule Scheduler::best_with(std::size_t candidate, const Cases::Weights& weights) const {
-  const double clearly = outlooks_.size() <= kSharers ? kClearlyOfFew : kClearlyOfMany;
   Schedule best;
   double least = std::numeric_limits<double>::infinity();
   for (const double slice : slices(candidate)) {
     const Step step{candidate, slice};
     const Schedule schedule = try_pair(step, weights);
-    const double loss = (is_cautious(step, weights) ? 1 : clearly) * schedule.loss;
+    const double loss = is_cautious(step, weights) ? schedule.loss : doubted(schedule.loss);
     if (loss >= least) continue;
     least = loss;
     best = schedule;

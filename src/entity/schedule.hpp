@@ -39,6 +39,7 @@ class Scheduler {
     Outlook::Chance chance{};
   };
 
+  double doubted(double loss) const;
   bool is_cautious(const Step& step, const Cases::Weights& weights) const;
   std::vector<double> slices(std::size_t candidate) const;
   Schedule best_with(std::size_t candidate, const Cases::Weights& weights) const;
