@@ -55,9 +55,9 @@ Evaluation<Route> checks_of(const Problem& problem, const navigation::Terrain& t
   Evaluation<Route> checks;
   checks.check("ends", [&](const Route& route) { return judge_ends(problem, terrain, route); });
   checks.check("zones", [&](const Route& route) { return judge_zones(problem, route); });
-  if (problem.exposure_cap_m == 0) return checks;
   checks.admitted("exposure cap", [&](const Route& route) -> Flaw {
-    if (route.radar_exposure <= problem.exposure_cap_m) return std::nullopt;
+    if (problem.exposure_cap_m == 0 || route.radar_exposure <= problem.exposure_cap_m)
+      return std::nullopt;
     return "its exposure is beyond the cap";
   });
   checks.check("claimed exposure", [&](const Route& route) -> Flaw {

@@ -34,7 +34,7 @@ std::string role_of(const AE_navigatorI::PlannerCandidate& planner, const Answer
 
 /// As wide as the columns under "measured".
 std::string measured(const AE_navigatorI::PlannerCandidate& planner) {
-  if (planner.runs == 0) return fmt::format("   {:<36}", "has not run before");
+  if (planner.runs == 0) return fmt::format("   {:<36}", "no figures");
   if (planner.p95_ms == 0) return fmt::format("   no answer in {:<3} {:<20}", planner.runs, "runs");
   return fmt::format("{:>5.0f}{:>7.0f} ms{:>8.2f}{:>6}{:>8.0f} %", planner.median_ms,
                      planner.p95_ms, planner.measured_quality, planner.runs,

@@ -152,6 +152,8 @@ class Choice {
     std::string text = joined({"; ", candidates_[*schedule.second].name, " after that"});
     if (!second.has_run()) return text + ", which has not run before";
     if (known == 0) return text;
+    if (answered == 0)
+      return text + joined({", though it answered none of the other ", std::to_string(known)});
     return text + joined({", because it answered ", std::to_string(answered), " of the other ",
                           std::to_string(known)});
   }
