@@ -217,7 +217,8 @@ void Stage::leave() {
   changed_.notify_all();
 }
 
-std::vector<Algorithm> make_algorithms(std::shared_ptr<TerrainProvider> terrains, Stage& stage) {
+std::vector<Algorithm> make_algorithms(const std::shared_ptr<TerrainProvider>& terrains,
+                                       Stage& stage) {
   std::vector<Algorithm> algorithms;
   for (const Make& make : kMakes) {
     algorithms.push_back({make.name,

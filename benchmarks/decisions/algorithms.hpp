@@ -52,7 +52,7 @@ struct Algorithm {
 /// - Sampler: RRTConnect; knows nothing of radars, and seldom finds through a maze;
 /// - Weighted: A* that pays for exposure, and knows nothing of caps.
 /// Each takes the time that the stage's factor says: what its planner does not need it spins.
-std::vector<Algorithm> make_algorithms(std::shared_ptr<navigation::TerrainProvider> terrains,
+std::vector<Algorithm> make_algorithms(const std::shared_ptr<navigation::TerrainProvider>& terrains,
                                        Stage& stage);
 
 /// Their names.

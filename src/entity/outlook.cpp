@@ -68,8 +68,10 @@ Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases)
     for (const SimilarRun& run : candidate.learned->runs) {
       if (count_ == runs_.size()) break;
       const auto took = static_cast<float>(seconds(run.took));
+      float answer = kNever;
+      if (run.accepted) answer = took;
       runs_[count_++] = {took,
-                         run.accepted ? took : kNever,
+                         answer,
                          static_cast<float>(run.weight),
                          static_cast<float>(losses.of_quality(run.quality.value_or(quality))),
                          cases.index_of(run.request),
@@ -123,7 +125,8 @@ class Outlook::Answers {
     if (!run.late) return run.answer <= slice_ ? 1.0f : 0.0f;
     if (run.took >= slice_) return 0;
     const float later = kLater * (1 - run.took / slice_);
-    return (later + by_then_ - run.before) / (1 + static_cast<float>(run.beyond));
+    return (later + by_then_ - static_cast<float>(run.before)) /
+           (1 + static_cast<float>(run.beyond));
   }
 
  private:
