@@ -79,7 +79,7 @@ Plan quick_plan() {
           1,
           {1, 2, 1, std::chrono::milliseconds(1500)},
           {3, 100},
-          {60},
+          {35},
           {1}};
 }
 
