@@ -173,6 +173,11 @@ std::uint32_t Forest::add_leaf() {
   return node;
 }
 
+void Forest::prefetch(const Leaves& leaves) const {
+  for (const std::uint32_t leaf : leaves) __builtin_prefetch(&ranges_[leaf]);
+  for (const std::uint32_t leaf : leaves) __builtin_prefetch(rows_.data() + ranges_[leaf].begin);
+}
+
 Forest::Leaves Forest::leaves(std::span<const float> features) const {
   Leaves at = roots_;
   // All trees a step at a time: their loads do not wait for each other.

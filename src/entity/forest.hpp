@@ -42,6 +42,9 @@ class Forest {
   /// `features` has the lessons' columns.
   Leaves leaves(std::span<const float> features) const;
 
+  /// Asks the memory for what rows() will give of these leaves.
+  void prefetch(const Leaves& leaves) const;
+
   /// The rows in a leaf, the latest first; all if they are few, otherwise the latest.
   std::span<const std::uint32_t> rows(std::uint32_t leaf) const {
     const Range& range = ranges_[leaf];

@@ -76,8 +76,11 @@ Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases)
                          static_cast<float>(losses.of_quality(run.quality.value_or(quality))),
                          cases.index_of(run.request),
                          run.late};
-      has_late_ = has_late_ || run.late;
     }
+    // Apart, so that the loops over either are without branches.
+    const auto end = runs_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto late = std::partition(runs_.begin(), end, [](const Run& run) { return !run.late; });
+    first_late_ = static_cast<std::size_t>(late - runs_.begin());
   }
   declared_loss_ = losses.of_quality(quality);
   rank();
@@ -85,17 +88,22 @@ Outlook::Outlook(const Candidate& candidate, const Losses& losses, Cases& cases)
 
 void Outlook::rank() {
   longest_ = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < first_late_; ++i) {
     if (runs_[i].answer < kNever && runs_[i].weight > 0)
       longest_ = std::max<double>(longest_, runs_[i].took);
-    if (!runs_[i].late) continue;
-    for (std::size_t k = 0; k < count_; ++k) {
-      runs_[i].beyond +=
-          runs_[k].took > runs_[i].took && (runs_[k].answer < kNever || runs_[k].late);
-      runs_[i].before += runs_[k].answer <= runs_[i].took;
-    }
   }
   if (longest_ == 0) longest_ = declared_;
+  for (std::size_t i = first_late_; i < count_; ++i) {
+    const float took = runs_[i].took;
+    int beyond = 0, before = 0;
+    for (std::size_t k = 0; k < first_late_; ++k) {
+      before += runs_[k].answer <= took;
+      beyond += (runs_[k].answer > took) & (runs_[k].answer < kNever);
+    }
+    for (std::size_t k = first_late_; k < count_; ++k) beyond += runs_[k].took > took;
+    runs_[i].before = static_cast<float>(before);
+    runs_[i].share = 1 / (1 + static_cast<float>(beyond));
+  }
 }
 
 double Outlook::typical() const {
@@ -113,24 +121,26 @@ double Outlook::typical() const {
 /// Whether runs would have answered within a slice.
 class Outlook::Answers {
  public:
-  Answers(const Outlook& outlook, float slice) : slice_(slice) {
-    if (!outlook.has_late_) return;
-    for (std::size_t i = 0; i < outlook.count_; ++i)
-      by_then_ += outlook.runs_[i].answer <= slice ? 1.0f : 0.0f;
+  Answers(const Outlook& outlook, float slice)
+      : slice_(slice), per_slice_(slice > 0 ? kLater / slice : 0) {
+    if (outlook.first_late_ == outlook.count_) return;
+    for (std::size_t i = 0; i < outlook.first_late_; ++i)
+      by_then_ += static_cast<float>(outlook.runs_[i].answer <= slice);
   }
+
+  float of(const Run& run) const { return static_cast<float>(run.answer <= slice_); }
 
   // Where that is not known, since it was stopped before: as those runs that went on (Kaplan and
   // Meier 1958), and one that may be anything.
-  float of(const Run& run) const {
-    if (!run.late) return run.answer <= slice_ ? 1.0f : 0.0f;
-    if (run.took >= slice_) return 0;
-    const float later = kLater * (1 - run.took / slice_);
-    return (later + by_then_ - static_cast<float>(run.before)) /
-           (1 + static_cast<float>(run.beyond));
+  float of_late(const Run& run) const {
+    const float went_on = static_cast<float>(run.took < slice_);
+    const float later = kLater - per_slice_ * run.took;
+    return went_on * (later + by_then_ - run.before) * run.share;
   }
 
  private:
   float slice_;
+  float per_slice_;
   float by_then_ = 0;
 };
 
@@ -144,17 +154,19 @@ Outlook::Chance Outlook::within(double slice, const Losses& losses,
   const auto limit = static_cast<float>(slice);
   const Answers answers(*this, limit);
   float usual = 0, usual_of = 0, now = 0, now_of = 0, took = 0, quality_loss = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Run& run = runs_[i];
-    const float answered = run.weight * answers.of(run);
+  const auto add = [&](const Run& run, float answer) {
+    const float answered = run.weight * answer;
     const float weight = weights[run.request];
+    const float answered_now = weight * answered;
     usual += answered;
     usual_of += run.weight;
-    now += weight * answered;
+    now += answered_now;
     now_of += weight * run.weight;
-    took += weight * answered * std::min(run.took, limit);
-    quality_loss += weight * answered * run.quality_loss;
-  }
+    took += answered_now * std::min(run.took, limit);
+    quality_loss += answered_now * run.quality_loss;
+  };
+  for (std::size_t i = 0; i < first_late_; ++i) add(runs_[i], answers.of(runs_[i]));
+  for (std::size_t i = first_late_; i < count_; ++i) add(runs_[i], answers.of_late(runs_[i]));
   const double assumed = (usual + kPrior * prior(slice)) / (usual_of + kPrior);
   const double all = now_of + kUsual;
   const double assumed_took = longest_ > 0 ? std::min(longest_, slice) : slice / 2;
@@ -170,7 +182,8 @@ Cases::Weights Outlook::after_failing(double slice, double answers,
   const Answers known(*this, static_cast<float>(slice));
   for (std::size_t i = 0; i < count_; ++i) {
     const Run& run = runs_[i];
-    after[run.request] = weights[run.request] * (1 - known.of(run));
+    const float answer = i < first_late_ ? known.of(run) : known.of_late(run);
+    after[run.request] = weights[run.request] * (1 - answer);
   }
   return after;
 }

@@ -78,8 +78,8 @@ class Outlook {
     std::uint32_t request;
     bool late;
     // Of a late one: runs that took longer, and answers that came sooner.
-    std::uint8_t beyond = 0;
-    std::uint8_t before = 0;
+    float before = 0;
+    float share = 0;
   };
   class Answers;
   double prior(double slice) const;
@@ -87,7 +87,7 @@ class Outlook {
 
   std::array<Run, History::kListed> runs_;
   std::size_t count_ = 0;
-  bool has_late_ = false;
+  std::size_t first_late_ = 0;
   double declared_ = 0;  // 0: not declared
   double declared_loss_ = 0;
   double longest_ = 0;

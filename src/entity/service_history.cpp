@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <span>
 
@@ -52,8 +53,8 @@ struct Mean {
 /// or where one ran alone, beside its own on others.
 class Targets {
  public:
-  explicit Targets(const std::vector<Experience::Request>& requests) {
-    for (const auto& request : requests) {
+  explicit Targets(const std::map<std::uint64_t, Experience::Request>& requests) {
+    for (const auto& [number, request] : requests) {
       for (const auto& run : request.runs) {
         if (run.csp >= costs_.size()) costs_.resize(run.csp + 1), qualities_.resize(run.csp + 1);
         costs_[run.csp].add(cost_of(run.sample));
@@ -142,6 +143,14 @@ std::optional<double> rank_of(const History::Sample& sample, const Prediction& p
   return sample.late ? (rank + 1) / 2 : rank;
 }
 
+// Of thousands of runs hardly one is in the processor's cache: all are asked for before the first
+// is needed.
+void prefetch(const Experience::Run& run) {
+  const char* const begin = reinterpret_cast<const char*>(&run);
+  __builtin_prefetch(begin);
+  __builtin_prefetch(begin + sizeof(run) - 1);
+}
+
 void add_to(double& sum, std::uint64_t& since, double excess, std::uint64_t request) {
   sum += excess - kAllowance;
   if (sum > 0 && since != 0) return;
@@ -175,8 +184,7 @@ Experience::Experience(std::vector<Run> runs) {
     Request& request = by_number[run.sample.request];
     request.add(std::move(run));
   }
-  for (auto& [number, request] : by_number) requests_.push_back(std::move(request));
-  for (const Request& request : requests_) {
+  for (const auto& [number, request] : by_number) {
     for (const Feature& feature : request.features()) {
       if (std::find(columns_.begin(), columns_.end(), feature.name) == columns_.end())
         columns_.push_back(feature.name);
@@ -184,12 +192,14 @@ Experience::Experience(std::vector<Run> runs) {
   }
   Lessons lessons;
   lessons.columns = columns_.size();
-  const Targets targets(requests_);
+  const Targets targets(by_number);
   lessons.outputs = targets.outputs();
-  for (const Request& request : requests_) {
+  for (auto& [number, request] : by_number) {
     const auto row = row_of(request.features());
     lessons.features.insert(lessons.features.end(), row.begin(), row.end());
     targets.append(request, lessons);
+    std::move(request.runs.begin(), request.runs.end(), std::back_inserter(runs_));
+    first_.push_back(static_cast<std::uint32_t>(runs_.size()));
   }
   forest_ = Forest(lessons);
 }
@@ -217,19 +227,21 @@ std::vector<Experience::Similar> Experience::similar(const Features& features,
   for (auto request = added.rbegin(); request != added.rend(); ++request) {
     std::size_t trees = 0;
     for (std::size_t i = 0; i < Forest::kTrees; ++i) trees += leaves[i] == request->leaves[i];
-    if (trees > 0) found.push_back({&*request, trees});
+    if (trees > 0) found.push_back({request->runs, trees});
   }
-  std::vector<std::uint8_t> trees(requests_.size());
+  std::vector<std::uint8_t> trees(size());
   std::vector<std::uint32_t> rows;
+  forest_.prefetch(leaves);
   for (const std::uint32_t leaf : leaves) {
     for (const std::uint32_t row : forest_.rows(leaf)) {
       if (trees[row]++ == 0) rows.push_back(row);
     }
   }
+  found.reserve(found.size() + rows.size());
   for (const std::uint32_t row : rows) {
-    // Of thousands of requests hardly one is in the cache: all are fetched at once.
-    __builtin_prefetch(&requests_[row]);
-    found.push_back({&requests_[row], trees[row]});
+    const auto runs = runs_of(row);
+    prefetch(runs.front());
+    found.push_back({runs, trees[row]});
   }
   // A counting sort: there are few numbers of trees.
   std::array<std::size_t, Forest::kTrees + 2> place{};
@@ -301,19 +313,13 @@ std::vector<std::optional<Prediction>> ServiceHistory::predict(
   const auto is_kept = [&](const Experience::Run& run) {
     return wanted[run.csp] && run.sample.request >= records_[run.csp].samples.front().request;
   };
-  const auto similar = learned_->similar(features, added_);
-  for (const auto& each : similar) {
-    const char* const runs = reinterpret_cast<const char*>(each.request->runs.data());
-    __builtin_prefetch(runs);
-    __builtin_prefetch(runs + sizeof(Experience::Run) - 1);
-  }
-  for (const auto& [request, trees] : similar) {
+  for (const auto& [runs, trees] : learned_->similar(features, added_)) {
     if (open == 0) break;
-    const bool counts = std::any_of(
-        request->runs.begin(), request->runs.end(),
-        [&](const auto& run) { return is_kept(run) && counted[run.csp] < History::kNeighbours; });
+    const bool counts = std::any_of(runs.begin(), runs.end(), [&](const auto& run) {
+      return is_kept(run) && counted[run.csp] < History::kNeighbours;
+    });
     if (!counts) continue;
-    for (const auto& run : request->runs) {
+    for (const auto& run : runs) {
       if (!is_kept(run) || wanted[run.csp]->runs.size() == History::kListed) continue;
       const bool full = counted[run.csp] == History::kNeighbours;
       const double similarity = full ? 0 : static_cast<double>(trees) / Forest::kTrees;

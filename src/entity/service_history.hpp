@@ -3,6 +3,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,14 +36,14 @@ class Experience {
   explicit Experience(std::vector<Run> runs);
 
   /// How many requests the forest knows.
-  std::size_t size() const { return requests_.size(); }
+  std::size_t size() const { return first_.size() - 1; }
 
   Forest::Leaves leaves(const Features& features) const;
 
-  /// Similar requests, those of most common trees first; of equals the latest first. `added` are
-  /// those that the forest does not know, the oldest first.
+  /// What CSPs made of similar requests, those of most common trees first; of equals the latest
+  /// first. `added` are those that the forest does not know, the oldest first.
   struct Similar {
-    const Request* request;
+    std::span<const Run> runs;
     std::size_t trees;
   };
   std::vector<Similar> similar(const Features& features, const std::vector<Request>& added) const;
@@ -50,8 +51,14 @@ class Experience {
  private:
   std::vector<float> row_of(const Features& features) const;
 
+  std::span<const Run> runs_of(std::uint32_t row) const {
+    return {runs_.data() + first_[row], runs_.data() + first_[row + 1]};
+  }
+
   std::vector<std::string> columns_;
-  std::vector<Request> requests_;  // as the forest's rows: the oldest first
+  // Request by request as the forest's rows, the oldest first; where each begins, and the end.
+  std::vector<Run> runs_;
+  std::vector<std::uint32_t> first_{0};
   Forest forest_;
 };
 

@@ -61,6 +61,17 @@ TEST_CASE("what a CSP has shown counts, not what it declares") {
   CHECK(select(two, 200ms).candidate == 1);
 }
 
+TEST_CASE("that a CSP failed at once tells nothing about the others") {
+  const auto gone = candidate("gone", 10ms, 0, shown(always(kStopped)));
+  const std::vector<Candidate> two{candidate("bad", 10ms, 0, shown(always(kFailed))),
+                                   candidate("good", 10ms, 0, shown(always(10ms)))};
+  const auto after = [&](std::vector<Tried> tried) {
+    return make_learned_selection()->select(two, {{}, 100ms, 0, {}, {}, std::move(tried)});
+  };
+  CHECK(after({{gone, 0ms}}).candidate == 1);
+  CHECK(after({{gone, 0ms}}).slice == after({}).slice);
+}
+
 TEST_CASE("until it has run, a CSP is taken at its word") {
   const std::vector<Candidate> two{candidate("new", 10ms, 0.9),
                                    candidate("old", 50ms, 0.5, shown(always(50ms), 0.5))};
