@@ -28,6 +28,7 @@ def main():
     compiler = compile_rules.Compiler(arguments.compiler, arguments.include)
     checks = {
         "homes": lambda: include_rules.homes(tree),
+        "precompiled_headers": lambda: include_rules.precompiled_headers(tree),
         "public_headers": lambda: include_rules.public_headers(tree),
         "floors": lambda: include_rules.floors(tree),
         "machine_paths": lambda: text_rules.machine_paths(tree),

@@ -63,6 +63,31 @@ class Homes(TreeTest):
         self.assertFindsNothing(include_rules.homes(self.tree))
 
 
+class PrecompiledHeaders(TreeTest):
+    def violations(self):
+        return include_rules.precompiled_headers(self.tree)
+
+    def test_those_of_others_are_taken(self):
+        self.write("src/core/standard_library.hpp", "#include <vector>\n")
+        self.write("test/tools/precompiled.hpp", '#include <catch2/catch.hpp>\n#include "core/standard_library.hpp"\n')
+        self.write("src/a/CMakeLists.txt", "target_precompile_headers(a PRIVATE <fmt/core.h> <core/standard_library.hpp>)\n")
+        self.assertFindsNothing(self.violations())
+
+    def test_ours_are_found(self):
+        self.write("src/core/x.hpp", "")
+        for header in ("skein/entity.hpp", "navigator.idl.hpp", "core/x.hpp"):
+            self.write("src/a/CMakeLists.txt", f"target_precompile_headers(a PRIVATE <fmt/core.h>\n  <{header}>)\n")
+            self.assertFinds(self.violations(), "src/a/CMakeLists.txt", header)
+
+    def test_ours_within_a_precompiled_header_are_found(self):
+        self.write("test/tools/precompiled.hpp", '#include <catch2/catch.hpp>\n#include "skein/skein.hpp"\n')
+        self.assertFinds(self.violations(), "test/tools/precompiled.hpp:2", "skein/skein.hpp")
+
+    def test_one_that_a_source_includes_is_found(self):
+        self.write("src/a/x.cpp", '#include "core/standard_library.hpp"\n')
+        self.assertFinds(self.violations(), "src/a/x.cpp:1", "include what is used")
+
+
 class PublicHeaders(TreeTest):
     def setUp(self):
         super().setUp()

@@ -81,6 +81,9 @@ HOMES = {
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
     "the command line": (r"CLI/", ["src/command/main.cpp", "src/command/grid/main.cpp", "benchmarks"]),
 }
+# The headers of ours that precompiled headers may bring: nobody else includes them.
+PRECOMPILED = {"core/standard_library.hpp": "src/core/standard_library.hpp", "tools/precompiled.hpp": "test/tools/precompiled.hpp"}
+_PRECOMPILES = re.compile(r"\btarget_precompile_headers\s*\(([^)]*)\)")
 # What libskein must not link: modules bring it, or plugins.
 LOADED_LIBRARIES = r"lib(fastrtps|fastdds|ddsc|ompl)"
 
@@ -92,6 +95,29 @@ def homes(tree):
             for library, (pattern, folders) in HOMES.items():
                 if re.match(pattern, included) and not within(path, folders):
                     yield f"{path}:{line}: {included} belongs to {library}, whose headers stay in {', '.join(folders)}"
+
+
+def precompiled_headers(tree):
+    """A header of ours in a precompiled one.
+
+    The compiler's cache finds a precompiled header by its preprocessed text, in which comments and macros do not show, while GCC
+    tells by the whole text whether it has a header already: after an edited comment, a cached one defines everything twice.
+    """
+    ours = re.compile(r"skein/|.*\.idl\.hpp$")
+    for path in tree.files((".txt", ".cmake")):
+        for arguments in _PRECOMPILES.findall(tree.text(path)):
+            for header in re.findall(r"[\w./]+\.(?:hpp|h)\b", arguments):
+                if ours.match(header) or (header not in PRECOMPILED and tree.exists(f"src/{header}")):
+                    yield f"{path}: precompiles {header}; precompile other people's headers alone"
+    for path in PRECOMPILED.values():
+        if tree.exists(path):
+            for line, included, quoted in tree.includes(path):
+                if quoted and included not in PRECOMPILED:
+                    yield f"{path}:{line}: precompiles {included}; precompile other people's headers alone"
+    for path in tree.files(SOURCES):
+        for line, included, _ in tree.includes(path):
+            if included in PRECOMPILED and path not in PRECOMPILED.values():
+                yield f"{path}:{line}: includes {included}, which is for precompiled headers; include what is used"
 
 
 def public_headers(tree):

@@ -6,6 +6,7 @@
 #include "echo_service.hpp"
 #include "fake_provider.hpp"
 #include "pairing.hpp"
+#include "skein/gather.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -4,6 +4,7 @@
 #include "../tools/eventually.hpp"
 #include "site.hpp"
 #include "skein/error.hpp"
+#include "skein/gather.hpp"
 
 using namespace std::chrono_literals;
 using skein::test::eventually;

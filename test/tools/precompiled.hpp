@@ -3,4 +3,3 @@
 #include <catch2/catch.hpp>
 
 #include "core/standard_library.hpp"
-#include "skein/skein.hpp"
