@@ -202,7 +202,7 @@ TEST_CASE("a raw mixed pair has no goal: it is there for information") {
   CHECK_FALSE(comparisons[1].goal_p50);
 }
 
-TEST_CASE("a quick run writes every row of results.json in the common shape") {
+TEST_CASE("a quick run writes every row of results.json in the common shape", "[long]") {
   const QuickRun& run = QuickRun::get();
   REQUIRE(run.exit_code == 0);
   REQUIRE(run.results.is_array());
@@ -257,7 +257,7 @@ TEST_CASE("a contender that dies costs its own rows and nobody else's, and the e
   CHECK(measured == death.claims);
 }
 
-TEST_CASE("no pair of vendors, size, way to die or other fault is missing") {
+TEST_CASE("no pair of vendors, size, way to die or other fault is missing", "[long]") {
   const json& results = QuickRun::get().results;
   for (const std::string& pair : kPairs) {
     CAPTURE(pair);
@@ -284,7 +284,7 @@ TEST_CASE("no pair of vendors, size, way to die or other fault is missing") {
   }
 }
 
-TEST_CASE("no other way of the vendors is missing") {
+TEST_CASE("no other way of the vendors is missing", "[long]") {
   const json& results = QuickRun::get().results;
   for (const char* way : {"shared memory", "data sharing", "listener", "polling"}) {
     CHECK(has(results, "other ways of the vendors", "skein fastdds", json::object(),
@@ -294,7 +294,7 @@ TEST_CASE("no other way of the vendors is missing") {
             "cyclonedds by polling"));
 }
 
-TEST_CASE("no vendor is missing where peers start at once and where they are idle") {
+TEST_CASE("no vendor is missing where peers start at once and where they are idle", "[long]") {
   const json& results = QuickRun::get().results;
   for (const std::string vendor : {"fastdds", "cyclonedds"}) {
     CAPTURE(vendor);
@@ -309,7 +309,7 @@ TEST_CASE("no vendor is missing where peers start at once and where they are idl
   }
 }
 
-TEST_CASE("no rival and no way to call is missing") {
+TEST_CASE("no rival and no way to call is missing", "[long]") {
   const json& results = QuickRun::get().results;
   for (const char* vendor : {"skein fastdds", "skein cyclonedds"}) {
     for (const char* rival :
@@ -338,7 +338,7 @@ TEST_CASE("no rival and no way to call is missing") {
   }
 }
 
-TEST_CASE("no kind of decision is missing") {
+TEST_CASE("no kind of decision is missing", "[long]") {
   const json& results = QuickRun::get().results;
   CHECK(has(results, "Head and dispatch around a CSP in the process", "skein",
             {{"where", "1 CSPs, declared"}}, "limit 2 us"));
@@ -346,7 +346,8 @@ TEST_CASE("no kind of decision is missing") {
             {{"where", "4 CSPs, learned"}}, "limit 20 us"));
 }
 
-TEST_CASE("no kind of grid is missing, and those of the test data are skipped without it") {
+TEST_CASE("no kind of grid is missing, and those of the test data are skipped without it",
+          "[long]") {
   const json& results = QuickRun::get().results;
   const std::string mean = "a path on a grid, mean over a map";
   CHECK(has(results, mean, "skein jps", {{"where", "made caves"}}, "plain A*"));
@@ -355,7 +356,7 @@ TEST_CASE("no kind of grid is missing, and those of the test data are skipped wi
   CHECK(has(results, mean, "skein canonical-astar", json::object(), "plain A*"));
 }
 
-TEST_CASE("each strategy is scored, and decisions.csv has a row for each request") {
+TEST_CASE("each strategy is scored, and decisions.csv has a row for each request", "[long]") {
   const QuickRun& run = QuickRun::get();
   const std::string loss = "PAR10 beyond the virtual best, mean over requests";
   std::size_t requests = 0;
@@ -375,7 +376,8 @@ TEST_CASE("each strategy is scored, and decisions.csv has a row for each request
   CHECK(requests > 20);
 }
 
-TEST_CASE("each strategy is scored on recorded problems, which are skipped without the test data") {
+TEST_CASE("each strategy is scored on recorded problems, which are skipped without the test data",
+          "[long]") {
   const json& results = QuickRun::get().results;
   const std::string claim = "recorded problems: PAR10 beyond the virtual best";
   if (std::getenv("SKEIN_TEST_DATA") == nullptr) {
@@ -459,7 +461,7 @@ TEST_CASE("calls are measured as a mission's peers would make them") {
   CHECK_THAT(complaint(""), Contains("mission.xml:1") && Contains("did you mean 'vendor'?"));
 }
 
-TEST_CASE("the report is one page that refers to nothing outside") {
+TEST_CASE("the report is one page that refers to nothing outside", "[long]") {
   std::ifstream file(QuickRun::get().folder / "report.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   CHECK(page.find("<svg") != std::string::npos);

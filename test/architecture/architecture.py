@@ -31,6 +31,7 @@ def main():
         "precompiled_headers": lambda: include_rules.precompiled_headers(tree),
         "public_headers": lambda: include_rules.public_headers(tree),
         "floors": lambda: include_rules.floors(tree),
+        "test_floors": lambda: include_rules.test_floors(tree),
         "machine_paths": lambda: text_rules.machine_paths(tree),
         "sleeps": lambda: text_rules.sleeps(tree),
         "quotes": lambda: text_rules.quotes(tree),

@@ -125,6 +125,25 @@ class PublicHeaders(TreeTest):
         self.assertFinds(include_rules.public_headers(self.tree), "5 are enough")
 
 
+class TestFloors(TreeTest):
+    AREAS = "set(areas core:0 rpc:3)\nif(x)\n  list(APPEND areas profile:7)\nendif()\n"
+
+    def test_tests_that_use_a_higher_floor_than_their_folder_has_are_found(self):
+        self.write("test/CMakeLists.txt", self.AREAS)
+        self.write("test/rpc/x_test.cpp", '#include "skein/entity.hpp"\n')
+        self.assertFinds(include_rules.test_floors(self.tree), "test/rpc/x_test.cpp:1", "entity", "floor 3")
+
+    def test_a_list_of_folders_that_is_not_found_is_told(self):
+        self.write("test/CMakeLists.txt", "add_subdirectory(core)\n")
+        self.assertFinds(include_rules.test_floors(self.tree), "names no folder with its floor")
+
+    def test_tests_on_their_floor_are_fine(self):
+        self.write("test/CMakeLists.txt", self.AREAS)
+        self.write("src/profile/check.hpp", "")
+        self.write("test/profile/x.cpp", '#include "profile/check.hpp"\n#include "skein/entity.hpp"\n')
+        self.assertFindsNothing(include_rules.test_floors(self.tree))
+
+
 class Floors(TreeTest):
     def test_an_include_up_a_floor_is_found(self):
         self.write("src/rpc/wire.hpp", "")

@@ -83,6 +83,7 @@ HOMES = {
 }
 # The headers of ours that precompiled headers may bring: nobody else includes them.
 PRECOMPILED = {"core/standard_library.hpp": "src/core/standard_library.hpp", "tools/precompiled.hpp": "test/tools/precompiled.hpp"}
+_AREAS = re.compile(r"(?:set\(areas|list\(APPEND areas)([^)]*)\)")
 _PRECOMPILES = re.compile(r"\btarget_precompile_headers\s*\(([^)]*)\)")
 # What libskein must not link: modules bring it, or plugins.
 LOADED_LIBRARIES = r"lib(fastrtps|fastdds|ddsc|ompl)"
@@ -141,27 +142,42 @@ def floors(tree):
     """An include against the floors, or of internals by what is installed."""
     for top in ("include/skein", "src", "brokerless_discovery"):
         for path in tree.files(SOURCES, top):
-            user = _module(path)
+            user = module_of(path)
             if user is None:
                 yield f"{path}: stands on no floor; name its folder in FLOORS"
                 continue
             for line, included, quoted in tree.includes(path):
                 used = _module_of_include(tree, path, included, quoted)
                 if used and not _may_use(user, used):
-                    yield f"{path}:{line}: {user} (floor {_floor(user)}) includes {included} of {used} (floor {_floor(used)})"
+                    yield f"{path}:{line}: {user} (floor {floor_of(user)}) includes {included} of {used} (floor {floor_of(used)})"
                 if top == "include/skein" and quoted and not included.startswith("skein/"):
                     yield f"{path}:{line}: includes {included}, which is not installed"
 
 
+def test_floors(tree):
+    """A folder of tests that uses a higher floor than test/CMakeLists.txt says: a change there would not run it."""
+    declared = dict(re.findall(r"\b(\w+):(\d)\b", "".join(_AREAS.findall(tree.text("test/CMakeLists.txt")))))
+    if not declared:
+        yield "test/CMakeLists.txt: names no folder with its floor"
+    for area, floor in declared.items():
+        for path in tree.files(SOURCES, f"test/{area}"):
+            for line, included, quoted in tree.includes(path):
+                used = _module_of_include(tree, path, included, quoted)
+                if used and int(floor_of(used)) > int(floor):
+                    yield f"{path}:{line}: includes {included} of {used}; test/CMakeLists.txt puts the folder on floor {floor}"
+
+
 def _may_use(user, used):
-    return user == used or _floor(used) < _floor(user) or (user, used) in NEIGHBOURS
+    return user == used or floor_of(used) < floor_of(user) or (user, used) in NEIGHBOURS
 
 
-def _floor(module):
+def floor_of(module):
+    """The number of a module's floor; those of back ends and of navigation's parts lie between two whole ones."""
     return BACK_END if module.startswith("dds/") else FLOORS[module]
 
 
-def _module(path):
+def module_of(path):
+    """Which module a file of include, src or brokerless_discovery belongs to; None where it stands on no floor."""
     if path.startswith("include/"):
         return floor_of_header(path.removeprefix("include/"))
     parts = path.removeprefix("src/").split("/")
@@ -189,5 +205,5 @@ def _module_of_include(tree, path, included, quoted):
     for folder in (os.path.dirname(path), "src", ""):
         found = os.path.normpath(os.path.join(folder, included))
         if quoted and tree.exists(found):
-            return _module(found)
+            return module_of(found)
     return None

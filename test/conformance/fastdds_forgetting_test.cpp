@@ -141,7 +141,7 @@ class Stage {
   Stage() : vendor_(dds::load_vendor("fastdds")) {
     // One that hangs could not even be destroyed: a core shows where.
     std::signal(SIGALRM, [](int) { std::abort(); });
-    alarm(120);
+    alarm(280);
     dds::ParticipantOptions options;
     options.domain = kDomain;
     options.on_participant = [this](const Guid& guid, bool present) {

@@ -62,7 +62,8 @@ class Heard {
 
 }  // namespace
 
-TEST_CASE("while somebody reads, each step of a call is told by both sides under one number") {
+TEST_CASE("while somebody reads, each step of a call is told by both sides under one number",
+          "[wire]") {
   const auto server = make_server();
   const auto service = std::make_shared<EchoService>();
   server->provide<LouderEcho>(service);

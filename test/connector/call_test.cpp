@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "../tools/eventually.hpp"
+#include "../tools/invariant.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "rpc/dds_channel.hpp"
@@ -44,7 +45,7 @@ ServiceOptions threads(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("a call brings its result back") {
+TEST_CASE("a call brings its result back", "[wire]") {
   Pair pair;
   CHECK(pair.echo->echo("hello") == "hello");
   CHECK(pair.echo->echo("") == "");
@@ -55,17 +56,18 @@ TEST_CASE("a call brings its result back") {
   CHECK(pair.echo->label() == "other");
 }
 
-TEST_CASE("payloads of every size arrive unchanged") {
+TEST_CASE("payloads of every size arrive unchanged", "[wire]") {
   Pair pair;
   for (const std::size_t size : {0u, 1u, 3u, 63u, 1024u, 65'537u, 1'048'576u, 4'194'305u}) {
     std::vector<std::uint8_t> content(size);
     for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<std::uint8_t>(i * 31 + i / 257);
     CAPTURE(size);
-    CHECK(pair.echo->within(30s).echo_octets(content) == content);
+    const auto answer = pair.echo->within(30s).echo_octets(content);
+    INVARIANT((answer == content));
   }
 }
 
-TEST_CASE("an exception that the interface declares arrives as its own type") {
+TEST_CASE("an exception that the interface declares arrives as its own type", "[wire]") {
   Pair pair;
   std::int32_t remainder;
   try {
@@ -130,7 +132,7 @@ TEST_CASE("a result that CDR cannot carry is answered as Internal where it would
   CHECK(pair.connect(true).garble("result").size() == 8);
 }
 
-TEST_CASE("calls from several threads do not disturb each other") {
+TEST_CASE("calls from several threads do not disturb each other", "[wire]") {
   Pair pair(threads(4));
   std::vector<std::thread> callers;
   std::atomic<int> right = 0;
@@ -144,6 +146,7 @@ TEST_CASE("calls from several threads do not disturb each other") {
   }
   for (std::thread& caller : callers) caller.join();
   CHECK(right == 400);
+  INVARIANT(pair.service->calls <= 400);
   CHECK(pair.service->calls == 400);
 }
 
@@ -162,7 +165,8 @@ TEST_CASE("a service with one thread is never inside two calls at once, one with
   CHECK_FALSE(one.service->overlapped);
 }
 
-TEST_CASE("a call that is not answered in time ends as TimedOut and the server learns of it") {
+TEST_CASE("a call that is not answered in time ends as TimedOut and the server learns of it",
+          "[wire]") {
   Pair pair;
   REQUIRE(with_enough_time(50ms, [&](auto limit) {
     CHECK_THROWS_AS(pair.echo->within(limit).wait(600'000), TimedOut);
@@ -183,7 +187,7 @@ TEST_CASE("a call that waits behind others until its deadline is never executed"
   CHECK(pair.service->calls == 2);
 }
 
-TEST_CASE("dropping an asynchronous call cancels it at the server") {
+TEST_CASE("dropping an asynchronous call cancels it at the server", "[wire]") {
   Pair pair;
   {
     const auto dropped = pair.echo->within(60s).async_wait(60'000);
@@ -258,7 +262,7 @@ TEST_CASE("a call is used once, and says so the second time") {
   CHECK_THROWS_WITH(call.ready(), Catch::Contains("used before"));
 }
 
-TEST_CASE("oneway calls are executed in order without an answer") {
+TEST_CASE("oneway calls are executed in order without an answer", "[wire]") {
   Pair pair;
   for (int i = 0; i < 20; ++i) pair.echo->note("n");
   CHECK(eventually([&] { return pair.echo->noted() == 20; }));
@@ -442,7 +446,7 @@ TEST_CASE("a session with an unknown selection strategy is refused with the know
   CHECK(pair.client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
 }
 
-TEST_CASE("a service reference can be returned, passed on and connected to") {
+TEST_CASE("a service reference can be returned, passed on and connected to", "[wire]") {
   struct Introducer : ::test::Introducer {
     explicit Introducer(Entity& own) : entity(own) {}
     Reference<Echo> introduce() override { return introduced; }
@@ -474,7 +478,7 @@ TEST_CASE("a disconnected proxy refuses calls") {
   CHECK_THROWS_AS(pair.echo->echo("x"), Unavailable);
 }
 
-TEST_CASE("a managed service is closed to strangers") {
+TEST_CASE("a managed service is closed to strangers", "[wire]") {
   Pair pair;
   pair.server->provide_csp<Echo>("hidden", "uav-1/owner", std::make_shared<EchoService>());
   CHECK_THROWS_AS(pair.client->connect<Echo>({.name = "hidden", .timeout = 100ms}), Unavailable);
@@ -505,7 +509,7 @@ TEST_CASE("within one process a call stays in it and runs on the thread that is 
   CHECK_THROWS_AS(echo.within(30ms).async_wait(5'000).get(), TimedOut);
 }
 
-TEST_CASE("an entity withdraws its own services and no others of its process") {
+TEST_CASE("an entity withdraws its own services and no others of its process", "[wire]") {
   const auto process = std::make_shared<Process>();
   const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
   const auto client = make_entity("client", Pairing::get().server, "uav-1", process);

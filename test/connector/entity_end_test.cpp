@@ -39,8 +39,8 @@ struct Neighbours {
 
 }  // namespace
 
-TEST_CASE(
-    "an entity that ends ends its calls and streams as Disconnected, and its proxies say why") {
+TEST_CASE("an entity that ends ends its calls and streams as Disconnected, and its proxies say why",
+          "[wire]") {
   Neighbours neighbours(GENERATE(true, false));
   auto echo = neighbours.client->connect<Echo>().within(10min);
   auto call = echo.async_wait(kLong);
@@ -74,7 +74,7 @@ TEST_CASE(
   CHECK(eventually([&] { return neighbours.service->inside == 0; }));
 }
 
-TEST_CASE("a thread that waits for an answer is told when its entity ends") {
+TEST_CASE("a thread that waits for an answer is told when its entity ends", "[wire]") {
   Neighbours neighbours(false);
   auto echo = neighbours.client->connect<Echo>().within(10min);
   auto waiting = std::async(std::launch::async, [&] { return echo.wait(kLong); });
@@ -83,7 +83,7 @@ TEST_CASE("a thread that waits for an answer is told when its entity ends") {
   CHECK_THROWS_AS(waiting.get(), Disconnected);
 }
 
-TEST_CASE("a call that waits for another provider ends with its entity") {
+TEST_CASE("a call that waits for another provider ends with its entity", "[wire]") {
   Neighbours neighbours(false);
   auto echo = neighbours.client->connect<Echo>().within(10min);
   neighbours.server.reset();
@@ -96,7 +96,8 @@ TEST_CASE("a call that waits for another provider ends with its entity") {
   CHECK_THROWS_AS(call.get(), Unavailable);
 }
 
-TEST_CASE("a connection that is being opened ends with its entity, though time stands still") {
+TEST_CASE("a connection that is being opened ends with its entity, though time stands still",
+          "[wire]") {
   const auto clock = std::make_shared<ManualClock>();
   std::atomic<bool> asked = false;
   dds::LoopbackNetwork network(*clock);
@@ -118,7 +119,7 @@ TEST_CASE("a connection that is being opened ends with its entity, though time s
   CHECK_THROWS_AS(connecting.get(), Unavailable);
 }
 
-TEST_CASE("calls that wait at a service that is withdrawn are refused at once") {
+TEST_CASE("calls that wait at a service that is withdrawn are refused at once", "[wire]") {
   Neighbours neighbours(true);
   auto echo = neighbours.client->connect<Echo>().within(10min);
   std::vector<Call<bool>> running;

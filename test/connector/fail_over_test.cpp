@@ -67,7 +67,7 @@ struct Trio {
 
 }  // namespace
 
-TEST_CASE("when a provider leaves the next call goes to the next one") {
+TEST_CASE("when a provider leaves the next call goes to the next one", "[wire]") {
   auto first = make_server("first");
   const auto second = make_server("second");
   first->provide<LouderEcho>(std::make_shared<NamedEcho>("first"));
@@ -83,7 +83,7 @@ TEST_CASE("when a provider leaves the next call goes to the next one") {
   CHECK(echo.echo("") == "second");
 }
 
-TEST_CASE("a call on its way when its provider leaves ends, and not by its deadline") {
+TEST_CASE("a call on its way when its provider leaves ends, and not by its deadline", "[wire]") {
   auto server = make_server();
   const auto service = std::make_shared<EchoService>();
   const Guid id = server->provide<LouderEcho>(service);
@@ -105,7 +105,8 @@ TEST_CASE("with no provider left a call says so") {
   CHECK_THROWS_AS(echo.within(100ms).echo("x"), Unavailable);
 }
 
-TEST_CASE("an idempotent call on its way when its provider leaves is answered by the next one") {
+TEST_CASE("an idempotent call on its way when its provider leaves is answered by the next one",
+          "[wire]") {
   Trio<EndlessEcho> trio;
   SECTION("its caller waits") {
     std::string answer;

@@ -38,7 +38,7 @@ class Blockade {
 
 }  // namespace
 
-TEST_CASE("no continuation is lost, however many calls end while the executor is busy") {
+TEST_CASE("no continuation is lost, however many calls end while the executor is busy", "[wire]") {
   const auto server = make_server();
   server->provide<LouderEcho>(std::make_shared<EchoService>());
   const auto client = make_client();
@@ -53,7 +53,7 @@ TEST_CASE("no continuation is lost, however many calls end while the executor is
   CHECK(eventually([&] { return continued == kMany; }, 60s));
 }
 
-TEST_CASE("each refusal reaches its caller, however full the server's control queue is") {
+TEST_CASE("each refusal reaches its caller, however full the server's control queue is", "[wire]") {
   const auto server = make_server();
   const auto client = make_client();
   ThreadExecutor control("control");

@@ -60,7 +60,7 @@ const auto who = [](Echo::Proxy& echo) { return echo.within(10min).async_who(0);
 
 }  // namespace
 
-TEST_CASE("a call to all gathers the answer of each") {
+TEST_CASE("a call to all gathers the answer of each", "[wire]") {
   Crowd crowd({{"a", 100}, {"b", 0}, {"c", 50}});
   auto all = crowd.client->connect_all<Echo>();
   REQUIRE(all.size() == 3);

@@ -128,7 +128,8 @@ TEST_CASE(
   CHECK(reader.latest().at(0).entity == "server");
 }
 
-TEST_CASE("a reader takes from each peer the statistics of that peer's own services alone") {
+TEST_CASE("a reader takes from each peer the statistics of that peer's own services alone",
+          "[wire]") {
   const auto onlooker = make_client();
   const introspection::StatisticsReader reader(onlooker->participant());
   const auto peer = make_server("peer");

@@ -2,6 +2,7 @@
 #include <future>
 
 #include "../tools/eventually.hpp"
+#include "../tools/invariant.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 
@@ -57,12 +58,12 @@ Detached sum_up(Stream<std::int32_t> numbers, std::promise<std::int64_t>& sum) {
 
 }  // namespace
 
-TEST_CASE("a stream brings every result in order and then ends") {
+TEST_CASE("a stream brings every result in order and then ends", "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   std::int32_t expected = 0;
-  for (const std::int32_t number : echo.count_up(1000, kNever)) REQUIRE(number == expected++);
-  CHECK(expected == 1000);
+  for (const std::int32_t number : echo.count_up(1000, kNever)) INVARIANT(number == expected++);
+  INVARIANT(expected == 1000);
   auto empty = echo.count_up(0, kNever);
   CHECK(empty.next() == std::nullopt);
   CHECK(empty.next() == std::nullopt);
@@ -78,7 +79,7 @@ TEST_CASE("results that came before a stream failed are taken before the failure
   CHECK(numbers.next() == std::nullopt);
 }
 
-TEST_CASE("a reader that takes nothing holds the server up, and nothing piles up") {
+TEST_CASE("a reader that takes nothing holds the server up, and nothing piles up", "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   auto numbers = echo.within(10min).count_up(100, kNever);
@@ -106,7 +107,7 @@ TEST_CASE("a service that does not want to wait is told that its reader is behin
   CHECK(blocks == test.service->pushed);
 }
 
-TEST_CASE("a reader that drops or cancels its stream stops the server") {
+TEST_CASE("a reader that drops or cancels its stream stops the server", "[wire]") {
   Streaming test(GENERATE(false, true));
   const bool drop = GENERATE(true, false);
   auto echo = test.connect();
@@ -151,7 +152,8 @@ TEST_CASE("the deadline ends a stream at both ends") {
   CHECK(taken <= kWindow);
 }
 
-TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nobody's leaving") {
+TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nobody's leaving",
+          "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   auto numbers = echo.within(10min).count_up(kEndless, kNever);
@@ -166,7 +168,7 @@ TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nob
   CHECK(test.service->stream_ended);
 }
 
-TEST_CASE("a stream whose reader disconnects stops the server") {
+TEST_CASE("a stream whose reader disconnects stops the server", "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   auto numbers = echo.within(10min).count_up(kEndless, kNever);
@@ -192,7 +194,7 @@ TEST_CASE("a coroutine takes a stream without a thread that waits") {
   CHECK_THROWS_AS(failed.get_future().get(), ::test::DivisionByZero);
 }
 
-TEST_CASE("streams of one client do not disturb each other") {
+TEST_CASE("streams of one client do not disturb each other", "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
   auto one = echo.count_up(100, kNever);

@@ -41,7 +41,7 @@ TEST_CASE(
   hang.release();
 }
 
-TEST_CASE("the next CSP begins when the first is late, and the late one may still win") {
+TEST_CASE("the next CSP begins when the first is late, and the late one may still win", "[wire]") {
   Hang hang, other_hang;
   Office office;
   const auto late = office.add("late", Place::Outside, hang.script(), declared("50", "0.9"));
@@ -74,7 +74,7 @@ TEST_CASE("where the first is not late no other CSP begins") {
   CHECK(second->calls == 0);
 }
 
-TEST_CASE("a vote ends as soon as enough agree") {
+TEST_CASE("a vote ends as soon as enough agree", "[wire]") {
   Hang hang;
   Office office;
   office.add("a", Place::Inside, say("yes"), declared("10", "0.5"));
@@ -151,7 +151,7 @@ TEST_CASE("the answer is there at the deadline although every CSP hangs") {
   CHECK(eventually([&] { return !office.owner->head().degraded(); }));
 }
 
-TEST_CASE("who hangs in another process is told") {
+TEST_CASE("who hangs in another process is told", "[wire]") {
   Hang hang;
   std::vector<std::string> told;
   HeadOptions options;
@@ -164,7 +164,8 @@ TEST_CASE("who hangs in another process is told") {
   hang.release();
 }
 
-TEST_CASE("of a stream of results the last one counts, and at the deadline the last so far") {
+TEST_CASE("of a stream of results the last one counts, and at the deadline the last so far",
+          "[wire]") {
   const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
   const Place place = GENERATE(Place::Inside, Place::Outside);
   Hang hang;

@@ -31,7 +31,7 @@ struct FirstFails {
 
 }  // namespace
 
-TEST_CASE("a CSP that throws is followed by the next best") {
+TEST_CASE("a CSP that throws is followed by the next best", "[wire]") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
   FirstFails team(place, crash());
   CHECK(team.office.perform(Office::task(), 10s) == "second did it");
@@ -62,7 +62,7 @@ TEST_CASE("a CSP whose result is rejected is followed by the next best") {
   CHECK(team.office.record.attempts[0].text == "it is wrong did it");
 }
 
-TEST_CASE("a CSP that hangs is given up in time for the next best") {
+TEST_CASE("a CSP that hangs is given up in time for the next best", "[wire]") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
   Hang hang;
   FirstFails team(place, hang.script());

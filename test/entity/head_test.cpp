@@ -76,7 +76,7 @@ struct Slowest final : SelectionStrategy {
 
 }  // namespace
 
-TEST_CASE("the Head selects by declared quality among those that fit into the time") {
+TEST_CASE("the Head selects by declared quality among those that fit into the time", "[wire]") {
   Office office;
   office.add("thorough", Place::Outside, answer_as("thorough"), declared("2000", "0.9"));
   office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
@@ -182,7 +182,7 @@ TEST_CASE("a default that the Head does not know is refused with those that it k
                         Catch::Contains("there are: declared, fixed_order, learned, slowest"));
 }
 
-TEST_CASE("a client's session selects by the strategy that it asked for") {
+TEST_CASE("a client's session selects by the strategy that it asked for", "[wire]") {
   Office office;
   office.owner->head().add_strategy(std::make_shared<Slowest>());
   office.add("slow", Place::Outside, answer_as("slow"), declared("60000", "0.1"));
@@ -223,7 +223,7 @@ TEST_CASE("who works for the Head now is known while it works") {
   CHECK(office.owner->head().running().empty());
 }
 
-TEST_CASE("who works for the Head works where its description says") {
+TEST_CASE("who works for the Head works where its description says", "[wire]") {
   Office office;
   Hang hang;
   const auto worker = std::make_shared<ScriptedWorker>(hang.script());

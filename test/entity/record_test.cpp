@@ -210,7 +210,7 @@ TEST_CASE("what a Head has learned it knows again after a restart") {
   CHECK(again.owner->head().history().to_json() == learned);
 }
 
-TEST_CASE("who reads the topic of decisions gets each as it is made") {
+TEST_CASE("who reads the topic of decisions gets each as it is made", "[wire]") {
   Mixed mixed({});
   const auto onlooker = make_client();
   std::mutex mutex;

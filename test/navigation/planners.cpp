@@ -21,8 +21,10 @@ using AE_navigator::NoRoute;
 using AE_navigator::Problem;
 using AE_navigator::Route;
 
-TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whatever terrain") {
-  for (const std::uint32_t seed : {1u, 2u, 3u, 7u, 20u, 34u}) {
+namespace {
+
+void check_every_planner(std::initializer_list<std::uint32_t> seeds) {
+  for (const std::uint32_t seed : seeds) {
     Demo demo(seed);
     demo.problem.time_limit_ms = 20000;
     for (const std::string name : {"AStar", "RRTConnect"}) {
@@ -38,8 +40,8 @@ TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whate
   }
 }
 
-TEST_CASE("Routes keep clear in their turns too, wide or narrow, close above the ground or not") {
-  for (const std::uint32_t seed : {1u, 3u, 6u}) {
+void check_turns(std::initializer_list<std::uint32_t> seeds) {
+  for (const std::uint32_t seed : seeds) {
     for (const double speed : {40.0, 60.0, 100.0}) {
       for (const double height : {60.0, 150.0}) {
         Demo demo(seed);
@@ -51,6 +53,24 @@ TEST_CASE("Routes keep clear in their turns too, wide or narrow, close above the
       }
     }
   }
+}
+
+}  // namespace
+
+TEST_CASE("Every planner's routes are valid in the eyes of the checker, on whatever terrain") {
+  check_every_planner({1u, 2u});
+}
+
+TEST_CASE("Every planner's routes are valid on further terrains", "[long]") {
+  check_every_planner({3u, 7u, 20u, 34u});
+}
+
+TEST_CASE("Routes keep clear in their turns too, wide or narrow, close above the ground or not") {
+  check_turns({1u});
+}
+
+TEST_CASE("Routes keep clear in their turns on further terrains", "[long]") {
+  check_turns({3u, 6u});
 }
 
 TEST_CASE("Samplers give valid routes whatever their seed") {

@@ -181,8 +181,10 @@ TEST_CASE("Every violation names its place and its figure") {
   CHECK_THAT(text, Catch::Contains("the limit is 12.00 degrees"));
 }
 
-TEST_CASE("A route spoilt at random is refused, wherever it is hit and however honest its claims") {
-  std::mt19937 random(99);
+namespace {
+
+void spoil_at_random(int rounds, std::uint32_t seed) {
+  std::mt19937 random(seed);
   const auto any = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
@@ -213,7 +215,7 @@ TEST_CASE("A route spoilt at random is refused, wherever it is hit and however h
         w.insert(w.begin() + static_cast<std::ptrdiff_t>(i) + 1, back);
       },
   };
-  for (int round = 0; round < 240; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     Route route = good_route();
     const std::size_t i = 1 + random() % (route.waypoints.size() - 2);
     const std::size_t way = static_cast<std::size_t>(round) % ways.size();
@@ -227,3 +229,11 @@ TEST_CASE("A route spoilt at random is refused, wherever it is hit and however h
     CHECK_FALSE(check_route(demo().problem, route, demo().ground).empty());
   }
 }
+
+}  // namespace
+
+TEST_CASE("A route spoilt at random is refused, wherever it is hit and however honest its claims") {
+  spoil_at_random(48, 99);
+}
+
+TEST_CASE("Many routes spoilt at random are refused", "[long]") { spoil_at_random(240, 7); }
