@@ -14,6 +14,7 @@
 #include "grids/compare_grids.hpp"
 #include "harness/goals.hpp"
 #include "harness/private_network.hpp"
+#include "recording/compare_recording.hpp"
 #include "report/goals.hpp"
 #include "report/report.hpp"
 #include "report/sections.hpp"
@@ -28,6 +29,8 @@ struct Plan {
   CallPlan ways;
   RivalPlan rivals;
   CallPlan idle_clients;
+  CallPlan recorded_calls;
+  TopicPlan recorded_topics;
   HeadPlan head;
   FindPlan find;
   std::size_t cold_starts;
@@ -50,6 +53,8 @@ Plan full_plan() {
           ways,
           {sizes, 15, 400, 320, 1000, 200, 3000},
           {{{64, 300}}, 60},
+          {{{64, 300}, {1024, 300}, {65'536, 100}}, 40},
+          {{{64, 5000}, {65'536, 500}, {1'048'576, 60}}, 10},
           {300, 60},
           {200, 20},
           20,
@@ -70,6 +75,8 @@ Plan quick_plan() {
           {sizes, 1},
           {sizes, 1, 5, 32, 64, 5, 10},
           {{{64, 3}}, 1},
+          {{{64, 3}}, 1},
+          {{{64, 20}}, 1},
           {20, 2},
           {3, 1},
           1,
@@ -117,6 +124,14 @@ const std::vector<Part> kParts{
     {"head", [](Configurations& all, const Plan& plan) { return compare_head(all, plan.head); }},
     {"idle_clients", [](Configurations& all,
                         const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
+    {"recorded_calls",
+     [](Configurations& all, const Plan& plan) {
+       return compare_recorded_calls(all, plan.recorded_calls);
+     }},
+    {"recorded_topics",
+     [](Configurations& all, const Plan& plan) {
+       return compare_recorded_topics(all, plan.recorded_topics);
+     }},
     {"find_service",
      [](Configurations& all, const Plan& plan) { return compare_find_service(all, plan.find); }},
     {"cold_starts", [](Configurations& all,

@@ -74,6 +74,7 @@ void check_description(const discovery::ServiceDescription& description, const G
   }
   check_count("bases", description.bases.size(), kMaxBases);
   check_count("operations", description.operations.size(), kMaxOperations);
+  check_count("members of types that may grow", description.growing.size(), kMaxGrowing);
   check_count("subcomponents", description.subcomponents.size(), kMaxBases);
   check_count("attributes", description.attributes.size(), kMaxAttributes);
   check_name("its system", description.system);
@@ -101,7 +102,8 @@ std::size_t weight_of(const discovery::ServiceDescription& description) {
   constexpr std::size_t kPlace = 512;
   constexpr std::size_t kText = 64;
   std::size_t weight = kEntry + description.component.size() + description.service.size() +
-                       description.entity.size() + description.owner.size();
+                       description.entity.size() + description.owner.size() +
+                       description.growing.size() * sizeof(discovery::GrowingMember);
   for (const auto& base : description.bases) weight += kPlace + 4 * base.size();
   for (const auto& part : description.subcomponents) weight += kText + part.size();
   for (const auto& operation : description.operations) weight += kText + operation.name.size();

@@ -42,6 +42,7 @@ bool is_name(const std::string& text);
 inline constexpr std::size_t kMaxDescriptionBytes = 64u << 10;
 inline constexpr std::size_t kMaxBases = 64;
 inline constexpr std::size_t kMaxOperations = 1024;
+inline constexpr std::size_t kMaxGrowing = 1024;  // members of types that may grow
 inline constexpr std::size_t kMaxAttributes = 256;
 
 /// Throws Refused where no participant may describe a service so, or where this one may not.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "brokerless_discovery/versions.hpp"
 #include "core/interface_name.hpp"
 #include "core/suggestion.hpp"
 #include "skein/discovery.idl.hpp"
@@ -46,21 +47,10 @@ void canonicalise(ServiceDescription& description) {
   description.service = canonical_interface_name(description.service);
   for (std::string& base : description.bases) base = canonical_interface_name(base);
   for (std::string& part : description.subcomponents) part = canonical_interface_name(part);
+  sort_growing(description);
 }
 
 }  // namespace
-
-const OperationInfo* missing_operation(const InterfaceInfo& client,
-                                       const ServiceDescription& provider) {
-  for (const OperationInfo& operation : client.operations) {
-    const bool known = std::any_of(
-        provider.operations.begin(), provider.operations.end(), [&](const auto& digest) {
-          return digest.hash == operation.hash && digest.signature == operation.signature;
-        });
-    if (!known) return &operation;
-  }
-  return nullptr;
-}
 
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {
   const Guid provider = provider_of(description);
@@ -192,7 +182,7 @@ std::optional<Guid> Table::writer_of(const Guid& provider) const {
 bool Table::suits(const Entry& entry, const Query& query) {
   const ServiceDescription& description = *entry.description;
   return !entry.suspect && visible(description, query) &&
-         !(query.client && missing_operation(*query.client, description)) &&
+         !(query.client && !understands(*query.client, description)) &&
          std::all_of(query.constraints.begin(), query.constraints.end(),
                      [&](const Constraint& constraint) { return meets(description, constraint); });
 }
@@ -232,8 +222,8 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
   if (!in_system(description, query))
     return "only " + who + " offers it; name that system to use it";
   if (entry.suspect) return who + " has not been heard of for its lease";
-  if (const auto* operation =
-          query.client ? missing_operation(*query.client, description) : nullptr) {
+  const std::string differing = query.client ? difference(*query.client, description) : "";
+  if (!differing.empty()) {
     const std::string wanted = canonical_interface_name(query.client->name);
     const auto names = names_of(description);
     const bool known = std::find(names.begin(), names.end(), wanted) != names.end();
@@ -241,8 +231,8 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
       return who + " offers " + scoped_interface_name(description.service) + ", not " +
              scoped_interface_name(wanted);
     }
-    return who + " offers another version of it: operation '" + std::string(operation->name) +
-           "' is missing there or has another signature; build both sides from the same IDL";
+    return who + " offers another version of it: " + differing +
+           "; build both sides from the same IDL";
   }
   for (const Constraint& constraint : query.constraints) {
     if (!meets(description, constraint))

@@ -160,9 +160,4 @@ class Table {
   bool room_again_ = false;
 };
 
-/// The client's first operation that `provider` lacks or has with another signature; null where it
-/// understands all.
-const OperationInfo* missing_operation(const InterfaceInfo& client,
-                                       const ServiceDescription& provider);
-
 }  // namespace skein::brokerless_discovery

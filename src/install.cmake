@@ -17,7 +17,7 @@ install(TARGETS skein_navigation skein_route_checker LIBRARY DESTINATION ${CMAKE
 install(EXPORT skeinTargets NAMESPACE skein:: DESTINATION ${skein_package})
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/skein DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-foreach(target skein_broker skein_rpc skein_navigation_idl)
+foreach(target skein_idl skein_broker skein_rpc skein_entity skein_navigation_idl)
   get_target_property(generated ${target} SKEIN_IDL_DIRECTORY)
   install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.idl.hpp")
 endforeach()

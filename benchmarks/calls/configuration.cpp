@@ -55,6 +55,21 @@ Configuration Configurations::skein(const std::string& server, const std::string
   return made;
 }
 
+std::vector<std::string> Configurations::recorder_of(const Configuration& skein) {
+  Words command = skein.client;
+  *std::ranges::find(command, "client") = "recorder";
+  return command;
+}
+
+Configuration Configurations::skein_topic(const std::string& vendor, const std::string& receiver) {
+  const std::string domain = next_domain();
+  const auto command = [&](const std::string& role) {
+    return Words{
+        folder_ + "/skein_bench", "peer", "--role", role, "--vendor", vendor, "--domain", domain};
+  };
+  return {receiver + " on " + vendor, command(receiver), command("publisher")};
+}
+
 Configuration Configurations::raw(const std::string& server, const std::string& client) {
   const std::string domain = next_domain();
   return {"raw " + pair_name(server, client),

@@ -38,6 +38,11 @@ class Configurations {
   Configuration skein(const std::string& server, const std::string& client, std::size_t threads = 1,
                       const std::optional<Place>& server_place = {},
                       const std::optional<Place>& client_place = {});
+  /// Records the domain of a Skein configuration (recording/recording_peer.hpp).
+  static std::vector<std::string> recorder_of(const Configuration& skein);
+  /// A Skein publisher as `client`, and as `server` who receives: `recorder` or `counter`, by
+  /// recording/recording_peer.hpp.
+  Configuration skein_topic(const std::string& vendor, const std::string& receiver);
   Configuration raw(const std::string& server, const std::string& client);
   /// The vendor's own API in a way that differs from Skein's: `shared_memory`, `data_sharing`,
   /// `listener` or `polling`, as far as the vendor has it (raw/main.hpp).

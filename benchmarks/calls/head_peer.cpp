@@ -35,15 +35,21 @@ Times timed(std::uint32_t count, Run run) {
 class DirectEcho {
  public:
   Echo::Proxy proxy() const {
-    return Echo::Proxy(rpc::LocalChannel::open(service_, clock_, executor_, {}), 10s);
+    return Echo::Proxy(rpc::LocalChannel::open(service_, clock_, executor_, {}, nullptr), 10s);
   }
 
  private:
+  static rpc::Service::Options options() {
+    rpc::Service::Options options;
+    options.thread = CallThread::Caller;
+    return options;
+  }
+
   const std::shared_ptr<SystemClock> clock_ = std::make_shared<SystemClock>();
   const std::shared_ptr<ThreadExecutor> executor_ = std::make_shared<ThreadExecutor>("direct");
   const std::shared_ptr<rpc::Service> service_ = std::make_shared<rpc::Service>(
       std::make_shared<Echo::Skeleton>(std::make_shared<PlainEcho>()), *executor_, *clock_,
-      rpc::Service::Options{.thread = CallThread::Caller});
+      options());
 };
 
 class StopwatchBody final : public Stopwatch {

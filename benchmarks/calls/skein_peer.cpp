@@ -12,6 +12,7 @@
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
+#include "recording/recording_peer.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 
@@ -216,6 +217,9 @@ int run_skein_peer(const SkeinPeer& peer) {
     if (peer.role == "head") return perform_tasks();
     if (peer.role == "neighbour") return be_neighbour(peer);
     if (peer.role == "bystander") return be_bystander(peer);
+    if (peer.role == "recorder") return record(entity_options(peer));
+    if (peer.role == "counter") return count(entity_options(peer));
+    if (peer.role == "publisher") return publish(entity_options(peer));
     peer.role == "local" ? call_in_process() : call(peer);
   });
 }

@@ -27,6 +27,9 @@ void cyclonedds_neighbour(const RawOptions& options) {
   participant.reader(participant.topic(kLoadTopic), Delivery::Latest);
   participant.writer(participant.topic(kStatisticsTopic), Delivery::BestEffort);
   participant.writer(participant.topic(kDecisionsTopic), Delivery::BestEffort);
+  participant.writer(participant.topic(kCallRecordsTopic));
+  participant.writer(participant.topic(kAnswersTopic));
+  participant.reader(participant.topic(kQuestionsTopic));
   participant.reader(participant.topic(kRequestTopic));
   participant.writer(participant.topic(kReplyTopic));
   dds_delete_listener(listener);

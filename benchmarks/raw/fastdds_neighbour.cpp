@@ -32,6 +32,9 @@ void fastdds_neighbour(const RawOptions& options) {
   participant.reader(kLoadTopic, Delivery::Latest);
   participant.writer(kStatisticsTopic, Delivery::BestEffort);
   participant.writer(kDecisionsTopic, Delivery::BestEffort);
+  participant.writer(kCallRecordsTopic);
+  participant.writer(kAnswersTopic);
+  participant.reader(kQuestionsTopic);
   participant.reader(kRequestTopic);
   participant.writer(kReplyTopic);
   dds::DataWriter* own = participant.writer(kAnnouncementTopic, Delivery::LatestOfTheLiving);

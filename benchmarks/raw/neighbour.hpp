@@ -20,6 +20,9 @@ inline constexpr const char* kLoadTopic = "benchmark_raw_Load";
 inline constexpr const char* kStatisticsTopic = "benchmark_raw_Statistics";
 inline constexpr const char* kDecisionsTopic = "benchmark_raw_Decisions";
 inline constexpr const char* kCallsTopic = "benchmark_raw_Calls";
+inline constexpr const char* kCallRecordsTopic = "benchmark_raw_CallRecords";
+inline constexpr const char* kQuestionsTopic = "benchmark_raw_Questions";
+inline constexpr const char* kAnswersTopic = "benchmark_raw_Answers";
 
 /// The peers that have been heard of, oneself among them. Thread-safe.
 class Census {

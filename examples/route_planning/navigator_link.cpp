@@ -22,6 +22,7 @@ using AE_navigatorI::PlanningStatus;
 using skein::Instant;
 
 constexpr auto kPatience = 20s;
+constexpr auto kReportPatience = 5s;
 // A quick planner runs so often that what it took to load the terrain is forgotten.
 constexpr int kPractice = 12;
 constexpr auto kQuick = 100ms;
@@ -88,13 +89,16 @@ bool NavigatorLink::practise(const std::string& planner, const AE_navigator::Pro
 }
 
 Answer NavigatorLink::ask(const Question& question) {
-  Answer answer = ask_once(question);
+  Question asked = question;
+  Answer answer = ask_once(asked);
   while (!answer.route && !answer.proven && answer.times_asked <= question.repetitions) {
     const int times_asked = answer.times_asked + 1;
-    answer = ask_once(question);
+    // A name of its own, under which the navigator reports this one and not the one before.
+    asked.id = fmt::format("{}, try {}", question.id, times_asked);
+    answer = ask_once(asked);
     answer.times_asked = times_asked;
   }
-  answer.report = navigator_.report(question.id);
+  answer.report = report_of(asked);
   return answer;
 }
 
@@ -118,8 +122,22 @@ Answer NavigatorLink::ask_and_kill(const Question& question, Kill& kill) {
   }
   Answer answer = answer_of(entity_.clock(), [&] { return call.get(); });
   answer.took += kill.planned_for;
-  answer.report = navigator_.report(question.id);
+  answer.report = report_of(question);
   return answer;
+}
+
+// A call whose time is up may end here before it has ended at the navigator, or begun. Empty where
+// the navigator does not report it.
+AE_navigatorI::PlanningReport NavigatorLink::report_of(const Question& question) {
+  const Instant deadline = entity_.clock().now() + kReportPatience;
+  for (;;) {
+    try {
+      return navigator_.report(question.id);
+    } catch (const AE_navigatorI::UnknownRequest&) {
+      if (entity_.clock().now() >= deadline) return {};
+    }
+    std::this_thread::sleep_for(2ms);
+  }
 }
 
 PlanningStatus NavigatorLink::await_planner(Instant deadline) {

@@ -66,6 +66,7 @@ class NavigatorLink {
   Answer ask_once(const Question& question);
   /// Has it plan once; false where it is not available.
   bool practise(const std::string& planner, const AE_navigator::Problem& problem);
+  AE_navigatorI::PlanningReport report_of(const Question& question);
   /// Waits for a planner that is at work for some time.
   AE_navigatorI::PlanningStatus await_planner(skein::Instant deadline);
   void require_killable(const AE_navigatorI::PlanningStatus& status);

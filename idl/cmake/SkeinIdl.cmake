@@ -1,27 +1,29 @@
-# skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …])
+# skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name])
 #
 # Compiles IDL for a target: adds the generated sources to it and the folder of the generated headers to its public
 # include folders (a.idl becomes a.idl.hpp). The flattened IDL for DDS without Skein (a.dds.idl) lies beside them, in the folder
 # that the target's property SKEIN_IDL_DIRECTORY names. A file below one of INCLUDES keeps its path from there: with
-# INCLUDES idl, idl/geo/point.idl becomes geo/point.idl.hpp. Outputs are made anew when the file, what it includes, or
-# the compiler changes. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
+# INCLUDES idl, idl/geo/point.idl becomes geo/point.idl.hpp. NAMESPACE puts all C++ names into a namespace, also those of included files, which must be
+# compiled with the same. Outputs are made anew when the file, what it includes, or the compiler changes. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
 # The same in Skein's own tree and in an installed package.
 get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
-find_program(SKEIN_OMNIIDL omniidl DOC "OMG IDL front end (Debian package omniidl)")
+# The system's Python, which has its packages, whatever else comes first in PATH.
+find_program(SKEIN_IDL_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH DOC "Python with the package lark (Debian: python3-lark)")
 
 function(skein_add_idl)
-  cmake_parse_arguments(PARSE_ARGV 0 IDL "" "TARGET" "FILES;INCLUDES")
+  cmake_parse_arguments(PARSE_ARGV 0 IDL "" "TARGET;NAMESPACE" "FILES;INCLUDES")
   if(IDL_UNPARSED_ARGUMENTS OR NOT IDL_TARGET OR NOT IDL_FILES)
-    message(FATAL_ERROR "skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …]): wrong arguments '${ARGN}'")
+    message(FATAL_ERROR "skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name]): wrong arguments '${ARGN}'")
   endif()
-  if(NOT SKEIN_OMNIIDL)
-    message(FATAL_ERROR "skein_add_idl needs omniidl, which was not found: apt-get install omniidl")
-  endif()
+  _skein_idl_require_lark()
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/${IDL_TARGET}.idl)
   set(outputs)
   set(includes)
-  set(flags -I${SKEIN_IDL_ROOT}/skein)
+  set(flags)
+  if(IDL_NAMESPACE)
+    list(APPEND flags --namespace ${IDL_NAMESPACE})
+  endif()
   foreach(folder IN LISTS IDL_INCLUDES)
     get_filename_component(folder ${folder} ABSOLUTE)
     list(APPEND includes ${folder})
@@ -36,8 +38,7 @@ function(skein_add_idl)
     file(MAKE_DIRECTORY ${folder})
     add_custom_command(
       OUTPUT ${output}.hpp ${output}.cpp ${flattened}
-      COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${SKEIN_OMNIIDL} -p${SKEIN_IDL_ROOT}/compiler -bskein
-              ${flags} -Wbdirectory=${directory},name=${name},depfile=${output}.d ${path}
+      COMMAND ${SKEIN_IDL_PYTHON} -B ${SKEIN_IDL_ROOT}/compiler ${flags} --out ${directory} --depfile ${output}.d ${path}
       DEPENDS ${path}
       DEPFILE ${output}.d
       COMMENT "IDL ${name}"
@@ -54,6 +55,17 @@ function(skein_add_idl)
   target_include_directories(${IDL_TARGET} PUBLIC $<BUILD_INTERFACE:${directory}>)
   set_target_properties(${IDL_TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   set_property(TARGET ${IDL_TARGET} PROPERTY SKEIN_IDL_DIRECTORY ${directory})
+endfunction()
+
+function(_skein_idl_require_lark)
+  get_property(found GLOBAL PROPERTY SKEIN_IDL_HAS_LARK)
+  if(NOT found)
+    execute_process(COMMAND ${SKEIN_IDL_PYTHON} -c "import lark" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+    if(NOT SKEIN_IDL_PYTHON OR failed)
+      message(FATAL_ERROR "skein_add_idl needs the system's Python with lark, which was not found: apt-get install python3-lark")
+    endif()
+    set_property(GLOBAL PROPERTY SKEIN_IDL_HAS_LARK TRUE)
+  endif()
 endfunction()
 
 # A file's path from the first include folder that holds it, else its last part.

@@ -165,7 +165,6 @@ class ProxyBase {
 
   void set_timeout(Duration timeout) { timeout_ = timeout; }
 
- private:
   /// A nested call never outlives the deadline of the outer call.
   CallTime call_time() const {
     const Instant begin = channel_->clock().now();
@@ -173,6 +172,7 @@ class ProxyBase {
     return {begin, outer ? std::min(begin + timeout_, outer->deadline()) : begin + timeout_};
   }
 
+ private:
   std::shared_ptr<Channel> channel_;
   Duration timeout_;
 };

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/detail/abi.hpp"
@@ -20,17 +21,25 @@ class SelectionStrategy;
 /// there is no global one. Not thread-safe.
 class ComponentRegistry {
  public:
-  /// A Body: the public service of an entity, and how many threads run its calls (a mission profile
-  /// may set another number).
+  /// A Body: the public service of an entity.
   struct Body {
     std::shared_ptr<Servant> servant;
+    /// How many threads run its calls; a mission profile may set another number.
     std::size_t threads = 1;
+    /// Called once before the peer reports that it is ready, when its services are provided and
+    /// what it depends on is there. If it throws, the peer ends with that reason. May be empty.
+    std::function<void()> self_test{};
   };
   using BodyFactory = std::function<Body(Entity&, const ParameterValues&)>;
   /// Makes a CSP, which implements a managed interface and knows nothing of entities.
   using CspFactory = std::function<std::shared_ptr<Servant>(const ParameterValues&)>;
   /// Runs a mission to its end; returns the mission's exit code.
   using Mission = std::function<int(Entity&, const ParameterValues&)>;
+
+  ComponentRegistry() = default;
+  /// `arguments`: what its process was given for its components to read.
+  explicit ComponentRegistry(std::vector<std::string> arguments)
+      : arguments_(std::move(arguments)) {}
 
   /// These throw InvalidArgument if the name of the component is taken.
   void add_body(const std::string& component, BodyFactory factory);
@@ -44,6 +53,10 @@ class ComponentRegistry {
   const BodyFactory* find_body(const std::string& component) const;
   const CspFactory* find_csp(const std::string& component) const;
   const Mission* find_mission(const std::string& component) const;
+
+  /// The `<argument>` elements of the process in its mission profile: what follows `--` on the
+  /// command line of `skein peer`.
+  const std::vector<std::string>& arguments() const noexcept { return arguments_; }
 
   /// In the order in which they were added.
   const std::vector<std::shared_ptr<const SelectionStrategy>>& strategies() const noexcept {
@@ -63,6 +76,7 @@ class ComponentRegistry {
  private:
   void refuse_duplicate(const std::string& component) const;
 
+  std::vector<std::string> arguments_;
   std::map<std::string, BodyFactory> bodies_;
   std::map<std::string, CspFactory> csps_;
   std::map<std::string, Mission> missions_;

@@ -139,6 +139,9 @@ class Connector {
   /// it ends with the provider's error.
   std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
 
+  /// What is connected now.
+  std::vector<ConnectionInfo> connections() const;
+
   /// One connection to exactly this provider, without fail-over. Throws Unavailable if it does not
   /// answer within `timeout`, or the error with which it refuses.
   std::shared_ptr<Channel> open_provider(const discovery::ServiceDescription& provider,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ struct EntityOptions {
   std::chrono::microseconds spin{0};
   /// How the Head decides.
   HeadOptions head{};
+  /// Changes what publishers and subscriptions of the topic `name` ask for. Called for each of them
+  /// on the thread that makes it; what it throws goes to who makes it.
+  std::function<void(const std::string& name, TopicQos& qos)> adjust_topic{};
 };
 
 struct ServiceAttribute {
@@ -121,6 +125,12 @@ class Entity {
   /// those of all entities.
   std::vector<introspection::ServiceStatistics> statistics() const;
 
+  /// Calls `report` on the entity's control thread, and so not as long as that thread hangs: with
+  /// what makes no progress, in words (a service all of whose threads are in calls whose deadlines
+  /// are over, a Head that is degraded), or with an empty text. Returns false, and never calls it,
+  /// if that thread has too much to do.
+  bool check_progress(std::function<void(const std::string& stuck)> report);
+
   /// See Connector::connect.
   template <class Interface>
   typename Interface::Proxy connect(const ConnectOptions& options = {}) {
@@ -146,11 +156,11 @@ class Entity {
         {std::string(Interface::interface_info().name), provider, options().name});
   }
 
-  /// Publishes on the topic `name`, in the entity's own system unless `qos` names others. Throws as
-  /// Publisher() does.
+  /// Publishes on the topic `name`, in the entity's own system unless `qos` names others, and with
+  /// what EntityOptions::adjust_topic changes. Throws as Publisher() does.
   template <class T>
   Publisher<T> publisher(const std::string& name, const TopicQos& qos = {}) {
-    return Publisher<T>(participant(), name, with_system(qos));
+    return Publisher<T>(participant(), name, qos_of(name, qos), &topic_register());
   }
 
   /// Subscribes to the topic `name`, likewise. The callback runs on one thread for all
@@ -160,8 +170,8 @@ class Entity {
   Subscription<T> subscription(const std::string& name, const TopicQos& qos = {},
                                typename Subscription<T>::Callback callback = nullptr,
                                SubscriptionOptions options = {}) {
-    return Subscription<T>(participant(), topic_executor(), name, with_system(qos),
-                           std::move(callback), std::move(options));
+    return Subscription<T>(participant(), topic_executor(), name, qos_of(name, qos),
+                           std::move(callback), std::move(options), &topic_register());
   }
 
   Connector& connector() noexcept;
@@ -171,8 +181,11 @@ class Entity {
   dds::Participant& participant() noexcept;
 
  private:
-  TopicQos with_system(TopicQos qos) const;
+  friend class DynamicPublisher;
+  friend class DynamicSubscription;
+  TopicQos qos_of(const std::string& topic, TopicQos qos) const;
   Executor& topic_executor();
+  topics::Register& topic_register() noexcept;
 
   struct Provided;
   struct State;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -23,14 +24,17 @@ struct PublisherCounters {
 
 namespace topics {
 
+class Register;
+
 /// A publisher without its type.
 class TopicWriter {
  public:
   TopicWriter(dds::Participant& participant, const std::string& name, const TopicType& type,
-              const TopicQos& qos);
+              const TopicQos& qos, Register* known);
   ~TopicWriter();
   void publish(const void* value);
   void dispose(const void* value);
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout);
   std::size_t subscribers() const;
   PublisherCounters counters() const;
 
@@ -47,10 +51,12 @@ template <class T>
 class Publisher {
  public:
   /// In the systems that `qos` names, or in the partition "". Throws InvalidArgument for an invalid
-  /// name or QoS, and for a name that the entity already uses with another type.
-  Publisher(dds::Participant& participant, const std::string& name, const TopicQos& qos)
+  /// name or QoS, and for a name that the entity already uses with another type. `known` lists it
+  /// for those who look at the entity, and must outlive it.
+  Publisher(dds::Participant& participant, const std::string& name, const TopicQos& qos,
+            topics::Register* known = nullptr)
       : writer_(std::make_unique<topics::TopicWriter>(participant, name, topics::topic_type<T>(),
-                                                      qos)) {}
+                                                      qos, known)) {}
 
   /// Sends the value to all subscribers that are matched now, and keeps it for late joiners if the
   /// QoS say so. Throws Overloaded if reliable subscribers make no room within `max_blocking`,
@@ -59,6 +65,12 @@ class Publisher {
 
   /// Disposes the instance with this value's key. Throws as publish() does.
   void dispose(const T& value) requires Keyed<T> { writer_->dispose(&value); }
+
+  /// Waits until all reliable subscribers that are matched now have what was published; false where
+  /// they have not by the timeout. Before a publisher goes: what they have not is lost then.
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
+    return writer_->wait_for_acknowledgments(timeout);
+  }
 
   /// Number of subscribers that are matched now.
   std::size_t subscribers() const { return writer_->subscribers(); }

@@ -68,7 +68,7 @@ class PendingStream final : public PendingCall {
   std::function<void(std::uint32_t)> granter_;
 };
 
-/// The results of an operation that `#pragma stream` declares, as they arrive. Move-only;
+/// The results of an operation that `@stream` declares, as they arrive. Move-only;
 /// destroying it cancels the operation. One thread at a time. The deadline of the call applies to
 /// the whole stream. A stream that was moved from throws InvalidArgument.
 ///

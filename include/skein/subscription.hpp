@@ -43,6 +43,8 @@ struct SubscriptionOptions {
 
 namespace topics {
 
+class Register;
+
 /// A subscription without its type.
 class TopicReader {
  public:
@@ -51,7 +53,7 @@ class TopicReader {
 
   TopicReader(dds::Participant& participant, Executor& executor, const std::string& name,
               const TopicType& type, const TopicQos& qos, Consumer consumer,
-              SubscriptionOptions options);
+              SubscriptionOptions options, Register* known);
   ~TopicReader();
   /// Decodes the oldest waiting value into `value`; false if none waits.
   bool take(void* value);
@@ -81,10 +83,11 @@ class Subscription {
 
   /// In the systems that `qos` names, or in the partition "". Throws as Publisher() does.
   Subscription(dds::Participant& participant, Executor& executor, const std::string& name,
-               const TopicQos& qos, Callback callback, SubscriptionOptions options = {})
+               const TopicQos& qos, Callback callback, SubscriptionOptions options = {},
+               topics::Register* known = nullptr)
       : reader_(std::make_unique<topics::TopicReader>(
             participant, executor, name, topics::topic_type<T>(), qos,
-            consumer_of(std::move(callback)), std::move(options))) {}
+            consumer_of(std::move(callback)), std::move(options), known)) {}
 
   /// The oldest waiting value, or nullopt. Like latest(), only for subscriptions without a
   /// callback.

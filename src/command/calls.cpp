@@ -1,12 +1,19 @@
+#include <array>
+#include <cstdint>
 #include <cstdio>
-#include <ctime>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "interruption.hpp"
+#include "json_output.hpp"
+#include "local_time.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
+#include "wrapped.hpp"
 
 namespace skein::command {
 namespace {
@@ -33,31 +40,49 @@ const char* word_of(introspection::CallStep step) {
 
 void print(const introspection::CallEvent& event) {
   constexpr std::uint64_t kSecond = 1'000'000'000;
-  const auto seconds = static_cast<std::time_t>(event.time / kSecond);
-  std::tm local{};
-  localtime_r(&seconds, &local);
-  char time[16];
-  std::strftime(time, sizeof time, "%H:%M:%S", &local);
-  std::printf("%s.%06u %-8s %s %s.%s #%s:%llu%s%s\n", time,
-              static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step),
-              printable(event.entity).c_str(), printable(event.service).c_str(),
-              printable(event.operation).c_str(), Guid{event.client}.hex().c_str(),
-              static_cast<unsigned long long>(event.number), event.error.empty() ? "" : "  ",
-              printable(event.error, kLongestError).c_str());
-  if (event.dropped > 0) {
-    std::printf("  (%s has dropped %llu events)\n", printable(event.entity).c_str(),
-                static_cast<unsigned long long>(event.dropped));
-  }
-  std::fflush(stdout);
+  std::array<char, 32> step{};
+  std::snprintf(step.data(), step.size(), ".%06u %-8s ",
+                static_cast<unsigned>(event.time % kSecond / 1000), word_of(event.step));
+  const std::string line = local_time(event.time, "%H:%M:%S") + step.data() +
+                           printable(event.entity) + " " + printable(event.service) + "." +
+                           printable(event.operation) + " #" + Guid{event.client}.hex() + ":" +
+                           std::to_string(event.number) + (event.error.empty() ? "" : "  ") +
+                           printable(event.error, kLongestError);
+  std::printf("%s\n", folded(line, terminal_width()).c_str());
 }
+
+void print_as_json(const introspection::CallEvent& event) { print_json(json_of(event), false); }
+
+/// Tells of drops where there are more than the last time.
+class Narration {
+ public:
+  explicit Narration(bool json) : print_(json ? print_as_json : print) {}
+
+  void tell(const introspection::CallEvents& batch) {
+    for (const introspection::CallEvent& event : batch.values) print_(event);
+    std::fflush(stdout);
+    if (batch.values.empty()) return;
+    const std::string& entity = batch.values.front().entity;
+    if (std::exchange(dropped_[entity], batch.dropped) >= batch.dropped) return;
+    std::fprintf(stderr, "skein: %s has dropped %llu events\n", printable(entity).c_str(),
+                 static_cast<unsigned long long>(batch.dropped));
+  }
+
+ private:
+  void (*const print_)(const introspection::CallEvent&);
+  std::map<std::string, std::uint64_t> dropped_;
+};
 
 }  // namespace
 
 int show_calls(const CallsArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("calls"));
-  introspection::Reader<introspection::CallEvent> reader(entity.participant(),
-                                                         introspection::kCalls, print);
+  Narration narration(arguments.json);
+  introspection::Reader<introspection::CallEvents> reader(
+      entity.participant(), introspection::kCalls,
+      [&](const introspection::CallEvents& batch) { narration.tell(batch); });
+  tell_watching(arguments);
   interruption.wait(arguments.seconds);
   return 0;
 }

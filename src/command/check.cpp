@@ -1,21 +1,21 @@
-#include "profile/check.hpp"
+#include "check.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
-#include "commands.hpp"
+#include "launch/exit_codes.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/machine_check.hpp"
-#include "launch/supervisor.hpp"
+#include "profile/check.hpp"
 
 namespace skein::command {
-namespace {
 
 std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
-  auto findings = profile::check_file(arguments.profile);
-  // Of a profile with gaps it cannot be said what it needs here.
-  if (profile::has_errors(findings)) return findings;
-  const auto mission = profile::read_mission_profile(arguments.profile);
+  std::vector<profile::Finding> findings;
+  const auto mission = profile::read_and_check(arguments.profile, findings,
+                                               profile::parse_variables(arguments.variables));
+  if (mission.peers.empty()) return findings;
   const bool nobody_here = std::ranges::none_of(
       mission.peers, [&](const auto& peer) { return launch::is_here(peer.host, arguments.host); });
   if (nobody_here) {
@@ -30,14 +30,36 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
   return findings;
 }
 
+namespace {
+
+std::string to_json(const std::vector<profile::Finding>& findings) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& finding : findings) {
+    const bool error = finding.severity == profile::Severity::Error;
+    list.push_back({{"file", finding.where.file},
+                    {"line", finding.where.line},
+                    {"column", finding.where.column},
+                    {"severity", error ? "error" : "warning"},
+                    {"problem", finding.problem},
+                    {"remedy", finding.remedy}});
+  }
+  return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 }  // namespace
 
 int check(const CheckArguments& arguments) {
   const auto findings = findings_of(arguments);
+  const int result = profile::has_errors(findings) ? launch::kConfigurationError : 0;
+  if (arguments.json) {
+    std::printf("%s\n", to_json(findings).c_str());
+    return result;
+  }
   std::fputs(profile::to_text(findings).c_str(), stderr);
-  if (profile::has_errors(findings)) return launch::kConfigurationError;
-  std::printf("%s: complete: every dependency is resolved\n", arguments.profile.c_str());
-  return 0;
+  if (result == 0) {
+    std::printf("%s: complete: every dependency is resolved\n", arguments.profile.c_str());
+  }
+  return result;
 }
 
 }  // namespace skein::command

@@ -2,13 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "onlooker.hpp"
 
-/// The subcommands of `skein`: what the command line in main.cpp tells each, and the function that
-/// runs it. It returns the exit code; main.cpp has one for whatever it throws.
+/// The subcommands of `skein`: what the command line (the folder `line`) tells each, and the
+/// function that runs it. It returns the exit code; line/main.cpp has one for whatever it throws.
 namespace skein::command {
 
 struct BenchArguments {
@@ -43,6 +44,7 @@ int bench_compare(const BenchCompareArguments& arguments);
 
 struct CallsArguments : Onlooker {
   double seconds = 0;  ///< 0: until interrupted.
+  bool json = false;
 };
 
 /// `skein calls`: what happens to each call on a domain, live.
@@ -51,15 +53,19 @@ int show_calls(const CallsArguments& arguments);
 struct CheckArguments {
   std::string profile;
   std::string host;
+  std::vector<std::string> variables;
+  bool json = false;
 };
 
-/// `skein check PROFILE`: everything that is wrong with a mission profile.
+/// `skein check PROFILE`: everything that is wrong with a mission profile, for people on stderr or
+/// as JSON on stdout.
 int check(const CheckArguments& arguments);
 
 struct DecisionsArguments : Onlooker {
   double seconds = 0;  ///< 0: until interrupted.
   std::string log;     ///< Empty: live.
   bool replays = false;
+  bool json = false;
   std::vector<std::string> plugins;
 };
 
@@ -70,30 +76,226 @@ int show_decisions(const DecisionsArguments& arguments);
 struct MissionArguments {
   std::string profile;
   std::vector<std::string> settings;
+  std::vector<std::string> variables;
 };
 
-struct LaunchArguments : MissionArguments {
+struct DoctorArguments {
+  std::string profile;  ///< Empty: this machine alone.
   std::string host;
+  std::optional<std::uint32_t> domain;  ///< Nothing: the profile's, or the environment's.
+  std::string interface;                ///< Empty: the profile's, or loopback.
+  std::vector<std::string> variables;
+  bool json = false;
+};
+
+/// `skein doctor [PROFILE]`: what on this machine keeps peers from speaking to each other. 0 where
+/// nothing does, 1 with warnings, 2 with errors.
+int examine(const DoctorArguments& arguments);
+
+struct PlanArguments : MissionArguments {
+  std::string host;
+  std::vector<std::string> only;  ///< Peers and groups; empty for all.
+};
+
+struct LaunchArguments : PlanArguments {
   bool dry_run = false;
   bool verbose = false;
+  bool ssh = false;        ///< Starts the peers of other hosts, too.
+  bool attended = false;   ///< By another launcher, on stdin and stdout.
+  std::string log_folder;  ///< Empty: the profile's, or that of launch::log_folder().
+  bool no_log = false;
+  std::size_t log_size = 10;  ///< MiB of one file.
+  std::size_t log_files = 5;  ///< For each process.
 };
 
 /// `skein launch PROFILE`: each peer in a process of its own.
 int launch(const LaunchArguments& arguments);
 
+struct AttendArguments : PlanArguments {
+  bool verbose = false;
+};
+
+/// `skein attend PROFILE --host HOST`: that host's part of a mission, started over ssh by `launch
+/// --ssh`.
+int attend(const AttendArguments& arguments);
+
 struct PeerArguments : MissionArguments {
   std::string process;
+  std::vector<std::string> words;  ///< For its components.
 };
 
 /// `skein peer PROFILE PROCESS`: one process of a mission, as `launch` starts it.
 int run_peer(const PeerArguments& arguments);
 
+struct ScriptArguments : PlanArguments {
+  std::string output;   ///< The script's file; empty: stdout.
+  std::string systemd;  ///< A folder for units of systemd, instead of a script.
+};
+
+/// `skein script PROFILE`: the mission as a shell script, or as units of systemd.
+int write_script(const ScriptArguments& arguments);
+
+struct GraphArguments : Onlooker {
+  double seconds = 1.5;
+  std::string format = "dot";
+  bool json = false;   ///< As the format json.
+  bool tools = false;  ///< Skein's commands, too.
+};
+
+/// `skein graph`: who speaks to whom on a domain, for Graphviz, Mermaid or programs.
+int draw_graph(const GraphArguments& arguments);
+
+struct PeersArguments : Onlooker {
+  double seconds = 1.5;
+  bool json = false;
+};
+
+/// `skein peers`: who is on a domain now.
+int list_peers(const PeersArguments& arguments);
+
+struct RunningArguments {
+  std::string profile;
+  std::vector<std::string> variables;
+  std::string host;
+};
+
+struct RestartArguments : RunningArguments {
+  std::string process;
+};
+
+/// `skein restart PROFILE PROCESS`: the launcher of a mission starts one of its processes anew.
+int restart_process(const RestartArguments& arguments);
+
+struct StatusArguments : RunningArguments {
+  bool json = false;
+};
+
+/// `skein status PROFILE`: what the launcher of a mission knows of its processes.
+int show_status(const StatusArguments& arguments);
+
 struct ServicesArguments : Onlooker {
   double seconds = 1.5;
   bool statistics = false;
+  bool json = false;
 };
 
 /// `skein services`: what is provided on a domain now.
 int list_services(const ServicesArguments& arguments);
+
+struct CallArguments : Onlooker {
+  std::string name;
+  std::string operation;
+  std::string values;    ///< JSON; `-`: standard input.
+  std::string system;    ///< Empty: any.
+  double within = 5;     ///< Seconds.
+  bool example = false;  ///< Print arguments, and call nothing.
+  double seconds = 5;
+  bool json = false;
+};
+
+/// `skein call`: an operation of a service, by its description alone; or an example of its
+/// arguments. 1 where it ends with an exception that its interface declares.
+int call(const CallArguments& arguments);
+
+struct DescribeArguments : Onlooker {
+  std::string name;
+  double seconds = 1.5;
+  bool json = false;
+};
+
+/// `skein describe`: the IDL of a service or a topic, as its provider or publisher tells it.
+int describe(const DescribeArguments& arguments);
+
+struct TopicsArguments : Onlooker {
+  double seconds = 1.5;
+  bool json = false;
+};
+
+/// `skein topics`: who publishes and subscribes to what.
+int list_topics(const TopicsArguments& arguments);
+
+struct TopicArguments : Onlooker {
+  std::string topic;
+  double wait = 5;     ///< Until the topic is there.
+  double seconds = 0;  ///< 0: until interrupted.
+  std::uint64_t count = 0;
+  bool json = false;
+};
+
+/// `skein echo TOPIC`: its values as they come. 1 where fewer come than it is to end after.
+int echo(const TopicArguments& arguments);
+
+/// `skein rate TOPIC`: how often values come, how evenly, and how large they are.
+int show_rate(const TopicArguments& arguments);
+
+struct PublishArguments : TopicArguments {
+  std::string value;  ///< JSON; `-`: standard input, one value a line.
+  double rate = 0;    ///< Values a second; 0: one alone.
+};
+
+/// `skein publish TOPIC VALUE`. Throws Interrupted where a signal comes before all is published.
+int publish(const PublishArguments& arguments);
+
+struct TopArguments : Onlooker {
+  double every = 1;  ///< Seconds.
+  bool once = false;
+  bool json = false;
+  bool tools = false;  ///< Skein's commands, too.
+};
+
+/// `skein top`: peers, services and decisions of a domain, on a whole screen.
+int show_top(const TopArguments& arguments);
+
+struct ViewArguments : Onlooker {
+  std::uint16_t port = 8765;
+  std::string token;  ///< Empty: a random one.
+  std::vector<std::string> origins;
+  bool calls = false;  ///< Clients may call services.
+};
+
+/// `skein view`: shows a domain to Lichtblick and Foxglove, until interrupted.
+int serve_view(const ViewArguments& arguments);
+
+struct RecordArguments : Onlooker {
+  std::string output;  ///< Empty: a name with the time.
+  std::vector<std::string> topics;
+  double seconds = 0;  ///< 0: until interrupted.
+  std::uint64_t split_megabytes = 0;
+  bool only_topics = false;
+  bool json = false;
+};
+
+/// `skein record`: topics, calls and decisions of a mission, in a file.
+int record(const RecordArguments& arguments);
+
+struct ReplayArguments : Onlooker {
+  std::string file;
+  std::vector<std::string> topics;
+  double rate = 1;
+  bool decisions = false;
+  bool json = false;
+  std::vector<std::string> plugins;
+};
+
+/// `skein replay FILE`: publishes a recording's topics again, or makes its decisions again. Throws
+/// Interrupted as publish().
+int replay_recording(const ReplayArguments& arguments);
+
+struct InfoArguments {
+  std::string file;
+  bool json = false;
+};
+
+/// `skein info FILE`: what a recording has. 1 where it holds no messages.
+int show_recording(const InfoArguments& arguments);
+
+struct ExportArguments {
+  std::string file;
+  std::string perfetto;
+  bool json = false;
+};
+
+/// `skein export FILE --perfetto OUTPUT`: a recording for other viewers.
+int export_recording(const ExportArguments& arguments);
 
 }  // namespace skein::command

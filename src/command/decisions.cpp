@@ -1,18 +1,23 @@
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <vector>
 
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "interruption.hpp"
+#include "json_output.hpp"
+#include "recording/reader.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/decision.hpp"
+#include "skein/detail/codec.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
+#include "wrapped.hpp"
 
 namespace skein::command {
 namespace {
@@ -20,15 +25,18 @@ namespace {
 constexpr std::size_t kLongestDifference = 4096;
 
 void print(const introspection::Decision& record) {
-  std::fputs(explain(record).c_str(), stdout);
+  std::fputs(folded(explain(record), terminal_width()).c_str(), stdout);
   std::fflush(stdout);
 }
+
+void print_as_json(const introspection::Decision& record) { print_json(json_of(record), false); }
 
 void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity(arguments.entity_options("decisions"));
-  introspection::Reader<introspection::Decision> reader(entity.participant(),
-                                                        introspection::kDecisions, print);
+  introspection::Reader<introspection::Decision> reader(
+      entity.participant(), introspection::kDecisions, arguments.json ? print_as_json : print);
+  tell_watching(arguments);
   interruption.wait(arguments.seconds);
 }
 
@@ -64,26 +72,70 @@ introspection::Decision parse(const std::string& line, const std::string& place)
   }
 }
 
+using Visit = std::function<void(const introspection::Decision& record, const std::string& place)>;
+
+void for_each_in_log(const std::string& log, const Visit& visit) {
+  std::ifstream file(log);
+  if (!file) throw InvalidArgument("the log of decisions '" + log + "' cannot be read");
+  std::size_t count = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::string place = log + ":" + std::to_string(++count);
+    visit(parse(line, place), place);
+  }
+}
+
+void for_each_in_recording(const std::string& file, const Visit& visit) {
+  const recording::Reader reader(file);
+  recording::Selection selection;
+  selection.topics = {introspection::kDecisions.name};
+  auto messages = reader.messages(selection);
+  std::size_t count = 0;
+  while (const auto message = messages.next()) {
+    visit(idl::decode_message<introspection::Decision>(message->data),
+          file + ", decision " + std::to_string(++count));
+  }
+}
+
+void print_difference(const introspection::Decision& record, const std::string& place,
+                      const std::string& what, bool json) {
+  if (json) {
+    print_json({{"place", place},
+                {"decision", record.number},
+                {"entity", record.entity},
+                {"difference", what}},
+               false);
+    return;
+  }
+  std::printf("%s: decision %llu of %s: %s\n", place.c_str(),
+              static_cast<unsigned long long>(record.number), printable(record.entity).c_str(),
+              printable(what, kLongestDifference).c_str());
+}
+
+void print_counts(std::size_t count, std::size_t different, bool json) {
+  if (json) {
+    print_json({{"decisions", count}, {"different", different}}, false);
+  } else {
+    std::printf("%zu decisions, %zu come out differently\n", count, different);
+  }
+}
+
 // 0 where every decision comes out again; 1 otherwise.
 int read(const DecisionsArguments& arguments) {
-  std::ifstream file(arguments.log);
-  if (!file) throw InvalidArgument("the log of decisions '" + arguments.log + "' cannot be read");
   const StrategyFactory strategies = strategies_of(arguments);
   std::size_t count = 0, different = 0;
-  for (std::string line; std::getline(file, line);) {
-    const std::string place = arguments.log + ":" + std::to_string(++count);
-    const introspection::Decision record = parse(line, place);
+  const auto read_one = [&](const introspection::Decision& record, const std::string& place) {
+    ++count;
     if (!arguments.replays) {
-      print(record);
+      arguments.json ? print_as_json(record) : print(record);
     } else if (const std::string what = difference(record, strategies); !what.empty()) {
       ++different;
-      std::printf("%s: decision %llu of %s: %s\n", place.c_str(),
-                  static_cast<unsigned long long>(record.number), printable(record.entity).c_str(),
-                  printable(what, kLongestDifference).c_str());
+      print_difference(record, place, what, arguments.json);
     }
-  }
+  };
+  arguments.log.ends_with(".mcap") ? for_each_in_recording(arguments.log, read_one)
+                                   : for_each_in_log(arguments.log, read_one);
   if (!arguments.replays) return 0;
-  std::printf("%zu decisions, %zu come out differently\n", count, different);
+  print_counts(count, different, arguments.json);
   return different == 0 ? 0 : 1;
 }
 

@@ -1,132 +1,180 @@
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
-#include <filesystem>
+#include <cstring>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "check.hpp"
 #include "commands.hpp"
-#include "core/printable.hpp"
 #include "launch/address_space.hpp"
+#include "launch/attended_run.hpp"
+#include "launch/environment_record.hpp"
+#include "launch/exit_codes.hpp"
 #include "launch/machine_check.hpp"
 #include "launch/mission_claim.hpp"
+#include "launch/mission_log.hpp"
 #include "launch/peer.hpp"
 #include "launch/supervisor.hpp"
-#include "profile/check.hpp"
+#include "mission_plan.hpp"
+#include "narrator.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
 namespace {
 
-profile::MissionProfile read(const MissionArguments& arguments) {
-  auto mission = profile::read_checked_profile(arguments.profile);
-  for (const std::string& setting : arguments.settings) profile::apply_setting(mission, setting);
-  return mission;
-}
-
-std::vector<std::string> command_line(const MissionArguments& arguments,
-                                      const profile::PeerProfile& peer,
-                                      const profile::CspProfile* csp) {
-  std::vector<std::string> argv{std::filesystem::read_symlink("/proc/self/exe").string(), "peer",
-                                arguments.profile, csp ? peer.name + "/" + csp->name : peer.name};
-  for (const std::string& setting : arguments.settings) {
-    argv.push_back("--set");
-    argv.push_back(setting);
-  }
-  return argv;
-}
-
-void write(std::FILE* stream, const std::string& line) {
-  std::fwrite(line.data(), 1, line.size(), stream);
-  std::fflush(stream);
-}
-
-/// Lines and events as people want to read them: the mission's own text as it is, other peers'
-/// lines with their names, and of the events those that are out of order.
-class Narrator {
+/// The mission's log, which may be none.
+class Journal {
  public:
-  Narrator(const launch::LaunchPlan& plan, bool verbose) : verbose_(verbose) {
-    for (const launch::ChildPlan& child : plan.children) {
-      if (child.runs_mission) mission_ = child.name;
-    }
-  }
+  Journal(std::optional<launch::MissionLog> log, std::shared_ptr<Narrator> narrator)
+      : log_(std::move(log)), narrator_(std::move(narrator)) {}
 
-  void tell_line(std::string_view child, std::string_view line) const {
-    std::string text = child == mission_ ? "" : std::string(child) + " | ";
-    write(stdout, text.append(printable(line, line.size())) + "\n");
+  void add_line(std::string_view process, std::string_view line) {
+    if (log_ && !log_->add_line(process, line)) complain();
   }
-
-  void tell(const launch::ChildEvent& event) {
-    if (event.state == launch::ChildState::Waiting) restarted_.insert(event.child);
-    if (verbose_ || !in_order(event)) {
-      write(stderr,
-            "* " + (event.child.empty() ? "mission" : event.child) + ": " + event.text + "\n");
-    }
+  void add_event(const launch::ChildEvent& event) {
+    if (log_ && !log_->add_event(event)) complain();
   }
+  void add_event(std::string_view text) {
+    if (log_ && !log_->add_event(text)) complain();
+  }
+  /// `; the logs are in FOLDER`.
+  std::string place() const { return log_ ? "; the logs are in " + log_->folder().string() : ""; }
 
  private:
-  bool in_order(const launch::ChildEvent& event) const {
-    using launch::ChildState;
-    // Without the mission's own text nothing else would tell that it flies.
-    if (event.child.empty()) return !mission_.empty();
-    switch (event.state) {
-      case ChildState::Starting:
-      case ChildState::Ready:
-        return !restarted_.contains(event.child);
-      case ChildState::Ended:
-      case ChildState::Terminated:
-        return true;
-      default:
-        return false;
-    }
+  void complain() const {
+    narrator_->tell_error("* mission: the logs in " + log_->folder().string() +
+                          " cannot be written: " + std::strerror(errno));
   }
 
-  const bool verbose_;
-  std::string mission_;
-  std::set<std::string> restarted_;
+  std::optional<launch::MissionLog> log_;
+  std::shared_ptr<Narrator> narrator_;
 };
 
-launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator) {
+/// A folder that somebody named must be there; the default one need not.
+std::optional<launch::MissionLog> make_log(const LaunchArguments& arguments,
+                                           const profile::MissionProfile& mission,
+                                           Narrator& narrator) {
+  const launch::RotatingFile::Limits limits{arguments.log_size << 20, arguments.log_files};
+  const std::string named = arguments.log_folder.empty() ? mission.logs : arguments.log_folder;
+  if (arguments.no_log) return std::nullopt;
+  if (!named.empty()) return std::optional<launch::MissionLog>(std::in_place, named, limits);
+  const auto usual = launch::log_folder(mission);
+  try {
+    if (!usual.empty()) return std::optional<launch::MissionLog>(std::in_place, usual, limits);
+  } catch (const Unavailable& error) {
+    narrator.tell_error(std::string("* mission: keeps no logs: ") + error.what());
+  }
+  return std::nullopt;
+}
+
+launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
+                                  const std::shared_ptr<Journal>& journal) {
   launch::SupervisorOptions options;
-  options.on_output = [narrator](std::string_view child, std::string_view line) {
+  options.on_output = [narrator, journal](std::string_view child, std::string_view line) {
+    journal->add_line(child, line);
     narrator->tell_line(child, line);
   };
-  options.on_event = [narrator](const launch::ChildEvent& event) { narrator->tell(event); };
+  options.on_event = [narrator, journal](const launch::ChildEvent& event) {
+    journal->add_event(event);
+    narrator->tell(event);
+  };
   return options;
+}
+
+/// Of a broken profile all is told at once, as by `check`.
+profile::MissionProfile read_or_tell_all(const LaunchArguments& arguments) {
+  try {
+    return read_mission(arguments);
+  } catch (const profile::DescriptionError&) {
+    CheckArguments check;
+    check.profile = arguments.profile;
+    check.host = arguments.host;
+    check.variables = arguments.variables;
+    const auto findings = findings_of(check);
+    if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+    throw;
+  }
+}
+
+/// Throws DescriptionError where this machine lacks something that is to be started.
+void demand_machine(profile::MissionProfile mission, const launch::LaunchPlan& plan,
+                    const std::string& host) {
+  auto findings = launch::check_machine(mission, host);
+  std::erase_if(mission.peers, [&](const profile::PeerProfile& peer) {
+    return std::ranges::none_of(plan.children,
+                                [&](const auto& child) { return child.name == peer.name; });
+  });
+  const auto more = launch::check_plugins(mission, host);
+  findings.insert(findings.end(), more.begin(), more.end());
+  if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+}
+
+/// Last of all, where it is read.
+void tell_failure(Narrator& narrator, const launch::LaunchResult& result,
+                  const std::string& place) {
+  narrator.tell_error("skein: " + result.reason);
+  if (!result.first_fault.empty())
+    narrator.tell_error("skein: the first fault was, " + result.first_fault);
+  if (!place.empty())
+    narrator.tell_error("skein: exit code " + std::to_string(result.exit_code) + place);
+}
+
+/// The exit code, after all was told.
+int with_output_checked(Narrator& narrator, int code) {
+  const std::string loss = narrator.finish();
+  if (loss.empty()) return code;
+  narrator.tell_error("skein: the output could not be written: " + loss);
+  return code == 0 ? launch::kOutputLost : code;
+}
+
+/// For the launcher on another host, which keeps the logs.
+int run_for_another(const launch::LaunchPlan& plan, const launch::MissionClaim& claim,
+                    const profile::MissionProfile& mission) {
+  launch::SupervisorOptions options;
+  options.requests = claim.requests();
+  return launch::run_attended(plan, std::move(options), hello_of(mission));
 }
 
 }  // namespace
 
 int launch(const LaunchArguments& arguments) {
-  const profile::MissionProfile mission = read(arguments);
-  const auto plan = launch::make_launch_plan(
-      mission,
-      [&](const profile::PeerProfile& peer, const profile::CspProfile* csp) {
-        return command_line(arguments, peer, csp);
-      },
-      arguments.host);
+  const profile::MissionProfile mission = read_or_tell_all(arguments);
+  auto plan = plan_of(mission, arguments);
+  if (arguments.ssh) add_other_hosts(plan, mission, arguments);
   if (arguments.dry_run) {
     std::fputs(launch::to_text(plan).c_str(), stdout);
     return 0;
   }
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
-  const auto findings = launch::check_machine(mission, arguments.host);
-  if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+  demand_machine(mission, plan, arguments.host);
   launch::demand_address_space();
   const launch::MissionClaim claim(mission, arguments.host);
-  for (const std::string& name : plan.elsewhere)
-    write(stderr, "* mission: " + name + " is not started here\n");
+  // Who reads what it says may go; the mission goes on. Its processes get the default back.
+  std::signal(SIGPIPE, SIG_IGN);
+  if (arguments.attended) return run_for_another(plan, claim, mission);
   const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
-  launch::Supervisor supervisor(plan, told_by(narrator));
+  for (const std::string& name : plan.elsewhere)
+    narrator->tell_error("* mission: " + name + " is not started here");
+  const auto journal = std::make_shared<Journal>(make_log(arguments, mission, *narrator), narrator);
+  for (const std::string& fact : launch::environment_record(mission, SKEIN_VERSION))
+    journal->add_event(fact);
+  auto options = told_by(narrator, journal);
+  options.requests = claim.requests();
+  launch::Supervisor supervisor(plan, std::move(options));
   const launch::LaunchResult outcome = supervisor.run();
-  if (outcome.exit_code != 0) write(stderr, "skein: " + outcome.reason + "\n");
-  return outcome.exit_code;
+  journal->add_event("exit code: " + std::to_string(outcome.exit_code) +
+                     (outcome.first_fault.empty() ? "" : "; first fault: " + outcome.first_fault));
+  if (outcome.exit_code != 0) tell_failure(*narrator, outcome, journal->place());
+  return with_output_checked(*narrator, outcome.exit_code);
 }
 
 int run_peer(const PeerArguments& arguments) {
-  ComponentRegistry registry;
-  return launch::run_process(read(arguments), arguments.process, registry);
+  ComponentRegistry registry(arguments.words);
+  return launch::run_process(read_mission(arguments), arguments.process, registry);
 }
 
 }  // namespace skein::command

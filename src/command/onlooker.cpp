@@ -3,16 +3,24 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
+#include "core/printable.hpp"
 #include "launch/address_space.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/peer.hpp"
+#include "missions_elsewhere.hpp"
 #include "profile/mission_profile.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
 namespace {
+
+constexpr std::size_t kLongestError = 4096;
 
 /// As a peer of this host speaks: one with an interface, where there is one.
 dds::Network network_of(const profile::MissionProfile& mission, const std::string& host) {
@@ -25,28 +33,78 @@ dds::Network network_of(const profile::MissionProfile& mission, const std::strin
   return launch::network_of(mission, *chosen);
 }
 
+std::uint32_t domain_of_environment() {
+  const char* const text = std::getenv(kDomainVariable);
+  if (!text || *text == '\0') return 0;
+  std::uint32_t domain = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, domain);
+  if (error == std::errc() && stop == end) return domain;
+  throw InvalidArgument(std::string(kDomainVariable) + " is '" + text +
+                        "', which is no number of a domain");
+}
+
+int fail(const Onlooker& onlooker, const Error& error, int code) {
+  const std::uint32_t domain = onlooker.watched_domain();
+  std::string text = error.what();
+  const std::string place = "domain " + std::to_string(domain);
+  if (text.find(place) == std::string::npos) text += "; it looked on " + place;
+  const std::string elsewhere = missions_elsewhere(domain);
+  if (!elsewhere.empty()) text += "; " + elsewhere;
+  std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
+  return code;
+}
+
 }  // namespace
 
 std::uint32_t Onlooker::watched_domain() const {
-  if (profile.empty()) return domain;
-  return static_cast<std::uint32_t>(profile::read_mission_profile(profile).domain);
+  if (profile.empty()) return domain ? *domain : domain_of_environment();
+  return static_cast<std::uint32_t>(
+      profile::read_mission_profile(profile, profile::parse_variables(variables)).domain);
 }
 
 EntityOptions Onlooker::entity_options(const std::string& name) const {
   launch::demand_address_space();
   EntityOptions options;
   options.name = "skein-" + name + "-" + std::to_string(getpid());
-  options.system = "tools";
+  options.system = kSystem;
   options.vendor = dds::load_vendor(vendor);
   options.domain = watched_domain();
   if (!profile.empty()) {
-    options.network = network_of(profile::read_mission_profile(profile), host);
+    options.network = network_of(
+        profile::read_mission_profile(profile, profile::parse_variables(variables)), host);
     return options;
   }
   if (!interface.empty()) options.network.interfaces = {interface};
   options.network.peers = peers;
   options.network.multicast_discovery = multicast;
   return options;
+}
+
+int look(const Onlooker& onlooker, const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const Unavailable& error) {
+    if (!launch::address_space_limit().empty()) throw;  // which is told as the cause
+    return fail(onlooker, error, kNothingThere);
+  } catch (const Disconnected& error) {
+    return fail(onlooker, error, kNothingThere);
+  } catch (const TimedOut& error) {
+    return fail(onlooker, error, kNoAnswer);
+  }
+}
+
+void tell_missions_elsewhere(const Onlooker& onlooker) {
+  const std::string elsewhere = missions_elsewhere(onlooker.watched_domain());
+  if (!elsewhere.empty()) std::fprintf(stderr, "skein: %s\n", elsewhere.c_str());
+}
+
+void tell_watching(const Onlooker& onlooker) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const std::uint32_t domain = onlooker.watched_domain();
+  const std::string elsewhere = missions_elsewhere(domain);
+  std::fprintf(stderr, "skein: watching domain %u; Ctrl-C ends it%s%s\n", domain,
+               elsewhere.empty() ? "" : "; ", elsewhere.c_str());
 }
 
 }  // namespace skein::command

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "launch/exit_codes.hpp"
 
 namespace skein {
 struct EntityOptions;
@@ -12,20 +17,55 @@ namespace skein::command {
 
 /// Where a command that only looks at a domain joins it.
 struct Onlooker {
+  /// The system of all onlookers.
+  static constexpr const char* kSystem = "tools";
+
   std::string vendor = "cyclonedds";
-  std::uint32_t domain = 0;
+  std::optional<std::uint32_t> domain;  ///< Nothing: that of the environment, or 0.
   std::string interface;
   std::vector<std::string> peers;
   bool multicast = false;
   std::string profile;
   std::string host;
+  std::vector<std::string> variables;  ///< Of the profile: NAME=VALUE.
 
-  /// The domain that it looks at: the option's or the profile's.
+  /// The domain that it looks at: the option's or the profile's; without either that of the
+  /// variable SKEIN_DOMAIN, or 0. Throws InvalidArgument where that is no number.
   std::uint32_t watched_domain() const;
 
   /// What an entity of the command's `name` joins with. Throws what reading the profile throws, and
   /// InvalidArgument where none of its peers is of this host, or options are missing.
   EntityOptions entity_options(const std::string& name) const;
 };
+
+inline constexpr const char* kDomainVariable = "SKEIN_DOMAIN";
+
+/// Of commands that look: what they looked for is not there, or did not answer.
+inline constexpr int kNothingThere = 69;
+inline constexpr int kNoAnswer = 124;
+
+/// All that a command ends with that looks at a domain or at a recording.
+inline constexpr std::array kLookingExitCodes{
+    launch::ExitCode{"0", "done"},
+    launch::ExitCode{"1",
+                     "call: it ended with an exception that its interface declares; echo: fewer "
+                     "values than --count came; info: the file holds nothing"},
+    launch::ExitCode{"64", "the command line is wrong; nothing was done"},
+    launch::ExitCode{"69", "no service, entity or topic of that name is there, or it has gone"},
+    launch::ExitCode{"71", "it could not join the domain, or the call failed at the other side"},
+    launch::ExitCode{"74", "all went well, but the output could not be written"},
+    launch::ExitCode{"78", "a file, a name or JSON is wrong"},
+    launch::ExitCode{"124", "no answer came in time"},
+};
+
+/// Runs a command that looks. What it did not find is told with the domain, and with those on which
+/// missions fly here.
+int look(const Onlooker& onlooker, const std::function<int()>& command);
+
+/// On stderr, for who finds nobody: where missions fly, if they do.
+void tell_missions_elsewhere(const Onlooker& onlooker);
+
+/// On a terminal: what is watched, and how it ends.
+void tell_watching(const Onlooker& onlooker);
 
 }  // namespace skein::command

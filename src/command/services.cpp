@@ -6,6 +6,7 @@
 #include "core/printable.hpp"
 #include "entity/statistics_topic.hpp"
 #include "interruption.hpp"
+#include "json_output.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
@@ -41,19 +42,21 @@ void print(const introspection::ServiceStatistics& service) {
   }
 }
 
-}  // namespace
+nlohmann::ordered_json to_json(const discovery::ServiceDescription& service) {
+  auto attributes = nlohmann::ordered_json::object();
+  for (const auto& attribute : service.attributes) attributes[attribute.name] = attribute.value;
+  return {{"service", service.service}, {"system", service.system}, {"entity", service.entity},
+          {"owner", service.owner},     {"host", service.host},     {"pid", service.pid},
+          {"vendor", service.vendor},   {"attributes", attributes}};
+}
 
-int list_services(const ServicesArguments& arguments) {
-  const Interruption interruption;
-  Entity entity(arguments.entity_options("services"));
-  std::optional<introspection::StatisticsReader> statistics;
-  if (arguments.statistics) statistics.emplace(entity.participant());
-  if (arguments.seconds > 0) interruption.wait(arguments.seconds);
-  if (statistics) {
-    for (const auto& service : statistics->latest()) print(service);
-    return 0;
-  }
-  const auto services = entity.broker().all();
+void print_statistics(const std::vector<introspection::ServiceStatistics>& services, bool json) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& service : services) json ? list.push_back(json_of(service)) : print(service);
+  if (json) print_json(list, true);
+}
+
+void print(const brokerless_discovery::Table::Found& services, const std::string& place) {
   for (const auto& service : services) {
     std::printf("%-40s %s/%s  pid %u  %s\n", printable(service->service).c_str(),
                 printable(service->system).c_str(), printable(service->entity).c_str(),
@@ -64,7 +67,30 @@ int list_services(const ServicesArguments& arguments) {
     }
   }
   std::printf("%zu %s in %s\n", services.size(), services.size() == 1 ? "service" : "services",
-              entity.broker().options().place.c_str());
+              place.c_str());
+}
+
+void print_as_json(const brokerless_discovery::Table::Found& services) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& service : services) list.push_back(to_json(*service));
+  print_json(list, true);
+}
+
+}  // namespace
+
+int list_services(const ServicesArguments& arguments) {
+  const Interruption interruption;
+  Entity entity(arguments.entity_options("services"));
+  std::optional<introspection::StatisticsReader> statistics;
+  if (arguments.statistics) statistics.emplace(entity.participant());
+  if (arguments.seconds > 0) interruption.wait(arguments.seconds);
+  if (statistics) {
+    print_statistics(statistics->latest(), arguments.json);
+    return 0;
+  }
+  const auto services = entity.broker().all();
+  arguments.json ? print_as_json(services) : print(services, entity.broker().options().place);
+  if (services.empty()) tell_missions_elsewhere(arguments);
   return 0;
 }
 

@@ -36,6 +36,21 @@ void Connections::add(const std::shared_ptr<Channel>& channel) {
   end(*channel);
 }
 
+std::vector<ConnectionInfo> Connections::infos() const {
+  std::vector<std::weak_ptr<Channel>> channels;
+  {
+    std::lock_guard lock(mutex_);
+    channels = channels_;
+  }
+  std::vector<ConnectionInfo> all;
+  for (const auto& weak : channels) {
+    const auto channel = weak.lock();
+    if (!channel || !channel->connected()) continue;
+    if (const auto info = channel->info()) all.push_back(*info);
+  }
+  return all;
+}
+
 void Connections::pause(Clock& clock, Instant end) {
   std::unique_lock lock(mutex_);
   wait_until(clock, end, lock, changed_, [&] { return closed_.load(); });

@@ -36,6 +36,9 @@ class Connections {
   /// Throws Unavailable once the entity has ended.
   void refuse_if_closed() const;
 
+  /// Of those that stand.
+  std::vector<ConnectionInfo> infos() const;
+
   /// Waits until `end`, or until the entity has ended.
   void pause(Clock& clock, Instant end);
 
@@ -49,7 +52,7 @@ class Connections {
   static void end(Channel& channel);
 
   std::atomic<bool> closed_{false};  // written under the lock
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   int openings_ = 0;
   std::vector<std::weak_ptr<Channel>> channels_;  // and what has gone since the last look

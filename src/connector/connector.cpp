@@ -33,6 +33,10 @@ std::string peer_name(const ServiceDescription& provider) {
          provider.system + ")";
 }
 
+Representation representation_of(const ServiceDescription& provider) {
+  return provider.xcdr2 ? Representation::Xcdr2Plain : Representation::Xcdr1;
+}
+
 // How long one provider may take to answer `open` while others are available.
 constexpr std::chrono::milliseconds kOpenPatience{1000};
 constexpr std::chrono::milliseconds kRetryPause{20};
@@ -115,6 +119,8 @@ void Connector::close() {
   connections_->await_openings();
 }
 
+std::vector<ConnectionInfo> Connector::connections() const { return connections_->infos(); }
+
 std::shared_ptr<Channel> Connector::open_provider(const ServiceDescription& provider,
                                                   const std::string& strategy,
                                                   Duration timeout) const {
@@ -127,7 +133,8 @@ ProviderConnection Connector::open_connection(const ServiceDescription& provider
   const Guid id{provider.provider};
   if (const auto service = parts_.directory->find(id)) {
     ProviderConnection connection{
-        id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy)};
+        id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy,
+                                    parts_.journal)};
     connections_->add(connection.channel);
     return connection;
   }
@@ -145,8 +152,9 @@ ProviderConnection Connector::open_connection(const ServiceDescription& provider
   const auto participant = parts_.broker.participant_of(id);
   if (!participant) throw Unavailable(options.peer + " left before it was connected");
   options.participant = *participant;
-  auto channel = rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
-                                       parts_.clock, {provider.service, id}, std::move(options));
+  auto channel = rpc::DdsChannel::open(
+      parts_.participant, parts_.control, parts_.continuations, parts_.clock,
+      {provider.service, id, representation_of(provider)}, std::move(options));
   ProviderConnection connection{id, channel};
   follow(parts_.broker, channel, connection);
   return connection;
@@ -230,7 +238,8 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
     connections->add(channel);
   };
   return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
-                               parts_.clock, {service, Guid{}}, std::move(dds_options));
+                               parts_.clock, {service, Guid{}, interface.representation()},
+                               std::move(dds_options));
 }
 
 // The first provider that takes the session: in the Broker's order, those to be asked last at the

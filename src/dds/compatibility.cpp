@@ -1,6 +1,11 @@
 #include "compatibility.hpp"
 
 #include <algorithm>
+#include <span>
+#include <tuple>
+
+#include "core/growth.hpp"
+#include "type_version.hpp"
 
 namespace skein::dds {
 namespace {
@@ -9,6 +14,10 @@ using Period = std::optional<std::chrono::milliseconds>;
 
 std::string text(const Period& period) {
   return period ? std::to_string(period->count()) + " ms" : "none";
+}
+
+std::string text(DataRepresentation representation) {
+  return representation == DataRepresentation::Xcdr1 ? "XCDR1" : "XCDR2";
 }
 
 /// A reader that wants something at least so often is content with more often only.
@@ -22,6 +31,70 @@ struct Mismatch {
   std::string requested;
   const char* remedy;
 };
+
+constexpr const char* kSameVersion = "build both sides from the same version of the type";
+
+using Members = std::span<const GrowingMember>;
+
+/// What discovery carries of both: a longer list was cut off at its end.
+std::pair<Members, Members> comparable(const std::vector<GrowingMember>& offered,
+                                       const std::vector<GrowingMember>& requested) {
+  Members ours = offered;
+  Members theirs = requested;
+  const auto cut = [](Members& longer, const Members& shorter) {
+    if (longer.size() < kMostMembers || shorter.size() < kMostMembers) return;
+    const auto last = [](const Members& members) {
+      return std::tuple(members[kMostMembers - 1].type, members[kMostMembers - 1].member);
+    };
+    const auto limit = std::min(last(longer), last(shorter));
+    while (!longer.empty() && std::tuple(longer.back().type, longer.back().member) > limit) {
+      longer = longer.first(longer.size() - 1);
+    }
+  };
+  cut(ours, requested);
+  cut(theirs, offered);
+  return {ours, theirs};
+}
+
+/// Only the own side's members have names.
+std::string name_of(std::uint32_t type, const Members& ours, const Members& theirs) {
+  for (const Members& members : {ours, theirs}) {
+    const auto found = std::ranges::find_if(members, [&](const GrowingMember& member) {
+      return member.type == type && !member.name.empty();
+    });
+    if (found != members.end()) return std::string(found->name.substr(0, found->name.rfind('.')));
+  }
+  return "a type";
+}
+
+std::optional<Mismatch> find_mismatch(const TypeVersion& offered, const TypeVersion& requested) {
+  if (offered.signature == 0 || requested.signature == 0) return std::nullopt;
+  if (offered.signature != requested.signature) {
+    return Mismatch{"type", "version " + hexadecimal(offered.signature, 16),
+                    "version " + hexadecimal(requested.signature, 16), kSameVersion};
+  }
+  const auto both = comparable(offered.members, requested.members);
+  const Members& ours = both.first;
+  const Members& theirs = both.second;
+  const auto found = find_difference(ours, theirs);
+  if (!found) return std::nullopt;
+  const std::uint32_t type = (found->here ? found->here : found->there)->type;
+  const auto named = [&](const GrowingMember* member) {
+    return member && !member->name.empty() ? std::string(member->name)
+                                           : "a member of " + name_of(type, ours, theirs);
+  };
+  if (!found->here) {
+    return Mismatch{"type", "none", named(found->there) + ", which must be understood",
+                    kSameVersion};
+  }
+  if (!found->there) {
+    return Mismatch{"type", named(found->here) + ", which must be understood", "none",
+                    kSameVersion};
+  }
+  const std::string name = named(found->here->name.empty() ? found->there : found->here);
+  return Mismatch{"type", name + " in version " + hexadecimal(found->here->digest, 8),
+                  name + " in version " + hexadecimal(found->there->digest, 8), kSameVersion};
+}
 
 std::optional<Mismatch> find_mismatch(const Qos& offered, const Qos& requested) {
   if (requested.reliable && !offered.reliable) {
@@ -44,7 +117,13 @@ std::optional<Mismatch> find_mismatch(const Qos& offered, const Qos& requested) 
     return Mismatch{"ownership", offered.exclusive ? "exclusive" : "shared",
                     requested.exclusive ? "exclusive" : "shared", "give both sides the same"};
   }
-  return std::nullopt;
+  if (requested.representation != DataRepresentation::Any &&
+      requested.representation != offered.representation) {
+    return Mismatch{"data representation", text(offered.representation),
+                    text(requested.representation),
+                    "give both sides the same: in Skein the type decides it"};
+  }
+  return find_mismatch(offered.type, requested.type);
 }
 
 }  // namespace

@@ -36,14 +36,6 @@ bool is_host_name(const std::string& text) {
   });
 }
 
-/// What Cyclone takes; other vendors take more.
-bool is_topic_name(const std::string& name) {
-  return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-         !name.starts_with("DCPS") && std::ranges::all_of(name, [](unsigned char c) {
-           return std::isalnum(c) || c == '_' || c == '/';
-         });
-}
-
 }  // namespace
 
 std::uint32_t max_participants(const ParticipantOptions& options) {
@@ -120,6 +112,14 @@ bool is_loopback_only(const Network& network) {
   return std::ranges::all_of(interface_addresses(network), [](const std::string& address) {
     return address.starts_with("127.");
   });
+}
+
+// What Cyclone takes; other vendors take more.
+bool is_topic_name(const std::string& name) {
+  return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
+         !name.starts_with("DCPS") && std::ranges::all_of(name, [](unsigned char c) {
+           return std::isalnum(c) || c == '_' || c == '/';
+         });
 }
 
 void check_qos(const Topic& topic, const Qos& qos) {

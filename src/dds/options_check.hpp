@@ -15,6 +15,9 @@ constexpr std::uint32_t domain_port(std::uint32_t domain) { return 7400 + 250 * 
 inline constexpr std::uint32_t kDiscoveryOffset = 10;
 inline constexpr std::uint32_t kUserOffset = 11;
 
+/// So much a socket is to hold that has not been read; the system may grant less.
+inline constexpr std::uint32_t kSocketBuffer = 4u << 20;
+
 /// So many participants of the domain can be on one host: `network.max_participants`, but no more
 /// than 120, nor than have ports below 65536 (63 in domain 232).
 std::uint32_t max_participants(const ParticipantOptions& options);
@@ -38,6 +41,9 @@ AllowedSources allowed_sources(const Network& network);
 
 /// Whether the network goes no further than this host's 127.0.0.1.
 bool is_loopback_only(const Network& network);
+
+/// Letters, digits, `_` and `/`; begins with no digit, and not with `DCPS`.
+bool is_topic_name(const std::string& name);
 
 void check_qos(const Topic& topic, const Qos& qos);
 

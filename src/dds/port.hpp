@@ -42,10 +42,12 @@ struct Sample {
 };
 
 /// Why a writer and a reader of one topic, type and partition do not match: what is offered is less
-/// than what is requested.
+/// than what is requested. Vendors match two versions of a type all the same: who reads is to drop
+/// the other's samples.
 struct Incompatibility {
   Guid peer;
-  /// `reliability`, `durability`, `deadline`, `liveliness` or `ownership`.
+  /// `reliability`, `durability`, `deadline`, `liveliness`, `ownership`, `data representation` or
+  /// `type`.
   std::string policy;
   /// The writer's and the reader's value.
   std::string offered;

@@ -30,7 +30,8 @@ ReceiveQueue::ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Cloc
 
 ReceiveQueue::ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Clock& deadlines,
                            std::function<SourceTime()> source_time)
-    : exclusive_(qos.exclusive),
+    : representation_(qos.representation),
+      exclusive_(qos.exclusive),
       find_key_(std::move(find_key)),
       source_time_(std::move(source_time)),
       waiting_(qos.history_depth, qos.max_waiting),
@@ -96,7 +97,7 @@ bool ReceiveQueue::put(Arrival& arrival, const WriterOffer* offer) {
 
 /// Nothing where the sample is malformed.
 std::optional<KeyHash> ReceiveQueue::key_of(const Arrival& arrival) const {
-  const bool plain = is_plain_cdr(arrival.payload.cdr());
+  const bool plain = has_representation(arrival.payload.cdr(), representation_);
   if (arrival.state == InstanceState::Alive && !plain) return std::nullopt;
   if (arrival.key) return arrival.key;
   if (!find_key_ || !plain) return std::nullopt;

@@ -103,6 +103,7 @@ class ReceiveQueue {
   bool drop_expired(SourceTime expiry);
   std::optional<Item> pop();
 
+  const DataRepresentation representation_;
   const bool exclusive_;
   const FindKey find_key_;
   const std::function<SourceTime()> source_time_;

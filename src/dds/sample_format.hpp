@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "skein/detail/qos.hpp"
 #include "skein/error.hpp"
 
 namespace skein::dds {
@@ -15,9 +16,11 @@ inline constexpr std::size_t kHeaderSize = 4;
 /// RTPS carries payloads in multiples of 4 bytes.
 constexpr std::size_t padded(std::size_t size) { return (size + 3) & ~std::size_t{3}; }
 
-/// Whether a payload is PLAIN_CDR of either byte order (XCDR1 without parameter lists).
-inline bool is_plain_cdr(std::span<const std::byte> cdr) {
-  return cdr.size() >= kHeaderSize && cdr[0] == std::byte{0} && cdr[1] <= std::byte{1};
+/// Whether a payload is XCDR2, or PLAIN_CDR (XCDR1 without parameter lists), of either byte order.
+inline bool has_representation(std::span<const std::byte> cdr, DataRepresentation representation) {
+  if (cdr.size() < kHeaderSize || cdr[0] != std::byte{0}) return false;
+  if (representation == DataRepresentation::Xcdr1) return cdr[1] <= std::byte{1};
+  return cdr[1] >= std::byte{6} && cdr[1] <= std::byte{11};
 }
 
 /// The header's last two bits say how many bytes of padding follow the body (DDS-XTypes 7.6.3.1.2):

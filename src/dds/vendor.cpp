@@ -16,12 +16,20 @@ struct Module {
   std::string vendor;
   std::string package;  // holds the vendor's own library
   bool shared_memory;
+  VendorLibrary library;
 };
 
 // All that the library knows of its back ends, beside their modules.
 const std::vector<Module>& modules() {
-  static const std::vector<Module> known{{"fastdds", "libfastrtps2.9", true},
-                                         {"cyclonedds", "libddsc0debian", false}};
+  static const std::vector<Module> known{
+      {"fastdds",
+       "libfastrtps2.9",
+       true,
+       {"fastdds",
+        "libfastrtps.so.",
+        "2.9.1",
+        {"fastrtps_", "fastdds_", "sem.fastrtps_", "sem.fastdds_", "fast_datasharing_"}}},
+      {"cyclonedds", "libddsc0debian", false, {"cyclonedds", "libddsc.so.", "0.10.2", {}}}};
   return known;
 }
 
@@ -73,6 +81,15 @@ const std::vector<std::string>& shared_memory_vendors() {
   static const auto names =
       names_of_modules([](const Module& module) { return module.shared_memory; });
   return names;
+}
+
+const std::vector<VendorLibrary>& vendor_libraries() {
+  static const auto libraries = [] {
+    std::vector<VendorLibrary> all;
+    for (const Module& module : modules()) all.push_back(module.library);
+    return all;
+  }();
+  return libraries;
 }
 
 std::string alternatives(const std::vector<std::string>& names) {

@@ -20,6 +20,17 @@ const std::vector<std::string>& networked_vendors();
 /// Those of them that have shared memory (see Network).
 const std::vector<std::string>& shared_memory_vendors();
 
+/// A vendor's own library, which its module loads.
+struct VendorLibrary {
+  std::string vendor;
+  std::string file;     ///< How its file's name begins; the version follows.
+  std::string version;  ///< With which Skein is tested.
+  /// How the names of its files in shared memory begin.
+  std::vector<std::string> shared_files;
+};
+
+const std::vector<VendorLibrary>& vendor_libraries();
+
 /// For messages: `a`, `a or b`, `a, b or c`.
 std::string alternatives(const std::vector<std::string>& names);
 

@@ -15,15 +15,19 @@
 #include "dds/options_check.hpp"
 #include "dds/port.hpp"
 #include "dds/vendor_names.hpp"
+#include "entity/inspection_topic.hpp"
+#include "entity/self_report.hpp"
 #include "entity/statistics_topic.hpp"
 #include "rpc/call_journal.hpp"
 #include "rpc/dds_server.hpp"
 #include "rpc/local_directory.hpp"
 #include "rpc/service.hpp"
+#include "skein/describe.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
+#include "topics/register.hpp"
 
 namespace skein {
 namespace {
@@ -43,6 +47,10 @@ ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider
   for (const OperationInfo& operation : interface.operations) {
     description.operations.push_back(
         {std::string(operation.name), operation.hash, operation.signature});
+  }
+  description.xcdr2 = is_xcdr2(interface.representation());
+  for (const GrowingMember& member : interface.growing) {
+    description.growing.push_back({member.type, member.member, member.digest, member.required});
   }
   for (const ServiceAttribute& attribute : options.attributes) {
     description.attributes.push_back({attribute.name, attribute.value});
@@ -131,8 +139,10 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
-        journal(std::make_shared<rpc::CallJournal>(*participant, control,
+        journal(std::make_shared<rpc::CallJournal>(*participant, process->clock(), control,
                                                    options.system + "/" + options.name)),
+        recorder(std::make_shared<rpc::CallRecorder>(*participant, process->clock(), control,
+                                                     options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
                {options.system, options.name, options.vendor->name(), options.lease, place()}),
         loads(*participant, process->clock(), control),
@@ -167,12 +177,14 @@ struct Entity::State {
 
   const EntityOptions options;
   const std::shared_ptr<Process> process;
+  topics::Register topic_register;
   std::unique_ptr<dds::Participant> participant;
   // Shared with connections, which may outlive the entity.
   const std::shared_ptr<ThreadExecutor> continuations =
       std::make_shared<ThreadExecutor>("skein-continue");
   ThreadExecutor control{"skein-control"};
   std::shared_ptr<rpc::CallJournal> journal;
+  std::shared_ptr<rpc::CallRecorder> recorder;
   Broker broker;
   brokerless_discovery::LoadBoard loads;
   Connector connector;
@@ -180,8 +192,21 @@ struct Entity::State {
   mutable std::mutex mutex;
   std::unique_ptr<ThreadExecutor> topics;  // once there is a subscription
   std::map<Guid, std::unique_ptr<Provided>> provided;
-  // Goes first: it asks for the statistics of all that stands above.
+  // These go first: they ask all that stands above.
   std::optional<introspection::StatisticsTopic> statistics_topic;
+  std::optional<introspection::Answerer> answerer;
+
+  /// What makes no progress, in words; empty where everything does.
+  std::string stuck() const {
+    if (head.degraded()) return "several CSPs do not return from calls whose time is over";
+    std::lock_guard lock(mutex);
+    for (const auto& [id, service] : provided) {
+      // An entity's own CSPs are its Head's to judge.
+      if (service->server && service->service->is_stuck())
+        return "the calls of '" + service->name + "' do not return, and their deadlines are over";
+    }
+    return {};
+  }
 
   std::vector<introspection::ServiceStatistics> statistics() const {
     std::vector<introspection::ServiceStatistics> all;
@@ -193,12 +218,63 @@ struct Entity::State {
     }
     return all;
   }
+
+  bool answer(const inspection::Question& question, inspection::Answer& answer) {
+    switch (question.subject) {
+      case inspection::Subject::Self:
+        answer.peer.push_back(peer());
+        return true;
+      case inspection::Subject::Topics:
+        for (const topics::Endpoint& endpoint : topic_register.endpoints()) {
+          answer.topics.push_back(introspection::report_of(endpoint));
+        }
+        return true;
+      case inspection::Subject::Connections:
+        for (const ConnectionInfo& connection : connector.connections()) {
+          answer.connections.push_back(introspection::report_of(connection));
+        }
+        return true;
+      case inspection::Subject::Types:
+        break;
+    }
+    if (auto types = types_of(question.name)) answer.types.push_back(std::move(*types));
+    return !answer.types.empty();
+  }
+
+  inspection::Peer peer() {
+    inspection::Peer peer = introspection::report_of_this_process();
+    peer.vendor = options.vendor->name();
+    peer.degraded = head.degraded();
+    std::lock_guard lock(mutex);
+    peer.services = static_cast<std::uint32_t>(provided.size());
+    return peer;
+  }
+
+  std::optional<types::TypeSystem> types_of(const std::string& name) {
+    {
+      std::lock_guard lock(mutex);
+      for (const auto& [id, service] : provided) {
+        const InterfaceInfo& interface = service->service->interface_info();
+        if (interface.name == name) return skein::describe(interface);
+      }
+    }
+    for (const topics::Endpoint& endpoint : topic_register.endpoints()) {
+      const TypeSupport& type = *endpoint.type.support;
+      if (type.name == name && !type.description.declaration.empty()) return skein::describe(type);
+    }
+    return std::nullopt;
+  }
 };
 
 Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move(options))) {
   State& state = *state_;
   state.statistics_topic.emplace(*state.participant, state.process->clock(), state.control,
                                  [&state] { return state.statistics(); });
+  state.answerer.emplace(
+      *state.participant, state.control, id(),
+      [&state](const inspection::Question& question, inspection::Answer& answer) {
+        return state.answer(question, answer);
+      });
 }
 
 Entity::~Entity() {
@@ -218,6 +294,7 @@ Entity::~Entity() {
   provided.clear();
   state_->continuations->finish();
   state_->journal->close();
+  state_->recorder->close();
   // A Body may use the Head, and all that this uses, should it ever come back.
   if (stuck) leave_behind(std::shared_ptr<State>(std::move(state_)));
 }
@@ -232,10 +309,13 @@ Head& Entity::head() noexcept { return state_->head; }
 Clock& Entity::clock() noexcept { return state_->process->clock(); }
 dds::Participant& Entity::participant() noexcept { return *state_->participant; }
 
-TopicQos Entity::with_system(TopicQos qos) const {
+TopicQos Entity::qos_of(const std::string& topic, TopicQos qos) const {
   if (qos.systems.empty()) qos.systems = {state_->options.system};
+  if (state_->options.adjust_topic) state_->options.adjust_topic(topic, qos);
   return qos;
 }
+
+topics::Register& Entity::topic_register() noexcept { return state_->topic_register; }
 
 Executor& Entity::topic_executor() {
   std::lock_guard lock(state_->mutex);
@@ -273,6 +353,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   service_options.threads = options.threads;
   service_options.queue = options.queue;
   service_options.journal = state_->journal;
+  service_options.recorder = state_->recorder;
   service_options.name_of = [&broker = state_->broker](const Guid& strand) {
     return name_of(broker, strand);
   };
@@ -322,6 +403,11 @@ void Entity::refuse_second_csp(const InterfaceInfo& interface, const std::string
 
 std::vector<introspection::ServiceStatistics> Entity::statistics() const {
   return state_->statistics();
+}
+
+bool Entity::check_progress(std::function<void(const std::string& stuck)> report) {
+  return state_->control.post(
+      [&state = *state_, report = std::move(report)] { report(state.stuck()); });
 }
 
 void Entity::withdraw(const Guid& provider) {

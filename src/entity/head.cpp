@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/log.hpp"
+#include "core/wall_clock.hpp"
 #include "dds/port.hpp"
 #include "decision_record.hpp"
 #include "head_run.hpp"
@@ -26,12 +27,6 @@ Duration time_left(Instant now, Duration limit) {
   const CallContext* context = CallContext::current();
   if (!context) return limit;
   return std::min(limit, context->deadline() - now - Duration(kAnswerReserve));
-}
-
-std::uint64_t unix_time() {
-  const auto since = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(since).count());
 }
 
 }  // namespace
@@ -77,7 +72,7 @@ Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrate
                            const TaskOptions& task, Instant begin, Duration limit) const {
   Decision record;
   record.entity = state_->parts.entity;
-  record.time = unix_time();
+  record.time = nanoseconds_since_1970();
   record.service = interface.name;
   record.strategy = strategy.name();
   record.features = wire_values::list(task.features);

@@ -5,11 +5,13 @@
 #include <fastcdr/exceptions/NotEnoughMemoryException.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <type_traits>
 
 #include "skein/detail/codec.hpp"
+#include "skein/detail/wide_text.hpp"
 
 namespace skein::idl {
 namespace {
@@ -21,6 +23,20 @@ using eprosima::fastcdr::exception::NotEnoughMemoryException;
 constexpr std::size_t kHeaderSize = kEncapsulation.size();
 constexpr std::size_t kFirstCapacity = 512;
 
+// The header of a member of a @mutable type (DDS-XTypes 1.3, 7.4.3.4.2): this flag, a code of three
+// bits for the length, and the member's identifier.
+constexpr std::uint32_t kMustUnderstand = 1U << 31;
+constexpr unsigned kLengthCodeShift = 28;
+constexpr std::uint32_t kLengthFollows = 4;
+constexpr std::uint32_t kIdentifier = (1U << kLengthCodeShift) - 1;
+
+// IEEE 754's binary128, which long double itself is on some machines.
+#if __LDBL_MANT_DIG__ == 113
+using Quad = long double;
+#else
+__extension__ using Quad = __float128;
+#endif
+
 /// Thrown by a bulk write that knows how much room it needs.
 struct RoomNeeded {
   std::size_t capacity;
@@ -28,6 +44,17 @@ struct RoomNeeded {
 
 Cdr::Endianness endianness(ByteOrder order) {
   return order == ByteOrder::Big ? Cdr::BIG_ENDIANNESS : Cdr::LITTLE_ENDIANNESS;
+}
+
+constexpr std::size_t kXcdr2Alignment = 4;
+constexpr ByteOrder kNativeOrder =
+    std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
+
+template <class T>
+std::array<std::uint8_t, sizeof(T)> reversed(const T& value) {
+  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
+  std::ranges::reverse(bytes);
+  return bytes;
 }
 
 std::size_t padding(std::size_t position, std::size_t alignment) {
@@ -46,24 +73,48 @@ std::string beyond_bound(std::size_t size, std::size_t bound) {
 }  // namespace
 
 struct CdrWriter::State {
-  State(char* memory, std::size_t size, ByteOrder order)
-      : buffer(memory, size), cdr(buffer, endianness(order), Cdr::DDS_CDR) {}
+  State(char* memory, std::size_t size, ByteOrder byte_order, bool is_xcdr2)
+      : memory(memory),
+        order(byte_order),
+        buffer(memory, size),
+        cdr(buffer, endianness(byte_order), Cdr::DDS_CDR),
+        xcdr2(is_xcdr2) {}
 
   std::size_t position() const { return cdr.getSerializedDataLength(); }
 
   /// Fast CDR skips padding; ours is written, so that no old memory goes out.
   void align(std::size_t alignment) {
+    if (xcdr2) alignment = std::min(alignment, kXcdr2Alignment);
     for (std::size_t n = padding(position(), alignment); n > 0; --n) cdr.serialize(std::uint8_t{0});
   }
 
+  /// Elements of eight bytes, which Fast CDR would align to eight.
+  template <class T>
+  void write_unaligned(const T* values, std::size_t count) {
+    if (order == kNativeOrder) {
+      cdr.serializeArray(reinterpret_cast<const std::uint8_t*>(values), count * sizeof(T));
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto swapped = reversed(values[i]);
+      cdr.serializeArray(swapped.data(), swapped.size());
+    }
+  }
+
+  char* memory;
+  ByteOrder order;
   FastBuffer buffer;
   Cdr cdr;
+  bool xcdr2;
   unsigned nesting = 0;
 };
 
 template <Primitive T>
 void CdrWriter::write(T value) {
   state_.align(sizeof(T));
+  if constexpr (sizeof(T) > kXcdr2Alignment) {
+    if (state_.xcdr2) return state_.write_unaligned(&value, 1);
+  }
   state_.cdr.serialize(value);
 }
 
@@ -73,6 +124,9 @@ void CdrWriter::write_array(const T* values, std::size_t count) {
   state_.align(sizeof(T));
   const std::size_t end = state_.position() + count * sizeof(T);
   if (end > state_.buffer.getBufferSize()) throw RoomNeeded{end + kHeaderSize};
+  if constexpr (sizeof(T) > kXcdr2Alignment) {
+    if (state_.xcdr2) return state_.write_unaligned(values, count);
+  }
   state_.cdr.serializeArray(values, count);
 }
 
@@ -105,6 +159,36 @@ void CdrWriter::check_bound(std::size_t size, std::size_t bound, const char* pla
   if (size > bound) throw InvalidArgument(place + (" " + beyond_bound(size, bound)));
 }
 
+template <std::signed_integral T>
+void CdrWriter::write_enum(T value, std::span<const T> values, const char* type) {
+  if (std::ranges::find(values, value) == values.end()) {
+    throw InvalidArgument(std::to_string(value) + " is no value of the enumeration " + type);
+  }
+  write(value);
+}
+
+void CdrWriter::write_wide_character(wchar_t value) {
+  const std::u16string units = utf16({&value, 1});
+  if (units.size() != 1) {
+    throw InvalidArgument("the wide character " + std::to_string(static_cast<long>(value)) +
+                          " cannot travel: it has two units in UTF-16; use wstring");
+  }
+  write(static_cast<std::uint16_t>(units[0]));
+}
+
+void CdrWriter::write_wide_string(std::wstring_view text) {
+  const std::u16string units = utf16(text);
+  write_length(units.size() * 2);
+  write_array(reinterpret_cast<const std::uint16_t*>(units.data()), units.size());
+}
+
+void CdrWriter::write_long_double(long double value) {
+  const Quad quad = value;
+  auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(quad);
+  if (kNativeOrder != state_.order) std::swap(halves[0], halves[1]);
+  for (const std::uint64_t half : halves) write(half);
+}
+
 CdrWriter::Nesting::Nesting(CdrWriter& writer) : writer_(writer) {
   if (writer_.state_.nesting >= kMaximumNesting) throw InvalidArgument("the value " + too_deep());
   ++writer_.state_.nesting;
@@ -112,20 +196,63 @@ CdrWriter::Nesting::Nesting(CdrWriter& writer) : writer_(writer) {
 
 CdrWriter::Nesting::~Nesting() { --writer_.state_.nesting; }
 
+bool CdrWriter::is_xcdr2() const noexcept { return state_.xcdr2; }
+
+CdrWriter::Delimiter::Delimiter(CdrWriter& writer, bool needed) : writer_(writer) {
+  if (!needed) return;
+  writer_.write(std::uint32_t{0});
+  start_ = writer_.state_.position();
+}
+
+CdrWriter::Delimiter::~Delimiter() {
+  if (start_ == 0) return;
+  const auto length = static_cast<std::uint32_t>(writer_.state_.position() - start_);
+  char* to = writer_.state_.memory + start_ - sizeof length;
+  if (writer_.state_.order == kNativeOrder) {
+    std::memcpy(to, &length, sizeof length);
+  } else {
+    const auto swapped = reversed(length);
+    std::memcpy(to, swapped.data(), swapped.size());
+  }
+}
+
+CdrWriter::Delimiter CdrWriter::member(std::uint32_t id, bool must_understand) {
+  write((must_understand ? kMustUnderstand : 0U) | kLengthFollows << kLengthCodeShift | id);
+  return Delimiter(*this);
+}
+
 struct CdrReader::State {
-  State(std::span<const std::byte> content, ByteOrder order)
-      : buffer(const_cast<char*>(reinterpret_cast<const char*>(content.data())), content.size()),
-        cdr(buffer, endianness(order), Cdr::DDS_CDR),
-        size(content.size()) {}
+  State(std::span<const std::byte> content, ByteOrder byte_order, bool is_xcdr2)
+      : order(byte_order),
+        buffer(const_cast<char*>(reinterpret_cast<const char*>(content.data())), content.size()),
+        cdr(buffer, endianness(byte_order), Cdr::DDS_CDR),
+        size(content.size()),
+        whole(content.size()),
+        xcdr2(is_xcdr2) {}
 
   std::size_t position() const { return cdr.getSerializedDataLength(); }
 
   /// Fast CDR aligns by what it read last, which a jump over a string does not change.
-  void align(std::size_t alignment) { cdr.jump(padding(position(), alignment)); }
+  void align(std::size_t alignment) { cdr.jump(skipped(alignment)); }
+  std::size_t skipped(std::size_t alignment) const {
+    return padding(position(), xcdr2 ? std::min(alignment, kXcdr2Alignment) : alignment);
+  }
 
+  /// Elements of eight bytes, which Fast CDR would look for at a multiple of eight.
+  template <class T>
+  void read_unaligned(T* values, std::size_t count) {
+    cdr.deserializeArray(reinterpret_cast<std::uint8_t*>(values), count * sizeof(T));
+    if (order == kNativeOrder) return;
+    for (std::size_t i = 0; i < count; ++i) values[i] = std::bit_cast<T>(reversed(values[i]));
+  }
+
+  ByteOrder order;
   FastBuffer buffer;
   Cdr cdr;
-  std::size_t size;
+  std::size_t size;  ///< The end of what may be read now.
+  const std::size_t whole;
+  std::size_t memory = 0;  ///< Of elements so far.
+  bool xcdr2;
   unsigned nesting = 0;
 };
 
@@ -133,8 +260,7 @@ std::size_t CdrReader::remaining() const noexcept { return state_.size - state_.
 
 template <Primitive T>
 T CdrReader::read() {
-  if (remaining() < padding(state_.position(), sizeof(T)) + sizeof(T))
-    fail("the message ends here");
+  if (remaining() < state_.skipped(sizeof(T)) + sizeof(T)) fail("the message ends here");
   state_.align(sizeof(T));
   if constexpr (std::is_same_v<T, bool>) {
     std::uint8_t value;
@@ -143,6 +269,12 @@ T CdrReader::read() {
     return value == 1;
   } else {
     T value;
+    if constexpr (sizeof(T) > kXcdr2Alignment) {
+      if (state_.xcdr2) {
+        state_.read_unaligned(&value, 1);
+        return value;
+      }
+    }
     state_.cdr.deserialize(value);
     return value;
   }
@@ -151,7 +283,7 @@ T CdrReader::read() {
 template <Primitive T>
 void CdrReader::read_array(T* values, std::size_t count) {
   if (count == 0) return;
-  const std::size_t skipped = padding(state_.position(), sizeof(T));
+  const std::size_t skipped = state_.skipped(sizeof(T));
   if (remaining() < skipped || (remaining() - skipped) / sizeof(T) < count) {
     fail(std::to_string(count) + " elements do not fit into the " + std::to_string(remaining()) +
          " bytes that are left");
@@ -160,6 +292,9 @@ void CdrReader::read_array(T* values, std::size_t count) {
   if constexpr (std::is_same_v<T, bool>) {
     for (std::size_t i = 0; i < count; ++i) values[i] = read<bool>();
   } else {
+    if constexpr (sizeof(T) > kXcdr2Alignment) {
+      if (state_.xcdr2) return state_.read_unaligned(values, count);
+    }
     state_.cdr.deserializeArray(values, count);
   }
 }
@@ -183,6 +318,15 @@ std::uint32_t CdrReader::read_length(std::size_t element_size) {
   return length;
 }
 
+void CdrReader::take_memory(std::size_t size) {
+  constexpr std::size_t kAlways = 1 << 20;
+  state_.memory += size;
+  if (state_.memory > kAlways + kMostMemory * state_.whole) {
+    fail("the value takes more than " + std::to_string(kMostMemory) +
+         " times the memory of its message");
+  }
+}
+
 void CdrReader::read_string(std::string& text) {
   const std::uint32_t length = read_length(1);
   if (length == 0) return text.clear();  // Fast CDR writes a null char* so.
@@ -198,6 +342,32 @@ std::uint32_t CdrReader::read_enum(std::uint32_t count) {
   const auto value = read<std::uint32_t>();
   if (value >= count) fail(std::to_string(value) + " is no value of the enumeration");
   return value;
+}
+
+template <std::signed_integral T>
+T CdrReader::read_enum(std::span<const T> values) {
+  const T value = read<T>();
+  if (std::ranges::find(values, value) == values.end()) {
+    fail(std::to_string(value) + " is no value of the enumeration");
+  }
+  return value;
+}
+
+long double CdrReader::read_long_double() {
+  std::array<std::uint64_t, 2> halves{};
+  for (std::uint64_t& half : halves) half = read<std::uint64_t>();
+  if (kNativeOrder != state_.order) std::swap(halves[0], halves[1]);
+  return static_cast<long double>(std::bit_cast<Quad>(halves));
+}
+
+wchar_t CdrReader::read_wide_character() { return static_cast<wchar_t>(read<std::uint16_t>()); }
+
+void CdrReader::read_wide_string(std::wstring& text) {
+  const std::uint32_t length = read_length(1);
+  if (length % 2 != 0) fail("wide text has " + std::to_string(length) + " bytes, an odd number");
+  std::u16string units(length / 2, u'\0');
+  read_array(reinterpret_cast<std::uint16_t*>(units.data()), units.size());
+  text = from_utf16(units);
 }
 
 void CdrReader::check_bound(std::size_t size, std::size_t bound, const char* place) const {
@@ -220,6 +390,61 @@ CdrReader::Nesting::Nesting(CdrReader& reader) : reader_(reader) {
 
 CdrReader::Nesting::~Nesting() { --reader_.state_.nesting; }
 
+bool CdrReader::is_xcdr2() const noexcept { return state_.xcdr2; }
+
+CdrReader::Delimited::Delimited(CdrReader& reader, bool needed)
+    : Delimited(reader, needed ? reader.read_length(1) : reader.remaining()) {
+  if (!needed) end_ = 0;
+}
+
+CdrReader::Delimited::Delimited(CdrReader& reader, std::size_t length)
+    : reader_(reader), end_(reader.state_.position() + length), outer_end_(reader.state_.size) {
+  if (length > reader.remaining()) {
+    reader.fail("a length of " + std::to_string(length) + " does not fit into the " +
+                std::to_string(reader.remaining()) + " bytes that are left");
+  }
+  reader_.state_.size = end_;
+}
+
+CdrReader::Delimited::~Delimited() {
+  if (end_ == 0) return;
+  reader_.state_.cdr.jump(end_ - reader_.state_.position());
+  reader_.state_.size = outer_end_;
+}
+
+CdrReader::Member CdrReader::read_member() {
+  const auto header = read<std::uint32_t>();
+  const std::uint32_t code = header >> kLengthCodeShift & 7;
+  Member member{header & kIdentifier, (header & kMustUnderstand) != 0,
+                std::size_t{1} << (code & 3)};
+  if (code == kLengthFollows) {
+    member.length = read<std::uint32_t>();
+  } else if (code > kLengthFollows) {
+    // The length is also the first thing in the member: of bytes, or of elements of 4 or 8 bytes.
+    auto before = state_.cdr.getState();
+    const auto count = read<std::uint32_t>();
+    state_.cdr.setState(before);
+    member.length = sizeof count + std::size_t{count} * (code == 5 ? 1 : code == 6 ? 4 : 8);
+  }
+  return member;
+}
+
+void CdrReader::pass_over(const Member& member) const {
+  if (member.must_understand) {
+    fail("the member with the identifier " + std::to_string(member.id) +
+         " must be understood, and this type has none");
+  }
+}
+
+namespace {
+
+bool is_xcdr2(std::span<const std::byte> message) {
+  const auto kind = std::to_integer<unsigned>(message[1]);
+  return message[0] == std::byte{0} && kind >= 6 && kind <= 11;
+}
+
+}  // namespace
+
 void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&, const void*),
                        const void* context) {
   const std::size_t start = message.size();
@@ -229,7 +454,7 @@ void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&
     message.reserve(needed);
     try {
       CdrWriter::State state(reinterpret_cast<char*>(message.data()) + kHeaderSize,
-                             message.capacity() - kHeaderSize, order);
+                             message.capacity() - kHeaderSize, order, is_xcdr2(message));
       state.cdr.jump(start - kHeaderSize);
       CdrWriter writer(state);
       write(writer, context);
@@ -244,19 +469,24 @@ void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&
 }
 
 std::size_t read_cdr_erased(std::span<const std::byte> message, std::size_t offset,
-                            void (*read)(CdrReader&, const void*), const void* context) {
+                            Representation representation, void (*read)(CdrReader&, const void*),
+                            const void* context) {
   if (message.size() < kHeaderSize || offset < kHeaderSize || offset > message.size()) {
     throw MalformedSample("malformed sample: " + std::to_string(message.size()) +
                           " bytes cannot hold a value at offset " + std::to_string(offset));
   }
   const auto kind =
       std::to_integer<unsigned>(message[0]) << 8 | std::to_integer<unsigned>(message[1]);
-  if (kind > 1) {
+  const bool xcdr2 = is_xcdr2(message);
+  const bool plain = kind <= 1 || kind == 6 || kind == 7;
+  if (is_xcdr2(representation) ? !xcdr2 : !plain) {
     throw MalformedSample("malformed sample: representation " + std::to_string(kind) +
-                          " is not PLAIN_CDR (0 or 1); the writer must be set to XCDR1");
+                          (is_xcdr2(representation)
+                               ? " is not XCDR2 (6 to 11); the writer must be set to XCDR2"
+                               : " is not PLAIN_CDR (0 or 1); the writer must be set to XCDR1"));
   }
   CdrReader::State state(message.subspan(kHeaderSize),
-                         kind == 0 ? ByteOrder::Big : ByteOrder::Little);
+                         kind % 2 == 0 ? ByteOrder::Big : ByteOrder::Little, xcdr2);
   state.cdr.jump(offset - kHeaderSize);
   CdrReader reader(state);
   read(reader, context);
@@ -271,6 +501,7 @@ std::size_t read_cdr_erased(std::span<const std::byte> message, std::size_t offs
 SKEIN_INSTANTIATE(bool)
 SKEIN_INSTANTIATE(char)
 SKEIN_INSTANTIATE(std::uint8_t)
+SKEIN_INSTANTIATE(std::int8_t)
 SKEIN_INSTANTIATE(std::int16_t)
 SKEIN_INSTANTIATE(std::uint16_t)
 SKEIN_INSTANTIATE(std::int32_t)
@@ -280,5 +511,13 @@ SKEIN_INSTANTIATE(std::uint64_t)
 SKEIN_INSTANTIATE(float)
 SKEIN_INSTANTIATE(double)
 #undef SKEIN_INSTANTIATE
+
+#define SKEIN_INSTANTIATE_ENUM(T)                                             \
+  template void CdrWriter::write_enum<T>(T, std::span<const T>, const char*); \
+  template T CdrReader::read_enum<T>(std::span<const T>);
+SKEIN_INSTANTIATE_ENUM(std::int8_t)
+SKEIN_INSTANTIATE_ENUM(std::int16_t)
+SKEIN_INSTANTIATE_ENUM(std::int32_t)
+#undef SKEIN_INSTANTIATE_ENUM
 
 }  // namespace skein::idl

@@ -15,6 +15,20 @@ constexpr unsigned kMaximumJsonDepth = 4 * kMaximumNesting;
 
 const json& value_of(const void* node) { return *static_cast<const json*>(node); }
 
+/// `line 3, column 5`.
+std::string place_of(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const auto line = std::ranges::count(before, '\n') + 1;
+  const auto column = before.size() - (before.rfind('\n') + 1) + 1;
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// The number that the library could not read, which it tells in quotes.
+std::string quoted_number(const std::string& message) {
+  const std::size_t begin = message.find('\'') + 1;
+  return message.substr(begin, message.find('\'', begin) - begin);
+}
+
 std::vector<std::string> strings(std::span<const std::string_view> names) {
   return {names.begin(), names.end()};
 }
@@ -81,6 +95,17 @@ JsonReader JsonReader::element(std::size_t index) const {
   return JsonReader(&value_of(node_)[index], this, {}, index);
 }
 
+bool JsonReader::is_null() const { return value_of(node_).is_null(); }
+
+bool JsonReader::is_object() const { return value_of(node_).is_object(); }
+
+bool JsonReader::is_empty_string() const {
+  const auto* text = value_of(node_).get_ptr<const std::string*>();
+  return text && text->empty();
+}
+
+bool JsonReader::is_number() const { return static_cast<const json*>(node_)->is_number(); }
+
 bool JsonReader::has_member(std::string_view name) const {
   return value_of(node_).is_object() && value_of(node_).contains(name);
 }
@@ -94,17 +119,20 @@ void JsonReader::expect_members(std::string_view type,
                                 std::span<const std::string_view> names) const {
   const json& value = value_of(node_);
   if (!value.is_object()) fail("is no object, as " + std::string(type) + " must be");
+  std::string wrong;
+  const auto add = [&](const std::string& what) { wrong += (wrong.empty() ? "" : "; it ") + what; };
   for (const auto& [name, member] : value.items()) {
     if (std::ranges::find(names, name) == names.end()) {
-      fail("has a member '" + name + "', which " + std::string(type) + " has not" +
-           suggestion(name, strings(names)));
+      add("has a member '" + name + "', which " + std::string(type) + " has not" +
+          suggestion(name, strings(names)));
     }
   }
   for (const std::string_view name : names) {
     if (!value.contains(name)) {
-      fail("lacks the member '" + std::string(name) + "' of " + std::string(type));
+      add("lacks the member '" + std::string(name) + "' of " + std::string(type));
     }
   }
+  if (!wrong.empty()) fail(wrong);
 }
 
 std::uint32_t JsonReader::read_enum(std::string_view type,
@@ -137,11 +165,12 @@ void parse_json(std::string_view text, const std::function<void(const JsonReader
   try {
     value = json::parse(text);
   } catch (const json::parse_error& error) {
-    const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
-    const auto line = std::ranges::count(before, '\n') + 1;
-    const auto column = before.size() - (before.rfind('\n') + 1) + 1;
-    throw InvalidArgument("JSON: line " + std::to_string(line) + ", column " +
-                          std::to_string(column) + ": this is no JSON");
+    throw InvalidArgument("JSON: " + place_of(text, error.byte > 0 ? error.byte - 1 : 0) +
+                          ": this is no JSON");
+  } catch (const json::out_of_range& error) {
+    const std::string number = quoted_number(error.what());
+    throw InvalidArgument("JSON: " + place_of(text, text.find(number)) + ": " + number +
+                          " is too large");
   }
   read(JsonReader(&value));
 }
@@ -149,6 +178,7 @@ void parse_json(std::string_view text, const std::function<void(const JsonReader
 template bool JsonReader::read<bool>() const;
 template char JsonReader::read<char>() const;
 template std::uint8_t JsonReader::read<std::uint8_t>() const;
+template std::int8_t JsonReader::read<std::int8_t>() const;
 template std::int16_t JsonReader::read<std::int16_t>() const;
 template std::uint16_t JsonReader::read<std::uint16_t>() const;
 template std::int32_t JsonReader::read<std::int32_t>() const;

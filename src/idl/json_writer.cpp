@@ -34,6 +34,16 @@ void JsonWriter::write_string(std::string_view text) {
   text_ += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+void JsonWriter::write_null() {
+  separate();
+  text_ += "null";
+}
+
+void JsonWriter::write_raw(std::string_view json) {
+  separate();
+  text_ += json;
+}
+
 template <Primitive T>
 void JsonWriter::write(T value) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -60,6 +70,7 @@ void JsonWriter::write(T value) {
 template void JsonWriter::write<bool>(bool);
 template void JsonWriter::write<char>(char);
 template void JsonWriter::write<std::uint8_t>(std::uint8_t);
+template void JsonWriter::write<std::int8_t>(std::int8_t);
 template void JsonWriter::write<std::int16_t>(std::int16_t);
 template void JsonWriter::write<std::uint16_t>(std::uint16_t);
 template void JsonWriter::write<std::int32_t>(std::int32_t);

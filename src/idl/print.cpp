@@ -1,6 +1,9 @@
 #include "skein/detail/print.hpp"
 
+#include <array>
 #include <charconv>
+
+#include "skein/detail/wide_text.hpp"
 
 namespace skein::idl {
 namespace {
@@ -58,6 +61,32 @@ void print_text(std::ostream& stream, std::string_view text) {
   stream << '"';
 }
 
+void print(std::ostream& stream, const wchar_t& value) {
+  stream << '\'' << utf8({&value, 1}) << '\'';
+}
+
+void print(std::ostream& stream, const long double& value) {
+  std::array<char, 64> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  stream.write(digits.data(), end - digits.data());
+}
+
+void print(std::ostream& stream, const std::wstring& value) { print_text(stream, utf8(value)); }
+
+void print_flags(std::ostream& stream, std::uint64_t value, std::span<const Flag> flags) {
+  const char* separator = "";
+  for (const Flag& flag : flags) {
+    if ((value & flag.bit) == 0) continue;
+    stream << separator << flag.name;
+    separator = "|";
+    value &= ~flag.bit;
+  }
+  if (value != 0 || *separator == '\0') {
+    stream << separator;
+    print_primitive(stream, value);
+  }
+}
+
 void print_omission(std::ostream& stream, std::size_t size) {
   stream << "... " << size << " elements";
 }
@@ -65,6 +94,7 @@ void print_omission(std::ostream& stream, std::size_t size) {
 template void print_primitive<bool>(std::ostream&, bool);
 template void print_primitive<char>(std::ostream&, char);
 template void print_primitive<std::uint8_t>(std::ostream&, std::uint8_t);
+template void print_primitive<std::int8_t>(std::ostream&, std::int8_t);
 template void print_primitive<std::int16_t>(std::ostream&, std::int16_t);
 template void print_primitive<std::uint16_t>(std::ostream&, std::uint16_t);
 template void print_primitive<std::int32_t>(std::ostream&, std::int32_t);

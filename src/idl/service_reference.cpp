@@ -17,7 +17,7 @@ std::string to_string(const ServiceReference& reference) { return idl::text_of(r
 
 const TypeSupport& type_support(const ServiceReference*) {
   static constexpr TypeSupport support =
-      idl::make_type_support<ServiceReference>("skein::ServiceReference");
+      idl::make_type_support<ServiceReference>("skein::ServiceReference", {});
   return support;
 }
 
@@ -49,6 +49,10 @@ void skein_write_json(idl::JsonWriter& writer, const ServiceReference& reference
 
 void skein_read_json(const idl::JsonReader& reader, ServiceReference& reference) {
   static constexpr std::string_view members[] = {"interface_name", "provider", "instance"};
+  if (reader.is_null() || reader.is_empty_string()) {
+    reference = {};
+    return;
+  }
   reader.expect_members("ServiceReference", members);
   reference.interface_name = reader.member("interface_name").read_string();
   const auto provider = Guid::from_hex(reader.member("provider").read_string());

@@ -8,11 +8,13 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
-#include <system_error>
 #include <vector>
 
 #include "launch/ready.hpp"
+#include "marked_processes.hpp"
+#include "pipe.hpp"
 #include "skein/error.hpp"
 #include "wake_up.hpp"
 
@@ -21,27 +23,9 @@ namespace {
 
 // In the child; a number of one digit, because shells redirect to such numbers only.
 constexpr int kReadyDescriptor = 3;
-constexpr int kFirstFreeDescriptor = kReadyDescriptor + 1;
+static_assert(kReadyDescriptor < kFirstPipeEnd);
 constexpr int kUnknownExitCode = 255;
 constexpr int kCannotExecute = 127;
-
-struct Pipe {
-  FileDescriptor read_end;
-  FileDescriptor write_end;
-};
-
-/// Both ends are closed on exec and stay clear of the descriptors that the child gets, which may be
-/// closed in the launcher.
-Pipe make_pipe() {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("a pipe");
-  const FileDescriptor first(ends[0]);
-  const FileDescriptor second(ends[1]);
-  Pipe pipe{FileDescriptor(::fcntl(first.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor)),
-            FileDescriptor(::fcntl(second.get(), F_DUPFD_CLOEXEC, kFirstFreeDescriptor))};
-  if (!pipe.read_end || !pipe.write_end) throw_system_error("a pipe");
-  return pipe;
-}
 
 // Debian 12's <sys/pidfd.h> cannot be used from C++: it declares its functions without C linkage.
 int open_process(pid_t process) { return static_cast<int>(::syscall(SYS_pidfd_open, process, 0)); }
@@ -50,9 +34,12 @@ void make_non_blocking(const FileDescriptor& descriptor) {
   ::fcntl(descriptor.get(), F_SETFL, ::fcntl(descriptor.get(), F_GETFL) | O_NONBLOCK);
 }
 
-std::vector<std::string> environment_of(const ChildPlan& plan) {
+std::vector<std::string> environment_of(const ChildPlan& plan, const std::string& mark) {
   auto added = plan.environment;
   added.emplace_back(kReadyVariable, std::to_string(kReadyDescriptor));
+  // What this launcher starts is also its own launcher's, if it has one.
+  const char* above = std::getenv(kMarkVariable);
+  added.emplace_back(kMarkVariable, (above == nullptr ? "" : std::string(above) + " ") + mark);
   std::vector<std::string> entries;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text(*entry);
@@ -97,7 +84,7 @@ struct Launchpad {
   ::dup2(pad.output, STDOUT_FILENO);
   ::dup2(pad.output, STDERR_FILENO);
   ::dup2(pad.readiness, kReadyDescriptor);
-  ::close_range(kFirstFreeDescriptor, ~0U, CLOSE_RANGE_CLOEXEC);
+  ::close_range(kFirstPipeEnd, ~0U, CLOSE_RANGE_CLOEXEC);
   ::execvpe(pad.arguments[0], pad.arguments, pad.environment);
   const int reason = errno;
   [[maybe_unused]] const auto written = ::write(pad.failure, &reason, sizeof reason);
@@ -112,7 +99,8 @@ std::string to_text(const ExitStatus& status) {
   return "by signal " + std::to_string(status.number) + " (" + (name ? name : "unknown") + ")";
 }
 
-ChildProcess::ChildProcess(const ChildPlan& plan, GroupGuard& guard) : guard_(guard) {
+ChildProcess::ChildProcess(const ChildPlan& plan, GroupGuard& guard)
+    : guard_(guard), mark_(guard.next_mark()) {
   if (plan.argv.empty()) throw InvalidArgument(plan.name + " has no command line");
   start(plan);
 }
@@ -122,8 +110,9 @@ void ChildProcess::start(const ChildPlan& plan) {
   auto readiness = make_pipe();
   auto failure = make_pipe();
   const FileDescriptor null_input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  if (!null_input) throw SystemError("cannot open /dev/null", errno);
   auto arguments = plan.argv;
-  auto environment = environment_of(plan);
+  auto environment = environment_of(plan, mark_);
   const auto argument_pointers = pointers_to(arguments);
   const auto environment_pointers = pointers_to(environment);
   const Launchpad pad{argument_pointers.data(),
@@ -145,8 +134,7 @@ void ChildProcess::start(const ChildPlan& plan) {
   } while (size < 0 && errno == EINTR);
   if (size > 0) {
     end_group();
-    throw Unavailable("cannot execute " + plan.argv[0] + ": " +
-                      std::generic_category().message(reason));
+    throw SystemError("cannot execute " + plan.argv[0], reason);
   }
   end_ = FileDescriptor(open_process(id_));
   if (!end_) {
@@ -191,6 +179,7 @@ void ChildProcess::end_group() noexcept {
   // First the leader, then what it left behind: orphans come to the launcher (see Supervisor).
   wait(id_);
   wait(-id_);
+  kill_marked_processes(mark_);
   guard_.remove(id_);
   id_ = -1;
 }

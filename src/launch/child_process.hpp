@@ -24,14 +24,15 @@ struct ExitStatus {
 /// `with exit code 3`, `by signal 11 (Segmentation fault)`.
 std::string to_text(const ExitStatus& status);
 
-/// A running process that leads a process group of its own.
+/// A running process that leads a process group of its own. All that it starts goes with it: what
+/// is in its group, and what has left it but bears its mark (see kMarkVariable).
 class ChildProcess {
  public:
   /// Starts the program. Throws Unavailable with the reason if it cannot be executed.
   ChildProcess(const ChildPlan& plan, GroupGuard& guard);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
-  /// Kills the group if it is still there.
+  /// Kills all that is still there.
   ~ChildProcess();
 
   pid_t id() const noexcept { return id_; }
@@ -39,11 +40,11 @@ class ChildProcess {
   int end_descriptor() const noexcept { return end_.get(); }
   /// The output of the group, non-blocking.
   FileDescriptor& output() noexcept { return output_; }
-  /// Where the process says that it is ready, non-blocking.
+  /// Where the process says that it is ready and makes progress, non-blocking.
   FileDescriptor& readiness() noexcept { return readiness_; }
 
   void send(int signal) const noexcept;  ///< To the whole group.
-  /// The status if the process has ended; the rest of its group is killed and gone then.
+  /// The status if the process has ended; what it started is killed and gone then.
   std::optional<ExitStatus> collect();
 
  private:
@@ -51,6 +52,7 @@ class ChildProcess {
   void end_group() noexcept;
 
   GroupGuard& guard_;
+  const std::string mark_;
   pid_t id_ = -1;
   FileDescriptor end_;
   FileDescriptor output_;

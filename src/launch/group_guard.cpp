@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 
+#include "marked_processes.hpp"
 #include "wake_up.hpp"
 
 namespace skein::launch {
@@ -17,7 +19,7 @@ namespace {
 constexpr std::size_t kMaxGroups = 4096;
 
 /// The body of the guard. It is forked, not executed, so that it uses system calls only.
-[[noreturn]] void guard_groups(int input) {
+[[noreturn]] void guard_groups(int input, const std::string& mark) {
   // A session of its own: what is sent to the launcher's terminal or group must not end the guard.
   ::setsid();
   ::prctl(PR_SET_NAME, "skein-guard");
@@ -41,19 +43,22 @@ constexpr std::size_t kMaxGroups = 4096;
     }
   }
   for (std::size_t i = 0; i < count; ++i) ::kill(-groups[i], SIGKILL);
+  kill_marked_processes(mark);
   ::_exit(0);
 }
 
 }  // namespace
 
-GroupGuard::GroupGuard() {
+GroupGuard::GroupGuard() : mark_(make_mark()) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("a pipe");
+  // No pipe: a write after the guard's end must not be this process's.
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw_system_error("a pair of sockets");
   const FileDescriptor input(ends[0]);
   groups_ = FileDescriptor(ends[1]);
   guard_ = ::fork();
   if (guard_ < 0) throw_system_error("its guard process");
-  if (guard_ == 0) guard_groups(input.get());
+  if (guard_ == 0) guard_groups(input.get(), mark_);
 }
 
 GroupGuard::~GroupGuard() {
@@ -63,7 +68,7 @@ GroupGuard::~GroupGuard() {
 }
 
 void GroupGuard::send(pid_t message) noexcept {
-  while (::write(groups_.get(), &message, sizeof message) < 0 && errno == EINTR) {
+  while (::send(groups_.get(), &message, sizeof message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
   }
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "launch/start_order.hpp"
 #include "profile/mission_profile.hpp"
 
 namespace skein::launch {
@@ -14,16 +15,19 @@ struct ChildPlan {
   std::string name;  ///< `peer`, or `peer/csp` for a CSP with a process of its own.
   std::vector<std::string>
       argv;  ///< Program (looked for in PATH if without a slash) and arguments.
-  std::vector<std::pair<std::string, std::string>> environment;  ///< Added to the launcher's own.
-  profile::ProcessRules rules;
-  bool runs_mission = false;  ///< Its end ends the mission; its exit code is the mission's.
-  bool required = true;       ///< Its loss ends the mission.
+  /// Added to the launcher's own, or in its place.
+  std::vector<std::pair<std::string, std::string>> environment;
+  profile::ProcessRules rules{};
+  bool runs_mission = false;          ///< Its end ends the mission; its exit code is the mission's.
+  bool tells_ready = true;            ///< False: it is ready as soon as it runs.
+  std::size_t layer = 0;              ///< In the order of the start.
+  std::vector<Prerequisite> after{};  ///< What must be ready before it is started.
 };
 
 struct LaunchPlan {
   std::string mission;
   std::vector<ChildPlan> children;
-  std::vector<std::string> elsewhere;  ///< Processes of other hosts, which are not started here.
+  std::vector<std::string> elsewhere;  ///< Processes that are not started here, and why.
   /// The peer that runs the mission, where it is one of those: this launcher does not see its end,
   /// and runs until it is interrupted or its own processes have ended.
   std::string mission_elsewhere{};
@@ -32,7 +36,8 @@ struct LaunchPlan {
 /// Why a launcher of `host` has nothing to start: who it is, and which hosts the peers name.
 std::string nobody_here(const profile::MissionProfile& mission, const std::string& host);
 
-/// Makes the command line of one process. `csp` is null for the peer's own process.
+/// Makes the command line of one process, as far as it is `skein peer` and without the arguments
+/// that the profile gives it. `csp` is null for the peer's own process.
 using MakeArgv = std::function<std::vector<std::string>(const profile::PeerProfile& peer,
                                                         const profile::CspProfile* csp)>;
 
@@ -44,12 +49,15 @@ bool is_here(const std::string& wanted, const std::string& self);
 std::vector<std::string> hosts_of(const profile::MissionProfile& mission);
 
 /// The processes of a mission that belong to `host`, as is_here() says. One for each peer, one for
-/// each CSP with process="own".
+/// each CSP with process="own". Where `only` names peers and groups, theirs alone; throws
+/// InvalidArgument for a name that is neither, with a suggestion.
 LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeArgv& make_argv,
-                            const std::string& host = {});
+                            const std::string& host = {},
+                            const std::vector<std::string>& only = {});
 
-/// What would be started, for people: each process with its command line as a shell would read it,
-/// its readiness, restart and stop rules, and what its end means for the mission.
+/// What would be started, for people, layer by layer: each process with its command line as a shell
+/// would read it, what it is started after, its rules of readiness, progress, restart and stop, and
+/// what its end means for the mission.
 std::string to_text(const LaunchPlan& plan);
 
 }  // namespace skein::launch

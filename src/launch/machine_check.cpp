@@ -1,13 +1,19 @@
 #include "launch/machine_check.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "core/host.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
 #include "dds/vendor_names.hpp"
+#include "findings_apart.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/peer.hpp"
 #include "skein/component_registry.hpp"
@@ -34,6 +40,21 @@ std::string obstacle(const std::string& host) {
   }
 }
 
+/// As execvp(3) would find it.
+bool is_executable(const std::string& program) {
+  const auto fits = [](const std::string& file) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0;
+  };
+  if (program.find('/') != std::string::npos) return fits(program);
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/bin:/usr/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (fits((folder.empty() ? "." : folder) + "/" + program)) return true;
+  }
+  return false;
+}
+
 class MachineCheck {
  public:
   MachineCheck(const MissionProfile& mission, const std::string& host)
@@ -44,11 +65,14 @@ class MachineCheck {
   std::vector<Finding> run() {
     for (const PeerProfile& peer : mission_.peers) {
       if (!is_here(peer)) continue;
-      check_interface(peer);
-      check_meeting(peer);
-      check_threads(peer.threads, peer.where, peer.name);
-      for (const CspProfile& csp : peer.csps)
-        check_threads(csp.threads, csp.where, peer.name + "/" + csp.name);
+      if (peer.start.program.empty()) {
+        check_interface(peer);
+        check_meeting(peer);
+      } else {
+        check_program(peer);
+      }
+      check_cpus(peer, peer.name);
+      for (const CspProfile& csp : peer.csps) check_cpus(csp, peer.name + "/" + csp.name);
     }
     return std::move(findings_);
   }
@@ -112,12 +136,29 @@ class MachineCheck {
     }
   }
 
-  void check_threads(const profile::ThreadRules& rules, const SourcePosition& where,
-                     const std::string& owner) {
+  void check_program(const PeerProfile& peer) {
+    const std::string& program = peer.start.program;
+    if (is_executable(program)) return;
+    const bool path = program.find('/') != std::string::npos;
+    const bool line = program.find(' ') != std::string::npos;
+    add(Severity::Error, peer.where,
+        "the program '" + program + "' of '" + peer.name + "' " +
+            (path ? "cannot be executed" : "is not in PATH"),
+        line   ? "write its arguments as <argument value=\"...\"/>"
+        : path ? "check the path, and that its file is executable"
+               : "install it, or write a path with a slash");
+  }
+
+  /// `owner` is a peer or a CSP.
+  template <class Owner>
+  void check_cpus(const Owner& owner, const std::string& name) {
+    ThreadSettings of_process;
+    of_process.cpus = owner.start.cpus;
     try {
-      check(rules.settings, "'" + owner + "'");
+      check(owner.threads.settings, "'" + name + "'");
+      check(of_process, "'" + name + "'");
     } catch (const InvalidArgument& error) {
-      add(Severity::Error, where, error.what(), "");
+      add(Severity::Error, owner.where, error.what(), "");
     }
   }
 
@@ -128,14 +169,22 @@ class MachineCheck {
   std::vector<Finding> findings_;
 };
 
+/// Whether a process finds other libraries than this one would.
+bool looks_elsewhere(const profile::ProcessStart& start) {
+  return std::ranges::any_of(start.environment, [](const auto& variable) {
+    return variable.first == "SKEIN_MODULE_PATH" || variable.first.starts_with("LD_");
+  });
+}
+
 class PluginCheck {
  public:
   std::vector<Finding> run(const MissionProfile& mission, const std::string& host) {
     for (const PeerProfile& peer : mission.peers) {
-      if (!is_here(peer.host, host)) continue;
-      check_process(peer);
+      if (!is_here(peer.host, host) || !peer.start.program.empty()) continue;
+      if (!looks_elsewhere(peer.start)) check_process(peer);
       for (const CspProfile& csp : peer.csps) {
-        if (csp.process == CspProcess::Own) check_own(csp);
+        const bool own = csp.process == CspProcess::Own && csp.component;
+        if (own && !looks_elsewhere(csp.start)) check_own(csp);
       }
     }
     return std::move(findings_);
@@ -173,10 +222,11 @@ class PluginCheck {
     }
     check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner)
+      if (csp.process == CspProcess::InOwner && csp.component)
         demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
                csp.where, registry);
     }
+    if (!peer.component) return;
     const std::string& component = peer.component->name;
     if (!peer.component->interfaces.empty()) {
       demand(registry.find_body(component), component, "component", peer.plugin, peer.where,
@@ -252,7 +302,7 @@ std::vector<Finding> check_hosts(const MissionProfile& mission, const std::strin
 }
 
 std::vector<Finding> check_plugins(const MissionProfile& mission, const std::string& host) {
-  return PluginCheck().run(mission, host);
+  return findings_apart([&] { return PluginCheck().run(mission, host); }, mission.file);
 }
 
 }  // namespace skein::launch

@@ -10,7 +10,7 @@ namespace skein::launch {
 
 /// Everything that a profile names and this machine does not have, as far as it concerns the peers
 /// of `host` (see is_here()):
-/// - network interfaces and CPUs
+/// - network interfaces, CPUs, and programs of peers
 /// - hosts without an address that a peer would have to ask
 /// - a peer without an interface in a mission of several hosts, where others could not meet it; a
 ///   peer that names no host there, which each launcher would start
@@ -25,7 +25,8 @@ std::vector<profile::Finding> check_hosts(const profile::MissionProfile& mission
 
 /// Plugins of those peers that cannot be opened, components that no plugin of theirs implements,
 /// components for which no plugin is named, and selection strategies that neither their plugins nor
-/// Skein hold. Loads the plugins into this process, for good.
+/// Skein hold. Components that could not be read (null) are passed over, and processes whose
+/// environment in the profile says where libraries are. A process of its own loads the plugins.
 std::vector<profile::Finding> check_plugins(const profile::MissionProfile& mission,
                                             const std::string& host);
 

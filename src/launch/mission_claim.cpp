@@ -1,10 +1,14 @@
 #include "launch/mission_claim.hpp"
 
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,14 +20,16 @@
 namespace skein::launch {
 namespace {
 
+constexpr std::string_view kPrefix = "skein-launch-";
+
 /// Two launchers of one name start the same peers.
 std::string name_of(const profile::MissionProfile& mission, const std::string& host) {
   std::set<std::string> systems;
   for (const auto& peer : mission.peers) systems.insert(peer.system);
   std::string all = mission.name + '\0' + host;
   for (const std::string& system : systems) all += '\0' + system;
-  return "skein-launch-" + std::to_string(::getuid()) + "-" + std::to_string(mission.domain) + "-" +
-         std::to_string(std::hash<std::string>()(all));
+  return std::string(kPrefix) + std::to_string(::getuid()) + "-" + std::to_string(mission.domain) +
+         "-" + std::to_string(std::hash<std::string>()(all));
 }
 
 /// In the abstract namespace, which begins with a zero and is each network namespace's own.
@@ -34,9 +40,8 @@ sockaddr_un address_of(const std::string& name) {
   return address;
 }
 
-/// Who listens there; nothing where nobody does any more.
-std::optional<ucred> holder_of(const sockaddr_un& address) {
-  const FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+/// Who listens there, once `client` is connected to it; nothing where nobody does any more.
+std::optional<ucred> connect(const FileDescriptor& client, const sockaddr_un& address) {
   ucred holder{};
   socklen_t size = sizeof holder;
   if (::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
@@ -46,10 +51,59 @@ std::optional<ucred> holder_of(const sockaddr_un& address) {
   return holder;
 }
 
+std::optional<ucred> holder_of(const sockaddr_un& address) {
+  return connect(FileDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)),
+                 address);
+}
+
+constexpr timeval kPatience{10, 0};
+constexpr std::size_t kLongestAnswer = 1 << 20;
+
+/// All that comes until the other side ends; what has come where it takes too long.
+std::string read_all(const FileDescriptor& socket) {
+  std::string text;
+  std::array<char, 4096> part;
+  while (text.size() < kLongestAnswer) {
+    const auto size = ::read(socket.get(), part.data(), part.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) break;
+    text.append(part.data(), static_cast<std::size_t>(size));
+  }
+  return text;
+}
+
 }  // namespace
 
+std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
+                         const std::string& request) {
+  const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!socket) throw_system_error("a socket");
+  for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
+    ::setsockopt(socket.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
+  const auto holder = connect(socket, address_of(name_of(mission, host)));
+  if (!holder || holder->uid != ::getuid()) {
+    throw Unavailable("the mission '" + mission.name + "' is not flown here on domain " +
+                      std::to_string(mission.domain) +
+                      (host.empty() ? "" : " as host '" + host + "'") +
+                      "; start it by skein launch, and ask as the same user");
+  }
+  const std::string line = request + "\n";
+  std::string answer;
+  if (::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL) ==
+      static_cast<ssize_t>(line.size()))
+    answer = read_all(socket);
+  const bool accepted = answer.starts_with(kAccepted);
+  if (!accepted && !answer.starts_with(kRefused)) {
+    throw Unavailable("the launcher, process " + std::to_string(holder->pid) +
+                      ", does not answer; is it stopped?");
+  }
+  answer.erase(0, accepted ? kAccepted.size() : kRefused.size());
+  if (!accepted) throw Unavailable("the launcher refuses: " + answer);
+  return answer;
+}
+
 MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::string& host) {
-  FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) throw_system_error("a socket");
   const sockaddr_un address = address_of(name_of(mission, host));
   if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
@@ -69,6 +123,17 @@ MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::st
 
 MissionClaim::~MissionClaim() {
   if (socket_ >= 0) ::close(socket_);
+}
+
+std::optional<std::uint32_t> claimed_domain(std::string_view socket) {
+  constexpr char kAbstract = '@';
+  if (socket.empty() || socket.front() != kAbstract || !socket.substr(1).starts_with(kPrefix))
+    return std::nullopt;
+  socket.remove_prefix(1 + kPrefix.size());
+  socket.remove_prefix(std::min(socket.find('-'), socket.size() - 1) + 1);  // the user
+  std::uint32_t domain = 0;
+  const auto read = std::from_chars(socket.data(), socket.data() + socket.size(), domain);
+  return read.ec == std::errc() ? std::optional(domain) : std::nullopt;
 }
 
 }  // namespace skein::launch

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <set>
 
 #include "core/interface_name.hpp"
@@ -15,9 +16,10 @@
 #include "core/thread_settings.hpp"
 #include "hung_csp.hpp"
 #include "launch/address_space.hpp"
+#include "launch/exit_codes.hpp"
 #include "launch/launch_plan.hpp"
+#include "launch/progress_report.hpp"
 #include "launch/ready.hpp"
-#include "launch/supervisor.hpp"
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -63,6 +65,11 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   options.network = network_of(mission, peer);
   options.network.shared_memory = owner.shared_memory;
   options.network.allowed_sources = peer.allowed_sources;
+  if (!peer.topics.empty()) {
+    options.adjust_topic = [rules = peer.topics](const std::string& topic, TopicQos& qos) {
+      if (const auto* found = profile::find_topic(rules, topic)) found->change(qos);
+    };
+  }
   return options;
 }
 
@@ -126,7 +133,9 @@ std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& b
                         "' is made for one; remove threads=, or register a Body with more");
 }
 
-void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
+using SelfTest = std::function<void()>;
+
+SelfTest provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
   const auto& factory = required(registry.find_body(peer.component->name), peer.component->name,
                                  "component", registry);
   ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
@@ -135,6 +144,19 @@ void provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegist
   options.threads = threads_of(peer, body);
   options.scheduling = peer.threads.settings;
   entity.provide(std::move(body.servant), options);
+  return body.self_test;
+}
+
+void pass(const SelfTest& self_test, const Entity& entity) {
+  if (!self_test) return;
+  report_waiting("tests itself");
+  try {
+    self_test();
+  } catch (const std::exception& error) {
+    const std::string reason = std::string("its self-test has failed: ") + error.what();
+    report_waiting(reason);
+    throw Unavailable(entity.id() + ": " + reason);
+  }
 }
 
 bool told_to_end() {
@@ -197,6 +219,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   Entity entity(std::move(options));
   provide_csp(entity, peer.system + "/" + peer.name, csp, registry);
   report_ready();
+  const ProgressReport progress(entity, csp.rules.progress_timeout);
   return await_end();
 }
 
@@ -224,9 +247,12 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);
   }
-  if (!peer.component->interfaces.empty()) provide_body(entity, peer, registry);
+  SelfTest self_test;
+  if (!peer.component->interfaces.empty()) self_test = provide_body(entity, peer, registry);
   if (!await_dependencies(entity, peer, begun)) return 0;
+  pass(self_test, entity);
   report_ready();
+  const ProgressReport progress(entity, peer.rules.progress_timeout);
   if (!peer.runs_mission) return await_end();
   const auto& mission_function = required(registry.find_mission(peer.component->name),
                                           peer.component->name, "mission", registry);
@@ -271,6 +297,10 @@ int run_process(const MissionProfile& mission, const std::string& process,
   const CspProfile* csp =
       slash == std::string::npos ? nullptr : peer->find_csp(process.substr(slash + 1));
   if (slash != std::string::npos && !csp) refuse_process(mission, process);
+  if (!peer->start.program.empty()) {
+    throw InvalidArgument("'" + peer->name + "' is a program of its own, '" + peer->start.program +
+                          "'; skein launch --dry-run says how it is started");
+  }
 
   if (csp ? csp->threads.lock_memory : peer->threads.lock_memory) lock_memory();
   // A mission has no place at which it could notice a signal: it dies of it, as programs do.

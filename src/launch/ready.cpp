@@ -1,5 +1,6 @@
 #include "launch/ready.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+
+#include "service_manager.hpp"
 
 namespace skein::launch {
 namespace {
@@ -24,26 +27,43 @@ int ready_descriptor() noexcept {
   return result.ec == std::errc() && result.ptr == end && descriptor >= 3 ? descriptor : -1;
 }
 
+// A launcher that is gone does not matter here: the kernel ends this process with it. One that is
+// stopped does not read, and must not stop this process, too.
+void write_text(int descriptor, std::string_view text) noexcept {
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+  [[maybe_unused]] const auto written = ::write(descriptor, text.data(), text.size());
+}
+
 }  // namespace
 
 void report_ready() noexcept {
   const int descriptor = ready_descriptor();
-  if (descriptor < 0 || reported.exchange(true)) return;
-  // A launcher that is gone does not matter here: the kernel ends this process with it.
-  [[maybe_unused]] const auto written = ::write(descriptor, "\n", 1);
-  ::close(descriptor);
+  if (reported.exchange(true)) return;
+  if (descriptor < 0) return notify_service_manager("READY=1");
+  ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);  // what this process starts cannot speak for it
+  write_text(descriptor, "\n");
+}
+
+void report_progress() noexcept {
+  if (!reported) return;
+  const int descriptor = ready_descriptor();
+  if (descriptor < 0) return notify_service_manager("WATCHDOG=1");
+  write_text(descriptor, "\n");
 }
 
 void report_waiting(std::string_view reason) noexcept {
   const int descriptor = ready_descriptor();
-  if (descriptor < 0 || reported) return;
-  std::array<char, kLongestReason + 2> line;
-  const auto size = std::min(reason.size(), kLongestReason);
-  line[0] = '?';
-  std::replace_copy(reason.begin(), reason.begin() + static_cast<std::ptrdiff_t>(size),
-                    line.begin() + 1, '\n', ' ');
-  line[size + 1] = '\n';
-  [[maybe_unused]] const auto written = ::write(descriptor, line.data(), size + 2);
+  const std::string_view beginning = descriptor < 0 ? "STATUS=" : "?";
+  std::array<char, kLongestReason + 8> line;
+  auto end = std::copy(beginning.begin(), beginning.end(), line.begin());
+  end = std::replace_copy(
+      reason.begin(),
+      reason.begin() + static_cast<std::ptrdiff_t>(std::min(reason.size(), kLongestReason)), end,
+      '\n', ' ');
+  *end++ = '\n';
+  const std::string_view text(line.data(), static_cast<std::size_t>(end - line.begin()));
+  if (descriptor < 0) return notify_service_manager(text);
+  write_text(descriptor, text);
 }
 
 }  // namespace skein::launch

@@ -10,6 +10,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/printable.hpp"
+#include "core/suggestion.hpp"
+#include "launch/mission_claim.hpp"
+#include "launch/mission_state.hpp"
+#include "request_server.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/mission_status.idl.hpp"
 #include "supervised_child.hpp"
 #include "wake_up.hpp"
 
@@ -56,11 +63,8 @@ constexpr const char* kOpenEnd =
     "; the mission runs on another host: this launcher runs until it is interrupted or all of its "
     "processes have ended";
 
-std::size_t count_ready(const std::vector<SupervisedChild>& children) {
-  return static_cast<std::size_t>(std::count_if(
-      children.begin(), children.end(),
-      [](const SupervisedChild& child) { return child.machine().state() == ChildState::Ready; }));
-}
+std::string accepted(const std::string& text) { return std::string(kAccepted).append(text); }
+std::string refused(const std::string& text) { return std::string(kRefused).append(text); }
 
 SupervisorOptions with_defaults(SupervisorOptions options) {
   if (!options.on_output) {
@@ -80,102 +84,212 @@ SupervisorOptions with_defaults(SupervisorOptions options) {
 class MissionRun {
  public:
   MissionRun(const LaunchPlan& plan, const SupervisorOptions& options, StopRequest& stop)
-      : plan_(plan), options_(options), stop_(stop), signals_(options.handle_signals) {
-    for (const auto& child : plan.children) children_.emplace_back(child, options_, guard_);
+      : plan_(plan),
+        options_(options),
+        stop_(stop),
+        signals_(options.handle_signals),
+        state_(plan),
+        requests_(options.requests, [this](std::string_view request) { return answer(request); }) {
+    for (std::size_t i = 0; i < plan.children.size(); ++i)
+      children_.emplace_back(plan.children[i], state_.child(i), options_, guard_);
   }
 
   LaunchResult run() {
-    const Time start = now();
-    heed_requests();
-    for (auto& child : children_) {
-      if (!result_) child.start(now());
-    }
-    while (true) {
-      judge(start);
-      if (all_final()) break;
+    heed_signals();
+    if (!result_) apply(state_.start(now()));
+    while (!state_.all_final()) {
       wait();
-      for (auto& child : children_) {
-        child.read_output();
-        child.read_readiness(now());
-        child.collect(now());
-        child.tick(now());
-      }
-      heed_requests();
+      for (std::size_t i = 0; i < children_.size(); ++i) look_at(i);
+      apply(state_.tick(now()), true);
+      requests_.serve();
+      heed_signals();
     }
-    if (!result_) end(all_ended());
+    note_verdict();
     return *result_;
   }
 
  private:
-  void report(const std::string& text) const { options_.on_event({"", ChildState::Idle, text}); }
+  using Steps = MissionState::Steps;
 
-  bool all_final() const {
-    return std::all_of(children_.begin(), children_.end(),
-                       [](const SupervisedChild& child) { return child.machine().is_final(); });
+  void report(const std::string& text) const {
+    options_.on_event({"", ChildState::Idle, text, now()});
+  }
+
+  void look_at(std::size_t i) {
+    SupervisedChild& child = children_[i];
+    child.read_output();
+    heed_signs(i);
+    const auto status = child.collect();
+    if (!status) return;
+    heed_signs(i);
+    const bool fault = !state_.verdict() && (status->failed() || child_of(i).hang() != Hang::None);
+    const auto steps = state_.exited(i, status->failed(), now());
+    child.tell_end();
+    if (fault) note_fault(i, child.plan().name + " " + child.end_text() + child.last_reason());
+    tell_loss(i);
+    apply(steps);
+  }
+
+  const ChildStateMachine& child_of(std::size_t i) const { return state_.child(i); }
+
+  /// Also of a child that has ended: what it said before counts.
+  void heed_signs(std::size_t i) {
+    const Signs signs = children_[i].read_signs();
+    if (signs.ready && child_of(i).state() == ChildState::Starting) {
+      const Time when = now();
+      const auto steps = state_.ready(i, when);
+      children_[i].tell_ready(when);
+      tell_all_ready();
+      apply(steps);
+    }
+    if (signs.progress) apply(state_.progress(i, now()));
+  }
+
+  void tell_all_ready() {
+    if (all_ready_ || state_.verdict() || !state_.all_ready()) return;
+    all_ready_ = true;
+    report("all " + std::to_string(children_.size()) + " processes are ready after " +
+           seconds_text(now() - start_) + (plan_.mission_elsewhere.empty() ? "" : kOpenEnd));
+  }
+
+  void tell_loss(std::size_t i) const {
+    const ChildPlan& plan = children_[i].plan();
+    if (child_of(i).state() == ChildState::Lost && !plan.runs_mission &&
+        plan.rules.on_loss == profile::LossPolicy::Degrade)
+      report("goes on degraded, without " + plan.name);
+  }
+
+  void note_fault(std::size_t i, const std::string& what) {
+    if (faults_++ > 0) return;
+    first_fault_ = "after " + seconds_text(now() - start_) + ", " + what;
+    first_faulty_ = i;
+  }
+
+  /// Does what the machines want, and what follows from it. `overdue`: as time ran out.
+  void apply(Steps steps, bool overdue = false) {
+    note_verdict();
+    for (std::size_t at = 0; at < steps.size(); ++at) {
+      const auto [i, action] = steps[at];
+      if (action != ChildAction::Spawn) {
+        children_[i].send(action, overdue);
+        continue;
+      }
+      // Whoever was to be started when the mission's end came is not.
+      const bool wanted = child_of(i).state() == ChildState::Starting;
+      if (wanted && children_[i].spawn(now())) {
+        if (!children_[i].plan().tells_ready) heed_signs(i);
+        continue;
+      }
+      const bool passing = wanted && children_[i].spawn_may_succeed_later();
+      const auto more = state_.spawn_failed(i, passing, now());
+      steps.insert(steps.end(), more.begin(), more.end());
+      if (!wanted) continue;
+      children_[i].tell_spawn_failed();
+      note_fault(i, children_[i].spawn_fault());
+      tell_loss(i);
+      note_verdict();
+    }
   }
 
   /// The first cause counts; what follows from it does not.
-  void end(LaunchResult result) {
-    if (result_) return;
-    result_ = std::move(result);
+  void note_verdict() {
+    if (result_ || !state_.verdict()) return;
+    result_ = result_of(*state_.verdict());
+    if (result_->exit_code == 0 && state_.is_degraded()) {
+      result_->outcome = Outcome::Degraded;
+      result_->exit_code = kDegraded;
+    }
+    using End = MissionState::End;
+    const auto [end, child] = *state_.verdict();
+    const bool is_the_reason =
+        faults_ == 1 && child == first_faulty_ && (end == End::Lost || end == End::MissionEnded);
+    if (!is_the_reason) result_->first_fault = first_fault_;
     report("ends: " + result_->reason);
-    for (auto& child : children_) child.stop(now());
   }
 
-  void interrupt(int signal) {
-    if (result_) {
-      for (auto& child : children_) child.stop(now());
+  LaunchResult result_of(const MissionState::Verdict& verdict) const {
+    switch (verdict.end) {
+      case MissionState::End::MissionEnded: {
+        const SupervisedChild& child = children_[verdict.child];
+        return {Outcome::MissionEnded, child.last_status()->exit_code(),
+                child.plan().name + ", which runs the mission, " + child.end_text() +
+                    child.last_reason(),
+                ""};
+      }
+      case MissionState::End::Lost: {
+        const bool started = child_of(verdict.child).was_ready();
+        return {started ? Outcome::PeerLost : Outcome::StartFailed,
+                started ? kPeerLost : kStartFailed, children_[verdict.child].loss(), ""};
+      }
+      case MissionState::End::Stopped:
+        return {Outcome::Interrupted, kInterrupted + signal_, stop_reason_, ""};
+      case MissionState::End::AllEnded:
+        break;
     }
-    end({Outcome::Interrupted, kInterrupted + signal,
-         "interrupted by signal " + std::to_string(signal) + " (" + ::sigdescr_np(signal) + ")"});
+    for (const SupervisedChild& child : children_) {
+      if (!child.loss().empty()) return {Outcome::PeerLost, kPeerLost, child.loss(), ""};
+    }
+    return {Outcome::MissionEnded, 0, "all processes have ended", ""};
   }
 
-  void heed_requests() {
-    if (stop_.take()) {
-      end({Outcome::Interrupted, kInterrupted + SIGTERM, "it was asked to stop"});
-    }
-    while (const int signal = signals_.take()) interrupt(signal);
+  void stop(int signal, const std::string& reason) {
+    signal_ = signal;
+    stop_reason_ = reason;
+    apply(state_.stop(now()));
   }
 
-  void judge(Time start) {
-    if (!all_ready_ && !result_ && count_ready(children_) == children_.size()) {
-      all_ready_ = true;
-      report("all " + std::to_string(children_.size()) + " processes are ready after " +
-             seconds_text(now() - start) + (plan_.mission_elsewhere.empty() ? "" : kOpenEnd));
-    }
-    for (const auto& child : children_) {
-      if (!result_ && child.machine().is_final()) judge(child);
-    }
-  }
-
-  void judge(const SupervisedChild& child) {
-    const bool lost = child.machine().state() == ChildState::Lost;
-    const auto& status = child.last_status();
-    if (child.plan().runs_mission && status && !child.hung_at_start()) {
-      end({Outcome::MissionEnded, status->exit_code(),
-           child.plan().name + ", which runs the mission, ended " + to_text(*status) +
-               child.last_reason()});
-    } else if (lost && (child.plan().required || child.plan().runs_mission)) {
-      const bool started = child.machine().was_ready();
-      end({started ? Outcome::PeerLost : Outcome::StartFailed, started ? kPeerLost : kStartFailed,
-           child.loss()});
+  void heed_signals() {
+    if (stop_.take() && !state_.verdict()) stop(SIGTERM, "it was asked to stop");
+    while (const int signal = signals_.take()) {
+      if (signal == signal_ && now() - signalled_ < kSameSignal) continue;
+      signalled_ = now();
+      stop(signal,
+           "interrupted by signal " + std::to_string(signal) + " (" + ::sigdescr_np(signal) + ")");
     }
   }
 
-  /// Without a peer that runs the mission: all processes came to their end.
-  LaunchResult all_ended() const {
-    for (const auto& child : children_) {
-      if (!child.loss().empty()) return {Outcome::PeerLost, kPeerLost, child.loss()};
+  std::string answer(std::string_view request) {
+    constexpr std::string_view kRestart = "restart ";
+    if (request == "status") return accepted(status());
+    if (request.starts_with(kRestart)) return restart(request.substr(kRestart.size()));
+    return refused("it does not know this request; is it of another version?");
+  }
+
+  std::string restart(std::string_view name) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < children_.size(); ++i) {
+      names.push_back(children_[i].plan().name);
+      if (names.back() != name) continue;
+      if (state_.verdict()) return refused("the mission is being ended");
+      if (child_of(i).state() == ChildState::Idle)
+        return refused(names.back() + " was not started yet");
+      report("is asked to start " + names.back() + " anew");
+      apply(state_.restart(i, now()));
+      return accepted(names.back() + " is started anew");
     }
-    return {Outcome::MissionEnded, 0, "all processes have ended"};
+    const std::string unknown = printable(name);
+    return refused("the mission has no process '" + unknown + "' here" +
+                   suggestion(unknown, names));
+  }
+
+  std::string status() const {
+    MissionStatus status;
+    const Time when = now();
+    status.mission = plan_.mission;
+    status.launcher = static_cast<std::uint32_t>(::getpid());
+    status.uptime = std::chrono::duration<double>(when - start_).count();
+    status.degraded = state_.is_degraded();
+    status.ending = result_ ? result_->reason : "";
+    for (const SupervisedChild& child : children_) status.processes.push_back(child.status(when));
+    status.elsewhere = plan_.elsewhere;
+    return idl::to_json(status);
   }
 
   void wait() {
     std::vector<pollfd> watched{{stop_.descriptor(), POLLIN, 0},
                                 {signals_.descriptor(), POLLIN, 0}};
-    std::optional<Time> due;
+    requests_.add_to(watched);
     for (const auto& child : children_) {
-      if (const auto tick = child.machine().next_tick()) due = due ? std::min(*due, *tick) : *tick;
       auto* process = child.process();
       if (process == nullptr) continue;
       for (const int descriptor :
@@ -184,12 +298,15 @@ class MissionRun {
       }
     }
     using std::chrono::milliseconds;
+    const auto due = state_.next_tick();
     const auto left = due ? std::chrono::ceil<milliseconds>(*due - now()) : milliseconds(-1);
     const auto limit = due ? std::clamp<std::int64_t>(left.count(), 0, kLongestWaitMs) : -1;
     ::poll(watched.data(), watched.size(), static_cast<int>(limit));
   }
 
   static constexpr std::int64_t kLongestWaitMs = 60'000;
+  // timeout(1) sends its signal to the process, and at once to its group.
+  static constexpr std::chrono::milliseconds kSameSignal{300};
 
   const LaunchPlan& plan_;
   const SupervisorOptions& options_;
@@ -197,8 +314,17 @@ class MissionRun {
   SignalReader signals_;
   const ChildKeeping child_keeping_;
   GroupGuard guard_;
+  const Time start_ = now();
+  MissionState state_;
   std::vector<SupervisedChild> children_;
+  RequestServer requests_;
   std::optional<LaunchResult> result_;
+  std::size_t faults_ = 0;
+  std::string first_fault_;
+  std::size_t first_faulty_ = 0;
+  std::string stop_reason_;
+  int signal_ = 0;
+  Time signalled_{};
   bool all_ready_ = false;
 };
 

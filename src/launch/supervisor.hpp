@@ -6,32 +6,28 @@
 #include <string_view>
 
 #include "launch/child_state.hpp"
+#include "launch/exit_codes.hpp"
 #include "launch/launch_plan.hpp"
 
 namespace skein::launch {
 
 enum class Outcome {
   MissionEnded,  ///< The peer that runs the mission ended by itself, or all processes did.
-  StartFailed,   ///< A required process could not be started, or never became ready.
-  PeerLost,      ///< A required process was ready once, ended, and was not mended by restarts.
+  Degraded,      ///< As MissionEnded with code 0, but without a process that was to be there.
+  StartFailed,   ///< A process that must not be lost could not be started, or never became ready.
+  PeerLost,      ///< Such a process was ready once, ended, and was not mended by restarts.
   Interrupted,   ///< SIGINT, SIGTERM, SIGHUP or request_stop().
 };
 
-/// Exit codes of a launcher. They are those of sysexits.h and of the shell, so that they do not
-/// meet the small numbers that missions end with.
-inline constexpr int kConfigurationError = 78;  ///< For the caller: nothing was started.
-inline constexpr int kPeerLost = 70;
-inline constexpr int kStartFailed = 71;
-inline constexpr int kOutputLost = 74;     ///< For the caller: stdout could not be written.
-inline constexpr int kMissionFailed = 76;  ///< Of a peer: its mission ended by an exception.
-inline constexpr int kInterrupted = 128;   ///< Plus the signal's number.
-
 struct LaunchResult {
   Outcome outcome = Outcome::MissionEnded;
-  /// 0 only if the mission's peer ended with 0 by itself (without such a peer: if all processes
-  /// ended as they were meant to). Its own code if it ended with another, 128 + N if by signal N.
+  /// One of kExitCodes. 0 only if the mission's peer ended with 0 by itself (without such a peer:
+  /// if all processes ended as they were meant to). Its own code if it ended with another, 128 + N
+  /// if by signal N.
   int exit_code = 0;
-  std::string reason;  ///< The first cause, in one sentence.
+  std::string reason;  ///< Why the mission ended, in one sentence.
+  /// What went wrong first, and when, where that is not `reason` itself; or empty.
+  std::string first_fault;
 };
 
 /// Something that happened, for whoever shows it.
@@ -39,6 +35,7 @@ struct ChildEvent {
   std::string child;  ///< Empty for the mission as a whole.
   ChildState state = ChildState::Idle;
   std::string text;  ///< For people, such as `ready after 0.21 s` or `ended by signal 11 (...)`.
+  Time when{};
 };
 
 struct SupervisorOptions {
@@ -47,18 +44,26 @@ struct SupervisorOptions {
   /// By default `name | * text` on stderr.
   std::function<void(const ChildEvent& event)> on_event;
   /// Whether run() ends the mission in order on SIGINT, SIGTERM and SIGHUP; a second one kills at
-  /// once. The signals are blocked in the calling thread while run() lasts; other threads of the
-  /// process must block them, too.
+  /// once, unless it is the same and comes within 300 ms. The signals are blocked in the calling
+  /// thread while run() lasts; other threads of the process must block them, too.
   bool handle_signals = true;
+  /// A listening socket for requests (see MissionClaim): `status`, answered by a MissionStatus as
+  /// JSON, and `restart PROCESS`. Negative: there are none.
+  int requests = -1;
 };
 
-/// Runs the processes of a mission on this host: starts them all at once, shows their output,
-/// watches them become ready, restarts those that fail by their rules, and ends the mission when
-/// its peer ends, a required process is lost, or it is told to.
+/// Runs the processes of a mission on this host: starts each when what it waits for is ready, shows
+/// their output, watches them become ready and make progress, restarts those that fail by their
+/// rules, and ends the mission when its peer ends, a process is lost that must not be, or it is
+/// told to. What follows from what is MissionState's to say.
 ///
-/// Each process leads a process group of its own. Ending goes group by group: SIGTERM, the stop
-/// timeout, SIGKILL; when run() returns, none of the groups is left. When the launcher itself is
-/// killed, the kernel kills its children, and a guard process the rest of their groups.
+/// Each process leads a process group of its own. Ending goes group by group: SIGINT, SIGTERM,
+/// SIGKILL within the stop timeout; when run() returns, none of the groups is left, nor what has
+/// left them for a session of its own. When the launcher itself is killed, the kernel kills its
+/// children, and a guard process all that they have started.
+///
+/// Not reached are processes that were started without their parent's environment and have left its
+/// group, and processes of another user.
 ///
 /// Children belong to the thread that calls run(); it calls back `on_output` and `on_event`, and
 /// makes no other thread.

@@ -5,16 +5,28 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <string>
 #include <system_error>
-
-#include "skein/error.hpp"
 
 namespace skein::launch {
 
+SystemError::SystemError(const std::string& what, int number)
+    : Unavailable(what + ": " + std::generic_category().message(number)), number_(number) {}
+
+bool SystemError::is_passing() const noexcept {
+  switch (number_) {
+    case EAGAIN:
+    case ENOMEM:
+    case EMFILE:
+    case ENFILE:
+    case ETXTBSY:
+      return true;
+    default:
+      return false;
+  }
+}
+
 void throw_system_error(const char* what) {
-  throw Unavailable(std::string("the launcher cannot make ") + what + ": " +
-                    std::generic_category().message(errno));
+  throw SystemError(std::string("the launcher cannot make ") + what, errno);
 }
 
 StopRequest::StopRequest() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {

@@ -1,12 +1,25 @@
 #pragma once
 
 #include <csignal>
+#include <string>
 
 #include "../core/file_descriptor.hpp"
+#include "skein/error.hpp"
 
 namespace skein::launch {
 
-/// Throws Unavailable with what the operating system refused and why (errno).
+/// What the operating system refused, and why.
+class SystemError : public Unavailable {
+ public:
+  SystemError(const std::string& what, int number);
+  /// Whether it may be granted a moment later.
+  bool is_passing() const noexcept;
+
+ private:
+  int number_;
+};
+
+/// Throws SystemError: what the launcher cannot make, by errno.
 [[noreturn]] void throw_system_error(const char* what);
 
 /// Wakes up a poll() from any thread or signal handler.

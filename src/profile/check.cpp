@@ -20,6 +20,8 @@ class Checker {
   std::vector<Finding> run() {
     check_mission_peer();
     check_loopback();
+    check_groups();
+    check_files();
     Repeated names("the peer");
     for (std::size_t i = 0; i < mission_.peers.size() && !findings_.full(); ++i) {
       names.add(mission_.peers[i].name, mission_.peers[i].where, findings_);
@@ -54,10 +56,30 @@ class Checker {
                      [](const CspProfile& csp) { return csp.process == CspProcess::Own; });
     if (one_process) return;
     for (const auto& peer : mission_.peers) {
-      if (peer.vendor != dds::kLoopback) continue;
+      if (peer.vendor != dds::kLoopback || !peer.start.program.empty()) continue;
       findings_.warning(
           peer.where, in_quotes(peer.name) + " is on loopback, a network inside of one process",
           "other processes will not see it; write " + dds::alternatives(dds::networked_vendors()));
+    }
+  }
+
+  /// They are chosen by name, as peers are.
+  void check_groups() {
+    for (const auto& peer : mission_.peers) {
+      const auto* same = peer.group.empty() ? nullptr : mission_.find_peer(peer.group);
+      if (same == nullptr) continue;
+      findings_.error(same->where, in_quotes(same->name) + " is a peer's name and a group's",
+                      "give one of them another");
+    }
+  }
+
+  /// Two processes that write one file spoil it.
+  void check_files() {
+    Repeated histories("the history");
+    Repeated logs("the decision_log");
+    for (const auto& peer : mission_.peers) {
+      histories.add(peer.head.history, peer.host, peer.where, findings_);
+      logs.add(peer.head.log, peer.host, peer.where, findings_);
     }
   }
 
@@ -72,7 +94,7 @@ class Checker {
       check_component(*peer.component, mission_.dictionary, findings_);
       check_settings(peer.parameters, *peer.component, mission_.dictionary, findings_);
       check_references(peer.parameters, peer);
-      check_subcomponents(peer);
+      if (peer.start.program.empty()) check_subcomponents(peer);
     }
     for (const auto& csp : peer.csps) {
       if (!csp.component) continue;
@@ -133,7 +155,7 @@ class Checker {
         findings_.error(need.where,
                         who + " depends on " + need.interface + ", which no peer of " +
                             in_quotes(mission_.name) + " implements",
-                        "add a peer that does; " +
+                        "add a peer that does" + unless_unread() + "; " +
                             remedy_for(need.interface, composition_.public_interfaces()));
       } else {
         findings_.error(need.where,
@@ -142,6 +164,13 @@ class Checker {
                         "a CSP serves its own peer alone; depend on that peer's interface");
       }
     }
+  }
+
+  std::string unless_unread() const {
+    const bool unread = std::any_of(
+        mission_.peers.begin(), mission_.peers.end(),
+        [](const PeerProfile& peer) { return !peer.component && peer.start.program.empty(); });
+    return unread ? ", unless one whose component cannot be read does" : "";
   }
 
   static bool implements(const CspProfile& csp, const std::string& interface) {
@@ -244,28 +273,28 @@ class Checker {
 
 std::vector<Finding> check(const MissionProfile& profile) { return Checker(profile).run(); }
 
-namespace {
-
-MissionProfile read_and_check(const std::filesystem::path& file, FindingList& findings) {
+MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
+                              const VariableValues& values) {
+  FindingList list;
   std::vector<Finding> of_reading;
-  auto profile = read_mission_profile(file, of_reading);
-  findings.add_all(of_reading);
-  findings.add_all(check(profile));
+  auto profile = read_mission_profile(file, of_reading, values);
+  list.add_all(of_reading);
+  list.add_all(check(profile));
+  findings.insert(findings.end(), list.list().begin(), list.list().end());
   return profile;
 }
 
-}  // namespace
-
-std::vector<Finding> check_file(const std::filesystem::path& file) {
-  FindingList findings;
-  read_and_check(file, findings);
-  return findings.list();
+std::vector<Finding> check_file(const std::filesystem::path& file, const VariableValues& values) {
+  std::vector<Finding> findings;
+  read_and_check(file, findings, values);
+  return findings;
 }
 
-MissionProfile read_checked_profile(const std::filesystem::path& file) {
-  FindingList findings;
-  auto profile = read_and_check(file, findings);
-  findings.throw_if_errors();
+MissionProfile read_checked_profile(const std::filesystem::path& file,
+                                    const VariableValues& values) {
+  std::vector<Finding> findings;
+  auto profile = read_and_check(file, findings, values);
+  if (has_errors(findings)) throw DescriptionError(std::move(findings));
   return profile;
 }
 

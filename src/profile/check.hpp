@@ -14,7 +14,8 @@ namespace skein::profile {
 /// - a cycle of dependencies, each named once with its way round
 /// - an attribute or parameter that the dictionary does not have, or whose value or declared type
 ///   disagrees with it; a parameter that the component does not have
-/// - names given twice: peers, CSPs, parameters, attributes, interfaces
+/// - names given twice: peers, groups, CSPs, parameters, attributes, interfaces
+/// - two peers that write one history or decision log
 /// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
 /// - a service reference to something that the mission does not have
 /// - more than one peer that runs the mission, or one that would be restarted
@@ -26,12 +27,19 @@ namespace skein::profile {
 /// can tell is in launch/machine_check.hpp.
 std::vector<Finding> check(const MissionProfile& profile);
 
-/// Reads a profile and checks it: the findings of reading and those of check() together. Throws
-/// nothing for what files can contain; a file that is missing is a finding as well.
-std::vector<Finding> check_file(const std::filesystem::path& file);
+/// Reads a profile and checks it: adds the findings of reading and those of check() to `findings`,
+/// and gives what could be read. Throws nothing for what files can contain; a file that is missing
+/// is a finding as well.
+MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
+                              const VariableValues& values = {});
+
+/// The findings of read_and_check().
+std::vector<Finding> check_file(const std::filesystem::path& file,
+                                const VariableValues& values = {});
 
 /// Reads a profile that is going to be run: throws DescriptionError with every finding of
 /// check_file() if one of them is an error.
-MissionProfile read_checked_profile(const std::filesystem::path& file);
+MissionProfile read_checked_profile(const std::filesystem::path& file,
+                                    const VariableValues& values = {});
 
 }  // namespace skein::profile

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <string>
+#include <set>
 
-#include "finding_list.hpp"
 #include "profile/component_description.hpp"
+#include "xml_node.hpp"
 
 namespace skein::profile {
 
@@ -14,16 +14,16 @@ namespace skein::profile {
 /// not make much work out of one large component.
 class ComponentCache {
  public:
-  ComponentCache(std::filesystem::path folder, FindingList& findings)
-      : folder_(std::move(folder)), findings_(findings) {}
+  explicit ComponentCache(FindingList& findings) : findings_(findings) {}
 
-  /// The component in `file`, relative to the folder; null and findings if it cannot be read.
-  /// `named_at` is where the profile names it.
-  std::shared_ptr<const ComponentDescription> read(const std::string& file,
-                                                   const SourcePosition& named_at);
+  /// The component in the file that the attribute names, relative to the file in which it stands;
+  /// null and findings if it cannot be read.
+  std::shared_ptr<const ComponentDescription> read(const XmlAttribute& named);
+
+  /// Of the components that could be read.
+  std::set<std::filesystem::path> files() const;
 
  private:
-  std::filesystem::path folder_;
   FindingList& findings_;
   std::map<std::filesystem::path, std::shared_ptr<const ComponentDescription>> read_;
 };

@@ -1,18 +1,21 @@
 #include "profile/component_xml.hpp"
 
+#include <pugixml.hpp>
 #include <sstream>
 
 #include "component_reader.hpp"
 #include "core/interface_name.hpp"
+#include "notation.hpp"
 #include "text_file.hpp"
 #include "words.hpp"
+#include "xml_element.hpp"
 
 namespace skein::profile {
 namespace {
 
 /// The canonical name in the text of an element; a finding and nothing if it is none.
 std::optional<std::string> interface_in(const XmlElement& element) {
-  const std::string text = element.text();
+  const std::string& text = element.text();
   if (is_interface_name(text)) return canonical_interface_name(text);
   element.findings().error(element.where(),
                            "<" + std::string(element.name()) + "> holds " +
@@ -23,11 +26,9 @@ std::optional<std::string> interface_in(const XmlElement& element) {
 }
 
 Parameter read_parameter(const XmlElement& element) {
-  element.allow({"name"}, {"type"});
   Parameter parameter{element.attribute("name").value, "", element.where()};
   const auto type = element.maybe_child("type");
   if (!type) return parameter;
-  type->allow({}, {}, true);
   if (maybe_value_type(type->text())) {
     parameter.type = type->text();
   } else if (const auto interface = interface_in(*type)) {
@@ -40,7 +41,6 @@ std::vector<Parameter> read_parameters(const XmlElement& implements, std::string
   std::vector<Parameter> parameters;
   const auto group = implements.maybe_child(group_name);
   if (!group) return parameters;
-  group->allow({}, {"parameter"});
   for (const auto& child : group->children("parameter")) {
     parameters.push_back(read_parameter(child));
   }
@@ -48,18 +48,15 @@ std::vector<Parameter> read_parameters(const XmlElement& implements, std::string
 }
 
 std::optional<ImplementedInterface> read_implements(const XmlElement& element) {
-  element.allow({}, {"type", "required", "optional", "attribute"}, true);
   ImplementedInterface implemented;
   implemented.where = element.where();
   implemented.required = read_parameters(element, "required");
   implemented.optional = read_parameters(element, "optional");
   for (const auto& child : element.children("attribute")) {
-    child.allow({"name", "value"}, {});
     implemented.attributes.push_back(
         {child.attribute("name").value, child.attribute("value").value, child.where()});
   }
   const auto type = element.maybe_child("type");
-  if (type) type->allow({}, {}, true);
   if (type && !element.text().empty()) {
     element.findings().error(element.where(), "<implements> names an interface twice",
                              "keep either the text or <type>");
@@ -76,9 +73,7 @@ std::vector<InterfaceReference> read_references(const XmlElement& component,
   std::vector<InterfaceReference> references;
   const auto group = component.maybe_child(group_name);
   if (!group) return references;
-  group->allow({}, {item_name});
   for (const auto& item : group->children(item_name)) {
-    item.allow({}, {}, true);
     if (const auto name = interface_in(item)) references.push_back({*name, item.where()});
   }
   return references;
@@ -86,19 +81,18 @@ std::vector<InterfaceReference> read_references(const XmlElement& component,
 
 }  // namespace
 
-ComponentDescription read_component(const XmlDocument& document, FindingList& findings) {
-  const XmlElement root(document.root(), document, findings);
+ComponentDescription read_component(const XmlNode& node, FindingList& findings) {
+  const XmlElement root(node, findings);
   ComponentDescription component;
   component.where = root.where();
-  if (root.name() != "component") {
+  if (root.name() != component_notation().name) {
     findings.error(root.where(), "<" + shortened(root.name()) + "> is no component description",
                    "its outermost element is <component name=\"...\">");
     return component;
   }
-  root.allow({"name"}, {"interfaces", "dependencies", "subcomponents"});
+  demand_notation(node, component_notation(), findings);
   component.name = root.attribute("name").value;
   if (const auto interfaces = root.maybe_child("interfaces")) {
-    interfaces->allow({}, {"implements"});
     for (const auto& child : interfaces->children("implements")) {
       if (auto implemented = read_implements(child)) {
         component.interfaces.push_back(*std::move(implemented));
@@ -111,9 +105,8 @@ ComponentDescription read_component(const XmlDocument& document, FindingList& fi
 }
 
 ComponentDescription parse_component(std::string_view xml, const std::string& file) {
-  const XmlDocument document(xml, file);
   FindingList findings;
-  auto component = read_component(document, findings);
+  auto component = read_component(parse_xml(xml, file, findings), findings);
   findings.throw_if_errors();
   return component;
 }

@@ -1,5 +1,6 @@
 #include "profile/dictionary.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -46,6 +47,22 @@ const TimeUnit* find_time_unit(std::string_view name) {
     if (unit.name == name) return &unit;
   }
   return nullptr;
+}
+
+/// Nothing for what is no length of time; may be longer than any clock counts.
+std::optional<double> maybe_nanoseconds(std::string_view text, std::string_view default_unit) {
+  const std::string_view whole = trimmed(text);
+  const auto number_end = whole.find_last_of("0123456789.") + 1;
+  const auto number = maybe_finite(whole.substr(0, number_end));
+  const auto unit_name = trimmed(whole.substr(number_end));
+  const auto* unit = find_time_unit(unit_name.empty() ? default_unit : unit_name);
+  if (!number || unit == nullptr || std::signbit(*number)) return std::nullopt;
+  return *number * unit->nanoseconds;
+}
+
+[[noreturn]] void refuse_duration(std::string_view text) {
+  throw InvalidArgument(in_quotes(text) +
+                        " is no length of time; write one like \"100 ms\" (ns, us, ms, s, min, h)");
 }
 
 std::string number_text(double number) {
@@ -102,18 +119,15 @@ std::optional<ValueType> maybe_value_type(std::string_view word) noexcept {
 }
 
 std::chrono::nanoseconds parse_duration(std::string_view text, std::string_view default_unit) {
-  const std::string_view whole = trimmed(text);
-  const auto number_end = whole.find_last_of("0123456789.") + 1;
-  const auto number = maybe_finite(whole.substr(0, number_end));
-  const auto unit_name = trimmed(whole.substr(number_end));
-  const auto* unit = find_time_unit(unit_name.empty() ? default_unit : unit_name);
-  if (!number || unit == nullptr || *number < 0 ||
-      *number * unit->nanoseconds > kLongestNanoseconds) {
-    throw InvalidArgument(
-        in_quotes(text) +
-        " is no length of time; write one like \"100 ms\" (ns, us, ms, s, min, h)");
-  }
-  return std::chrono::nanoseconds(std::llround(*number * unit->nanoseconds));
+  const auto time = maybe_nanoseconds(text, default_unit);
+  if (!time || *time > kLongestNanoseconds) refuse_duration(text);
+  return std::chrono::nanoseconds(std::llround(*time));
+}
+
+double parse_seconds(std::string_view text) {
+  const auto time = maybe_nanoseconds(text, "s");
+  if (!time) refuse_duration(text);
+  return std::min(*time, kLongestNanoseconds) / 1e9;
 }
 
 Value parse_value(const DictionaryEntry& entry, std::string_view text) {

@@ -49,6 +49,10 @@ Value parse_value(const DictionaryEntry& entry, std::string_view text);
 /// Throws InvalidArgument for anything else, negative times and more than 200 years included.
 std::chrono::nanoseconds parse_duration(std::string_view text, std::string_view default_unit = "s");
 
+/// A length of time in seconds, as people write it at a command line: what is longer than 200 years
+/// becomes that. Throws InvalidArgument for what is no length of time.
+double parse_seconds(std::string_view text);
+
 /// Every attribute and parameter that components and profiles may use. Attributes and parameters
 /// are two name spaces. An immutable value after reading; may be read from any number of threads.
 class Dictionary {

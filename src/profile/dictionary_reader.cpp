@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "core/interface_name.hpp"
+#include "notation.hpp"
 #include "text_file.hpp"
 #include "words.hpp"
+#include "xml_element.hpp"
 
 namespace skein::profile {
 namespace {
@@ -85,7 +87,6 @@ void read_interface(const XmlElement& element, DictionaryEntry& entry) {
 }
 
 DictionaryEntry read_entry(const XmlElement& element) {
-  element.allow({"name", "type", "unit", "min", "max", "interface"}, {}, true);
   DictionaryEntry entry;
   entry.kind = element.name() == "attribute" ? EntryKind::Attribute : EntryKind::Parameter;
   entry.name = element.attribute("name").value;
@@ -103,14 +104,14 @@ DictionaryEntry read_entry(const XmlElement& element) {
 
 }  // namespace
 
-Dictionary read_dictionary(const XmlDocument& document, FindingList& findings) {
-  const XmlElement root(document.root(), document, findings);
-  if (root.name() != "dictionary") {
+Dictionary read_dictionary(const XmlNode& node, FindingList& findings) {
+  const XmlElement root(node, findings);
+  if (root.name() != dictionary_notation().name) {
     findings.error(root.where(), "<" + shortened(root.name()) + "> is no dictionary",
                    "its outermost element is <dictionary>");
     return {};
   }
-  root.allow({}, {"attribute", "parameter"});
+  demand_notation(node, dictionary_notation(), findings);
   std::vector<DictionaryEntry> entries;
   std::map<std::pair<EntryKind, std::string>, SourcePosition> seen;
   for (const auto& child : root.children()) {
@@ -127,9 +128,8 @@ Dictionary read_dictionary(const XmlDocument& document, FindingList& findings) {
 }
 
 Dictionary parse_dictionary(std::string_view xml, const std::string& file) {
-  const XmlDocument document(xml, file);
   FindingList findings;
-  auto dictionary = read_dictionary(document, findings);
+  auto dictionary = read_dictionary(parse_xml(xml, file, findings), findings);
   findings.throw_if_errors();
   return dictionary;
 }

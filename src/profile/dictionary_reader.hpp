@@ -2,11 +2,11 @@
 
 #include "finding_list.hpp"
 #include "profile/dictionary.hpp"
-#include "xml_document.hpp"
+#include "xml_node.hpp"
 
 namespace skein::profile {
 
 /// What of the document can be read as a dictionary; the rest becomes findings.
-Dictionary read_dictionary(const XmlDocument& document, FindingList& findings);
+Dictionary read_dictionary(const XmlNode& node, FindingList& findings);
 
 }  // namespace skein::profile

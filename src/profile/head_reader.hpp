@@ -3,7 +3,7 @@
 #include <array>
 
 #include "skein/head_options.hpp"
-#include "xml_document.hpp"
+#include "xml_element.hpp"
 
 namespace skein::profile {
 

@@ -75,6 +75,18 @@ const PeerProfile* MissionProfile::find_peer(std::string_view peer_name) const {
   return find_named(peers, peer_name);
 }
 
+VariableValues parse_variables(const std::vector<std::string>& assignments) {
+  VariableValues values;
+  for (const auto& assignment : assignments) {
+    const auto equals = assignment.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      throw InvalidArgument(in_quotes(assignment) + " sets no variable; write NAME=VALUE");
+    }
+    values[assignment.substr(0, equals)] = assignment.substr(equals + 1);
+  }
+  return values;
+}
+
 void apply_setting(MissionProfile& profile, std::string_view assignment) {
   const auto equals = assignment.find('=');
   const auto dot = assignment.substr(0, equals).find('.');

@@ -1,15 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "profile/component_description.hpp"
 #include "profile/dictionary.hpp"
+#include "profile/process_start.hpp"
 #include "profile/restart_rules.hpp"
 #include "profile/thread_rules.hpp"
+#include "profile/topic_rules.hpp"
 #include "skein/head_options.hpp"
 
 namespace skein::profile {
@@ -29,17 +33,17 @@ enum class CspProcess {
 /// One CSP of a peer.
 struct CspProfile {
   std::string name;            ///< Unique in its peer; by default the component's name.
-  std::string component_file;  ///< As the profile names it, relative to the profile.
+  std::string component_file;  ///< As it is named, relative to the file that names it.
   /// Null only where a profile with findings was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
   CspProcess process = CspProcess::InOwner;
   std::string vendor;  ///< The peer's, unless the profile says otherwise.
   bool shared_memory =
       false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
-  std::string plugin;     ///< The peer's, unless the profile says otherwise.
-  ProcessRules rules;     ///< Of a process of its own.
-  ThreadRules threads;    ///< Of the thread that runs it.
-  bool required = false;  ///< Whether its loss ends the mission.
+  std::string plugin;   ///< The peer's, unless the profile says otherwise.
+  ProcessRules rules;   ///< Of a process of its own.
+  ProcessStart start;   ///< Of a process of its own.
+  ThreadRules threads;  ///< Of the thread that runs it.
   std::vector<Setting> parameters;
   SourcePosition where;
 
@@ -50,8 +54,10 @@ struct CspProfile {
 /// One peer of the mission: an autonomous entity with its CSPs.
 struct PeerProfile {
   std::string name;            ///< Unique in the mission.
-  std::string component_file;  ///< As the profile names it, relative to the profile.
-  /// Null only where a profile with findings was read to collect them.
+  std::string group;           ///< Where it stands in one.
+  std::string component_file;  ///< As it is named, relative to the file that names it.
+  /// Null where a program of its own has none. Otherwise null only where a profile with findings
+  /// was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
   std::string vendor;              ///< As dds::load_vendor() knows it.
   std::string system;              ///< The vehicle or station it belongs to.
@@ -64,10 +70,12 @@ struct PeerProfile {
   std::vector<std::string> allowed_sources;
   std::string plugin;         ///< Library with its providers; empty where main() registers them.
   bool runs_mission = false;  ///< Its end is the mission's, its exit code too.
-  bool required = true;       ///< Whether its loss ends the mission.
   ProcessRules rules;
+  ProcessStart start;
   ThreadRules threads;  ///< Of its public service.
   HeadOptions head;     ///< How it chooses among its CSPs.
+  /// Of the topics that it and its CSPs publish and read.
+  std::vector<TopicRules> topics;
   std::vector<CspProfile> csps;
   std::vector<Setting> parameters;
   SourcePosition where;
@@ -80,8 +88,11 @@ struct PeerProfile {
 /// the XML. A plain value.
 struct MissionProfile {
   std::string name;
-  int domain = 0;  ///< The DDS domain of the mission, 0 to 232.
+  int domain = 0;    ///< The DDS domain of the mission, 0 to 232.
+  std::string logs;  ///< The folder of the launcher's logs; empty: see launch::log_folder().
   std::filesystem::path file;
+  /// All that were read: this one, its parts, its dictionary, and the components.
+  std::set<std::filesystem::path> files;
   Dictionary dictionary;
   std::vector<PeerProfile> peers;
   SourcePosition where;
@@ -89,14 +100,22 @@ struct MissionProfile {
   const PeerProfile* find_peer(std::string_view peer_name) const;  ///< Or null.
 };
 
-/// Reads a profile with its dictionary and all of its components. Says nothing of the composition:
-/// see check.hpp. Throws DescriptionError with every finding of every file.
-MissionProfile read_mission_profile(const std::filesystem::path& file);
+/// Values for a profile's variables, in place of their defaults.
+using VariableValues = std::map<std::string, std::string>;
+
+/// `NAME=VALUE` for each. Throws InvalidArgument for what is none.
+VariableValues parse_variables(const std::vector<std::string>& assignments);
+
+/// Reads a profile with its parts, its dictionary and all of its components. Says nothing of the
+/// composition: see check.hpp. Throws DescriptionError with every finding of every file.
+MissionProfile read_mission_profile(const std::filesystem::path& file,
+                                    const VariableValues& values = {});
 
 /// As above, but adds the findings to `findings` and gives what could be read: for tools that show
 /// everything that is wrong in one go.
 MissionProfile read_mission_profile(const std::filesystem::path& file,
-                                    std::vector<Finding>& findings);
+                                    std::vector<Finding>& findings,
+                                    const VariableValues& values = {});
 
 /// Gives a parameter a value from the command line, `PEER.PARAMETER=VALUE` or
 /// `PEER/CSP.PARAMETER=VALUE`, in place of the profile's. Throws InvalidArgument for an unknown

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <sstream>
 
@@ -8,11 +7,17 @@
 #include "dds/vendor_names.hpp"
 #include "dictionary_reader.hpp"
 #include "head_reader.hpp"
+#include "notation.hpp"
+#include "peer_defaults.hpp"
+#include "plain_name.hpp"
+#include "process_start_reader.hpp"
 #include "profile/mission_profile.hpp"
+#include "profile_parts.hpp"
 #include "rules_reader.hpp"
 #include "skein/error.hpp"
 #include "text_file.hpp"
 #include "thread_rules_reader.hpp"
+#include "topic_rules_reader.hpp"
 #include "value_readers.hpp"
 #include "words.hpp"
 
@@ -20,56 +25,25 @@ namespace skein::profile {
 namespace {
 
 constexpr int kLargestDomain = 232;
-constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kMaxHosts = 64;
-
-/// The attributes of the mission that each peer has unless it says otherwise.
-constexpr std::array kInheritedAttributes{"vendor", "system",    "host",   "interface",
-                                          "peers",  "multicast", "plugin", "allowed_sources"};
-
-/// The attributes of an element: its own, and those of the readers that it is handed to.
-template <class... Lists>
-std::vector<std::string_view> joined(const Lists&... lists) {
-  std::vector<std::string_view> names;
-  (names.insert(names.end(), lists.begin(), lists.end()), ...);
-  return names;
-}
-
-/// What a peer has unless it says otherwise.
-struct Defaults {
-  std::string vendor = dds::vendor_names().front();
-  std::string system = "default";
-  std::string host;
-  std::string interface;
-  std::vector<std::string> peers;
-  bool multicast = false;
-  std::string plugin;
-  std::vector<std::string> allowed_sources;
-};
 
 class MissionReader {
  public:
   MissionReader(const std::filesystem::path& file, FindingList& findings)
-      : file_(file), findings_(findings), components_(file.parent_path(), findings) {}
+      : file_(file), findings_(findings), components_(findings) {}
 
   MissionProfile read(const XmlElement& root) {
     MissionProfile mission;
     mission.file = file_;
     mission.where = root.where();
-    if (root.name() != "mission") {
-      findings_.error(root.where(), "<" + shortened(root.name()) + "> is no mission profile",
-                      "its outermost element is <mission name=\"...\">");
-      return mission;
-    }
-    root.allow(joined(std::array{"name", "domain", "dictionary"}, kInheritedAttributes), {"peer"});
     mission.name = root.attribute("name").value;
     mission.domain = domain_of(root);
-    mission.dictionary = dictionary_of(root);
-    const Defaults defaults = defaults_of(root, Defaults{});
-    for (const auto& child : root.children("peer")) {
-      mission.peers.push_back(peer_of(child, defaults));
-    }
+    mission.logs = value_or(root, "logs", "");
+    mission.dictionary = dictionary_of(root, mission.files);
+    for (const auto& child : root.children("peer")) mission.peers.push_back(peer_of(child));
     if (mission.peers.empty()) findings_.error(root.where(), "the mission has no <peer>");
+    mission.files.insert(file_);
+    mission.files.merge(components_.files());
     return mission;
   }
 
@@ -88,12 +62,13 @@ class MissionReader {
     return domain;
   }
 
-  Dictionary dictionary_of(const XmlElement& root) {
+  Dictionary dictionary_of(const XmlElement& root, std::set<std::filesystem::path>& files) {
     const auto named = root.maybe_attribute("dictionary");
     const auto path = file_.parent_path() / (named ? named->value : "dictionary.xml");
     try {
-      const XmlDocument document(read_text_file(path), path.string());
-      return read_dictionary(document, findings_);
+      const auto text = read_text_file(path);
+      files.insert(path.lexically_normal());
+      return read_dictionary(parse_xml(text, path.string(), findings_), findings_);
     } catch (const DescriptionError& error) {
       findings_.error(named ? named->where : root.where(), "the dictionary cannot be read",
                       "name its file, relative to the profile: dictionary=\"...\"");
@@ -132,10 +107,9 @@ class MissionReader {
     return false;
   }
 
-  std::vector<std::string> allowed_sources_of(const XmlElement& element,
-                                              const std::vector<std::string>& fallback) {
+  std::vector<std::string> allowed_sources_of(const XmlElement& element) {
     const auto attribute = element.maybe_attribute("allowed_sources");
-    if (!attribute) return fallback;
+    if (!attribute) return {};
     std::vector<std::string> sources;
     std::istringstream words(attribute->value);
     for (std::string word; words >> word;) sources.push_back(word);
@@ -149,21 +123,10 @@ class MissionReader {
     return sources;
   }
 
-  Defaults defaults_of(const XmlElement& element, const Defaults& outer) {
-    return {vendor_of(element, outer.vendor),
-            value_or(element, "system", outer.system),
-            value_or(element, "host", outer.host),
-            value_or(element, "interface", outer.interface),
-            hosts_of(element, outer.peers),
-            read_boolean(element, "multicast", outer.multicast),
-            value_or(element, "plugin", outer.plugin),
-            allowed_sources_of(element, outer.allowed_sources)};
-  }
-
   /// Names or addresses, separated by blanks or commas.
-  std::vector<std::string> hosts_of(const XmlElement& element, std::vector<std::string> fallback) {
+  std::vector<std::string> hosts_of(const XmlElement& element) {
     const auto list = element.maybe_attribute("peers");
-    if (!list) return fallback;
+    if (!list) return {};
     std::vector<std::string> hosts;
     for (std::string_view rest = list->value; !(rest = trimmed(rest)).empty();) {
       const std::size_t end = std::min(rest.find_first_of(", \t\r\n"), rest.size());
@@ -183,58 +146,59 @@ class MissionReader {
     return hosts;
   }
 
-  /// Names become parts of topics, partitions, log lines and command lines.
-  void demand_plain_name(const std::string& name, const SourcePosition& where) {
-    const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-             c == '_' || c == '-';
-    });
-    if (plain && name.size() <= kLongestName) return;
-    findings_.error(where, in_quotes(name) + " is no name",
-                    "use letters, digits, _ and -, at most " + std::to_string(kLongestName));
-  }
-
   std::vector<Setting> parameters_of(const XmlElement& element) {
     std::vector<Setting> settings;
     for (const auto& child : element.children("parameter")) {
-      child.allow({"name", "value"}, {});
       settings.push_back(
           {child.attribute("name").value, child.attribute("value").value, child.where()});
     }
     return settings;
   }
 
-  PeerProfile peer_of(const XmlElement& element, const Defaults& mission) {
-    element.allow(joined(std::array{"name", "component"}, kInheritedAttributes,
-                         std::array{"shared_memory", "role", "required"}, kProcessAttributes,
-                         kThreadCountAttributes, kThreadAttributes, kHeadAttributes),
-                  {"csp", "parameter"});
+  PeerProfile peer_of(const XmlElement& element) {
     PeerProfile peer;
     peer.where = element.where();
-    const auto name = element.attribute("name");
-    peer.name = name.value;
-    demand_plain_name(name.value, name.where);
-    const auto component = element.attribute("component");
-    peer.component_file = component.value;
-    peer.component = components_.read(component.value, component.where);
-    auto values = defaults_of(element, mission);
-    peer.vendor = std::move(values.vendor);
-    peer.system = std::move(values.system);
-    peer.host = std::move(values.host);
-    peer.interface = std::move(values.interface);
-    peer.peers = std::move(values.peers);
-    peer.multicast = values.multicast;
-    peer.allowed_sources = std::move(values.allowed_sources);
+    peer.name = name_of(element, "name");
+    if (element.maybe_attribute(kGroupAttribute)) peer.group = name_of(element, kGroupAttribute);
+    peer.start = read_process_start(element);
+    if (!peer.start.program.empty()) refuse_peer_options(element);
+    read_component_of(element, peer);
+    peer.vendor = vendor_of(element, dds::vendor_names().front());
+    peer.system = value_or(element, "system", "default");
+    peer.host = value_or(element, "host", "");
+    peer.interface = value_or(element, "interface", "");
+    peer.peers = hosts_of(element);
+    peer.multicast = read_boolean(element, "multicast", false);
+    peer.allowed_sources = allowed_sources_of(element);
     peer.shared_memory = shared_memory_of(element, peer.vendor, false);
-    peer.plugin = std::move(values.plugin);
+    peer.plugin = value_or(element, "plugin", "");
     peer.runs_mission = runs_mission(element);
-    peer.required = read_boolean(element, "required", true);
-    peer.rules = read_process_rules(element);
+    peer.rules = read_process_rules(element, LossPolicy::Abort);
+    if (peer.runs_mission) refuse_loss_policy(element);
     peer.threads = read_thread_rules(element);
     peer.head = read_head_options(element);
+    peer.topics = read_topic_rules(element);
     peer.parameters = parameters_of(element);
     for (const auto& child : element.children("csp")) peer.csps.push_back(csp_of(child, peer));
     return peer;
+  }
+
+  void read_component_of(const XmlElement& element, PeerProfile& peer) {
+    const bool has_program = element.has_attribute("program");
+    if (!has_program && !element.has_attribute("component")) {
+      findings_.error(element.where(), "<peer> has neither a component nor a program",
+                      "write component=\"...\", or program=\"...\"");
+    } else if (!has_program || element.has_attribute("component")) {
+      const auto component = element.attribute("component");
+      peer.component_file = component.value;
+      peer.component = components_.read(component);
+    }
+  }
+
+  std::string name_of(const XmlElement& element, const char* attribute) {
+    const auto name = element.attribute(attribute);
+    demand_plain_name(name, findings_);
+    return name.value;
   }
 
   bool runs_mission(const XmlElement& peer) {
@@ -247,34 +211,55 @@ class MissionReader {
     return role->value == "mission";
   }
 
+  void refuse_loss_policy(const XmlElement& peer) {
+    const auto policy = peer.maybe_attribute("on_loss");
+    if (!policy || policy->inherited) return;
+    findings_.error(policy->where, "on_loss has no effect on the peer with role=\"mission\"",
+                    "remove it: the end of this peer ends the mission");
+  }
+
   CspProfile csp_of(const XmlElement& element, const PeerProfile& peer) {
-    element.allow(joined(std::array{"name", "component", "process", "vendor", "shared_memory",
-                                    "plugin", "required"},
-                         kProcessAttributes, kThreadAttributes),
-                  {"parameter"});
     CspProfile csp;
     csp.where = element.where();
     const auto component = element.attribute("component");
     csp.component_file = component.value;
-    csp.component = components_.read(component.value, component.where);
-    const auto name = element.maybe_attribute("name");
-    csp.name = name ? name->value : csp.component ? csp.component->name : "";
-    demand_plain_name(csp.name, name ? name->where : element.where());
+    csp.component = components_.read(component);
+    if (element.maybe_attribute("name")) {
+      csp.name = name_of(element, "name");
+    } else if (csp.component) {
+      csp.name = csp.component->name;
+      demand_plain_name({"name", csp.name, element.where()}, findings_);
+    }
     csp.process = process_of(element);
     csp.vendor = vendor_of(element, peer.vendor);
     csp.shared_memory = shared_memory_of(element, csp.vendor, peer.shared_memory);
     csp.plugin = value_or(element, "plugin", peer.plugin);
-    csp.required = read_boolean(element, "required", false);
-    csp.rules = read_process_rules(element);
+    csp.rules = read_process_rules(element, LossPolicy::Continue);
     csp.threads = read_thread_rules(element);
     csp.parameters = parameters_of(element);
-    if (csp.process == CspProcess::InOwner) refuse_process_rules(element);
+    csp.start = read_process_start(element);
+    add_environment(peer.start.environment, csp.start);
+    if (csp.process == CspProcess::InOwner) {
+      refuse_process_rules(element);
+      refuse_process_start(element);
+    }
     if (csp.process == CspProcess::Own && csp.threads.thread == CallThread::Caller) {
       findings_.error(element.maybe_attribute("thread")->where,
                       "a CSP in a process of its own cannot run on its caller's thread",
                       "leave thread out, or write process=\"in\"");
     }
     return csp;
+  }
+
+  /// What the CSP does not say itself.
+  static void add_environment(const std::vector<std::pair<std::string, std::string>>& of_peer,
+                              ProcessStart& start) {
+    const auto own = start.environment;
+    for (const auto& item : of_peer) {
+      const bool known = std::any_of(own.begin(), own.end(),
+                                     [&](const auto& mine) { return mine.first == item.first; });
+      if (!known) start.environment.push_back(item);
+    }
   }
 
   CspProcess process_of(const XmlElement& csp) {
@@ -292,10 +277,23 @@ class MissionReader {
   ComponentCache components_;
 };
 
-MissionProfile read_mission(const std::filesystem::path& file, FindingList& findings) {
+MissionProfile read_mission(const std::filesystem::path& file, const VariableValues& values,
+                            FindingList& findings) {
   try {
-    const XmlDocument document(read_text_file(file), file.string());
-    return MissionReader(file, findings).read(XmlElement(document.root(), document, findings));
+    XmlNode root = parse_xml(read_text_file(file), file.string(), findings);
+    if (root.name != mission_notation().name) {
+      findings.error(root.where, "<" + shortened(root.name) + "> is no mission profile",
+                     "its outermost element is <mission name=\"...\">");
+      return {};
+    }
+    Variables variables(values);
+    auto parts = put_parts_in_place(root, variables, findings);
+    variables.demand_known(file.string(), findings);
+    demand_notation(root, mission_notation(), findings);
+    complete_peers(root, variables, findings);
+    auto mission = MissionReader(file, findings).read(XmlElement(root, findings));
+    mission.files.merge(parts);
+    return mission;
   } catch (const DescriptionError& error) {
     findings.add_all(error.findings());
     return {};
@@ -305,16 +303,17 @@ MissionProfile read_mission(const std::filesystem::path& file, FindingList& find
 }  // namespace
 
 MissionProfile read_mission_profile(const std::filesystem::path& file,
-                                    std::vector<Finding>& findings) {
+                                    std::vector<Finding>& findings, const VariableValues& values) {
   FindingList list;
-  auto mission = read_mission(file, list);
+  auto mission = read_mission(file, values, list);
   findings.insert(findings.end(), list.list().begin(), list.list().end());
   return mission;
 }
 
-MissionProfile read_mission_profile(const std::filesystem::path& file) {
+MissionProfile read_mission_profile(const std::filesystem::path& file,
+                                    const VariableValues& values) {
   FindingList findings;
-  auto mission = read_mission(file, findings);
+  auto mission = read_mission(file, values, findings);
   findings.throw_if_errors();
   return mission;
 }

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 
 #include "finding_list.hpp"
 #include "words.hpp"
@@ -14,8 +15,14 @@ class Repeated {
   explicit Repeated(std::string kind) : kind_(std::move(kind)) {}
 
   void add(const std::string& name, const SourcePosition& where, FindingList& findings) {
+    add(name, "", where, findings);
+  }
+
+  /// Names on several hosts do not meet.
+  void add(const std::string& name, const std::string& host, const SourcePosition& where,
+           FindingList& findings) {
     if (name.empty()) return;
-    const auto [first, fresh] = first_.emplace(name, where);
+    const auto [first, fresh] = first_.emplace(std::pair(host, name), where);
     if (fresh) return;
     findings.error(where, kind_ + " " + in_quotes(name) + " is there twice",
                    "the first is at " + to_text(first->second));
@@ -23,7 +30,7 @@ class Repeated {
 
  private:
   std::string kind_;
-  std::map<std::string, SourcePosition> first_;
+  std::map<std::pair<std::string, std::string>, SourcePosition> first_;
 };
 
 }  // namespace skein::profile

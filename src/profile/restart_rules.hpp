@@ -20,7 +20,8 @@ std::optional<RestartPolicy> maybe_restart_policy(std::string_view word) noexcep
 /// When a process is started again, and when no more.
 ///
 /// The n-th restart inside of `window` waits for `delay` × 2^(n-1), at most `max_delay`. A process
-/// that ends when it was restarted `max_restarts` times within the last `window` is given up.
+/// that ends when it was restarted `max_restarts` times within the last `window` is given up. A
+/// restart after which the process did not become ready counts without end.
 struct RestartRules {
   RestartPolicy policy = RestartPolicy::Never;
   std::chrono::nanoseconds delay = std::chrono::milliseconds(100);
@@ -29,11 +30,28 @@ struct RestartRules {
   std::chrono::nanoseconds window = std::chrono::seconds(30);
 };
 
+/// What the loss of a process means for the mission. A process is lost when it has ended, was not
+/// meant to, and is not started again.
+enum class LossPolicy {
+  Abort,     ///< The mission ends, and has failed.
+  Degrade,   ///< The mission goes on; that it was degraded is told, and shows in the exit code.
+  Continue,  ///< The mission goes on as if nothing had happened.
+};
+
+/// `abort`, `degrade`, `continue`: the words of the XML.
+std::string_view to_string(LossPolicy policy) noexcept;
+/// The policy of that word, or nothing.
+std::optional<LossPolicy> maybe_loss_policy(std::string_view word) noexcept;
+
 /// What the launcher demands of one process.
 struct ProcessRules {
   RestartRules restart;
   std::chrono::nanoseconds ready_timeout = std::chrono::seconds(30);  ///< Start to "I am ready".
-  std::chrono::nanoseconds stop_timeout = std::chrono::seconds(3);    ///< SIGTERM to SIGKILL.
+  /// The longest time between two signs of progress once it is ready; zero: none is asked for.
+  std::chrono::nanoseconds progress_timeout{0};
+  /// SIGINT to SIGKILL; SIGTERM comes after two thirds of it.
+  std::chrono::nanoseconds stop_timeout = std::chrono::seconds(3);
+  LossPolicy on_loss = LossPolicy::Abort;
 };
 
 }  // namespace skein::profile

@@ -20,6 +20,15 @@ RestartPolicy read_policy(const XmlElement& element) {
   return RestartPolicy::Never;
 }
 
+LossPolicy read_loss_policy(const XmlElement& element, LossPolicy fallback) {
+  const auto word = element.maybe_attribute("on_loss");
+  if (!word) return fallback;
+  if (const auto policy = maybe_loss_policy(word->value)) return *policy;
+  element.findings().error(word->where, in_quotes(word->value) + " is no answer to a loss",
+                           remedy_for(word->value, {"abort", "degrade", "continue"}));
+  return fallback;
+}
+
 /// A window that is over before the restarts fit into it would never let the launcher give up.
 void demand_reachable_cap(const XmlElement& element, const RestartRules& rules) {
   nanoseconds sum{0};
@@ -38,7 +47,7 @@ void demand_reachable_cap(const XmlElement& element, const RestartRules& rules) 
 
 }  // namespace
 
-ProcessRules read_process_rules(const XmlElement& element) {
+ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
   ProcessRules rules;
   auto& restart = rules.restart;
   restart.policy = read_policy(element);
@@ -47,7 +56,9 @@ ProcessRules read_process_rules(const XmlElement& element) {
   restart.max_restarts = read_count(element, "max_restarts", restart.max_restarts);
   restart.window = read_time(element, "restart_window", restart.window);
   rules.ready_timeout = read_time(element, "ready_timeout", rules.ready_timeout);
+  rules.progress_timeout = read_time(element, "progress_timeout", rules.progress_timeout);
   rules.stop_timeout = read_time(element, "stop_timeout", rules.stop_timeout);
+  rules.on_loss = read_loss_policy(element, on_loss);
   if (restart.policy != RestartPolicy::Never) demand_reachable_cap(element, restart);
   return rules;
 }

@@ -4,10 +4,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "../core/file_descriptor.hpp"
+#include "core/printable.hpp"
+#include "core/suggestion.hpp"
 #include "profile/finding.hpp"
 
 namespace skein::profile {
@@ -20,6 +25,22 @@ namespace {
 
 std::string reason() { return std::generic_category().message(errno); }
 
+/// The file of that folder whose name is nearest, for a name that was misspelled.
+std::string remedy_for_missing(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxCompared = 1000;
+  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::error_code error;
+  std::vector<std::string> names;
+  for (std::filesystem::directory_iterator entry(folder, error), end;
+       !error && entry != end && names.size() < kMaxCompared; entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  if (error) return "check the path: its folder cannot be read";
+  std::sort(names.begin(), names.end());
+  const std::string near = suggestion(file.filename().string(), names);
+  return "check the path" + (near.empty() ? "" : printable(near, near.size()));
+}
+
 // O_NONBLOCK: opening a named pipe must not wait for somebody to write.
 FileDescriptor open_file(const std::filesystem::path& file) {
   return FileDescriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
@@ -29,7 +50,11 @@ FileDescriptor open_file(const std::filesystem::path& file) {
 
 std::string read_text_file(const std::filesystem::path& file) {
   const FileDescriptor input = open_file(file);
-  if (!input) refuse(file, "cannot be opened: " + reason(), "check the path");
+  if (!input) {
+    const bool missing = errno == ENOENT;
+    const std::string problem = "cannot be opened: " + reason();
+    refuse(file, problem, missing ? remedy_for_missing(file) : "check the path");
+  }
   struct stat status {};
   if (::fstat(input.get(), &status) != 0) refuse(file, "cannot be examined: " + reason());
   if (S_ISDIR(status.st_mode)) refuse(file, "is a directory", "name a file in it");

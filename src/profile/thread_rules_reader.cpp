@@ -1,8 +1,8 @@
 #include "thread_rules_reader.hpp"
 
-#include <algorithm>
 #include <charconv>
 
+#include "cpu_list_reader.hpp"
 #include "profile/dictionary.hpp"
 #include "value_readers.hpp"
 #include "words.hpp"
@@ -12,7 +12,6 @@ namespace {
 
 using Scheduling = ThreadSettings::Scheduling;
 
-constexpr unsigned kLargestCpu = 1023;
 constexpr std::chrono::milliseconds kLongestSpin{100};
 
 Scheduling read_scheduling(const XmlElement& element) {
@@ -53,43 +52,6 @@ int read_number(const XmlElement& element, const char* name, int least, int grea
       text->where, std::string(name) + " is " + in_quotes(text->value),
       "write a number from " + std::to_string(least) + " to " + std::to_string(greatest));
   return 0;
-}
-
-/// `2` or `0-3`; false where the text is neither.
-bool add_range(std::string_view text, std::vector<unsigned>& cpus) {
-  const char* const end = text.data() + text.size();
-  unsigned first = 0;
-  auto result = std::from_chars(text.data(), end, first);
-  if (result.ec != std::errc()) return false;
-  unsigned last = first;
-  if (result.ptr != end) {
-    if (*result.ptr != '-') return false;
-    result = std::from_chars(result.ptr + 1, end, last);
-  }
-  if (result.ec != std::errc() || result.ptr != end || last < first || last > kLargestCpu)
-    return false;
-  for (unsigned cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
-  return true;
-}
-
-std::vector<unsigned> read_cpus(const XmlElement& element) {
-  const auto list = element.maybe_attribute("cpus");
-  if (!list) return {};
-  std::vector<unsigned> cpus;
-  std::string_view rest = list->value;
-  while (true) {
-    const std::size_t comma = rest.find(',');
-    if (!add_range(trimmed(rest.substr(0, comma)), cpus)) {
-      element.findings().error(list->where, in_quotes(list->value) + " is no list of CPUs",
-                               "write their numbers, as in \"0\" or \"0,2-3\"");
-      return {};
-    }
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
-  std::sort(cpus.begin(), cpus.end());
-  cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
-  return cpus;
 }
 
 std::chrono::microseconds read_spin(const XmlElement& element) {
@@ -135,7 +97,7 @@ ThreadRules read_thread_rules(const XmlElement& element) {
   settings.scheduling = read_scheduling(element);
   settings.priority = read_number(element, "priority", 1, 99);
   settings.nice = read_number(element, "nice", -20, 19);
-  settings.cpus = read_cpus(element);
+  settings.cpus = read_cpus(element, "cpus");
   settings.spin = read_spin(element);
   rules.lock_memory = read_boolean(element, kLockMemoryAttribute, false);
   demand_agreement(element, settings.scheduling);

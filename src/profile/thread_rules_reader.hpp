@@ -3,7 +3,7 @@
 #include <array>
 
 #include "profile/thread_rules.hpp"
-#include "xml_document.hpp"
+#include "xml_element.hpp"
 
 namespace skein::profile {
 

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "xml_document.hpp"
+#include "xml_element.hpp"
 
 namespace skein::profile {
 

@@ -1,11 +1,19 @@
 #include "rpc/call_journal.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "core/interface_name.hpp"
+#include "core/wall_clock.hpp"
 #include "skein/error.hpp"
-#include "skein/introspection.idl.hpp"
+
+namespace skein::introspection {
+
+std::size_t size_of(const CallEvent& event) {
+  return sizeof event + event.entity.size() + event.service.size() + event.operation.size() +
+         event.error.size();
+}
+
+}  // namespace skein::introspection
 
 namespace skein::rpc {
 namespace {
@@ -35,8 +43,9 @@ bool declared(const std::exception_ptr& error) {
 
 }  // namespace
 
-CallJournal::CallJournal(dds::Participant& participant, Executor& control, std::string entity)
-    : entity_(std::move(entity)), publisher_(participant, control, introspection::kCalls) {}
+CallJournal::CallJournal(dds::Participant& participant, Clock& clock, Executor& control,
+                         std::string entity)
+    : entity_(std::move(entity)), publisher_(participant, clock, control, introspection::kCalls) {}
 
 void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t number,
                            std::string_view service, const OperationInfo& operation,
@@ -52,9 +61,10 @@ void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t num
   }
 }
 
+// The call must go on, told or not.
 void CallJournal::record(introspection::CallStep step, const Guid& client, std::uint64_t number,
                          std::string_view service, const OperationInfo& operation,
-                         const std::exception_ptr& error) {
+                         const std::exception_ptr& error) noexcept try {
   introspection::CallEvent event;
   event.client = client.bytes;
   event.number = number;
@@ -63,10 +73,9 @@ void CallJournal::record(introspection::CallStep step, const Guid& client, std::
   event.service = scoped_interface_name(std::string(service));
   event.operation = operation.name;
   event.error = text_of(error);
-  event.time = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                              std::chrono::system_clock::now().time_since_epoch())
-                                              .count());
+  event.time = nanoseconds_since_1970();
   publisher_.publish(std::move(event));
+} catch (const std::exception&) {  // no memory
 }
 
 }  // namespace skein::rpc

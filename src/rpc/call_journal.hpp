@@ -6,23 +6,28 @@
 #include <string_view>
 
 #include "dds/port.hpp"
-#include "rpc/introspection_topic.hpp"
+#include "rpc/batch_publisher.hpp"
+#include "skein/clock.hpp"
 #include "skein/detail/operation.hpp"
 #include "skein/executor.hpp"
 #include "skein/guid.hpp"
+#include "skein/introspection.idl.hpp"
 
 namespace skein::introspection {
-enum class CallStep : std::uint32_t;
+
+/// In memory, some bytes more or less.
+std::size_t size_of(const CallEvent& event);
+
 }  // namespace skein::introspection
 
 namespace skein::rpc {
 
-/// What happens to each call of an entity, on the topic `skein/calls`, as a Publisher tells it:
-/// while nobody reads, it costs the look at a flag. Thread-safe.
+/// What happens to each call of an entity, on the topic `skein/calls`, as a BatchPublisher tells
+/// it: while nobody reads, it costs the look at a flag. Thread-safe.
 class CallJournal {
  public:
-  /// `participant` and `control` live until close(). `entity` is `system/name`.
-  CallJournal(dds::Participant& participant, Executor& control, std::string entity);
+  /// All live until close(). `entity` is `system/name`.
+  CallJournal(dds::Participant& participant, Clock& clock, Executor& control, std::string entity);
 
   /// Nothing is noted from now on, and nothing of the participant is in use any more. Not from a
   /// listener, nor from a task of `control`.
@@ -45,10 +50,10 @@ class CallJournal {
  private:
   void record(introspection::CallStep step, const Guid& client, std::uint64_t number,
               std::string_view service, const OperationInfo& operation,
-              const std::exception_ptr& error);
+              const std::exception_ptr& error) noexcept;
 
   const std::string entity_;
-  introspection::Publisher<introspection::CallEvent> publisher_;
+  introspection::BatchPublisher<introspection::CallEvents> publisher_;
 };
 
 }  // namespace skein::rpc

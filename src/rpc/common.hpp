@@ -6,6 +6,7 @@
 
 #include "dds/port.hpp"
 #include "skein/call_context.hpp"
+#include "skein/detail/representation.hpp"
 
 /// What both ends of a transport share.
 namespace skein::rpc {
@@ -16,8 +17,9 @@ inline constexpr std::size_t kKeptCapacity = 4 << 20;
 /// What a TimedOut ends with, for the caller.
 inline constexpr const char* kMoreTime = "; within() on the proxy sets a longer limit";
 
-inline dds::Qos call_qos(std::vector<std::string> partitions) {
+inline dds::Qos call_qos(Representation representation, std::vector<std::string> partitions) {
   dds::Qos qos;
+  if (is_xcdr2(representation)) qos.representation = dds::DataRepresentation::Xcdr2;
   qos.partitions = std::move(partitions);
   return qos;
 }

@@ -38,7 +38,8 @@ void DdsChannel::State::create_endpoints() {
     if (const auto self = state.lock()) self->on_server(reader, matched);
   };
   auto writer = SharedWriters::share(
-      participant.create_writer(address.request_topic(), call_qos(address.partitions()),
+      participant.create_writer(address.request_topic(),
+                                call_qos(address.representation, address.partitions()),
                                 std::move(listener)),
       writers.hold());
   {
@@ -53,7 +54,8 @@ void DdsChannel::State::create_endpoints() {
   };
   std::vector<std::string> partitions{client.hex()};
   if (address.provider.is_nil()) partitions.push_back("");
-  auto reader = participant.create_reader(address.reply_topic(), call_qos(std::move(partitions)),
+  auto reader = participant.create_reader(address.reply_topic(),
+                                          call_qos(address.representation, std::move(partitions)),
                                           std::move(reply_listener));
   std::lock_guard lock(mutex);
   replies = std::move(reader);
@@ -99,7 +101,7 @@ void DdsChannel::State::send_open() {
     writer = requests;
   }
   Bytes message;
-  wire::begin_request(message, {client, 0}, wire::kOpen);
+  wire::begin_request(message, {client, 0}, wire::kOpen, address.representation);
   wire::append_default_branch(message);
   wire::append_trailer(
       message, wire::RequestTrailer{
@@ -183,6 +185,12 @@ void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in)
 Clock& DdsChannel::clock() const noexcept { return state_->clock; }
 Executor& DdsChannel::continuations() const noexcept { return *state_->continuations; }
 std::string DdsChannel::peer() const { return state_->options.peer; }
+std::optional<ConnectionInfo> DdsChannel::info() const {
+  ConnectionInfo info{state_->address.service, state_->address.provider, "DDS", pending()};
+  std::lock_guard lock(state_->mutex);
+  info.calls = state_->last_number;
+  return info;
+}
 void DdsChannel::disconnect() { state_->close(); }
 void DdsChannel::lose(const std::string& how) { state_->lose(how); }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "dds/port.hpp"
@@ -49,6 +50,7 @@ class DdsChannel final : public Channel {
   Clock& clock() const noexcept override;
   Executor& continuations() const noexcept override;
   std::string peer() const override;
+  std::optional<ConnectionInfo> info() const override;
   bool connected() const override;
   void disconnect() override;
   void lose(const std::string& how) override;

@@ -18,7 +18,9 @@ void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const vo
     sent = true;
   });
   if (!sent || call->operation().oneway) remove(number);
-  if (sent && call->operation().oneway && call->claim()) call->finish();
+  if (!sent || !call->operation().oneway || !call->claim()) return;
+  note_end(number, call->operation(), nullptr);
+  call->finish();
 }
 
 // The call is known before its request leaves: a reply may be here before write() returns.
@@ -85,7 +87,7 @@ void DdsChannel::State::expire_due() {
 void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
                              const void* in) {
   thread_local Bytes message;
-  wire::begin_request(message, {client, number}, call.operation().hash);
+  wire::begin_request(message, {client, number}, call.operation().hash, address.representation);
   call.operation().in->encode(in, message);
   const Instant now = clock.now();
   wire::append_trailer(
@@ -167,7 +169,7 @@ void DdsChannel::State::send_reserved(std::uint32_t operation,
     writer = requests;
   }
   Bytes message;
-  wire::begin_request(message, {client, 0}, operation);
+  wire::begin_request(message, {client, 0}, operation, address.representation);
   wire::append_default_branch(message);
   wire::append_trailer(message, trailer);
   writer->write(message);

@@ -233,9 +233,10 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
   State& state = *state_;
   if (options.foreign_clients) {
     state.foreign = state.make_client();
-    state.foreign->writer =
-        SharedWriters::share(participant.create_writer(state.address.reply_topic(), call_qos({""})),
-                             state.writers.hold());
+    state.foreign->writer = SharedWriters::share(
+        participant.create_writer(state.address.reply_topic(),
+                                  call_qos(state.address.representation, {""})),
+        state.writers.hold());
   }
   std::vector<std::string> partitions = state.address.partitions();
   if (options.foreign_clients) partitions.push_back("");
@@ -246,8 +247,9 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
   listener.on_matched = [&state](const Guid& writer, bool matched) {
     state.on_request_writer(writer, matched);
   };
-  state.requests = participant.create_reader(state.address.request_topic(),
-                                             call_qos(std::move(partitions)), std::move(listener));
+  state.requests = participant.create_reader(
+      state.address.request_topic(), call_qos(state.address.representation, std::move(partitions)),
+      std::move(listener));
 }
 
 DdsServer::~DdsServer() {

@@ -16,6 +16,8 @@ struct DdsAddress {
   /// The partition of the provider's request reader; nil means the default partition, in which
   /// peers that are not built with Skein live.
   Guid provider;
+  /// How its requests and replies travel.
+  Representation representation = Representation::Xcdr1;
 
   dds::Topic request_topic() const;
   dds::Topic reply_topic() const;

@@ -208,7 +208,8 @@ void DdsServer::State::make_reply_writer(const RequestId& id,
     if (self && client) self->on_reply_reader(key, client, matched);
   };
   auto writer = SharedWriters::share(
-      participant.create_writer(address.reply_topic(), call_qos({id.client.hex()}),
+      participant.create_writer(address.reply_topic(),
+                                call_qos(address.representation, {id.client.hex()}),
                                 std::move(listener)),
       std::move(hold));
   const std::lock_guard lock(mutex);
@@ -228,12 +229,15 @@ bool DdsServer::State::answer_open(const Guid& key) {
   Bytes message;
   try {
     if (client->refusal) std::rethrow_exception(client->refusal);
-    wire::begin_reply(message, client->open, wire::RemoteException::Ok, wire::kOpen);
+    wire::begin_reply(message, client->open, wire::RemoteException::Ok, wire::kOpen,
+                      address.representation);
     wire::append_default_branch(message);
   } catch (const Error& error) {
-    encode_error(message, client->open, error.code(), error.what(), wire::kOpen);
+    encode_error(message, address.representation, client->open, error.code(), error.what(),
+                 wire::kOpen);
   } catch (const std::exception& error) {
-    encode_error(message, client->open, ErrorCode::Internal, error.what(), wire::kOpen);
+    encode_error(message, address.representation, client->open, ErrorCode::Internal, error.what(),
+                 wire::kOpen);
   }
   write(client, message, clock.now() + kOpenPatience);
   return true;

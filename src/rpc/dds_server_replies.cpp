@@ -49,11 +49,12 @@ void DdsServer::State::write_refusals(const std::shared_ptr<Client>& client) {
   for (const auto& [id, code, text] : refusals) {
     Bytes message;
     if (code == ErrorCode::Unimplemented) {
-      wire::begin_reply(message, id, wire::RemoteException::UnknownOperation, 0);
+      wire::begin_reply(message, id, wire::RemoteException::UnknownOperation, 0,
+                        address.representation);
       wire::append_default_branch(message);
       wire::append_trailer(message, wire::ReplyTrailer{code, text});
     } else {
-      encode_error(message, id, code, text);
+      encode_error(message, address.representation, id, code, text);
     }
     write(client, message, clock.now() + kRefusalPatience);
   }
@@ -65,9 +66,9 @@ void DdsServer::State::respond(Request& request, const void* out, const std::exc
   if (operation.oneway) return;
   thread_local Bytes message;
   if (out || error) {
-    encode_outcome(message, request.id, operation, out, error);
+    encode_outcome(message, address.representation, request.id, operation, out, error);
   } else {
-    encode_end(message, request.id, operation, request.stream->sent());
+    encode_end(message, address.representation, request.id, operation, request.stream->sent());
   }
   write(request.client, message, request.deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
@@ -77,7 +78,7 @@ void DdsServer::State::send_item(const std::shared_ptr<Client>& client, const Re
                                  const OperationInfo& operation, const void* out,
                                  std::uint64_t position, Instant deadline) {
   thread_local Bytes message;
-  encode_item(message, id, operation, out, position);
+  encode_item(message, address.representation, id, operation, out, position);
   const bool sent = write(client, message, deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
   if (!sent) throw Overloaded("the caller of " + std::string(operation.name) + " takes no replies");

@@ -74,7 +74,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
         clock(clock_),
         service(std::move(service_)),
         options(std::move(options_)),
-        address{std::string(service->interface_info().name), service->id()} {}
+        address{std::string(service->interface_info().name), service->id(),
+                service->interface_info().representation()} {}
 
   dds::Participant& participant;
   Executor& control;

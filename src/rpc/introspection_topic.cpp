@@ -6,10 +6,16 @@
 #include "core/log.hpp"
 
 namespace skein::introspection {
+namespace {
+
+/// A reader that hangs must not hold up an entity's end for longer.
+constexpr std::chrono::milliseconds kLastAcknowledgments{200};
+
+}  // namespace
 
 dds::Qos AnyTopic::qos() const {
   dds::Qos qos;
-  qos.reliable = false;
+  qos.reliable = reliable;
   qos.history_depth = history_depth;
   return qos;
 }
@@ -28,13 +34,15 @@ AnyPublisher::AnyPublisher(dds::Participant& participant, Executor& control, con
 
 void AnyPublisher::close() {
   std::shared_ptr<dds::Writer> writer;  // goes outside the lock, which its listener takes
+  bool is_read = false;
   {
     std::lock_guard lock(mutex_);
     if (!writer_) return;
+    is_read = on();
     writer.swap(writer_);
-    waiting_.clear();
     update();
   }
+  if (is_read && topic_.reliable) writer->wait_for_acknowledgments(kLastAcknowledgments);
   writer.reset();
   writers_.await_end();
 }
@@ -72,37 +80,13 @@ void AnyPublisher::hand_to_control(std::function<void()> task) {
   });
 }
 
-void AnyPublisher::enqueue(Write write) {
+std::shared_ptr<dds::Writer> AnyPublisher::open_writer() {
   std::lock_guard lock(mutex_);
-  if (!writer_) return;
-  if (waiting_.size() >= kCapacity) {
-    ++dropped_;
-    return;
-  }
-  waiting_.push_back(std::move(write));
-  if (std::exchange(writing_, true)) return;
-  hand_to_control([this] { write_waiting(); });
+  return writer_;
 }
 
-void AnyPublisher::write_waiting() {
-  std::vector<Write> writes;
-  std::shared_ptr<dds::Writer> writer;
-  std::uint64_t dropped;
-  {
-    std::lock_guard lock(mutex_);
-    writes.swap(waiting_);
-    writer = writer_;
-    dropped = dropped_;
-    writing_ = false;
-  }
-  if (!writer) return;
-  for (const Write& write : writes) {
-    try {
-      write(*writer, dropped);
-    } catch (const Error& error) {
-      log(LogLevel::Warning, topic_.name, std::string("a sample was not sent: ") + error.what());
-    }
-  }
+void AnyPublisher::log_not_sent(const Error& error) const {
+  log(LogLevel::Warning, topic_.name, std::string("a sample was not sent: ") + error.what());
 }
 
 AnyReader::AnyReader(dds::Participant& participant, const AnyTopic& topic, Listener listener)

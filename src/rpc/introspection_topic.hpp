@@ -16,11 +16,12 @@
 #include "skein/executor.hpp"
 #include "skein/guid.hpp"
 
-/// How entities tell of themselves: topics that anybody may read, best effort, and on which an
-/// entity writes only while somebody does.
+/// How entities tell of themselves: topics that anybody may read, mostly best effort, and on which
+/// an entity writes only while somebody does.
 namespace skein::introspection {
 
-struct CallEvent;
+struct CallEvents;
+struct CallRecords;
 struct Decision;
 struct ServiceStatistics;
 
@@ -30,6 +31,7 @@ struct AnyTopic {
   const char* type_name;
   bool keyed;
   std::uint32_t history_depth;
+  bool reliable = false;
 
   dds::Topic dds_topic() const { return {name, type_name, keyed}; }
   dds::Qos qos() const;
@@ -38,19 +40,18 @@ struct AnyTopic {
 template <class T>
 struct Topic : AnyTopic {};
 
-inline constexpr Topic<CallEvent> kCalls{
-    {"skein/calls", "skein::introspection::CallEvent", false, 256}};
+inline constexpr Topic<CallEvents> kCalls{
+    {"skein/calls", "skein::introspection::CallEvents", false, 64}};
+inline constexpr Topic<CallRecords> kCallRecords{
+    {"skein/call_records", "skein::introspection::CallRecords", false, 256, true}};
 inline constexpr Topic<Decision> kDecisions{
     {"skein/decisions", "skein::introspection::Decision", false, 64}};
 inline constexpr Topic<ServiceStatistics> kStatistics{
     {"skein/statistics", "skein::introspection::ServiceStatistics", true, 1}};
 
-/// A Publisher without its type.
+/// A Publisher or BatchPublisher without its type.
 class AnyPublisher {
  public:
-  /// Values that may wait for `control`.
-  static constexpr std::size_t kCapacity = 4096;
-
   /// `participant` and `control` live until close(). Throws what Participant::create_writer()
   /// throws.
   AnyPublisher(dds::Participant& participant, Executor& control, const AnyTopic& topic);
@@ -64,25 +65,34 @@ class AnyPublisher {
   /// somebody does already.
   void when_read(std::function<void()> begin);
 
-  /// Runs the task on `control`, unless close() has been called by then, or `control` is full or
-  /// has stopped.
+  /// Runs the task on `control`, however full that is, unless close() has been called by then. Not
+  /// after `control` has been stopped.
   void post(std::function<void()> task);
 
-  /// What waits is forgotten. When it returns, no task that was posted here runs or will run, and
-  /// nothing of the participant or of `control` is in use any more. Twice is no error. Not from a
-  /// listener, nor from a task of `control`.
+  /// Waits for a short time until reliable readers have what was written. When it returns, no task
+  /// that was posted here runs or will run, and nothing of the participant or of `control` is in
+  /// use any more. Twice is no error. Not from a listener, nor from a task of `control`.
   void close();
 
  protected:
-  /// Writes one value; `dropped` is how many found no room so far.
-  using Write = std::function<void(dds::Writer& writer, std::uint64_t dropped)>;
-  void enqueue(Write write);
+  /// What cannot be sent, or not be encoded, is logged. Does nothing once it is closed.
+  template <class Encode>
+  void write(const Encode& encode, const dds::KeyHash& key = {}) {
+    const std::shared_ptr<dds::Writer> writer = open_writer();
+    if (!writer) return;
+    try {
+      writer->write(encode(), key);
+    } catch (const Error& error) {
+      log_not_sent(error);
+    }
+  }
 
  private:
+  std::shared_ptr<dds::Writer> open_writer();
+  void log_not_sent(const Error& error) const;
   void on_reader(bool matched);
   void update();
   void hand_to_control(std::function<void()> task);
-  void write_waiting();
 
   Executor& control_;
   const AnyTopic topic_;
@@ -90,37 +100,44 @@ class AnyPublisher {
   std::mutex mutex_;
   std::size_t readers_ = 0;
   std::function<void()> begin_;
-  std::vector<Write> waiting_;
-  bool writing_ = false;  // a task of `control` will write what waits
-  std::uint64_t dropped_ = 0;
   std::shared_ptr<dds::Writer> writer_;  // none once it is closed
   rpc::SharedWriters writers_;           // which its tasks on `control` hold, too, while they run
 };
 
 /// Writes an entity's values on one of these topics, while somebody reads it. Off, it costs the
-/// look at a flag. On, values wait in a bounded queue for `control`, which encodes and writes them;
-/// those for which there is no room are dropped and counted, and what cannot be sent is logged.
-/// Thread-safe.
+/// look at a flag. On, `control` encodes and writes them one by one; further ones are dropped while
+/// kCapacity wait. Thread-safe.
 template <class T>
 class Publisher : public AnyPublisher {
  public:
+  static constexpr std::size_t kCapacity = 4096;
+
   Publisher(dds::Participant& participant, Executor& control, const Topic<T>& topic)
       : AnyPublisher(participant, control, topic) {}
 
-  /// Does nothing while nobody reads. A value with a member `dropped` tells by it how many had been
-  /// dropped when it was written.
+  /// Does nothing while nobody reads.
   void publish(T value) {
     if (!on()) return;
-    enqueue([value = std::move(value)](dds::Writer& writer, std::uint64_t dropped) mutable {
-      note_dropped(value, dropped);
-      writer.write(idl::encode_message(value), key_of(value));
+    const auto place = std::make_shared<Place>(waiting_);
+    if (place->number > kCapacity) return;
+    post([this, place, value = std::move(value)] {
+      write([&] { return idl::encode_message(value); }, key_of(value));
     });
   }
 
  private:
-  static void note_dropped(T& value, std::uint64_t dropped) {
-    if constexpr (requires { value.dropped; }) value.dropped = dropped;
-  }
+  /// Among those that wait, as long as it lives.
+  struct Place {
+    explicit Place(std::shared_ptr<std::atomic<std::size_t>> waiting_)
+        : waiting(std::move(waiting_)), number(++*waiting) {}
+    ~Place() { --*waiting; }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    const std::shared_ptr<std::atomic<std::size_t>> waiting;
+    const std::size_t number;
+  };
+
   static dds::KeyHash key_of(const T& value) {
     if constexpr (requires { key_hash(value); }) {
       return key_hash(value);
@@ -128,6 +145,9 @@ class Publisher : public AnyPublisher {
       return {};
     }
   }
+
+  const std::shared_ptr<std::atomic<std::size_t>> waiting_ =
+      std::make_shared<std::atomic<std::size_t>>(0);
 };
 
 /// The value that a sample holds which is alive. Throws InvalidArgument where it holds none, or one

@@ -9,29 +9,29 @@ namespace {
 
 using wire::RequestId;
 
-void encode_result(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                   const void* out) {
-  wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
+void encode_result(Bytes& message, Representation representation, const RequestId& id,
+                   const OperationInfo& operation, const void* out) {
+  wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash, representation);
   wire::append_discriminator(message, 0);
   operation.out->encode(out, message);
 }
 
 // Declared: see call_servant().
-void encode_exception(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                      const UserException& exception) {
-  wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash);
+void encode_exception(Bytes& message, Representation representation, const RequestId& id,
+                      const OperationInfo& operation, const UserException& exception) {
+  wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash, representation);
   wire::append_discriminator(message, exception.info().hash);
   exception.info().type->encode(exception.value(), message);
 }
 
-void encode_failure(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                    const std::exception_ptr& failure) {
+void encode_failure(Bytes& message, Representation representation, const RequestId& id,
+                    const OperationInfo& operation, const std::exception_ptr& failure) {
   try {
     std::rethrow_exception(failure);
   } catch (const UserException& exception) {
-    encode_exception(message, id, operation, exception);
+    encode_exception(message, representation, id, operation, exception);
   } catch (const Error& error) {
-    encode_error(message, id, error.code(), error.what());
+    encode_error(message, representation, id, error.code(), error.what());
   }
 }
 
@@ -42,39 +42,40 @@ std::string cannot_be_sent(const std::string& what, const OperationInfo& operati
 
 }  // namespace
 
-void encode_error(Bytes& message, const RequestId& id, ErrorCode code, const std::string& text,
-                  std::uint32_t operation) {
-  wire::begin_reply(message, id, wire::remote_exception_of(code), operation);
+void encode_error(Bytes& message, Representation representation, const RequestId& id,
+                  ErrorCode code, const std::string& text, std::uint32_t operation) {
+  wire::begin_reply(message, id, wire::remote_exception_of(code), operation, representation);
   wire::append_default_branch(message);
   wire::append_trailer(message, wire::ReplyTrailer{code, text});
 }
 
-void encode_outcome(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                    const void* out, const std::exception_ptr& error) {
+void encode_outcome(Bytes& message, Representation representation, const RequestId& id,
+                    const OperationInfo& operation, const void* out,
+                    const std::exception_ptr& error) {
   try {
-    if (error) return encode_failure(message, id, operation, error);
-    encode_result(message, id, operation, out);
+    if (error) return encode_failure(message, representation, id, operation, error);
+    encode_result(message, representation, id, operation, out);
   } catch (const std::exception& reason) {
-    encode_error(message, id, ErrorCode::Internal,
+    encode_error(message, representation, id, ErrorCode::Internal,
                  cannot_be_sent(error ? "the exception" : "the result", operation, reason));
   }
 }
 
-void encode_item(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                 const void* out, std::uint64_t position) {
+void encode_item(Bytes& message, Representation representation, const RequestId& id,
+                 const OperationInfo& operation, const void* out, std::uint64_t position) {
   try {
-    encode_result(message, id, operation, out);
+    encode_result(message, representation, id, operation, out);
   } catch (const std::exception& reason) {
     throw Internal(cannot_be_sent("a result", operation, reason));
   }
   wire::append_trailer(message, wire::ReplyTrailer{{}, {}, wire::StreamPart::Item, position});
 }
 
-void encode_end(Bytes& message, const RequestId& id, const OperationInfo& operation,
-                std::uint64_t position) {
+void encode_end(Bytes& message, Representation representation, const RequestId& id,
+                const OperationInfo& operation, std::uint64_t position) {
   const std::unique_ptr<void, void (*)(void*)> nothing(operation.out->make(),
                                                        operation.out->destroy);
-  encode_result(message, id, operation, nothing.get());
+  encode_result(message, representation, id, operation, nothing.get());
   wire::append_trailer(message, wire::ReplyTrailer{{}, {}, wire::StreamPart::End, position});
 }
 

@@ -25,7 +25,7 @@ void check_declared(const OperationInfo& operation, const UserException& excepti
 }
 
 void check_sendable(const OperationInfo& operation, const UserException& exception) {
-  Bytes message{std::span<const std::byte>(idl::kEncapsulation)};
+  Bytes message{std::span<const std::byte>(encapsulation(exception.info().type->representation))};
   try {
     exception.info().type->encode(exception.value(), message);
   } catch (const std::exception& reason) {

@@ -308,23 +308,29 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
     meter.ran.record(frame.ended - frame.begun);
     OperationMeter::count(*outcome);
   };
+  CallRecorder::Tap tap(options_.recorder.get(), interface_info(), operation,
+                        {frame.connection, frame.number}, in);
   try {
-    call_servant(*servant_, operation, in, out);
-  } catch (const Cancelled&) {
+    call_servant(*servant_, operation, in, tap.passing(out));
+  } catch (const Cancelled& error) {
     outcome = &meter.failed;
     end();
+    tap.failed(error);
     refuse_too_late(operation, frame);
     throw;
-  } catch (const UserException&) {
+  } catch (const UserException& exception) {
     outcome = &meter.raised;
     end();
+    tap.raised(exception);
     throw;
-  } catch (...) {
+  } catch (const std::exception& error) {  // call_servant() throws nothing else
     outcome = &meter.failed;
     end();
+    tap.failed(error);
     throw;
   }
   end();
+  tap.returned(out);
 }
 
 introspection::ServiceStatistics Service::statistics() const {
@@ -341,14 +347,19 @@ introspection::ServiceStatistics Service::statistics() const {
   return statistics;
 }
 
-bool Service::overdue() const {
+std::size_t Service::count_overdue() const {
   std::lock_guard lock(mutex_);
-  if (!running_) return false;
+  if (!running_) return 0;
   const Instant now = clock_.now();
+  std::size_t count = 0;
   for (const Running* each = running_; each; each = each->next()) {
-    if (each->invocation().deadline <= now) return true;
+    if (each->invocation().deadline <= now) ++count;
   }
-  return false;
+  return count;
 }
+
+bool Service::overdue() const { return count_overdue() > 0; }
+
+bool Service::is_stuck() const { return count_overdue() >= options_.threads; }
 
 }  // namespace skein::rpc

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rpc/call_journal.hpp"
+#include "rpc/call_recorder.hpp"
 #include "rpc/fair_queue.hpp"
 #include "rpc/outgoing_stream.hpp"
 #include "rpc/service_meter.hpp"
@@ -41,7 +42,7 @@ struct Invocation {
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;
   Guid connection;           ///< With whose other invocations it waits in line.
-  std::uint64_t number = 0;  ///< The connection's own count; 0 within the process.
+  std::uint64_t number = 0;  ///< The connection's own count.
   Instant arrived;
   Instant begun;  ///< When the implementation was called.
   Instant ended;  ///< When the implementation had returned or thrown.
@@ -85,7 +86,8 @@ class Service : public std::enable_shared_from_this<Service> {
     /// With CallThread::Caller calls run one at a time, and `threads` is 1.
     CallThread thread = CallThread::Own;
     SessionFactory open;
-    std::shared_ptr<CallJournal> journal;  ///< May be null.
+    std::shared_ptr<CallJournal> journal;    ///< May be null.
+    std::shared_ptr<CallRecorder> recorder;  ///< May be null.
     /// What lives as long as the service: its executor, say.
     std::shared_ptr<const void> keeps;
   };
@@ -121,6 +123,9 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Whether an invocation is still inside the implementation although its deadline has passed.
   bool overdue() const;
 
+  /// Whether as many are, as it has threads: it makes no progress.
+  bool is_stuck() const;
+
   /// What it has done and does; entity and system are left empty.
   introspection::ServiceStatistics statistics() const;
 
@@ -135,6 +140,7 @@ class Service : public std::enable_shared_from_this<Service> {
  private:
   class Running;
   class Turn;
+  std::size_t count_overdue() const;
   void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
   std::shared_ptr<Invocation> take_next();

@@ -36,11 +36,9 @@ void align(Bytes& message) {
   if (past != 0) message.append(std::span(kZeros).first(4 - past));
 }
 
-void begin(Bytes& message, const RequestId& id) {
-  constexpr std::byte kPlainCdrLittleEndian[4]{std::byte{0}, std::byte{1}, std::byte{0},
-                                               std::byte{0}};
+void begin(Bytes& message, Representation representation, const RequestId& id) {
   message.clear();
-  message.append(kPlainCdrLittleEndian);
+  message.append(encapsulation(representation));
   message.append(std::as_bytes(std::span(id.client.bytes)));
   put(message, static_cast<std::int32_t>(id.number >> 32));
   put(message, static_cast<std::uint32_t>(id.number));
@@ -105,11 +103,16 @@ class Cursor {
   bool swap_;
 };
 
+// XCDR1 or XCDR2, in which heads and trailers look the same: they have no number of eight bytes.
+bool is_plain_cdr(std::span<const std::byte> message) noexcept {
+  if (message.size() < kOrigin || message[0] != std::byte{0}) return false;
+  const auto kind = std::to_integer<unsigned>(message[1]) & ~1U;
+  return kind == 0 || kind == 6;
+}
+
 bool is_big_endian(std::span<const std::byte> message) {
-  if (message.size() < kOrigin || message[0] != std::byte{0} || message[1] > std::byte{1}) {
-    throw InvalidArgument("no PLAIN_CDR encapsulation header");
-  }
-  return message[1] == std::byte{0};
+  if (!is_plain_cdr(message)) throw InvalidArgument("no PLAIN_CDR encapsulation header");
+  return (message[1] & std::byte{1}) == std::byte{0};
 }
 
 // A cursor behind the trailer's magic and length, which also bounds it; nothing where none begins.
@@ -136,16 +139,17 @@ void append_trailer_with(Bytes& message, Fill fill) {
 
 }  // namespace
 
-void begin_request(Bytes& message, const RequestId& id, std::uint32_t operation) {
-  begin(message, id);
+void begin_request(Bytes& message, const RequestId& id, std::uint32_t operation,
+                   Representation representation) {
+  begin(message, representation, id);
   put(message, std::uint32_t{1});  // the empty instance name: its terminator alone
   put(message, char{0});
   append_discriminator(message, operation);
 }
 
 void begin_reply(Bytes& message, const RequestId& related, RemoteException exception,
-                 std::uint32_t operation) {
-  begin(message, related);
+                 std::uint32_t operation, Representation representation) {
+  begin(message, representation, related);
   put(message, exception);
   append_discriminator(message, operation);
 }
@@ -179,9 +183,7 @@ void append_trailer(Bytes& message, const ReplyTrailer& trailer) {
 }
 
 std::optional<RequestId> read_request_id(std::span<const std::byte> message) noexcept {
-  if (message.size() < kIdEnd || message[0] != std::byte{0} || message[1] > std::byte{1}) {
-    return std::nullopt;
-  }
+  if (message.size() < kIdEnd || !is_plain_cdr(message)) return std::nullopt;
   Cursor cursor(message, kOrigin, is_big_endian(message));
   return cursor.request_id();
 }

@@ -8,6 +8,7 @@
 
 #include "skein/clock.hpp"
 #include "skein/detail/bytes.hpp"
+#include "skein/detail/representation.hpp"
 #include "skein/error.hpp"
 #include "skein/guid.hpp"
 
@@ -83,10 +84,12 @@ struct ReplyHead {
   std::size_t result = 0;  ///< Where the result union (or the default branch's octet) begins.
 };
 
-/// Start a message over with its header and discriminator; the body follows at message.size().
-void begin_request(Bytes& message, const RequestId& id, std::uint32_t operation);
+/// Start a message over with its header and discriminator; the body, which is encoded as the header
+/// says, follows at message.size().
+void begin_request(Bytes& message, const RequestId& id, std::uint32_t operation,
+                   Representation representation = Representation::Xcdr1);
 void begin_reply(Bytes& message, const RequestId& related, RemoteException exception,
-                 std::uint32_t operation);
+                 std::uint32_t operation, Representation representation = Representation::Xcdr1);
 
 /// Appends the result union's discriminator: 0 for a result, an exception's hash otherwise.
 void append_discriminator(Bytes& message, std::uint32_t value);

@@ -1,9 +1,12 @@
 #include <atomic>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "core/log.hpp"
 #include "dds/port.hpp"
+#include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/detail/malformed_sample.hpp"
 #include "skein/subscription.hpp"
@@ -42,7 +45,11 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   void hand_over(const dds::Sample& sample);
   /// False for what is no value: disposals and malformed samples, which it deals with.
   bool decode(const dds::Sample& sample, void* into);
+  /// Nothing more is taken from a writer whose values would be misread.
+  void refuse(const Guid& writer);
+  bool is_refused(const Guid& writer) const;
   void report_malformed(const std::string& reason);
+  SubscriptionCounters counters() const;
 
   Executor& executor;
   const std::string name;
@@ -54,28 +61,42 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   std::atomic<std::uint64_t> received{0};
   std::atomic<std::uint64_t> malformed{0};
   std::atomic<std::uint64_t> missed_deadlines{0};
-  std::mutex running;   // one callback at a time
-  bool closed = false;  // under running
-  bool threw = false;   // under running
+  mutable std::mutex refusing;
+  std::set<Guid> refused;  // writers; under refusing
+  std::mutex running;      // one callback at a time
+  bool closed = false;     // under running
+  bool threw = false;      // under running
   std::unique_ptr<dds::Reader> reader;
+  std::optional<Register::Entry> entry;  // until it is closed
 };
 
 TopicReader::TopicReader(dds::Participant& participant, Executor& executor, const std::string& name,
                          const TopicType& type, const TopicQos& qos, Consumer consumer,
-                         SubscriptionOptions options)
+                         SubscriptionOptions options, Register* known)
     : state_(
           std::make_shared<State>(executor, name, type, std::move(consumer), std::move(options))) {
   auto reader =
-      participant.create_reader(wire_topic(name, type), wire_qos(qos), state_->listener());
+      participant.create_reader(wire_topic(name, type), wire_qos(qos, type), state_->listener());
   {
     std::lock_guard lock(state_->running);
     state_->reader = std::move(reader);
   }
+  state_->entry.emplace(known, [state = state_.get(), qos] {
+    const SubscriptionCounters counters = state->counters();
+    return Endpoint{.name = state->name,
+                    .type = state->type,
+                    .qos = qos,
+                    .matched = state->reader->matched_writers().size(),
+                    .samples = counters.received,
+                    .dropped = counters.dropped + counters.expired + counters.malformed,
+                    .missed_deadlines = counters.missed_deadlines};
+  });
   // What came before the reader was known here was not told to anybody.
   state_->schedule();
 }
 
 TopicReader::~TopicReader() {
+  state_->entry.reset();
   std::unique_ptr<dds::Reader> reader;
   {
     std::lock_guard lock(state_->running);
@@ -103,8 +124,10 @@ dds::ReaderListener TopicReader::State::listener() {
     if (!state->options.on_deadline_missed) return;
     state->post([key](State& self) { self.options.on_deadline_missed(key); });
   };
-  listener.on_incompatible = [](const dds::Incompatibility& why) {
+  listener.on_incompatible = [weak](const dds::Incompatibility& why) {
     log(LogLevel::Warning, "topics", why.explanation);
+    if (why.policy != "type") return;  // then DDS has not matched them
+    if (const auto state = weak.lock()) state->refuse(why.peer);
   };
   return listener;
 }
@@ -169,7 +192,21 @@ void TopicReader::State::hand_over(const dds::Sample& sample) {
   if (decode(sample, value.get())) consumer(value.get());
 }
 
+void TopicReader::State::refuse(const Guid& writer) {
+  std::lock_guard lock(refusing);
+  refused.insert(writer);
+}
+
+bool TopicReader::State::is_refused(const Guid& writer) const {
+  std::lock_guard lock(refusing);
+  return refused.contains(writer);
+}
+
 bool TopicReader::State::decode(const dds::Sample& sample, void* into) {
+  if (is_refused(sample.writer)) {
+    ++malformed;
+    return false;
+  }
   if (sample.state == dds::InstanceState::Disposed) {
     ++received;
     if (options.on_disposed) options.on_disposed(sample.key);
@@ -203,10 +240,12 @@ bool TopicReader::take(void* value) {
 
 std::size_t TopicReader::publishers() const { return state_->reader->matched_writers().size(); }
 
-SubscriptionCounters TopicReader::counters() const {
-  const dds::ReceiveCounters dropped = state_->reader->counters();
-  return {state_->received, dropped.replaced, dropped.expired,
-          state_->malformed + dropped.malformed, state_->missed_deadlines};
+SubscriptionCounters TopicReader::State::counters() const {
+  const dds::ReceiveCounters of_reader = reader->counters();
+  return {received, of_reader.replaced, of_reader.expired, malformed + of_reader.malformed,
+          missed_deadlines};
 }
+
+SubscriptionCounters TopicReader::counters() const { return state_->counters(); }
 
 }  // namespace skein::topics

@@ -1,8 +1,10 @@
 #include <atomic>
 #include <mutex>
+#include <optional>
 
 #include "core/log.hpp"
 #include "dds/port.hpp"
+#include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/publisher.hpp"
 #include "wire_topic.hpp"
@@ -26,11 +28,12 @@ struct TopicWriter::State {
   Bytes spare;  // for the next value, so that a steady flow allocates nothing
   std::atomic<std::uint64_t> published{0};
   std::atomic<std::uint64_t> missed_deadlines{0};
-  std::unique_ptr<dds::Writer> writer;  // goes first: its listener uses the rest
+  std::unique_ptr<dds::Writer> writer;   // goes early: its listener uses the rest
+  std::optional<Register::Entry> entry;  // goes first: it uses all
 };
 
 TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
-                         const TopicType& type, const TopicQos& qos)
+                         const TopicType& type, const TopicQos& qos, Register* known)
     : state_(std::make_unique<State>(type)) {
   dds::WriterListener listener;
   listener.on_deadline_missed = [state = state_.get()](const Guid&) { ++state->missed_deadlines; };
@@ -38,7 +41,16 @@ TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
     log(LogLevel::Warning, "topics", why.explanation);
   };
   state_->writer =
-      participant.create_writer(wire_topic(name, type), wire_qos(qos), std::move(listener));
+      participant.create_writer(wire_topic(name, type), wire_qos(qos, type), std::move(listener));
+  state_->entry.emplace(known, [state = state_.get(), name, qos] {
+    return Endpoint{.name = name,
+                    .type = state->type,
+                    .qos = qos,
+                    .publishes = true,
+                    .matched = state->writer->matched_readers().size(),
+                    .samples = state->published,
+                    .missed_deadlines = state->missed_deadlines};
+  });
 }
 
 TopicWriter::~TopicWriter() = default;
@@ -46,7 +58,7 @@ TopicWriter::~TopicWriter() = default;
 void TopicWriter::publish(const void* value) {
   Bytes message = state_->spare_buffer();
   message.clear();
-  message.append(idl::kEncapsulation);
+  message.append(encapsulation(state_->type.support->representation));
   state_->type.support->encode(value, message);
   const auto key_of = state_->type.key_of;
   state_->writer->write(message, key_of != nullptr ? key_of(value) : Guid{});
@@ -57,6 +69,10 @@ void TopicWriter::publish(const void* value) {
 void TopicWriter::dispose(const void* value) {
   state_->writer->dispose(state_->type.key_of(value));
   ++state_->published;
+}
+
+bool TopicWriter::wait_for_acknowledgments(std::chrono::milliseconds timeout) {
+  return state_->writer->wait_for_acknowledgments(timeout);
 }
 
 std::size_t TopicWriter::subscribers() const { return state_->writer->matched_readers().size(); }

@@ -17,7 +17,9 @@ FLOORS = {
     "entity": 6,
     "profile": 7,
     "launch": 7,
+    "recording": 7,
     "fusion": 7,
+    "view": 7,
     "navigation": 7,
     "navigation/grid": 1.5,
     "navigation/terrain": 7.1,
@@ -33,23 +35,24 @@ FLOORS = {
 # What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
 USERS_HEADERS = {
     "core": "call call_context clock error executor guid stream",
+    "idl": "describe",
     "dds": "loopback vendor",
     "topics": "publisher subscription topic_qos",
     "brokerless_discovery": "constraint",
     "connector": "connector gather",
-    "entity": "component_registry decision entity evaluation head head_options parameters process selection synthesis task",
+    "entity": "component_registry decision dynamic entity evaluation head head_options inspector parameters process selection synthesis task",
     "fusion": "fusion",
     "all of the library": "skein",
     "Asio": "asio",
 }
-MAX_USERS_HEADERS = 30
+MAX_USERS_HEADERS = 32
 # Those that skein/skein.hpp does not include: they need another library, or are that header.
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
-    "core": "abi action bytes call_memory channel operation",
-    "idl": "argument cdr codec declared_exception json json_codec key_hash make_type_support malformed_sample plain_layout print"
-           " service_reference type_support union_access unknown_operation version",
+    "core": "abi action box bytes call_memory channel operation representation",
+    "idl": "argument cdr codec declared_exception filled json json_codec key_hash make_type_support malformed_sample plain_layout print"
+           " service_reference type_support union_access unknown_operation version wide_text",
     "dds": "qos",
     "topics": "topic_type",
     "entity": "circuit_breaker history task_run",
@@ -65,7 +68,8 @@ BACK_END = 2.5
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("launch", "profile")}
 # Headers that are generated, by the floor of their IDL; all of idl/navigation are of `navigation`.
-GENERATED = {"skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc"}
+GENERATED = {"skein/types.idl.hpp": "idl", "skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc",
+             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "launch"}
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from
 # outside, are built on the vendors' own headers.
@@ -78,8 +82,11 @@ HOMES = {
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "src/command", "test", "benchmarks"]),
+    "zstd": (r"zstd\.h", ["src/recording/compression.cpp"]),
+    "libdeflate": (r"libdeflate\.h", ["src/recording/compression.cpp"]),
+    "Boost.Asio and Boost.Beast": (r"boost/(asio|beast)", ["src/view/web_socket.cpp"]),
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
-    "the command line": (r"CLI/", ["src/command/main.cpp", "src/command/grid/main.cpp", "benchmarks"]),
+    "the command line": (r"CLI/", ["src/command/line", "src/command/grid/main.cpp", "test/command", "benchmarks"]),
 }
 # The headers of ours that precompiled headers may bring: nobody else includes them.
 PRECOMPILED = {"core/standard_library.hpp": "src/core/standard_library.hpp", "tools/precompiled.hpp": "test/tools/precompiled.hpp"}

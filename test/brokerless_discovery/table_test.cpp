@@ -141,6 +141,36 @@ TEST_CASE("a provider that lacks one of the client's operations is not offered",
   CHECK(entities(table, asked) == Names{"planner"});
 }
 
+TEST_CASE("types that may grow may differ by what has grown, and by nothing else", "[R7]") {
+  constexpr std::uint32_t kProblem = 5;
+  const OperationInfo wanted[] = {
+      {"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
+  const GrowingMember known[] = {{kProblem, 0, 70, false, "A::Problem.goal"},
+                                 {kProblem, 1, 71, false, "A::Problem.speed"}};
+  const InterfaceInfo client{"A/IPlanner", {}, wanted, "", known};
+  Query asked = query("A/IPlanner");
+  asked.client = &client;
+  auto provider = description(1, "A/IPlanner", "planner");
+  provider.operations = {{"plan", 11, 1000}};
+  Table table;
+  const auto explained = [&](std::vector<discovery::GrowingMember> growing) {
+    provider.growing = std::move(growing);
+    table.on_description(provider, kWriter);
+    return entities(table, asked).empty() ? table.explain(asked) : "found";
+  };
+
+  CHECK(explained({{kProblem, 0, 70, false}, {kProblem, 1, 71, false}}) == "found");
+  CHECK(explained({{kProblem, 0, 70, false}}) == "found");
+  CHECK(explained({{kProblem, 2, 72, false}, {kProblem, 1, 71, false}, {kProblem, 0, 70, false}}) ==
+        "found");
+  CHECK(explained({{kProblem + 1, 0, 9, true}}) == "found");  // of a type that is not known here
+  CHECK_THAT(explained({{kProblem, 0, 70, false}, {kProblem, 1, 72, false}}),
+             Catch::Contains("the member A::Problem.speed has another name or type there "
+                             "(00000048, here 00000047)"));
+  CHECK_THAT(explained({{kProblem, 0, 70, false}, {kProblem, 7, 72, true}}),
+             Catch::Contains("a member of A::Problem that must be understood there is not known"));
+}
+
 TEST_CASE("what is found comes by entity, then by provider, in whatever order it came", "[R8]") {
   Table table;
   table.on_description(description(3, "A/I", "b"), kWriter);

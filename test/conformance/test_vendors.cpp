@@ -70,12 +70,19 @@ TEST_CASE("a mark of more padding than there is takes nothing away") {
   CHECK(without_padding(odd, 5).size() == 5);
 }
 
-TEST_CASE("only PLAIN_CDR is taken") {
-  const auto accepted = [](std::initializer_list<int> bytes) {
+TEST_CASE("only the representation of the type is taken, without XCDR1's parameter lists") {
+  const auto has = [](DataRepresentation representation, std::initializer_list<int> bytes) {
     std::vector<std::byte> message;
     for (const int byte : bytes) message.push_back(static_cast<std::byte>(byte));
-    return is_plain_cdr(message);
+    return has_representation(message, representation);
   };
+  const auto accepted = [&](std::initializer_list<int> bytes) {
+    return has(DataRepresentation::Xcdr1, bytes);
+  };
+  for (int kind = 0; kind <= 12; ++kind) {
+    CHECK(has(DataRepresentation::Xcdr2, {0, kind, 0, 0}) == (kind >= 6 && kind <= 11));
+  }
+  CHECK_FALSE(accepted({0, 7, 0, 0}));
   CHECK(accepted({0, 1, 0, 0}));
   CHECK(accepted({0, 0, 0, 0, 1}));
   CHECK_FALSE(accepted({}));

@@ -12,7 +12,8 @@ namespace skein::test {
 inline const TypeSupport& number_type() {
   static const TypeSupport type{
       "Number",
-      [] { return static_cast<void*>(new int{}); },
+      Representation::Xcdr1,
+      [](const TypeSupport&) { return static_cast<void*>(new int{}); },
       [](void* value) noexcept { delete static_cast<int*>(value); },
       [](void* to, const void* from) { *static_cast<int*>(to) = *static_cast<const int*>(from); },
       nullptr,

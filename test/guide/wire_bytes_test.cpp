@@ -66,6 +66,6 @@ TEST_CASE("the request and the reply of idl/README.md are those that travel") {
   greeting::IGreeter_greet_Out out;
   out.return_ = "Hello, world!";
   skein::Bytes reply;
-  skein::rpc::encode_outcome(reply, kId, greet, &out, nullptr);
+  skein::rpc::encode_outcome(reply, skein::Representation::Xcdr1, kId, greet, &out, nullptr);
   CHECK(on_the_wire(reply) == quoted[1]);
 }

@@ -73,7 +73,7 @@ class BuildTest(unittest.TestCase):
         self.configure(f"{self.folder}/share/skein/idl")
         self.generate()
         self.assertIn("no work to do", self.generate())
-        with open(f"{self.folder}/share/skein/idl/compiler/skein/cpp.py", "a", encoding="utf-8") as stream:
+        with open(f"{self.folder}/share/skein/idl/compiler/back_end/cpp.py", "a", encoding="utf-8") as stream:
             stream.write("# changed\n")
         self.assertIn("IDL main.idl", self.generate())
 
@@ -82,7 +82,7 @@ class BuildTest(unittest.TestCase):
         self.write("idl/main.idl", "struct S {\n  any x;\n};\n")
         with self.assertRaises(AssertionError) as failure:
             self.generate()
-        self.assertIn("main.idl:2: error: any is not supported", str(failure.exception))
+        self.assertIn("main.idl:2:3: error: any is not supported", str(failure.exception))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "allocation_meter.hpp"
+#include "beyond_idlc.idl.hpp"
 #include "planner.idl.hpp"
 #include "samples.hpp"
 #include "skein/detail/codec.hpp"
@@ -160,9 +161,12 @@ TEST_CASE("a refusal names type, member and offset") {
 }
 
 TEST_CASE("other representations than PLAIN_CDR are refused with the remedy") {
-  CHECK(refusal<bool>(message_of({0, 7, 0, 0, 1})) ==
-        "malformed sample: representation 7 is not PLAIN_CDR (0 or 1); the writer must be set to "
+  CHECK(refusal<bool>(message_of({0, 3, 0, 0, 1})) ==
+        "malformed sample: representation 3 is not PLAIN_CDR (0 or 1); the writer must be set to "
         "XCDR1");
+  CHECK(refusal<extensible::Part>(message_of({0, 1, 0, 0, 1})) ==
+        "malformed sample: representation 1 is not XCDR2 (6 to 11); the writer must be set to "
+        "XCDR2");
   CHECK(refusal<bool>(message_of({0, 1})) ==
         "malformed sample: 2 bytes cannot hold a value at offset 4");
 }
@@ -176,6 +180,20 @@ TEST_CASE("a bound is kept on decoding") {
   skein::idl::append_cdr(message, [](CdrWriter& writer) { writer.write_string("abcdefg"); });
   CHECK(refusal<everything::Shape>(message) ==
         "malformed sample: everything::Shape.remark holds 7 elements, at most 6 are allowed");
+}
+
+TEST_CASE("a value takes no more than some times the memory of its message") {
+  // Each element is a byte that says that the optional member is absent.
+  Bytes message{std::span<const std::byte>(encapsulation(skein::Representation::Xcdr2Plain))};
+  skein::idl::append_cdr(message, [](CdrWriter& writer) {
+    writer.write(std::uint32_t{60'000 + 4});
+    writer.write(std::uint32_t{60'000});
+    for (int i = 0; i < 60'000; ++i) writer.write(std::uint8_t{0});
+  });
+  const AllocationMeter meter;
+  CHECK_THROWS_WITH(decode_message<extensible::Crowd>(message),
+                    Catch::Contains("more than 1024 times the memory of its message"));
+  CHECK(meter.allocated() < 400u << 20);
 }
 
 TEST_CASE("a length of four gigabytes is refused before anything is allocated") {

@@ -1,5 +1,5 @@
-"""Compiles IDL that is not ours, the CORBA services in Debian's omniorb-idl, and compares with foreign_idl.txt, which says
-what compiles and what is refused, where and why. Ends with 77 where that package is not installed.
+"""Compiles IDL that is not ours, what Debian's omniorb-idl, cyclonedds-dev and libfastrtps-dev bring, and compares with foreign_idl.txt, which
+says what compiles and what is refused, where and why. Ends with 77 where one of these packages is not installed.
 
 foreign_idl_test.py SKEIN_ROOT CXX [--write]     (--write makes the list anew)
 """
@@ -10,30 +10,30 @@ import subprocess
 import sys
 import tempfile
 
-FOREIGN = "/usr/share/idl/omniORB"
+FOREIGN = {"omniorb-idl": "/usr/share/idl/omniORB", "cyclonedds-dev": "/usr/include/dds", "libfastrtps-dev": "/usr/include/fastdds"}
 LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "foreign_idl.txt")
-FINDING = re.compile(r"^(?P<path>[^:\s]+):(?P<line>\d+): (?:error: )?(?P<reason>.*)$")
+FINDING = re.compile(r"^(?P<path>[^:\s]+):(?P<line>\d+):\d+: error: (?P<reason>.*)$")
 
 
 def foreign_files():
+    """Their folders and their paths in them."""
     found = []
-    for folder, _, names in os.walk(FOREIGN):
-        found += [os.path.relpath(os.path.join(folder, name), FOREIGN) for name in names if name.endswith(".idl")]
+    for root in FOREIGN.values():
+        for folder, _, names in os.walk(root):
+            found += [(root, os.path.relpath(os.path.join(folder, name), root)) for name in names if name.endswith(".idl")]
     return sorted(found)
 
 
-def verdict(root, name, directory):
+def verdict(root, folder, name, directory):
     """`compiles`, or the first error as `file:line: reason`."""
-    command = ["omniidl", f"-p{root}/idl/compiler", "-bskein", f"-I{FOREIGN}", f"-I{FOREIGN}/COS"]
-    command += [f"-Wbdirectory={directory},name={name}", os.path.join(FOREIGN, name)]
-    environment = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")
-    done = subprocess.run(command, stderr=subprocess.PIPE, env=environment, text=True, timeout=60)
+    command = [sys.executable, "-B", f"{root}/idl/compiler", f"-I{folder}", f"-I{folder}/COS", "--out", directory]
+    done = subprocess.run([*command, os.path.join(folder, name)], stderr=subprocess.PIPE, text=True, timeout=60)
     if done.returncode == 0:
         return "compiles"
     for line in done.stderr.splitlines():
         match = FINDING.match(line)
-        if match and "Warning" not in line:
-            return f"{os.path.basename(match['path'])}:{match['line']}: {match['reason'].replace(FOREIGN + '/', '')}"
+        if match:
+            return f"{os.path.basename(match['path'])}:{match['line']}: {match['reason'].replace(folder + '/', '')}"
     return f"no reason given: {done.stderr[:200]!r}"
 
 
@@ -49,11 +49,12 @@ def check_cpp(root, compiler, directory, names):
 
 def main():
     root, compiler = sys.argv[1:3]
-    if not os.path.isdir(FOREIGN):
-        print("Skipped: the package omniorb-idl is not installed")
-        return 77
+    for package, folder in FOREIGN.items():
+        if not os.path.isdir(folder):
+            print(f"Skipped: the package {package} is not installed")
+            return 77
     with tempfile.TemporaryDirectory() as directory:
-        verdicts = {name: verdict(root, name, directory) for name in foreign_files()}
+        verdicts = {name: verdict(root, folder, name, directory) for folder, name in foreign_files()}
         text = "".join(f"{name}: {said}\n" for name, said in verdicts.items())
         if "--write" in sys.argv:
             with open(LIST, "w", encoding="utf-8") as stream:

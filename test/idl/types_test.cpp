@@ -164,6 +164,25 @@ TEST_CASE("text with a zero byte and enumerators that do not exist are not sent"
         "3 is no value of the enumeration everything::Colour");
 }
 
+TEST_CASE("a type contains itself by an external or an optional member, whose copies are values") {
+  recursive::Link first{1, recursive::Link{2, {}}};
+  const recursive::Link copy = first;
+  (*first.next)->value = 3;
+  CHECK(copy == recursive::Link{1, recursive::Link{2, {}}});
+  CHECK(copy != first);
+  check_round_trips(first);
+  CHECK(to_string(first) == "Link{value=1, next=Link{value=3, next=nothing}}");
+
+  recursive::Sum sum;
+  CHECK(sum.number() == 0);  // the first member that is no sum again
+  CHECK(recursive::Pair() == recursive::Pair{recursive::Sum(), 0});
+  sum.pair({recursive::Sum(), 5});
+  recursive::Sum around;
+  around.sum(sum);
+  check_round_trips(around);
+  CHECK(around.sum()->pair().right == 5);
+}
+
 TEST_CASE("recursive values nest up to a limit, in CDR and in JSON") {
   check_round_trips(samples::chain(skein::idl::kMaximumNesting));
   const recursive::Tree deep = samples::chain(skein::idl::kMaximumNesting + 1);
@@ -186,6 +205,12 @@ TEST_CASE("JSON carries the numbers that JSON has no form for") {
   CHECK(back.letter == '\xE9');
 }
 
+TEST_CASE("null and empty text refer to no service") {
+  CHECK(from_json<skein::ServiceReference>("null").is_nil());
+  CHECK(from_json<skein::ServiceReference>("\"\"").is_nil());
+  CHECK_THROWS_AS(from_json<skein::ServiceReference>("\"uav\""), skein::InvalidArgument);
+}
+
 TEST_CASE("JSON that does not fit is refused with the place") {
   const auto refusal = [](const std::string& json) {
     return error_of<skein::InvalidArgument>([&] { from_json<test_planner::Route>(json); });
@@ -196,7 +221,11 @@ TEST_CASE("JSON that does not fit is refused with the place") {
         "JSON: $ lacks the member 'remark' of test_planner::Route");
   CHECK(refusal(R"({"points": [], "lenght_m": 1, "remark": ""})") ==
         "JSON: $ has a member 'lenght_m', which test_planner::Route has not (did you mean "
-        "'length_m'?)");
+        "'length_m'?); it lacks the member 'length_m' of test_planner::Route");
+  CHECK(refusal("{}") ==
+        "JSON: $ lacks the member 'points' of test_planner::Route; it lacks the member 'length_m' "
+        "of test_planner::Route; it lacks the member 'remark' of test_planner::Route");
+  CHECK(refusal("{\"length_m\":\n 1e400}") == "JSON: line 2, column 2: 1e400 is too large");
   CHECK(
       refusal(
           R"({"points": [{"east_m": 0, "north_m": "x", "up_m": 0}], "length_m": 1, "remark": ""})") ==
@@ -220,17 +249,17 @@ TEST_CASE("JSON that does not fit is refused with the place") {
 
 TEST_CASE("identifiers that C++ reserves get an underscore") {
   using namespace names;
-  class_ value;
-  value.int_ = 1;
-  value.namespace_ = "n";
+  _cxx_class value;
+  value._cxx_int = 1;
+  value._cxx_namespace = "n";
   value.std = 2;
   value.errno_ = 3;
   check_round_trips(value);
   CHECK(to_json(value) == R"({"int":1,"namespace":"n","std":2,"errno":3,"value":0})");
   switches choice;
   choice.discriminator_(4);
-  CHECK(choice.discriminator() == keywords::auto_);
-  const virtual_ error("w", 1, 2);
+  CHECK(choice.discriminator() == keywords::_cxx_auto);
+  const _cxx_virtual error("w", 1, 2);
   CHECK(error.what_ == "w");
   CHECK(error.info().name == "names::virtual");
 }

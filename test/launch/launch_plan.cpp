@@ -29,8 +29,8 @@ TEST_CASE("Every peer and every CSP with a process of its own becomes one child"
                                                    "navigator/RRTstar", "flight_controller",
                                                    "ad_manager", "ground_station"});
   CHECK(plan.children[1].argv.back() == "navigator/RRTConnect");
-  CHECK_FALSE(plan.children[1].required);
-  CHECK(plan.children[0].required);
+  CHECK(plan.children[1].rules.on_loss == LossPolicy::Continue);
+  CHECK(plan.children[0].rules.on_loss == LossPolicy::Abort);
   CHECK(plan.children[5].runs_mission);
   CHECK(plan.elsewhere.empty());
 }
@@ -83,8 +83,53 @@ TEST_CASE("The text of a plan shows commands that a shell would run, and every r
         "  run:   LEVEL='it'\\''s' skein peer 'a profile.xml' f\n"
         "  ready: within 30 s\n"
         "  rules: restart on-failure after 0.1 s, doubling up to 5 s, given up after 5 in 30 s\n"
-        "  stop:  SIGTERM, after 3 s SIGKILL\n"
+        "  stop:  SIGINT, after 2 s SIGTERM, after 3 s SIGKILL\n"
         "  end:   its loss ends the mission\n"
         "\nnot started here:\n"
         "  g on beta\n");
+}
+
+TEST_CASE("Peers come in layers after those who provide what they and their CSPs depend on") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="g" component="g.xml"/>
+         <peer name="n" component="n.xml"><csp component="p.xml" process="own"/></peer>
+         <peer name="f" component="f.xml"/><peer name="f2" component="f.xml"/>)"));
+  const auto plan = make_launch_plan(mission, argv_of);
+  REQUIRE(names_of(plan) == std::vector<std::string>{"g", "n", "n/P", "f", "f2"});
+  CHECK(plan.children[0].layer == 2);
+  CHECK(plan.children[1].layer == 1);
+  for (const std::size_t first : {2, 3, 4}) CHECK(plan.children[first].layer == 0);
+  const std::string text = to_text(plan);
+  CHECK_THAT(text, Catch::Contains("5 processes here, started in 3 layers"));
+  CHECK_THAT(text, Catch::Contains("  after: M/IF of f or f2\n"));
+  CHECK(text.find("layer 1\n") < text.find("\nn/P\n"));
+  CHECK(text.find("\nf2\n") < text.find("layer 2\n"));
+  CHECK(text.find("layer 2\n") < text.find("\nn\n"));
+  CHECK(text.find("layer 3\n") < text.find("\ng\n"));
+}
+
+TEST_CASE("What a peer of another host provides is not waited for, but by the peer itself") {
+  ProfileFolder folder;
+  const auto mission = read_mission_profile(folder.mission(
+      R"(<peer name="n" component="n.xml" host="alpha"/><peer name="g" component="g.xml" host="alpha"/>
+         <peer name="f" component="f.xml" host="beta"/>)"));
+  const auto plan = make_launch_plan(mission, argv_of, "alpha");
+  REQUIRE(names_of(plan) == std::vector<std::string>{"n", "g"});
+  CHECK(plan.children[0].after.empty());
+  CHECK(plan.children[0].layer == 0);
+  REQUIRE(plan.children[1].after.size() == 1);
+  CHECK(plan.children[1].after[0].providers == std::vector<std::string>{"n"});
+  CHECK(plan.children[1].layer == 1);
+}
+
+TEST_CASE("A cycle of dependencies holds up nobody") {
+  ProfileFolder folder;
+  folder.write("f.xml",
+               R"(<component name="F"><interfaces><implements>M/IF</implements></interfaces>
+    <dependencies><depends>M/IN</depends></dependencies></component>)");
+  const auto mission = read_mission_profile(
+      folder.mission(R"(<peer name="n" component="n.xml"/><peer name="f" component="f.xml"/>)"));
+  for (const ChildPlan& child : make_launch_plan(mission, argv_of).children)
+    CHECK(child.after.empty());
 }

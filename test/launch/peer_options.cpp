@@ -24,6 +24,38 @@ TEST_CASE("What a profile says of a peer's Head is how its entity decides") {
   CHECK(options.head.breaker.longest_quarantine == 5s);
 }
 
+TEST_CASE("What a profile says of a topic stands in place of what the code says of it") {
+  ProfileFolder folder;
+  const auto mission = profile::read_mission_profile(
+      folder.mission(R"(<topic name="state" deadline="100 ms" history="all"/>
+<topic name="goal" reliability="best-effort"/>
+<topic name="wish" ownership="shared" durability="transient-local"/>
+<peer name="f" component="f.xml" vendor="loopback"><topic name="goal" strength="7" lease="none"/>
+</peer>)"));
+  const EntityOptions options = launch::entity_options(mission, mission.peers.at(0));
+  TopicQos state = TopicQos::state();
+  options.adjust_topic("state", state);
+  CHECK(state.deadline == 100ms);
+  CHECK_FALSE(state.history_depth);
+  CHECK(state.transient_local);
+  TopicQos goal = TopicQos::command(2);
+  options.adjust_topic("goal", goal);
+  CHECK(goal.strength == 7);
+  CHECK(goal.exclusive);
+  CHECK(goal.reliable);
+  CHECK_FALSE(goal.liveliness_lease);
+  TopicQos wish = TopicQos::command(2);
+  options.adjust_topic("wish", wish);
+  CHECK_FALSE(wish.exclusive);
+  CHECK(wish.strength == 0);
+  CHECK(wish.transient_local);
+  CHECK(wish.max_waiting == 0);
+  TopicQos other;
+  options.adjust_topic("other", other);
+  CHECK_FALSE(other.deadline);
+  CHECK(other.reliable);
+}
+
 TEST_CASE("Where a peer speaks and whom it asks follows from the profile") {
   ProfileFolder folder;
   const auto network_of = [&](const std::string& attributes) {

@@ -1,13 +1,19 @@
 #include "launch/supervisor.hpp"
 
+#include <fcntl.h>
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "core/file_descriptor.hpp"
 #include "shell_mission.hpp"
 #include "temporary_folder.hpp"
 
 using namespace skein::launch;
 using namespace std::chrono_literals;
+using skein::profile::LossPolicy;
 using skein::profile::RestartPolicy;
 
 namespace {
@@ -39,7 +45,7 @@ TEST_CASE("The exit code of the mission's peer is the mission's") {
 
 TEST_CASE("A mission without a peer that runs it ends when all processes have ended") {
   auto failing = shell_child("b", "ready; exit 1");
-  failing.required = false;
+  failing.rules.on_loss = LossPolicy::Continue;
   RecordedMission fine({shell_child("a", "exit 0"), shell_child("b", "exit 0")});
   CHECK(fine.run().exit_code == 0);
   RecordedMission marred({shell_child("a", "exit 0"), failing});
@@ -74,6 +80,35 @@ TEST_CASE("A program that does not exist is a failed start that names it") {
         "a could not be started: cannot execute /no/such/program: No such file or directory");
 }
 
+TEST_CASE("A restart for which there are no descriptors left is tried again") {
+  TemporaryFolder folder;
+  folder.write("starts", "");
+  const std::string starts = (folder.path() / "starts").string();
+  auto child = shell_child("a", "echo $$ >> " + starts + "; ready; [ $(wc -l < " + starts +
+                                    ") -gt 1 ] || exit 1; while :; do sleep 1000; done");
+  child.rules.restart.policy = RestartPolicy::OnFailure;
+  child.rules.restart.max_restarts = 1000;
+  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + starts +
+                                                ") -lt 2 ]; do sleep 0.01; done")});
+  std::vector<skein::FileDescriptor> hoard;
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit few{64, before.rlim_max};
+  mission.on_event = [&](const ChildEvent& event) {
+    if (event.text.find("Too many open files") != std::string::npos) hoard.clear();
+    if (event.text.find("ended with exit code 1") == std::string::npos) return;
+    ::setrlimit(RLIMIT_NOFILE, &few);
+    do {
+      hoard.emplace_back(::open("/dev/null", O_RDONLY));
+    } while (hoard.back());
+  };
+  const auto result = mission.run();
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  CHECK(result.exit_code == 0);
+  CHECK(mission.saw("a: the launcher cannot make a pipe: Too many open files; restart number 2"));
+  CHECK_THAT(result.first_fault, Catch::Contains("a ended with exit code 1"));
+}
+
 TEST_CASE("A required process that never becomes ready fails the start") {
   auto child = shell_child("a", "while :; do sleep 1000; done");
   child.rules.ready_timeout = 50ms;
@@ -82,7 +117,7 @@ TEST_CASE("A required process that never becomes ready fails the start") {
   const auto result = mission.run();
   CHECK(result.outcome == Outcome::StartFailed);
   CHECK(result.exit_code == kStartFailed);
-  CHECK(result.reason == "a did not become ready");
+  CHECK(result.reason == "a did not become ready within 0.05 s");
 }
 
 TEST_CASE("What a process said it waits for is part of the reason why it did not become ready") {
@@ -93,8 +128,8 @@ TEST_CASE("What a process said it waits for is part of the reason why it did not
   RecordedMission hung({child});
   const auto result = hung.run();
   CHECK(result.exit_code == kStartFailed);
-  CHECK(result.reason == "a did not become ready (last it said: for \\x1bc)");
-  CHECK(hung.saw("a: is not ready after 0.50 s (last it said: for \\x1bc): killed"));
+  CHECK(result.reason == "a did not become ready within 0.50 s (last it said: for \\x1bc)");
+  CHECK(hung.saw("a: did not become ready within 0.50 s (last it said: for \\x1bc): killed"));
 
   RecordedMission gave_up({shell_child("a", "echo '?for b' >&$SKEIN_READY_FD; exit 3")});
   CHECK(gave_up.run().reason == "a ended with exit code 3 (last it said: for b)");
@@ -166,7 +201,7 @@ TEST_CASE("A mission goes on without a process that it does not require") {
   TemporaryFolder folder;
   const std::string go = (folder.path() / "go").string();
   auto child = shell_child("a", "ready; exit 1");
-  child.required = false;
+  child.rules.on_loss = LossPolicy::Continue;
   child.rules.restart.policy = RestartPolicy::Always;
   child.rules.restart.max_restarts = 2;
   RecordedMission mission(
@@ -177,6 +212,149 @@ TEST_CASE("A mission goes on without a process that it does not require") {
   const auto result = mission.run();
   CHECK(result.outcome == Outcome::MissionEnded);
   CHECK(result.exit_code == 0);
+}
+
+namespace {
+
+/// From the moment in which the launcher has read that the last of two providers is ready, to that
+/// in which it has started who depends on both; negative where it started before.
+std::chrono::nanoseconds time_to_start_a_dependant() {
+  TemporaryFolder folder;
+  const std::string go = (folder.path() / "go").string();
+  auto dependant = mission_child("exit 0");
+  dependant.layer = 1;
+  dependant.after = {{"M/I", {"a"}}, {"M/J", {"b"}}};
+  RecordedMission mission(
+      {dependant, shell_child("a", "while [ ! -e " + go + " ]; do sleep 0.01; done; " + kWait),
+       shell_child("b", kWait)});
+  Time ready{}, started{};
+  mission.on_event = [&](const ChildEvent& event) {
+    if (event.child == "b" && event.state == ChildState::Ready) folder.write("go", "");
+    if (event.child == "a" && event.state == ChildState::Ready) ready = event.when;
+    if (event.child == "mission" && event.text.starts_with("started")) started = event.when;
+  };
+  CHECK(mission.run().exit_code == 0);
+  REQUIRE(ready != Time{});
+  return started - ready;
+}
+
+}  // namespace
+
+TEST_CASE("A dependant starts at once when what it depends on is ready, and not before") {
+  std::vector<std::chrono::nanoseconds> times(9);
+  std::ranges::generate(times, time_to_start_a_dependant);
+  std::ranges::sort(times);
+  const auto median = times[times.size() / 2];
+  WARN("from the sign of readiness to the dependant's start: median " << median / 1us << " µs of "
+                                                                      << times.size());
+  CHECK(times.front() >= 0s);
+  CHECK(median < 5s);  // machines are loaded
+}
+
+TEST_CASE("Who depends on a process that is given up starts all the same") {
+  auto lost = shell_child("a", "exit 1");
+  lost.rules.on_loss = LossPolicy::Continue;
+  auto dependant = mission_child("exit 0");
+  dependant.layer = 1;
+  dependant.after = {{"M/I", {"a"}}};
+  RecordedMission mission({lost, dependant});
+  CHECK(mission.run().exit_code == 0);
+}
+
+TEST_CASE("A process that runs and makes no progress is killed and started again") {
+  TemporaryFolder folder;
+  folder.write("starts", "");
+  const std::string starts = (folder.path() / "starts").string();
+  auto child = shell_child("a", "echo $$ >> " + starts +
+                                    "; ready; ready; echo '?deadlocked' >&$SKEIN_READY_FD; "
+                                    "while :; do :; done");
+  child.rules.progress_timeout = 100ms;
+  child.rules.restart.policy = RestartPolicy::OnFailure;
+  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + starts +
+                                                ") -lt 2 ]; do sleep 0.01; done")});
+  CHECK(mission.run().exit_code == 0);
+  CHECK(mission.saw("a: made no progress for 0.10 s (last it said: deadlocked): killed"));
+  CHECK(mission.saw("restart number 1 follows"));
+}
+
+TEST_CASE("A process that makes progress is left alone, however often it says so") {
+  TemporaryFolder folder;
+  const std::string signs = (folder.path() / "signs").string();
+  folder.write("signs", "");
+  auto child = shell_child("a", "ready; while :; do ready; echo >> " + signs + "; done");
+  child.rules.progress_timeout = 20s;
+  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + signs +
+                                                ") -lt 5000 ]; do sleep 0.01; done")});
+  CHECK(mission.run().exit_code == 0);
+  CHECK_FALSE(mission.saw("a: made no progress"));
+}
+
+TEST_CASE("A process that is ready as soon as it runs can report progress, too") {
+  TemporaryFolder folder;
+  const std::string signs = (folder.path() / "signs").string();
+  folder.write("signs", "");
+  auto child = shell_child("a", "for i in $(seq 12); do ready; echo >> " + signs +
+                                    "; sleep 0.2; done; while :; do sleep 1000; done");
+  child.tells_ready = false;
+  child.rules.progress_timeout = 2s;
+  RecordedMission mission({child});
+  const auto result = mission.run();
+  CHECK(result.reason == "a made no progress for 2.00 s");
+  std::ifstream file(signs);
+  CHECK(std::count(std::istreambuf_iterator<char>(file), {}, '\n') == 12);
+}
+
+TEST_CASE("A stopped process makes no progress, and cannot hold up its end") {
+  auto child = shell_child("a", "ready; kill -STOP $$");
+  child.rules.progress_timeout = 50ms;
+  RecordedMission mission({child});
+  const auto result = mission.run();
+  CHECK(result.outcome == Outcome::PeerLost);
+  CHECK(result.reason == "a made no progress for 0.05 s");
+}
+
+TEST_CASE("A mission that lost what degrades it goes on, and its exit code says so in the end") {
+  TemporaryFolder folder;
+  const std::string go = (folder.path() / "go").string();
+  const int code = GENERATE(0, 3);
+  auto child = shell_child("a", "ready; exit 1");
+  child.rules.on_loss = LossPolicy::Degrade;
+  RecordedMission mission(
+      {child, mission_child("ready; while [ ! -e " + go + " ]; do sleep 0.01; done; exit " +
+                            std::to_string(code))});
+  mission.on_event = [&](const ChildEvent& event) {
+    if (event.text == "goes on degraded, without a") folder.write("go", "");
+  };
+  const auto result = mission.run();
+  CHECK(result.outcome == (code == 0 ? Outcome::Degraded : Outcome::MissionEnded));
+  CHECK(result.exit_code == (code == 0 ? kDegraded : code));
+  CHECK_THAT(result.first_fault, Catch::Contains("a ended with exit code 1"));
+}
+
+TEST_CASE("The first fault is told beside what ended the mission, where they differ") {
+  auto first = shell_child("a", "ready; exit 4");
+  first.rules.on_loss = LossPolicy::Continue;
+  auto second = mission_child("exit 5");
+  second.layer = 1;
+  second.after = {{"M/I", {"a"}}};
+  RecordedMission both({first, second});
+  const auto result = both.run();
+  CHECK(result.reason == "mission, which runs the mission, ended with exit code 5");
+  CHECK_THAT(result.first_fault, Catch::Matches("after [0-9.]+ s, a ended with exit code 4"));
+  RecordedMission one({mission_child("exit 5")});
+  CHECK(one.run().first_fault.empty());
+}
+
+TEST_CASE("What left its process's group and session goes with the process") {
+  TemporaryFolder folder;
+  folder.write("pids", "");
+  const std::string pids = (folder.path() / "pids").string();
+  RecordedMission mission({mission_child(
+      "setsid sh -c 'echo $$ >> " + pids + "; (sleep 1000 & echo $! >> " + pids +
+      "); exec sleep 1000' & while [ $(wc -l < " + pids + ") -lt 2 ]; do sleep 0.01; done")});
+  CHECK(mission.run().exit_code == 0);
+  REQUIRE(numbers_in(pids).size() == 2);
+  for (const pid_t process : numbers_in(pids)) CHECK_FALSE(exists(process));
 }
 
 TEST_CASE("A process killed from outside comes back") {
@@ -199,8 +377,8 @@ TEST_CASE("A process killed from outside comes back") {
 TEST_CASE("When run() returns, no process of any group is left") {
   TemporaryFolder folder;
   const std::string pids = (folder.path() / "pids").string();
-  const std::string stubborn = "trap '' TERM; echo $$ >> " + pids +
-                               "; (trap '' TERM; while :; do sleep 1000; done) & echo $! >> " +
+  const std::string stubborn = "trap '' INT TERM; echo $$ >> " + pids +
+                               "; (trap '' INT TERM; while :; do sleep 1000; done) & echo $! >> " +
                                pids + "; ready; while :; do sleep 1000; done";
   auto child = shell_child("a", stubborn);
   child.rules.stop_timeout = 20ms;

@@ -10,25 +10,29 @@
 
 namespace {
 
-/// A launcher in its own process with two children; each has a child of its own, and each of the
-/// four processes has written its number into a file when this constructor returns.
+/// A launcher in its own process with two children; each has a child of its own, and one more in a
+/// session of that one's own. Each of the six processes has written its number into a file when
+/// this constructor returns.
 class LauncherProcess {
  public:
-  explicit LauncherProcess(const std::string& preamble = "") {
+  explicit LauncherProcess(const std::string& preamble = "", const char* stop_timeout_ms = "500") {
     folder_.write("pids", "");
     const std::string pids = (folder_.path() / "pids").string();
     const std::string script = preamble + "echo $$ >> " + pids + "; (" + preamble +
                                "while :; do sleep 1000; done) & echo $! >> " + pids +
-                               "; ready; while :; do sleep 1000; done";
+                               "; setsid sh -c '" + "echo $$ >> " + pids +
+                               "; while :; do sleep 1000; done' & " +
+                               "ready; while :; do sleep 1000 & wait $!; done";
     id_ = ::fork();
     if (id_ == 0) {
       const int nowhere = ::open("/dev/null", O_WRONLY);
       ::dup2(nowhere, 1);
       ::dup2(nowhere, 2);
+      ::setenv("STOP_TIMEOUT_MS", stop_timeout_ms, 1);
       ::execl(SKEIN_LAUNCH_HELPER, SKEIN_LAUNCH_HELPER, script.c_str(), script.c_str(), nullptr);
       ::_exit(127);
     }
-    REQUIRE(wait_until([&] { return numbers_in(pids).size() == 4; }));
+    REQUIRE(wait_until([&] { return numbers_in(pids).size() == 6; }));
     processes_ = numbers_in(pids);
   }
   ~LauncherProcess() {
@@ -76,8 +80,23 @@ TEST_CASE("A signal to the launcher ends the mission in order, and the exit code
   CHECK(launcher.all_gone());
 }
 
-TEST_CASE("Processes that ignore SIGTERM do not survive the launcher") {
-  LauncherProcess launcher("trap '' TERM; ");
+TEST_CASE("A signal that comes twice at once, as from timeout(1), ends the mission in order") {
+  TemporaryFolder folder;
+  const std::string ended = (folder.path() / "ended").string();
+  for (std::size_t run = 1; run <= 5; ++run) {
+    LauncherProcess launcher(
+        "trap \"trap '' TERM; sleep 0.05; echo 1 >> " + ended + "; exit 0\" INT; ", "60000");
+    launcher.send(SIGTERM);
+    launcher.send(SIGTERM);
+    const int status = launcher.wait();
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 128 + SIGTERM);
+    CHECK(numbers_in(ended).size() == 2 * run);  // a shell's own processes ignore SIGINT
+  }
+}
+
+TEST_CASE("Processes that ignore SIGINT and SIGTERM do not survive the launcher") {
+  LauncherProcess launcher("trap \"\" INT TERM; ");
   launcher.send(SIGTERM);
   const int status = launcher.wait();
   REQUIRE(WIFEXITED(status));
@@ -85,7 +104,9 @@ TEST_CASE("Processes that ignore SIGTERM do not survive the launcher") {
   CHECK(launcher.all_gone());
 }
 
-TEST_CASE("Nothing survives a kill -9 of the launcher, its children's children neither") {
+TEST_CASE(
+    "Nothing survives a kill -9 of the launcher, its children's children neither, nor those that "
+    "left for a session of their own") {
   LauncherProcess launcher;
   launcher.send(SIGKILL);
   CHECK(WIFSIGNALED(launcher.wait()));

@@ -38,6 +38,7 @@ CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandO
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (options.network >= 0 && setns(options.network, CLONE_NEWNET) != 0) _exit(126);
   if (chdir(folder_.c_str()) != 0) _exit(126);
+  setenv("XDG_STATE_HOME", folder_.c_str(), 1);
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(open(taker.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDOUT_FILENO);
   dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDERR_FILENO);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "command_run.hpp"
 #include "errand.hpp"
@@ -34,12 +35,25 @@ class Desk final : public crew::Desk {
 
 TEST_CASE("a command that is none is named, with the nearest") {
   CommandRun run({"lanuch", "x.xml"});
-  CHECK(run.wait() == 78);
+  CHECK(run.wait() == 64);
   CHECK_THAT(run.output(), Contains("there is no command 'lanuch' (did you mean 'launch'?)"));
   CommandRun nested({"bench", "latncy"});
-  CHECK(nested.wait() == 78);
+  CHECK(nested.wait() == 64);
   CHECK_THAT(nested.output(),
              Contains("there is no command 'bench latncy' (did you mean 'latency'?)"));
+}
+
+TEST_CASE("an option that is none is named, with the nearest and with where to look") {
+  CommandRun run({"services", "--domian", "3"});
+  CHECK(run.wait() == 64);
+  CHECK_THAT(run.output(),
+             Contains("--domian (did you mean '--domain'?) 3; see `skein services --help`"));
+}
+
+TEST_CASE("who types another tool's command is told Skein's") {
+  CommandRun run({"service", "list"});
+  CHECK(run.wait() == 64);
+  CHECK_THAT(run.output(), Contains("there is no command 'service'; in Skein: skein services"));
 }
 
 TEST_CASE("output that cannot be written is no success") {
@@ -57,10 +71,11 @@ TEST_CASE("output that cannot be written is no success") {
 }
 
 TEST_CASE("commands that watch end in order when they are interrupted") {
-  const std::string command = GENERATE("calls", "decisions", "services");
+  const std::string command = GENERATE("calls", "decisions", "graph", "peers", "services", "top");
   const int signal = GENERATE(SIGINT, SIGTERM);
   CAPTURE(command, signal);
-  CommandRun run({command, command == "services" ? "--wait" : "--for", "600"});
+  const bool waits = command == "graph" || command == "peers" || command == "services";
+  CommandRun run({command, waits ? "--wait" : command == "top" ? "--every" : "--for", "600"});
   const std::string status = "/proc/" + std::to_string(run.pid()) + "/status";
   REQUIRE(eventually([&] {  // until it blocks the signals, they would end it as they do any program
     std::ifstream file(status);
@@ -93,6 +108,24 @@ TEST_CASE("what a peer says of itself cannot drive a terminal, nor fill it") {
   CHECK(output.size() < 4096);
 }
 
+TEST_CASE("what is printed as JSON can be read by programs") {
+  if (!installed("cyclonedds")) return;
+  Entity rogue({.name = "rogue", .vendor = dds::load_vendor("cyclonedds"), .domain = 53});
+  ServiceOptions options;
+  options.attributes = {{"colour", "gr\xc3\xbcn"}};
+  rogue.provide<crew::Desk>(std::make_shared<Desk>(), options);
+  nlohmann::json services;
+  REQUIRE(eventually([&] {
+    CommandRun run({"services", "--domain", "53", "--json"});
+    services = run.wait() == 0 ? nlohmann::json::parse(run.output()) : nlohmann::json();
+    return services.size() == 1;
+  }));
+  CHECK(services[0]["service"] == "crew/Desk");
+  CHECK(services[0]["entity"] == "rogue");
+  CHECK(services[0]["pid"] == getpid());
+  CHECK(services[0]["attributes"]["colour"] == "gr\xc3\xbcn");
+}
+
 TEST_CASE("decisions from a log cannot drive a terminal either") {
   introspection::Decision record;
   record.entity = "uav\x1b[2J";
@@ -104,6 +137,9 @@ TEST_CASE("decisions from a log cannot drive a terminal either") {
   std::ofstream(file) << idl::to_json(record) << '\n';
   CommandRun run({"decisions", "--log", file});
   CHECK(run.wait() == 0);
+  CommandRun as_json({"decisions", "--log", file, "--json"});
+  CHECK(as_json.wait() == 0);
+  CHECK(idl::from_json<introspection::Decision>(as_json.output()) == record);
   std::filesystem::remove(file);
   CHECK_THAT(run.output(), Contains("of uav\\x1b[2J") && Contains("no\\x0aanswer"));
 }
@@ -114,6 +150,19 @@ TEST_CASE("the mission's own text reaches the terminal without control character
   CommandRun run({"launch", errand.profile("", kOffice + kClient)});
   CHECK(run.wait() == 0);
   CHECK_THAT(run.output(), Contains("the desk says: yes, dear \\x1b[31mclient"));
+}
+
+TEST_CASE("peers of one component fly together, and a component reads its arguments") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string offices = "<peer name='office' component='office.xml' count='2'/>";
+  const std::string client =
+      "<peer name='client' component='client.xml' role='mission'>"
+      "<argument value='--loud'/><argument value='two words'/></peer>";
+  CommandRun run({"launch", errand.profile("", offices + client), "--verbose"});
+  CHECK(run.wait() == 0);
+  CHECK_THAT(run.output(), Contains("* office-1: started") && Contains("* office-2: started") &&
+                               Contains("argument: --loud\nargument: two words\nthe desk says: "));
 }
 
 TEST_CASE("a missing dependency is told at once, and is the reason when the peer gives up") {
@@ -200,8 +249,9 @@ TEST_CASE("what a profile names and this machine does not have is a finding with
 
 TEST_CASE("a component that its plugin does not implement is a finding with what it implements") {
   const Errand errand;
+  const std::string command = GENERATE("check", "launch");
   CommandRun run(
-      {"check", errand.profile("",
+      {command, errand.profile("",
                                "<peer name='client' component='client.xml'/>"
                                "<peer name='o' component='office.xml' role='mission'/>")});
   CHECK(run.wait() == 78);
@@ -210,9 +260,34 @@ TEST_CASE("a component that its plugin does not implement is a finding with what
                       "'office'; it implements client, clumsy, office"));
 }
 
+TEST_CASE("of a mission that is launched in part, only that part's plugins must be there") {
+  const Errand errand;
+  const std::string profile = errand.profile(
+      "", kClient + kOffice + "<peer name='other' plugin='none' component='office.xml'/>");
+  CommandRun part({"launch", "--only", "client", "--only", "office", profile});
+  CHECK(part.wait() == 0);
+  CommandRun whole({"launch", profile});
+  CHECK(whole.wait() == 78);
+  CHECK_THAT(whole.output(), Contains("the plugin 'none': no libnone.so in"));
+}
+
+TEST_CASE("plugins are not looked for where the profile says that their process finds others") {
+  const Errand errand;
+  const std::string profile =
+      errand.profile("",
+                     "<peer name='office' plugin='none' component='office.xml'><environment "
+                     "name='SKEIN_MODULE_PATH' value='/elsewhere'/></peer>");
+  CommandRun check({"check", profile});
+  CHECK(check.wait() == 0);
+  CommandRun launch({"launch", profile});
+  CHECK(launch.wait() == 71);
+  CHECK_THAT(launch.output(), Contains("no libnone.so in /elsewhere"));
+}
+
 TEST_CASE("a component for which no plugin is named is a finding, as it could not be launched") {
   const Errand errand;
-  CommandRun run({"check", errand.profile("", kClient + "<peer name='office' plugin='' "
+  const std::string command = GENERATE("check", "launch");
+  CommandRun run({command, errand.profile("", kClient + "<peer name='office' plugin='' "
                                                         "component='office.xml'/>")});
   CHECK(run.wait() == 78);
   CHECK_THAT(run.output(), Contains("errand.xml:1:") &&
@@ -234,17 +309,17 @@ TEST_CASE("a profile without a peer on this host is complete, with a warning") {
 TEST_CASE(
     "a strategy that neither its plugin nor Skein holds is a finding with those that there are") {
   const Errand errand;
-  const auto check = [&](const std::string& strategy) {
+  const auto run_of = [&](const std::string& command, const std::string& strategy) {
     return CommandRun(
-        {"check", errand.profile("", "<peer name='office' component='office.xml' strategy='" +
+        {command, errand.profile("", "<peer name='office' component='office.xml' strategy='" +
                                          strategy + "'/>")});
   };
   for (const std::string strategy : {"first", "learned"}) {
     CAPTURE(strategy);
-    CommandRun run = check(strategy);
+    CommandRun run = run_of("check", strategy);
     CHECK(run.wait() == 0);
   }
-  CommandRun run = check("fist");
+  CommandRun run = run_of(GENERATE("check", "launch"), "fist");
   CHECK(run.wait() == 78);
   CHECK_THAT(run.output(),
              Contains("errand.xml:1:") &&

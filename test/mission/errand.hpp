@@ -9,19 +9,24 @@
 namespace skein::test {
 
 /// A folder with the small mission's components, for profiles around them; it goes with this
-/// object. `office` answers, `client` asks it and ends, `clumsy` ends by an exception.
+/// object. `office` answers, `sick` would but fails its self-test, `client` asks and ends, `vexer`
+/// makes the office spin first, `clumsy` ends by an exception.
 class Errand {
  public:
   Errand() {
     std::string pattern = (std::filesystem::temp_directory_path() / "skein-errand-XXXXXX").string();
     if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for a profile");
     folder_ = pattern;
-    write("office.xml",
-          "<component name='office'><interfaces><implements>IDL:crew/Desk</implements>"
-          "</interfaces></component>");
-    write("client.xml",
-          "<component name='client'><dependencies><depends>IDL:crew/Desk</depends>"
-          "</dependencies></component>");
+    for (const std::string desk : {"office", "sick"}) {
+      write(desk + ".xml", "<component name='" + desk +
+                               "'><interfaces><implements>IDL:crew/Desk</implements>"
+                               "</interfaces></component>");
+    }
+    for (const std::string asker : {"client", "vexer"}) {
+      write(asker + ".xml", "<component name='" + asker +
+                                "'><dependencies><depends>IDL:crew/Desk</depends>"
+                                "</dependencies></component>");
+    }
     write("clumsy.xml", "<component name='clumsy'/>");
   }
   ~Errand() {
@@ -30,6 +35,8 @@ class Errand {
   }
   Errand(const Errand&) = delete;
   Errand& operator=(const Errand&) = delete;
+
+  const std::filesystem::path& path() const noexcept { return folder_; }
 
   /// A profile with these attributes of <mission> and these peers.
   std::string profile(const std::string& attributes, const std::string& peers) const {

@@ -1,13 +1,15 @@
-// A small mission, for tests of how missions are started: a desk that answers, and one who asks it;
-// and a strategy of selection.
+// A small mission, for tests of how missions are started: a desk that answers, one that fails its
+// self-test, and those who ask; and a strategy of selection.
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "../tools/eventually.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
+#include "skein/error.hpp"
 #include "skein/head.hpp"
 #include "skein/selection.hpp"
 #include "worker.idl.hpp"
@@ -19,7 +21,13 @@ using namespace std::chrono_literals;
 
 class Desk final : public crew::Desk {
  public:
-  std::string ask(const std::string& text) override { return "yes, " + text; }
+  std::string ask(const std::string& text) override {
+    while (text == "spin") spun_ = spun_ + 1;
+    return "yes, " + text;
+  }
+
+ private:
+  volatile unsigned spun_ = 0;
 };
 
 class First final : public SelectionStrategy {
@@ -37,6 +45,23 @@ int ask(Entity& entity, const ParameterValues&) {
   return 0;
 }
 
+/// Makes the desk spin, and asks it until it answers again.
+int vex(Entity& entity, const ParameterValues&) {
+  auto desk = entity.connect<crew::Desk>();
+  const auto answers = [&](const std::string& text) {
+    try {
+      return desk.within(200ms).ask(text) == "yes, " + text;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  if (!test::eventually([&] { return answers("once"); }) || answers("spin")) return 1;
+  if (!test::eventually([&] { return answers("again"); }, 3 * test::kPatience)) return 2;
+  std::puts("the desk answers again");
+  std::fflush(stdout);
+  return 0;
+}
+
 int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the client stumbled"); }
 
 }  // namespace
@@ -48,7 +73,17 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     return skein::ComponentRegistry::Body{
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>())};
   });
-  registry.add_mission("client", ask);
+  registry.add_mission("client", [arguments = registry.arguments()](
+                                     skein::Entity& entity, const skein::ParameterValues& values) {
+    for (const std::string& word : arguments) std::printf("argument: %s\n", word.c_str());
+    return ask(entity, values);
+  });
+  registry.add_body("sick", [](skein::Entity&, const skein::ParameterValues&) {
+    return skein::ComponentRegistry::Body{
+        std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>()), 1,
+        [] { throw std::runtime_error("no compass"); }};
+  });
+  registry.add_mission("vexer", vex);
   registry.add_mission("clumsy", stumble);
   registry.add_strategy(std::make_shared<First>());
 }

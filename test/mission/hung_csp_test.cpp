@@ -12,7 +12,7 @@ namespace {
 
 // Of `moody`, which has a process of its own.
 std::string own(const std::string& vendor, const std::string& restart) {
-  return "process='own' restart='" + restart + "' required='false' vendor='" + vendor + "'";
+  return "process='own' restart='" + restart + "' vendor='" + vendor + "'";
 }
 
 void check_that_it_comes_back(const std::string& owner, const std::string& csp) {

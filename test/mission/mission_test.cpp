@@ -133,8 +133,9 @@ TEST_CASE("a client's own planner that nobody can reach is refused, and the navi
 TEST_CASE("a plugin that is missing is named, with where it was looked for and what to do") {
   const MissionRun run(kTestProfiles / "missing_plugin.xml");
   INFO(run.output());
-  CHECK(run.exit_code() != 0);
-  CHECK_THAT(run.output(), Contains("flight_controller | skein: no libskein_no_such_plugin.so in"));
+  CHECK(run.exit_code() == 78);
+  CHECK_THAT(run.output(), Contains("missing_plugin.xml:3:3: error: the plugin "
+                                    "'skein_no_such_plugin': no libskein_no_such_plugin.so in"));
   CHECK_THAT(run.output(), Contains("build or install the plugin"));
 }
 

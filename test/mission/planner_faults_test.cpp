@@ -140,7 +140,7 @@ TEST_CASE(
   launch::ChildPlan legacy;
   legacy.name = "legacy";
   legacy.argv = stage.command("legacy", "LegacyDubins", {100, 0.9});
-  legacy.required = false;
+  legacy.rules.on_loss = profile::LossPolicy::Continue;
   legacy.rules.restart.policy = profile::RestartPolicy::OnFailure;
   legacy.rules.restart.delay = 10ms;
   legacy.rules.restart.max_restarts = kRestarts;

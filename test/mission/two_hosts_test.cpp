@@ -1,11 +1,10 @@
 // `skein launch` on two hosts: two network namespaces, joined by a pair of veth devices.
-#include <unistd.h>
+#include "two_hosts.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <memory>
 
-#include "../tools/network_space.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
 #include "installed.hpp"
@@ -14,23 +13,6 @@ using namespace skein::test;
 using Catch::Contains;
 
 namespace {
-
-/// Devices `skein0`: 10.78.0.1 on `alpha`, 10.78.0.2 on `beta`.
-struct TwoHosts {
-  TwoHosts() {
-    const std::string there = "/proc/" + std::to_string(getpid()) + "/fd/";
-    alpha.run("ip link add skein0 type veth peer name skein0 netns " + there +
-              std::to_string(beta.descriptor()));
-    alpha.run("ip addr add 10.78.0.1/24 dev skein0 && ip link set skein0 up");
-    beta.run("ip addr add 10.78.0.2/24 dev skein0 && ip link set skein0 up");
-    // The kernel sees the carrier a little later; Fast DDS does not speak on a device without.
-    for (const NetworkSpace* host : {&alpha, &beta})
-      host->run("timeout 20 sh -c 'until ip link show skein0 | grep -q LOWER_UP; do :; done'");
-  }
-
-  NetworkSpace alpha;
-  NetworkSpace beta;
-};
 
 std::string peers_on(const std::string& office_host, const std::string& client_host,
                      const std::string& office_vendor, const std::string& client_vendor) {

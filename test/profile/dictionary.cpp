@@ -51,6 +51,20 @@ TEST_CASE("Values are read by their type") {
   CHECK(std::get<std::chrono::nanoseconds>(parse_value(duration, "250us")) == 250us);
 }
 
+TEST_CASE("A length of time at a command line is seconds, or has a unit, and fits into a clock") {
+  CHECK(parse_seconds("1.5") == 1.5);
+  CHECK(parse_seconds("500ms") == 0.5);
+  CHECK(parse_seconds("20 us") == 20e-6);
+  CHECK(parse_seconds("2min") == 120);
+  CHECK(parse_seconds("0") == 0);
+  CHECK(parse_seconds("1e300") == parse_seconds("1e10"));
+  CHECK(std::chrono::duration<double>(parse_seconds("1e300")) < std::chrono::nanoseconds::max());
+  for (const char* text : {"-1", "-0", "nan", "inf", "", "5 parsecs", "1,5"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(parse_seconds(text), skein::InvalidArgument);
+  }
+}
+
 TEST_CASE("A value of another type is refused") {
   const auto [type, text] = GENERATE(table<ValueType, std::string>({
       {ValueType::Integer, "1.5"},

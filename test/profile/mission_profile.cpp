@@ -29,14 +29,16 @@ TEST_CASE("The mission that is shipped reads as it is described, without a findi
   CHECK(mission.find_peer("flight_controller")->vendor == "fastdds");
 }
 
-TEST_CASE("A peer without settings speaks on this host alone, is required, and is not restarted") {
+TEST_CASE(
+    "A peer without settings speaks on this host alone, must not be lost, and is not restarted") {
   ProfileFolder folder;
   const auto mission =
       read_mission_profile(folder.mission(R"(<peer name="f" component="f.xml"/>)"));
   const auto& peer = mission.peers.at(0);
   CHECK(peer.interface.empty());
   CHECK(peer.host.empty());
-  CHECK(peer.required);
+  CHECK(peer.rules.on_loss == LossPolicy::Abort);
+  CHECK(peer.rules.progress_timeout == 0ns);
   CHECK_FALSE(peer.runs_mission);
   CHECK(peer.rules.restart.policy == RestartPolicy::Never);
   CHECK(mission.domain == 0);
@@ -275,7 +277,8 @@ TEST_CASE("A profile's words that are unknown are answered with the nearest know
        "\"on_failure\" is no restart policy; did you mean 'on-failure'?"},
       {R"(role="boss")", "\"boss\" is no role"},
       {R"(restrat="always")", "<peer> has no \"restrat\"; did you mean 'restart'?"},
-      {R"(required="yes")", "required is \"yes\"; write true or false"},
+      {R"(on_loss="abord")", "\"abord\" is no answer to a loss; did you mean 'abort'?"},
+      {R"(progress_timeout="0")", "progress_timeout is zero"},
       {R"(stop_timeout="0")", "stop_timeout is zero"},
       {R"(stop_timeout="long")", "\"long\" is no length of time"},
       {R"(max_restarts="0")", "\"max_restarts\" is 0, less than 1"},
@@ -316,8 +319,9 @@ TEST_CASE("A component that cannot be read is reported where it is named, and wh
 TEST_CASE("Reading a profile with mistakes throws all of them") {
   ProfileFolder folder;
   const auto file = folder.mission("<peer name=\"a b\" component=\"f.xml\"/><peer/>");
-  CHECK_THROWS_WITH(read_mission_profile(file),
-                    Catch::Contains("is no name") && Catch::Contains("<peer> has no component"));
+  CHECK_THROWS_WITH(
+      read_mission_profile(file),
+      Catch::Contains("is no name") && Catch::Contains("<peer> has neither a component"));
 }
 
 TEST_CASE("A setting from the command line takes the place of the profile's") {

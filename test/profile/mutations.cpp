@@ -59,18 +59,29 @@ TEST_CASE("A mutated component or dictionary is read or refused, nothing else") 
 
 TEST_CASE("A mutated mission is read or refused, and its refusal names a place") {
   ProfileFolder folder;
-  const std::string seed = R"(<mission name="m" domain="3" vendor="fastdds">
-  <peer name="n" component="n.xml" restart="on-failure" max_restarts="3">
-    <csp component="p.xml" process="own"><parameter name="Time limit" value="5"/></csp>
-  </peer>
-  <peer name="f" component="f.xml"/>
+  const std::string mission = R"(<mission name="m" domain="${d}" vendor="fastdds">
+  <variable name="d" default="3"/><variable name="size" default="${d}"/>
+  <environment name="LANG" value="C"/>
+  <include file="part.xml"/>
+  <group name="all" restart="on-failure" max_restarts="${size}"><include file="inner.xml"/>
+    <peer name="n" component="n.xml" count="${d}" history="${instance}$$">
+      <csp component="p.xml" process="own"><parameter name="Time limit" value="5"/></csp>
+    </peer>
+  </group>
+  <peer name="tool" program="true" process_cpus="0-${d}"><argument value="${size}"/></peer>
   <peer name="g" component="g.xml" role="mission"/>
 </mission>)";
+  const std::string part = R"(<part><variable name="size" default="2"/><include file="inner.xml"/>
+  <peer name="f" component="f.xml"/><include file="inner.xml"/></part>)";
+  const std::string inner = R"(<part><variable name="x" default="${size}${size}"/>
+  <peer name="e${x}" component="f.xml"/></part>)";
   std::mt19937 random(11);
   int refused = 0;
-  for (int i = 0; i < 1500; ++i) {
-    folder.write("m.xml", mutated(seed, random));
-    for (const auto& finding : check_file(folder.path() / "m.xml")) {
+  for (int i = 0; i < 3000; ++i) {
+    folder.write("m.xml", i % 3 == 0 ? mutated(mission, random) : mission);
+    folder.write("part.xml", i % 3 == 1 ? mutated(part, random) : part);
+    folder.write("inner.xml", i % 3 == 2 ? mutated(inner, random) : inner);
+    for (const auto& finding : check_file(folder.path() / "m.xml", {{"size", "4"}})) {
       REQUIRE(!finding.where.file.empty());
       REQUIRE(!finding.problem.empty());
       ++refused;

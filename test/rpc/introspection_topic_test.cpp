@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "../tools/log.hpp"
+#include "rpc/batch_publisher.hpp"
+#include "rpc/call_recorder.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
@@ -15,8 +17,11 @@
 
 using namespace skein;
 using namespace std::chrono_literals;
-using introspection::CallEvent;
-using introspection::kCalls;
+using introspection::CallRecord;
+using introspection::CallRecords;
+using introspection::Decision;
+using introspection::kCallRecords;
+using introspection::kDecisions;
 using introspection::kStatistics;
 using introspection::ServiceStatistics;
 using skein::test::Log;
@@ -32,20 +37,32 @@ struct World {
   ManualExecutor control;
 };
 
-/// Who reads what happens to calls, and what has come.
+/// Who reads one of these topics, and what has come.
+template <class T>
 struct Onlooker {
-  explicit Onlooker(dds::Participant& participant)
-      : reader(participant, kCalls, [this](const CallEvent& event) { events.push_back(event); }) {}
+  Onlooker(dds::Participant& participant, const introspection::Topic<T>& topic)
+      : reader(participant, topic, [this](const T& value) { values.push_back(value); }) {}
 
-  std::vector<CallEvent> events;
-  introspection::Reader<CallEvent> reader;  // last: goes first
+  std::vector<T> values;
+  introspection::Reader<T> reader;  // last: goes first
 };
 
-CallEvent event(std::uint64_t number) {
-  CallEvent event;
-  event.number = number;
-  return event;
+using Observer = Onlooker<Decision>;
+
+Decision decision(std::uint64_t number) {
+  Decision decision;
+  decision.number = number;
+  return decision;
 }
+
+CallRecord record(std::uint64_t number, std::size_t size = 0) {
+  CallRecord record;
+  record.number = number;
+  record.arguments.resize(size);
+  return record;
+}
+
+using RecordPublisher = introspection::BatchPublisher<CallRecords>;
 
 ServiceStatistics statistics(std::uint8_t provider) {
   ServiceStatistics statistics;
@@ -57,91 +74,89 @@ ServiceStatistics statistics(std::uint8_t provider) {
 
 TEST_CASE("a publisher writes only while somebody reads") {
   World world;
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
   CHECK_FALSE(publisher.on());
-  publisher.publish(event(1));
+  publisher.publish(decision(1));
   CHECK(world.control.run_all() == 0);
   {
-    Onlooker onlooker(*world.far);
+    Observer onlooker(*world.far, kDecisions);
     CHECK(publisher.on());
-    publisher.publish(event(2));
-    publisher.publish(event(3));
-    CHECK(onlooker.events.empty());
-    CHECK(world.control.run_all() == 1);
-    REQUIRE(onlooker.events.size() == 2);
-    CHECK(onlooker.events[0] == event(2));
-    CHECK(onlooker.events[1] == event(3));
+    publisher.publish(decision(2));
+    publisher.publish(decision(3));
+    CHECK(onlooker.values.empty());
+    CHECK(world.control.run_all() == 2);
+    REQUIRE(onlooker.values.size() == 2);
+    CHECK(onlooker.values[0] == decision(2));
+    CHECK(onlooker.values[1] == decision(3));
   }
   CHECK_FALSE(publisher.on());
-  publisher.publish(event(4));
+  publisher.publish(decision(4));
   CHECK(world.control.run_all() == 0);
 }
 
 TEST_CASE("a publisher is on until its last reader goes, and for those who were there before it") {
   World world;
-  auto first = std::make_optional<Onlooker>(*world.far);
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
+  auto first = std::make_optional<Observer>(*world.far, kDecisions);
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
   CHECK(publisher.on());
-  auto second = std::make_optional<Onlooker>(*world.near);
+  auto second = std::make_optional<Observer>(*world.near, kDecisions);
   first.reset();
   CHECK(publisher.on());
   second.reset();
   CHECK_FALSE(publisher.on());
 }
 
-TEST_CASE("what finds no room at a publisher is dropped, and the values tell how many were") {
+TEST_CASE("what finds no room at a publisher is dropped") {
   World world;
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
-  Onlooker onlooker(*world.far);
-  for (std::size_t i = 0; i < publisher.kCapacity + 10; ++i) publisher.publish(event(i));
-  CHECK(world.control.run_all() == 1);
-  REQUIRE(onlooker.events.size() == publisher.kCapacity);
-  CHECK(onlooker.events.back().number == publisher.kCapacity - 1);
-  CHECK(onlooker.events.back().dropped == 10);
-  publisher.publish(event(0));
-  CHECK(world.control.run_all() == 1);
-  CHECK(onlooker.events.back().number == 0);
-  CHECK(onlooker.events.back().dropped == 10);
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+  Observer onlooker(*world.far, kDecisions);
+  for (std::size_t i = 0; i < publisher.kCapacity + 10; ++i) publisher.publish(decision(i));
+  world.control.run_all();
+  REQUIRE(onlooker.values.size() == publisher.kCapacity);
+  CHECK(onlooker.values.back().number == publisher.kCapacity - 1);
+  publisher.publish(decision(0));
+  world.control.run_all();
+  CHECK(onlooker.values.back().number == 0);
 }
 
 TEST_CASE("a value that cannot be sent is logged, and the others are sent") {
   World world;
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
-  Onlooker onlooker(*world.far);
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+  Observer onlooker(*world.far, kDecisions);
   const Log log;
-  CallEvent unspeakable = event(1);
-  unspeakable.operation = std::string("\0", 1);
+  Decision unspeakable = decision(1);
+  unspeakable.request = std::string("\0", 1);
   publisher.publish(unspeakable);
-  publisher.publish(event(2));
+  publisher.publish(decision(2));
   world.control.run_all();
-  CHECK(log.count("skein/calls: a sample was not sent") == 1);
-  REQUIRE(onlooker.events.size() == 1);
-  CHECK(onlooker.events[0].number == 2);
+  CHECK(log.count("skein/decisions: a sample was not sent") == 1);
+  REQUIRE(onlooker.values.size() == 1);
+  CHECK(onlooker.values[0].number == 2);
 }
 
 TEST_CASE("who begins when somebody reads does so each time that somebody does after nobody did") {
   World world;
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
-  std::optional<Onlooker> first, second;
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+  std::optional<Observer> first, second;
   int begun = 0;
   const auto begin = [&] { ++begun; };
   SECTION("a reader comes later") {
     publisher.when_read(begin);
-    first.emplace(*world.far);
+    first.emplace(*world.far, kDecisions);
     CHECK(begun == 0);
   }
   SECTION("a reader is there already") {
-    first.emplace(*world.far);
+    first.emplace(*world.far, kDecisions);
     publisher.when_read(begin);
     CHECK(begun == 0);
   }
   world.control.run_all();
   CHECK(begun == 1);
-  second.emplace(*world.far);
+  second.emplace(*world.far, kDecisions);
   first.reset();
   CHECK(world.control.run_all() == 0);
   second.reset();
-  first.emplace(*world.far);
+  first.emplace(*world.far, kDecisions);
   world.control.run_all();
   CHECK(begun == 2);
 }
@@ -149,11 +164,11 @@ TEST_CASE("who begins when somebody reads does so each time that somebody does a
 TEST_CASE("a closed publisher uses neither its participant nor its executor") {
   World world;
   auto control = std::make_unique<ManualExecutor>();
-  introspection::Publisher<CallEvent> publisher(*world.near, *control, kCalls);
+  introspection::Publisher<Decision> publisher(*world.near, *control, kDecisions);
   bool ran = false;
   publisher.when_read([&] { ran = true; });
-  Onlooker onlooker(*world.far);
-  publisher.publish(event(1));
+  Observer onlooker(*world.far, kDecisions);
+  publisher.publish(decision(1));
   publisher.post([&] { ran = true; });
   publisher.close();
   CHECK_FALSE(publisher.on());
@@ -161,28 +176,28 @@ TEST_CASE("a closed publisher uses neither its participant nor its executor") {
   CHECK(control->run_all() == 3);
   CHECK_FALSE(ran);
   control.reset();
-  publisher.publish(event(2));
+  publisher.publish(decision(2));
   publisher.post([&] { ran = true; });
   publisher.when_read([&] { ran = true; });
   publisher.close();
-  CHECK(onlooker.events.empty());
+  CHECK(onlooker.values.empty());
 }
 
 TEST_CASE("tasks that a publisher has posted may outlive it") {
   World world;
-  Onlooker onlooker(*world.far);
+  Observer onlooker(*world.far, kDecisions);
   {
-    introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
-    publisher.publish(event(1));
+    introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+    publisher.publish(decision(1));
   }
   CHECK(world.control.run_all() == 1);
-  CHECK(onlooker.events.empty());
+  CHECK(onlooker.values.empty());
 }
 
 TEST_CASE("a publisher that closes waits for its task that runs") {
   World world;
   ThreadExecutor control("control");
-  introspection::Publisher<CallEvent> publisher(*world.near, control, kCalls);
+  introspection::Publisher<Decision> publisher(*world.near, control, kDecisions);
   std::promise<void> begun, end;
   bool ended = false;
   publisher.post([&] {
@@ -226,13 +241,81 @@ TEST_CASE("a reader refuses what is no value, or one of another key, and logs th
 
 TEST_CASE("a reader refuses what its consumer throws at") {
   World world;
-  introspection::Publisher<CallEvent> publisher(*world.near, world.control, kCalls);
+  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
   const Log log;
-  introspection::Reader<CallEvent> reader(
-      *world.far, kCalls, [](const CallEvent&) { throw InvalidArgument("it is not believed"); });
-  publisher.publish(event(1));
-  publisher.publish(event(2));
+  introspection::Reader<Decision> reader(
+      *world.far, kDecisions, [](const Decision&) { throw InvalidArgument("it is not believed"); });
+  publisher.publish(decision(1));
+  publisher.publish(decision(2));
   world.control.run_all();
   CHECK(reader.refused() == 2);
   CHECK(log.count("it is not believed") == 1);
+}
+
+TEST_CASE("what is told of each call is gathered, and written as one sample") {
+  World world;
+  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+  publisher.publish(record(1));
+  world.clock.advance(1s);
+  CHECK(world.control.run_all() == 0);
+  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  publisher.publish(record(2));
+  publisher.publish(record(3));
+  CHECK(world.control.run_all() == 0);
+  world.clock.advance(publisher.kGatherTime);
+  CHECK(world.control.run_all() == 1);
+  REQUIRE(onlooker.values.size() == 1);
+  CHECK(onlooker.values[0].values == std::vector{record(2), record(3)});
+  CHECK(onlooker.values[0].dropped == 0);
+  publisher.publish(record(4));
+  world.clock.advance(publisher.kGatherTime);
+  CHECK(world.control.run_all() == 1);
+  REQUIRE(onlooker.values.size() == 2);
+  CHECK(onlooker.values[1].values == std::vector{record(4)});
+}
+
+TEST_CASE("large values are written in several samples, in their order") {
+  World world;
+  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  const std::size_t third = publisher.kMostInSample / 3;
+  for (const auto& each : {record(1, third), record(2, third), record(3, third),
+                           record(4, 10 * third), record(5), record(6)}) {
+    publisher.publish(each);
+  }
+  world.clock.advance(publisher.kGatherTime);
+  world.control.run_all();
+  std::vector<std::vector<std::uint64_t>> numbers;
+  for (const CallRecords& batch : onlooker.values) {
+    numbers.emplace_back();
+    for (const CallRecord& each : batch.values) numbers.back().push_back(each.number);
+  }
+  CHECK(numbers == std::vector<std::vector<std::uint64_t>>{{1, 2}, {3}, {4}, {5, 6}});
+}
+
+TEST_CASE("gathered values for which there is no room are dropped, and samples tell how many") {
+  World world;
+  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  for (int i = 0; i < 5; ++i) publisher.publish(record(1, publisher.kMostWaiting / 3));
+  publisher.publish(record(2));
+  world.clock.advance(publisher.kGatherTime);
+  world.control.run_all();
+  REQUIRE(onlooker.values.size() == 3);
+  CHECK(onlooker.values.back().values == std::vector{record(2)});
+  CHECK(onlooker.values.back().dropped == 3);
+}
+
+TEST_CASE("what was gathered is written when the publisher closes, and nothing after that") {
+  World world;
+  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+  publisher.publish(record(1));
+  publisher.close();
+  REQUIRE(onlooker.values.size() == 1);
+  CHECK(onlooker.values[0].values == std::vector{record(1)});
+  publisher.publish(record(2));
+  world.clock.advance(1s);
+  CHECK(world.control.run_all() == 0);
+  CHECK(onlooker.values.size() == 1);
 }

@@ -186,9 +186,9 @@ TEST_CASE("a journal that ends waits for who is inside its writer") {
   const auto vendor = network.vendor();
   SlowParticipant participant(*vendor);
   ThreadExecutor control("control");
-  rpc::CallJournal journal(participant, control, "uav-1/test");
-  introspection::Reader<introspection::CallEvent> reader(participant, introspection::kCalls,
-                                                         [](const introspection::CallEvent&) {});
+  rpc::CallJournal journal(participant, clock, control, "uav-1/test");
+  introspection::Reader<introspection::CallEvents> reader(participant, introspection::kCalls,
+                                                          [](const introspection::CallEvents&) {});
   REQUIRE(eventually([&] { return journal.on(); }));
   participant.valve.set(Valve::Mode::Holding);
   journal.note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",

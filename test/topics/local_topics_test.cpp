@@ -6,6 +6,7 @@
 #include "../tools/log.hpp"
 #include "dds/port.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
 #include "skein/publisher.hpp"
@@ -115,6 +116,27 @@ TEST_CASE("a sensor's subscriber finds the newest four values, and none that is 
   CHECK(sea.angles == Angles{4, 5, 6});
   CHECK(watch.counters().dropped == 2);
   CHECK(watch.counters().expired == 1);
+}
+
+TEST_CASE("an entity's options may change what the code asks for: here, a late joiner is told") {
+  Sea sea;
+  EntityOptions options;
+  options.name = "ship";
+  options.vendor = sea.network.vendor();
+  options.adjust_topic = [](const std::string& topic, TopicQos& qos) {
+    if (topic == "rudder") qos = TopicQos::state();
+  };
+  Entity ship(options);
+  options.name = "shore";
+  Entity shore(options);
+  auto rudder = ship.publisher<Rudder>("rudder");
+  auto depth = ship.publisher<Depth>("depth");
+  rudder.publish({"helm", 3});
+  depth.publish({});
+  auto late = shore.subscription<Rudder>("rudder");
+  auto too_late = shore.subscription<Depth>("depth");
+  CHECK(eventually([&] { return late.latest() == Rudder{"helm", 3}; }));
+  CHECK_FALSE(too_late.latest());
 }
 
 TEST_CASE("of two commands the stronger is heard, and the weaker again once the stronger is late") {

@@ -13,6 +13,8 @@ using namespace skein::test;
 using namespace std::chrono_literals;
 using streams::Depth;
 using streams::Rudder;
+using streams::Sighting;
+using streams::Wave;
 
 namespace {
 
@@ -89,6 +91,35 @@ TEST_CASE("the state of each key is there for who comes late, until it is dispos
   CHECK(heard.values()[1] == Depth{3, 30, "keel"});
   depths.dispose({1, 0, ""});
   CHECK(eventually([&] { return disposed == 1; }));
+}
+
+TEST_CASE("types that may grow arrive, with their keys, as others do") {
+  const auto ship = make_server("ship");
+  auto sightings = ship->publisher<Sighting>("sighting", TopicQos::state());
+  const Sighting near{3, 1ULL << 40, 12.5, "near"};
+  const Sighting far{3, 2, std::nullopt, "far"};
+  for (const Sighting& each : {near, far}) sightings.publish(each);
+  const auto shore = make_client("shore");
+  Heard<Sighting> heard;
+  std::atomic<int> disposed = 0;
+  SubscriptionOptions options;
+  options.on_disposed = [&](const Guid& key) {
+    if (key == key_hash(near)) ++disposed;
+  };
+  const auto watch =
+      shore->subscription<Sighting>("sighting", TopicQos::state(), heard.callback(), options);
+  REQUIRE(eventually([&] { return heard.values().size() == 2; }));
+  CHECK(heard.values()[0] == near);
+  CHECK(heard.values()[1] == far);
+  sightings.dispose(near);
+  CHECK(eventually([&] { return disposed == 1; }));
+
+  Heard<Wave> waves;
+  const auto buoy = shore->subscription<Wave>("wave", TopicQos::state(), waves.callback());
+  auto sea = ship->publisher<Wave>("wave", TopicQos::state());
+  sea.publish({2.5, {1, 2, 3}});
+  REQUIRE(eventually([&] { return waves.values().size() == 1; }));
+  CHECK(waves.values()[0] == Wave{2.5, {1, 2, 3}});
 }
 
 TEST_CASE("a topic stays in its system, unless others are named") {

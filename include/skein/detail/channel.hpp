@@ -5,12 +5,14 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "skein/clock.hpp"
 #include "skein/detail/action.hpp"
 #include "skein/detail/operation.hpp"
 #include "skein/executor.hpp"
+#include "skein/guid.hpp"
 
 namespace skein {
 
@@ -91,6 +93,15 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   Action canceller_;
 };
 
+/// An open connection to one provider, for those who look at it.
+struct ConnectionInfo {
+  std::string service;  ///< Canonical interface name.
+  Guid provider;        ///< Nil: a foreign server.
+  std::string transport;
+  std::size_t pending = 0;  ///< Calls that wait for their answer.
+  std::uint64_t calls = 0;  ///< That were begun.
+};
+
 /// When a call began, and its deadline.
 struct CallTime {
   Instant begin;
@@ -119,6 +130,9 @@ class Channel {
 
   /// Name of the other end, for messages: `AE_navigator::IPlanner of Navigator (uav-1)`.
   virtual std::string peer() const = 0;
+
+  /// Nothing for what consists of other channels.
+  virtual std::optional<ConnectionInfo> info() const { return std::nullopt; }
 
   /// Whether calls can be made: not disconnected, and the provider is not lost.
   virtual bool connected() const = 0;

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "skein/detail/argument.hpp"
+#include "skein/detail/box.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/detail/plain_layout.hpp"
+#include "skein/detail/wide_text.hpp"
 
 /// CDR of all IDL types: basic types, strings, sequences, arrays, and generated types, by their own
 /// `skein_encode` and `skein_decode`.
@@ -35,6 +39,21 @@ void decode(CdrReader& reader, T& value) {
 inline void encode(CdrWriter& writer, const std::string& value) { writer.write_string(value); }
 inline void decode(CdrReader& reader, std::string& value) { reader.read_string(value); }
 
+inline void encode(CdrWriter& writer, const wchar_t& value) { writer.write_wide_character(value); }
+inline void decode(CdrReader& reader, wchar_t& value) { value = reader.read_wide_character(); }
+
+inline void encode(CdrWriter& writer, const long double& value) { writer.write_long_double(value); }
+inline void decode(CdrReader& reader, long double& value) { value = reader.read_long_double(); }
+
+inline void encode(CdrWriter& writer, const std::wstring& value) {
+  writer.write_wide_string(value);
+}
+inline void decode(CdrReader& reader, std::wstring& value) { reader.read_wide_string(value); }
+
+/// Whether XCDR2 has a length in bytes before a sequence, array or map of such elements.
+template <class T>
+inline constexpr bool kDelimited = !Primitive<T> && !kBasicOnTheWire<T>;
+
 /// Writes `count` values of a plain layout as their basic elements.
 template <PlainlyLaidOut T>
 void encode_elements(CdrWriter& writer, const T* values, std::size_t count) {
@@ -50,25 +69,75 @@ void decode_elements(CdrReader& reader, T* values, std::size_t count) {
 }
 
 template <class T, std::size_t kSize>
-void encode(CdrWriter& writer, const std::array<T, kSize>& values) {
+void encode(CdrWriter& writer, const std::array<T, kSize>& values);
+template <class T, std::size_t kSize>
+void decode(CdrReader& reader, std::array<T, kSize>& values);
+
+/// What arrays of arrays are made of: on the wire they are one array.
+template <class T>
+struct Item {
+  using Type = T;
+};
+template <class T, std::size_t kSize>
+struct Item<std::array<T, kSize>> : Item<T> {};
+template <class T>
+using ItemOf = typename Item<T>::Type;
+
+template <class T>
+void encode_item(CdrWriter& writer, const T& value) {
+  encode(writer, value);
+}
+template <class T>
+void decode_item(CdrReader& reader, T& value) {
+  decode(reader, value);
+}
+template <class T, std::size_t kSize>
+void encode_items(CdrWriter& writer, const std::array<T, kSize>& values);
+template <class T, std::size_t kSize>
+void decode_items(CdrReader& reader, std::array<T, kSize>& values);
+template <class T, std::size_t kSize>
+void encode_item(CdrWriter& writer, const std::array<T, kSize>& values) {
+  encode_items(writer, values);
+}
+template <class T, std::size_t kSize>
+void decode_item(CdrReader& reader, std::array<T, kSize>& values) {
+  decode_items(reader, values);
+}
+
+/// The elements of an array without what precedes the outermost one.
+template <class T, std::size_t kSize>
+void encode_items(CdrWriter& writer, const std::array<T, kSize>& values) {
   if constexpr (PlainlyLaidOut<T>) {
     encode_elements(writer, values.data(), kSize);
   } else {
-    for (const T& value : values) encode(writer, value);
+    for (const T& value : values) encode_item(writer, value);
   }
 }
 
 template <class T, std::size_t kSize>
-void decode(CdrReader& reader, std::array<T, kSize>& values) {
+void decode_items(CdrReader& reader, std::array<T, kSize>& values) {
   if constexpr (PlainlyLaidOut<T>) {
     decode_elements(reader, values.data(), kSize);
   } else {
-    for (T& value : values) decode(reader, value);
+    for (T& value : values) decode_item(reader, value);
   }
+}
+
+template <class T, std::size_t kSize>
+void encode(CdrWriter& writer, const std::array<T, kSize>& values) {
+  const CdrWriter::Delimiter delimiter(writer, writer.is_xcdr2() && kDelimited<ItemOf<T>>);
+  encode_items(writer, values);
+}
+
+template <class T, std::size_t kSize>
+void decode(CdrReader& reader, std::array<T, kSize>& values) {
+  const CdrReader::Delimited delimited(reader, reader.is_xcdr2() && kDelimited<ItemOf<T>>);
+  decode_items(reader, values);
 }
 
 template <class T>
 void encode(CdrWriter& writer, const std::vector<T>& values) {
+  const CdrWriter::Delimiter delimiter(writer, writer.is_xcdr2() && kDelimited<T>);
   writer.write_length(values.size());
   if constexpr (PlainlyLaidOut<T>) {
     encode_elements(writer, values.data(), values.size());
@@ -81,6 +150,7 @@ void encode(CdrWriter& writer, const std::vector<T>& values) {
 
 template <class T>
 void decode(CdrReader& reader, std::vector<T>& values) {
+  const CdrReader::Delimited delimited(reader, reader.is_xcdr2() && kDelimited<T>);
   if constexpr (PlainlyLaidOut<T>) {
     const std::size_t length = reader.read_length(sizeof(T));
     if constexpr (Primitive<T> && sizeof(T) == 1) {
@@ -99,10 +169,59 @@ void decode(CdrReader& reader, std::vector<T>& values) {
       if constexpr (std::is_same_v<T, bool>) {
         values.push_back(reader.read<bool>());
       } else {
+        reader.take_memory(sizeof(T));
         decode(reader, values.emplace_back());
       }
     }
   }
+}
+
+/// A map is the sequence of its pairs, in the order of the keys.
+template <class Key, class Value>
+void encode(CdrWriter& writer, const std::map<Key, Value>& values) {
+  const CdrWriter::Delimiter delimiter(writer, writer.is_xcdr2());
+  writer.write_length(values.size());
+  for (const auto& [key, value] : values) {
+    encode(writer, key);
+    encode(writer, value);
+  }
+}
+
+template <class Key, class Value>
+void decode(CdrReader& reader, std::map<Key, Value>& values) {
+  const CdrReader::Delimited delimited(reader, reader.is_xcdr2());
+  values.clear();
+  for (std::size_t left = reader.read_length(1); left > 0; --left) {
+    Key key{};
+    decode(reader, key);
+    const auto [place, is_new] = values.try_emplace(std::move(key));
+    if (!is_new) reader.fail("a key is there twice");
+    decode(reader, place->second);
+  }
+}
+
+/// An optional member of a @final or @appendable struct.
+template <class T>
+void encode(CdrWriter& writer, const std::optional<T>& value) {
+  writer.write(value.has_value());
+  if (value) encode(writer, *value);
+}
+template <class T>
+void decode(CdrReader& reader, std::optional<T>& value) {
+  if (reader.read<bool>()) {
+    decode(reader, value.emplace());
+  } else {
+    value.reset();
+  }
+}
+
+template <class T>
+void encode(CdrWriter& writer, const Box<T>& value) {
+  encode(writer, *value);
+}
+template <class T>
+void decode(CdrReader& reader, Box<T>& value) {
+  decode(reader, *value);
 }
 
 template <class T>
@@ -117,7 +236,7 @@ void decode(CdrReader& reader, Argument<T>& value) {
 /// A whole message: encapsulation header and value.
 template <class T>
 Bytes encode_message(const T& value) {
-  Bytes message{std::span<const std::byte>(kEncapsulation)};
+  Bytes message{std::span<const std::byte>(encapsulation(kRepresentation<T>))};
   append_cdr(message, [&](CdrWriter& writer) { encode(writer, value); });
   return message;
 }
@@ -126,7 +245,8 @@ Bytes encode_message(const T& value) {
 template <class T>
 T decode_message(std::span<const std::byte> message) {
   T value{};
-  read_cdr(message, kEncapsulation.size(), [&](CdrReader& reader) { decode(reader, value); });
+  read_cdr(message, kEncapsulation.size(), kRepresentation<T>,
+           [&](CdrReader& reader) { decode(reader, value); });
   return value;
 }
 

@@ -22,6 +22,9 @@ class JsonWriter {
   template <Primitive T>
   void write(T value);
   void write_string(std::string_view text);
+  void write_null();
+  /// A value that is JSON already.
+  void write_raw(std::string_view json);
   std::string take() { return std::move(text_); }
 
  private:
@@ -44,8 +47,13 @@ class JsonReader {
   JsonReader element(std::size_t index) const;
   JsonReader member(std::string_view name) const;
   bool has_member(std::string_view name) const;
+  bool is_number() const;
+  bool is_null() const;
+  bool is_object() const;
+  bool is_empty_string() const;
 
-  /// Checks that this is an object with exactly these members; `type` is for messages.
+  /// Checks that this is an object with exactly these members, and tells of all that are wrong;
+  /// `type` is for messages.
   void expect_members(std::string_view type, std::span<const std::string_view> names) const;
   /// The index of the enumerator that the text names.
   std::uint32_t read_enum(std::string_view type, std::span<const std::string_view> names) const;

@@ -18,8 +18,9 @@ Guid key_hash_of(std::span<const std::byte> message, bool short_key);
 
 /// As key_hash_of(), for what `write(CdrWriter&)` writes. Used by generated code.
 template <std::invocable<CdrWriter&> Write>
-Guid make_key_hash(bool short_key, const Write& write) {
-  Bytes message{std::span<const std::byte>(kEncapsulation)};
+Guid make_key_hash(bool short_key, const Write& write,
+                   Representation representation = Representation::Xcdr1) {
+  Bytes message{std::span<const std::byte>(encapsulation(representation))};
   append_cdr(message, write, ByteOrder::Big);
   return key_hash_of(message, short_key);
 }

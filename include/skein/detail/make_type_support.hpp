@@ -9,10 +9,11 @@ namespace skein::idl {
 
 /// Used by generated code.
 template <class T>
-constexpr TypeSupport make_type_support(std::string_view name) {
+constexpr TypeSupport make_type_support(std::string_view name, TypeDescription description) {
   return {
       .name = name,
-      .make = []() -> void* {
+      .representation = kRepresentation<T>,
+      .create = [](const TypeSupport&) -> void* {
         return std::pmr::polymorphic_allocator<>(&call_memory()).new_object<T>();
       },
       .destroy =
@@ -30,7 +31,7 @@ constexpr TypeSupport make_type_support(std::string_view name) {
           },
       .decode =
           [](void* value, std::span<const std::byte> message, std::size_t offset) {
-            return read_cdr(message, offset, [value](CdrReader& reader) {
+            return read_cdr(message, offset, kRepresentation<T>, [value](CdrReader& reader) {
               decode(reader, *static_cast<T*>(value));
             });
           },
@@ -46,6 +47,7 @@ constexpr TypeSupport make_type_support(std::string_view name) {
               read_json(reader, *static_cast<T*>(value));
             });
           },
+      .description = description,
   };
 }
 

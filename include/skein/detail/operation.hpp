@@ -8,26 +8,57 @@
 #include <string_view>
 
 #include "skein/detail/bytes.hpp"
+#include "skein/detail/representation.hpp"
 
 namespace skein {
+
+struct TypeSupport;
+
+/// A member of an @appendable or @mutable type. Two versions of the type understand each other if
+/// members that both know have the same digest, and those that only one knows are not required.
+struct GrowingMember {
+  std::uint32_t type = 0;  ///< DDS-RPC's hash of the type's scoped name.
+  /// Its place in an @appendable struct, its identifier in a @mutable one; a hash of its label in a
+  /// union.
+  std::uint32_t member = 0;
+  std::uint32_t digest = 0;    ///< Changes with its name and type.
+  bool required = false;       ///< A reader that does not know it refuses the value.
+  std::string_view name = {};  ///< `A::Problem.goal`; empty where another peer tells of it.
+};
+
+/// What a type says of itself, for those who do not know it: see skein/describe.hpp.
+struct TypeDescription {
+  /// A types::Declaration, in CDR; nothing for the structs of an operation's parameters.
+  std::string_view declaration;
+  std::span<const TypeSupport& (*const)()> uses{};  ///< The types that it names.
+  /// Changes with the type, but for members of types that may grow.
+  std::uint64_t signature = 0;
+  std::span<const GrowingMember> growing{};  ///< Its own members, if it may grow.
+};
 
 /// How to make, copy, write and read a C++ type without its definition. Generated code provides one
 /// for each IDL type that is sent.
 struct TypeSupport {
   std::string_view name;  ///< Scoped IDL name, `AE_navigator::Problem`.
-  void* (*make)();
+  Representation representation = Representation::Xcdr1;
+  /// A new value of the type; see make().
+  void* (*create)(const TypeSupport& type);
   void (*destroy)(void* value) noexcept;
   void (*assign)(void* to, const void* from);
-  /// Appends PLAIN_CDR, little-endian, to `message`, whose first 4 bytes are the encapsulation
-  /// header; alignment counts from byte 4. Throws InvalidArgument for a value that CDR cannot
-  /// carry.
+  /// Appends the value, little-endian, to `message`, whose first 4 bytes are the encapsulation
+  /// header of its representation; alignment counts from byte 4. Throws InvalidArgument for a value
+  /// that CDR cannot carry.
   void (*encode)(const void* value, Bytes& message);
-  /// Reads the value at `offset` of `message` and returns the offset of its end. Throws
-  /// idl::MalformedSample if the bytes are no such value.
+  /// Reads the value at `offset` of `message`, whose header says how it is encoded, and returns the
+  /// offset of its end. Throws idl::MalformedSample if the bytes are no such value.
   std::size_t (*decode)(void* value, std::span<const std::byte> message, std::size_t offset);
   std::string (*to_json)(const void* value);
   /// Throws InvalidArgument with the place in the text.
   void (*from_json)(void* value, std::string_view json);
+  TypeDescription description{};
+
+  /// A new value, to be given to destroy().
+  void* make() const { return create(*this); }
 };
 
 /// An exception that IDL declares.
@@ -51,15 +82,25 @@ class UserException : public std::exception {
 struct OperationInfo {
   std::string_view name;
   std::uint32_t hash;  ///< Discriminator in call and return unions: DDS-RPC's hash of the name.
-  std::uint64_t signature;  ///< Changes if any parameter, result or exception type changes.
-  bool oneway;              ///< No reply; success only means that the request was sent.
-  bool idempotent;          ///< Declared by `#pragma idempotent`: may be executed twice.
-  bool stream;              ///< Declared by `#pragma stream`: returns any number of out structs.
-  const TypeSupport* in;    ///< The struct of in and inout parameters (`IPlanner_plan_In`).
+  /// Changes if any parameter, result or exception type changes, but for members of types that may
+  /// grow (InterfaceInfo::growing).
+  std::uint64_t signature;
+  bool oneway;            ///< No reply; success only means that the request was sent.
+  bool idempotent;        ///< Declared by `@idempotent`: may be executed twice.
+  bool stream;            ///< Declared by `@stream`: returns any number of out structs.
+  const TypeSupport* in;  ///< The struct of in and inout parameters (`IPlanner_plan_In`).
   const TypeSupport*
       out;  ///< The struct of result, out and inout parameters (`IPlanner_plan_Out`).
   std::span<const ExceptionInfo* const> raises;
   std::string_view documentation;  ///< The comment in the IDL.
+
+  /// Whether it carries a type that travels as XCDR2.
+  bool uses_xcdr2() const noexcept {
+    bool found = is_xcdr2(in->representation) || is_xcdr2(out->representation);
+    for (const ExceptionInfo* exception : raises)
+      found |= is_xcdr2(exception->type->representation);
+    return found;
+  }
 };
 
 /// One IDL interface.
@@ -68,6 +109,9 @@ struct InterfaceInfo {
   std::span<const InterfaceInfo* const> bases;  ///< Direct and indirect, nearest first.
   std::span<const OperationInfo> operations;    ///< Own and inherited.
   std::string_view documentation;
+  /// The members of all types that may grow and that an operation carries, by type and member.
+  std::span<const GrowingMember> growing{};
+  std::string_view description{};  ///< A types::Interface, in CDR.
 
   /// The operation with that hash, or nullptr.
   const OperationInfo* find_operation(std::uint32_t hash) const noexcept {
@@ -75,6 +119,14 @@ struct InterfaceInfo {
       if (operation.hash == hash) return &operation;
     }
     return nullptr;
+  }
+
+  /// How its requests and replies travel: as XCDR2 if any of them carries a type that does.
+  Representation representation() const noexcept {
+    for (const OperationInfo& operation : operations) {
+      if (operation.uses_xcdr2()) return Representation::Xcdr2Plain;
+    }
+    return Representation::Xcdr1;
   }
 };
 

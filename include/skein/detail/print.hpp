@@ -2,6 +2,8 @@
 
 #include <array>
 #include <iosfwd>
+#include <map>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "skein/detail/argument.hpp"
+#include "skein/detail/box.hpp"
 #include "skein/detail/cdr.hpp"
 
 /// Readable text of all IDL types: `Route{points=[Point{x=1, y=2}], name="north"}`. For people;
@@ -33,11 +36,30 @@ void print(std::ostream& stream, const T& value) {
 }
 
 inline void print(std::ostream& stream, const std::string& value) { print_text(stream, value); }
+void print(std::ostream& stream, const wchar_t& value);
+void print(std::ostream& stream, const long double& value);
+void print(std::ostream& stream, const std::wstring& value);
+/// `a|b`; bits without a name follow as one number.
+void print_flags(std::ostream& stream, std::uint64_t value, std::span<const Flag> flags);
 
 template <class T, std::size_t kSize>
 void print(std::ostream& stream, const std::array<T, kSize>& values);
 template <class T>
 void print(std::ostream& stream, const std::vector<T>& values);
+
+template <class Key, class Value>
+void print(std::ostream& stream, const std::map<Key, Value>& values);
+template <class T>
+void print(std::ostream& stream, const Box<T>& value);
+
+template <class T>
+void print(std::ostream& stream, const std::optional<T>& value) {
+  if (value) {
+    print(stream, *value);
+  } else {
+    stream << "nothing";
+  }
+}
 
 template <class Values>
 void print_elements(std::ostream& stream, const Values& values) {
@@ -63,6 +85,29 @@ void print(std::ostream& stream, const std::array<T, kSize>& values) {
 template <class T>
 void print(std::ostream& stream, const std::vector<T>& values) {
   print_elements(stream, values);
+}
+
+template <class Key, class Value>
+void print(std::ostream& stream, const std::map<Key, Value>& values) {
+  std::size_t printed = 0;
+  stream << '{';
+  for (const auto& [key, value] : values) {
+    if (printed > 0) stream << ", ";
+    if (printed == kPrintedElements) {
+      print_omission(stream, values.size());
+      break;
+    }
+    print(stream, key);
+    stream << ": ";
+    print(stream, value);
+    ++printed;
+  }
+  stream << '}';
+}
+
+template <class T>
+void print(std::ostream& stream, const Box<T>& value) {
+  print(stream, *value);
 }
 
 template <class T>

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/detail/operation.hpp"
 #include "skein/guid.hpp"
 
 namespace skein::dds {
@@ -23,7 +24,17 @@ struct Topic {
   bool operator==(const Topic&) const = default;
 };
 
-/// What writers and readers must agree on, and what they keep. Always XCDR1.
+/// What tells one version of a topic's type from another. `members`, by type and member, are those
+/// of all types in it that may grow.
+struct TypeVersion {
+  std::uint64_t signature = 0;  ///< 0: not told, as by peers that are not built with Skein.
+  std::vector<GrowingMember> members{};
+};
+
+/// How samples are encoded. Any is said of foreign readers alone, which may take both.
+enum class DataRepresentation { Xcdr1, Xcdr2, Any };
+
+/// What writers and readers must agree on, and what they keep.
 struct Qos {
   /// A reliable reader matches only reliable writers.
   bool reliable = true;
@@ -59,6 +70,11 @@ struct Qos {
   bool exclusive = false;
   /// Writer, only with `exclusive`: its strength, 0 or more.
   std::int32_t strength = 0;
+  /// A writer and a reader match that have the same. The type decides it.
+  DataRepresentation representation = DataRepresentation::Xcdr1;
+  /// Where both sides tell it, and neither has only grown, they are reported as incompatible, and
+  /// match on vendors all the same.
+  TypeVersion type{};
   /// Only endpoints that share a partition match. Exact names without wildcards (vendors differ);
   /// empty: the default partition, whose name is "". Fixed at creation.
   std::vector<std::string> partitions;

@@ -43,6 +43,7 @@ const TypeSupport& type_support(const ServiceReference*);
 void skein_encode(idl::CdrWriter& writer, const ServiceReference& reference);
 void skein_decode(idl::CdrReader& reader, ServiceReference& reference);
 void skein_write_json(idl::JsonWriter& writer, const ServiceReference& reference);
+/// null and empty text refer to no service.
 void skein_read_json(const idl::JsonReader& reader, ServiceReference& reference);
 
 }  // namespace skein

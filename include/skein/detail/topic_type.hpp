@@ -5,7 +5,7 @@
 
 namespace skein {
 
-/// A generated type with a `#pragma keylist`: its topics have one instance per key.
+/// A generated type with a `@key`: its topics have one instance per key.
 template <class T>
 concept Keyed = requires(const T& value) {
   { key_hash(value) } -> std::same_as<Guid>;

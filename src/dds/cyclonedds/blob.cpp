@@ -234,7 +234,8 @@ ddsi_sertype* make_blob_type(const Topic& topic) {
   ddsi_sertype_init_flags(
       type, topic.type_name.c_str(), &kTypeOperations, &kBlobOperations,
       topic.keyed ? DDSI_SERTYPE_FLAG_REQUEST_KEYHASH : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
-  type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
+  type->allowed_data_representation =
+      DDS_DATA_REPRESENTATION_FLAG_XCDR1 | DDS_DATA_REPRESENTATION_FLAG_XCDR2;
   return type;
 }
 

@@ -84,7 +84,7 @@ class BlobReference {
   Blob* blob_;
 };
 
-/// The only type of this back end: named as the topic says, without description, XCDR1. Ownership
+/// The only type of this back end: named as the topic says, without description. Ownership
 /// goes to Cyclone with dds_create_topic_sertype().
 ddsi_sertype* make_blob_type(const Topic& topic);
 

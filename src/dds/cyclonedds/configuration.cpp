@@ -16,8 +16,10 @@ std::string milliseconds(std::chrono::milliseconds time) {
 }
 
 /// "best effort": a `min` would refuse to start on a stock host, which caps buffers at 208 KiB.
-constexpr const char* kSocketBuffers =
-    "<SocketReceiveBufferSize max=\"4 MiB\"/><SocketSendBufferSize max=\"4 MiB\"/>";
+std::string socket_buffers() {
+  const std::string size = " max=\"" + std::to_string(kSocketBuffer) + " B\"/>";
+  return "<SocketReceiveBufferSize" + size + "<SocketSendBufferSize" + size;
+}
 
 /// On loopback nothing is gained by small packets: 1 MiB takes half the time with the largest that
 /// UDP carries. On a LAN Cyclone's own sizes keep to the network's frames.
@@ -63,7 +65,7 @@ std::string discovery(const ParticipantOptions& options,
 /// held up as long.
 std::string internal() {
   const HeartbeatIntervals heartbeats = heartbeat_intervals(0);
-  return element("Internal", element("GenerateKeyhash", "true") + kSocketBuffers +
+  return element("Internal", element("GenerateKeyhash", "true") + socket_buffers() +
                                  element("Watermarks", element("WhcHigh", "4 MiB") +
                                                            element("WhcHighInit", "1 MiB")) +
                                  "<HeartbeatInterval max=\"" + milliseconds(heartbeats.longest) +

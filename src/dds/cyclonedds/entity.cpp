@@ -1,5 +1,6 @@
 #include "entity.hpp"
 
+#include "../type_version.hpp"
 #include "identity.hpp"
 #include "skein/error.hpp"
 
@@ -26,12 +27,19 @@ Guid Entity::guid() const {
 }
 
 QosSet::QosSet() : qos_(dds_create_qos()) {
-  // XCDR1 alone: with XCDR2 Fast DDS matches on one side only, and no data arrives.
+  // One form alone: with both, Fast DDS matches on one side only, and no data arrives.
   dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos_, 1, &representation);
 }
 
 QosSet::QosSet(const Qos& qos) : QosSet() {
+  if (qos.representation == DataRepresentation::Xcdr2) {
+    dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR2;
+    dds_qset_data_representation(qos_, 1, &representation);
+  }
+  if (const auto data = to_user_data(qos.type); !data.empty()) {
+    dds_qset_userdata(qos_, data.data(), data.size());
+  }
   const auto depth = static_cast<std::int32_t>(qos.history_depth.value_or(1));
   const auto history = qos.history_depth ? DDS_HISTORY_KEEP_LAST : DDS_HISTORY_KEEP_ALL;
   dds_qset_reliability(qos_, qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,

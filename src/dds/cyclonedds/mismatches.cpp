@@ -1,8 +1,10 @@
 #include "mismatches.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "../compatibility.hpp"
+#include "../type_version.hpp"
 #include "identity.hpp"
 #include "participant.hpp"
 
@@ -22,6 +24,28 @@ std::vector<std::string> partitions_of(const dds_qos_t* from) {
   for (std::uint32_t i = 0; i < count; ++i) dds_free(names[i]);
   dds_free(names);
   return partitions;
+}
+
+DataRepresentation representation_of(const dds_qos_t* from) {
+  std::uint32_t count = 0;
+  dds_data_representation_id_t* values = nullptr;
+  if (!dds_qget_data_representation(from, &count, &values)) return DataRepresentation::Xcdr1;
+  const bool xcdr1 =
+      count == 0 || std::count(values, values + count, DDS_DATA_REPRESENTATION_XCDR1);
+  const bool xcdr2 = std::count(values, values + count, DDS_DATA_REPRESENTATION_XCDR2) > 0;
+  dds_free(values);
+  return xcdr1 && xcdr2 ? DataRepresentation::Any
+         : xcdr2        ? DataRepresentation::Xcdr2
+                        : DataRepresentation::Xcdr1;
+}
+
+TypeVersion type_version_of(const dds_qos_t* from) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_userdata(from, &data, &size) || data == nullptr) return {};
+  TypeVersion version = from_user_data({static_cast<const std::uint8_t*>(data), size});
+  dds_free(data);
+  return version;
 }
 
 /// The policies that decide about a match.
@@ -44,7 +68,9 @@ Qos to_qos(const dds_qos_t* from) {
   qos.deadline = period(deadline);
   qos.liveliness_lease = period(lease);
   qos.exclusive = ownership == DDS_OWNERSHIP_EXCLUSIVE;
+  qos.representation = representation_of(from);
   qos.partitions = partitions_of(from);
+  qos.type = type_version_of(from);
   return qos;
 }
 
@@ -103,6 +129,12 @@ void Mismatches::update() {
   std::lock_guard lock(mutex_);
   const Endpoints endpoints(peers_);
   endpoints.for_each([&](const dds_builtintopic_endpoint_t& peer) { consider(peer); });
+}
+
+void Mismatches::matched(const dds_builtintopic_endpoint_t& peer) {
+  if (!told_ || qos_.type.signature == 0) return;
+  std::lock_guard lock(mutex_);
+  consider(peer);
 }
 
 void Mismatches::consider(const dds_builtintopic_endpoint_t& peer) {

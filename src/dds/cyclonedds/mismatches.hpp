@@ -25,6 +25,9 @@ class Mismatches {
   /// From Cyclone's listener.
   void mismatched(std::uint32_t policy);
 
+  /// A peer that Cyclone has matched, which may have another version of the type.
+  void matched(const dds_builtintopic_endpoint_t& peer);
+
   /// Looks, and tells. Also once after creation: whatever happened before is told then.
   void update();
 

@@ -20,6 +20,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
             auto* data = dds_get_matched_publication_data(reader_handle_, peer);
             if (data == nullptr) return Guid{};
             const Guid guid = to_guid(data->key);
+            mismatches_.matched(*data);
             dds_builtintopic_free_endpoint(data);
             return guid;
           },

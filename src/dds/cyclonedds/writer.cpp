@@ -21,6 +21,7 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
             auto* data = dds_get_matched_subscription_data(writer_handle_, peer);
             if (data == nullptr) return Guid{};
             const Guid guid = to_guid(data->key);
+            mismatches_.matched(*data);
             dds_builtintopic_free_endpoint(data);
             return guid;
           },

@@ -9,6 +9,8 @@
 #include <random>
 
 #include "../options_check.hpp"
+#include "../type_version.hpp"
+#include "announced_representation.hpp"
 #include "core/host.hpp"
 
 namespace skein::dds::fastdds {
@@ -17,7 +19,6 @@ namespace {
 using namespace std::chrono_literals;
 namespace policies = eprosima::fastdds::dds;
 
-constexpr std::uint32_t kReceiveBuffer = 4u << 20;
 /// Also what Fast DDS takes for filled between two heartbeats, and it counts a sample's fragments
 /// again and again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the
 /// reader asks for what is on its way to him.
@@ -68,6 +69,7 @@ void fill_common(EndpointQos& endpoint, const Qos& qos) {
   if (qos.deadline) endpoint.m_deadline.period = duration(*qos.deadline);
   if (qos.exclusive) endpoint.m_ownership.kind = policies::EXCLUSIVE_OWNERSHIP_QOS;
   endpoint.data_sharing.off();
+  endpoint.m_userData.data_vec(to_user_data(qos.type));
 }
 
 template <class EndpointQos>
@@ -83,6 +85,14 @@ Qos from_common(const EndpointQos& endpoint) {
   qos.deadline = period(endpoint.m_deadline.period);
   qos.liveliness_lease = period(endpoint.m_liveliness.lease_duration);
   qos.exclusive = endpoint.m_ownership.kind == policies::EXCLUSIVE_OWNERSHIP_QOS;
+  const auto& listed = endpoint.representation.m_value;
+  const bool xcdr2 = std::ranges::count(listed, policies::XCDR2_DATA_REPRESENTATION) > 0;
+  const bool xcdr1 =
+      listed.empty() || std::ranges::count(listed, policies::XCDR_DATA_REPRESENTATION) > 0;
+  qos.representation = xcdr1 && xcdr2 ? DataRepresentation::Any
+                       : xcdr2        ? DataRepresentation::Xcdr2
+                                      : DataRepresentation::Xcdr1;
+  qos.type = from_user_data(endpoint.m_userData.data_vec());
   for (const auto& partition : endpoint.m_partition.getNames()) qos.partitions.push_back(partition);
   return qos;
 }
@@ -125,7 +135,7 @@ std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOpti
   udp->interfaceWhiteList = interface_addresses(network);
   // The kernel gives what it may; with 208 KiB a mebibyte takes three times as long.
   udp->sendBufferSize = kSendBuffer;
-  udp->receiveBufferSize = kReceiveBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = max_participants(options);
   return std::make_shared<StartupTransportDescriptor>(
       std::move(udp), options.lease, announcement_period(options.lease), allowed_sources(network));
@@ -220,14 +230,14 @@ eprosima::fastrtps::WriterQos writer_qos(const Qos& qos) {
   fill_common(result, qos);
   if (qos.lifespan) result.m_lifespan.duration = duration(*qos.lifespan);
   result.m_ownershipStrength.value = static_cast<std::uint32_t>(qos.strength);
-  result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
+  set_representation(result, qos.representation);
   return result;
 }
 
 eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
   eprosima::fastrtps::ReaderQos result;
   fill_common(result, qos);
-  result.representation.m_value = {policies::XCDR_DATA_REPRESENTATION};
+  set_representation(result, qos.representation);
   return result;
 }
 

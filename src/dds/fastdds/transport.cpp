@@ -1,5 +1,6 @@
 #include "transport.hpp"
 
+#include "announced_representation.hpp"
 #include "participant_leases.hpp"
 
 namespace skein::dds::fastdds {
@@ -44,6 +45,7 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     for_each_submessage(const_cast<rtps::octet*>(message), size, [&](const Submessage& submessage) {
       if (const auto announced = announcement_number(submessage)) number = announced;
       descriptor_.state->discovery.sent.note(submessage);
+      announce_representation(submessage);
     });
     if (!number) return sender->send(message, size, first, last, limit);
     std::vector<rtps::Locator_t> due;

@@ -1,0 +1,70 @@
+#include "brokerless_discovery/versions.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/growth.hpp"
+
+namespace skein::brokerless_discovery {
+namespace {
+
+using discovery::OperationDigest;
+using discovery::ServiceDescription;
+
+const OperationDigest* find_operation(const ServiceDescription& provider, std::uint32_t hash) {
+  const auto found = std::ranges::find(provider.operations, hash, &OperationDigest::hash);
+  return found == provider.operations.end() ? nullptr : &*found;
+}
+
+const OperationInfo* differing_operation(const InterfaceInfo& client,
+                                         const ServiceDescription& provider) {
+  for (const OperationInfo& operation : client.operations) {
+    const OperationDigest* digest = find_operation(provider, operation.hash);
+    if (!digest || digest->signature != operation.signature) return &operation;
+  }
+  return nullptr;
+}
+
+auto differing_member(const InterfaceInfo& client, const ServiceDescription& provider) {
+  return find_difference(client.growing, provider.growing);
+}
+
+std::string text(const GrowingMember* here, const discovery::GrowingMember* there,
+                 const InterfaceInfo& client) {
+  if (!there) {
+    return "the member " + std::string(here->name) + " must be understood, and is not known there";
+  }
+  if (!here) {
+    const auto sibling = std::ranges::find(client.growing, there->type, &GrowingMember::type);
+    const std::string type(sibling->name.substr(0, sibling->name.rfind('.')));
+    return "a member of " + type + " that must be understood there is not known here";
+  }
+  return "the member " + std::string(here->name) + " has another name or type there (" +
+         hexadecimal(there->digest, 8) + ", here " + hexadecimal(here->digest, 8) + ")";
+}
+
+}  // namespace
+
+bool understands(const InterfaceInfo& client, const ServiceDescription& provider) {
+  return !differing_operation(client, provider) && !differing_member(client, provider);
+}
+
+std::string difference(const InterfaceInfo& client, const ServiceDescription& provider) {
+  if (const OperationInfo* operation = differing_operation(client, provider)) {
+    const std::string name = "operation '" + std::string(operation->name) + "' ";
+    const OperationDigest* digest = find_operation(provider, operation->hash);
+    if (!digest) return name + "is missing there";
+    return name + "has another signature there (" + hexadecimal(digest->signature, 16) + ", here " +
+           hexadecimal(operation->signature, 16) + ")";
+  }
+  const auto member = differing_member(client, provider);
+  return member ? text(member->here, member->there, client) : "";
+}
+
+void sort_growing(ServiceDescription& description) {
+  std::ranges::sort(description.growing, {}, [](const discovery::GrowingMember& member) {
+    return std::tuple(member.type, member.member);
+  });
+}
+
+}  // namespace skein::brokerless_discovery

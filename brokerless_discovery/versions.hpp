@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "skein/detail/operation.hpp"
+#include "skein/discovery.idl.hpp"
+
+namespace skein::brokerless_discovery {
+
+/// Whether a client of this interface can call `provider`: it has all of the client's operations
+/// with their signatures, and the types that may grow have only grown. `provider.growing` is
+/// sorted.
+bool understands(const InterfaceInfo& client, const discovery::ServiceDescription& provider);
+
+/// What of the provider's interface is another, for people; empty where understands() holds.
+std::string difference(const InterfaceInfo& client, const discovery::ServiceDescription& provider);
+
+/// Puts the members in the order of InterfaceInfo::growing.
+void sort_growing(discovery::ServiceDescription& description);
+
+}  // namespace skein::brokerless_discovery

@@ -1,0 +1,66 @@
+"""The command skein-idl: compiles IDL to C++ and to plain DDS IDL."""
+
+import argparse
+import os
+import re
+import sys
+
+import names
+from compilation import Compilation
+
+_IDL = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+_OWN_FOLDERS = [os.path.join(_IDL, "skein"), os.path.join(_IDL, "corba")]  # behind those that the user names
+
+
+def main():
+    arguments = _arguments()
+    accepted = sum(_compiled(path, arguments) for path in arguments.files)
+    if arguments.check:
+        print(f"files {len(arguments.files)} accepted {accepted}")
+    return 0 if accepted == len(arguments.files) else 1
+
+
+def _arguments():
+    options = argparse.ArgumentParser(prog="skein-idl", description="Compiles IDL (OMG IDL 4.2) to C++ and to plain DDS IDL.")
+    options.add_argument("files", metavar="FILE", nargs="+", help="x.idl becomes x.idl.hpp, x.idl.cpp and x.dds.idl")
+    options.add_argument("-I", dest="folders", metavar="DIR", action="append", default=[],
+                         help="look for included files there; the output of a file below DIR keeps its path from there")  # fmt: skip
+    options.add_argument("-D", dest="definitions", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro")
+    options.add_argument("--out", metavar="DIR", default=".", help="where to write; default: the current folder")
+    options.add_argument("--namespace", metavar="NAME", type=_namespace, default=(),
+                         help="put all C++ names into this namespace, `a::b`; included files must be compiled with the same")  # fmt: skip
+    options.add_argument("--depfile", metavar="FILE", help="write what the output depends on, as make and ninja read it")
+    options.add_argument("--check", action="store_true", help="write nothing, say every problem, and count the accepted files")
+    arguments = options.parse_args()
+    if arguments.depfile and len(arguments.files) > 1:
+        options.error("--depfile is of a single FILE")
+    return arguments
+
+
+def _namespace(text):
+    parts = tuple(text.split("::"))
+    if not all(re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", part) and part not in names.KEYWORDS for part in parts):
+        raise argparse.ArgumentTypeError(f"'{text}' is no namespace of C++, such as a::b")
+    return parts
+
+
+def _compiled(path, arguments):
+    if not os.path.isfile(path):
+        sys.stderr.write(f"{path}: error: there is no such file\n")
+        return False
+    compilation = Compilation(path, [*arguments.folders, *_OWN_FOLDERS], arguments.definitions, arguments.namespace)
+    if compilation.accepted and not arguments.check:
+        compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile)
+    return compilation.accepted
+
+
+def _name(path, folders):
+    """The path from the first folder that holds the file, else its last part."""
+    path = os.path.abspath(path)
+    for folder in map(os.path.abspath, folders):
+        if path.startswith(os.path.join(folder, "")):
+            return os.path.relpath(path, folder)
+    return os.path.basename(path)
+
+
+sys.exit(main())

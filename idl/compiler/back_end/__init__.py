@@ -1,0 +1,1 @@
+"""From the model to C++ and to plain DDS IDL, by templates."""

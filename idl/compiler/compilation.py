@@ -1,0 +1,96 @@
+"""One IDL file through front end and back end."""
+
+import os
+import sys
+
+import model
+from back_end import analysis, flattened, keys, output
+from front_end import builder, parser, pragmas, source
+from report import Place, Report
+
+
+sys.setrecursionlimit(20000)  # levels of nested types and expressions
+
+
+class Compilation:
+    """Reads a file and says what is wrong with it; `accepted` if nothing is."""
+
+    def __init__(self, path, folders, definitions, namespace=()):
+        self._report = Report()
+        self._folders = [os.path.join(os.path.abspath(folder), "") for folder in folders]
+        self._source = source.Source(path, folders, definitions, self._report)
+        self._built = None
+        try:
+            self._read(namespace)
+        except RecursionError:
+            self._report.error(Place(path, 1), "types or expressions in this file, or in what it includes, are nested too deeply")
+
+    def _read(self, namespace):
+        tree = parser.parse(self._source, self._report)
+        self._built = builder.Builder(self._source, self._report, self._report.errors > 0, namespace)
+        if tree is not None:
+            self._built.build(tree)
+        if self.accepted:
+            keys.apply(self._built, pragmas.keylists(self._source, self._built.scope_at, self._report), self._report)
+        if self.accepted:
+            analysis.analyse(self._built, self._report)
+
+    @property
+    def accepted(self):
+        return self._report.errors == 0
+
+    def write(self, folder, name, depfile=None):
+        """Writes what is made of an accepted file below `folder`: `a/x.idl.hpp`, `a/x.idl.cpp` and `a/x.dds.idl` for `a/x.idl`."""
+        file = model.File(
+            path=self._source.path,
+            header=os.path.basename(name) + ".hpp",
+            includes=self._usable_includes(),
+            items=self._built.items,
+            interfaces=self._built.interfaces,
+            announced=self._built.announced(),
+        )
+        base = os.path.join(folder, name)
+        outputs = {
+            base + ".hpp": output.header(file),
+            base + ".cpp": output.source(file),
+            base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
+        }
+        os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
+        for path, lines in outputs.items():
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.write("\n".join(lines).rstrip("\n") + "\n")
+        if depfile:
+            self._write_depfile(depfile, outputs)
+
+    def _usable_includes(self):
+        """Without included files that declare nothing, and those that have no output, because they were refused; nothing of them is used."""
+        found = []
+        for written, path, place in self._source.direct:
+            if not self._built.declaring & {path, *self._source.included.get(path, ())}:
+                continue
+            if path in self._built.broken:
+                cause = self._built.broken[path].seen_from(self._source.path)
+                self._report.warning(place, f"'{written}' cannot be compiled, see {cause}; nothing of it is used, and it is left out")
+            else:
+                found.append(self._within_a_folder(written, path))
+        return found
+
+    def _within_a_folder(self, written, path):
+        """The path from a folder that is searched, where the written one leads out of it and back."""
+        if ".." not in written.split("/"):
+            return written
+        path = os.path.abspath(path)
+        return next((path.removeprefix(folder) for folder in self._folders if path.startswith(folder)), written)
+
+    def _write_depfile(self, depfile, outputs):
+        """Sources and this compiler itself: a change of either makes the outputs anew."""
+        here = os.path.dirname(os.path.abspath(__file__))
+        compiler = [os.path.join(folder, name) for folder, _, names in os.walk(here) for name in names if name.endswith((".py", ".lark"))]
+        inputs = sorted({os.path.abspath(name) for name in self._source.files}) + sorted(compiler)
+        targets = " ".join(_escaped(os.path.abspath(name)) for name in outputs)
+        with open(depfile, "w", encoding="utf-8") as stream:
+            stream.write(targets + ":" + "".join(f" \\\n  {_escaped(name)}" for name in inputs) + "\n")
+
+
+def _escaped(name):
+    return name.replace("$", "$$").replace(" ", "\\ ").replace("#", "\\#")

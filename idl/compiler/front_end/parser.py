@@ -1,0 +1,140 @@
+"""The grammar's parser: from a source's text to a tree, with all errors of syntax."""
+
+import hashlib
+import os
+import re
+import sys
+
+import lark
+
+from report import suggestion
+
+_GRAMMAR = os.path.join(os.path.dirname(os.path.abspath(__file__)), "grammar.lark")
+_MOST_ERRORS = 20
+# Of the core data types (7.4.1), and what has always been reserved.
+_KEYWORDS = frozenset(
+    """any boolean case char const default double enum FALSE float long module native octet sequence short string struct switch TRUE typedef
+    union unsigned void wchar wstring""".split()
+)
+_TEMPLATES = ["sequence", "string", "wstring", "map", "bitfield"]
+_NAMES = {"IDENTIFIER": "a name", "INTEGER": "a number", "STRING": "text", "SEMICOLON": "';'", "LBRACE": "'{'", "RBRACE": "'}'",
+          "LPAR": "'('", "RPAR": "')'", "LESSTHAN": "'<'", "MORETHAN": "'>'", "COMMA": "','", "COLON": "':'", "EQUAL": "'='",
+          "LSQB": "'['", "RSQB": "']'", "__COLON_0": "'::'", "$END": "the end of the file"}  # fmt: skip
+
+
+def parse(source, report):
+    """The tree of what could be read; after an error the declaration in which it stands is passed over."""
+    text = source.text
+    for _ in range(_MOST_ERRORS):
+        try:
+            tree = _parser().parse(text)
+            _check_names(tree, source, report)
+            return tree
+        except lark.UnexpectedInput as error:
+            offset = min(_offset(error, text), len(text))
+            report.error(source.place(_solid(text, offset)), _reason(error, text, offset))
+            if not text[offset:].strip():
+                return None
+            begin, end = _declaration(text, offset)
+            text = text[:begin] + re.sub(r"[^\n]", " ", text[begin:end]) + text[end:]
+    return None
+
+
+def _check_names(tree, source, report):
+    """A keyword is no name, but for the parameters of annotations, as in ROS 2's `@value(default = …)`."""
+    for around in tree.iter_subtrees():
+        for token in around.children if around.data != "argument" else ():
+            if getattr(token, "type", "") == "IDENTIFIER" and token in _KEYWORDS:
+                reason = f"'{token}' is a keyword of IDL and no name; write '_{token}', which is the name '{token}'"
+                report.error(source.place(token.start_pos), reason)
+
+
+def _offset(error, text):
+    if isinstance(error, lark.UnexpectedToken) and error.token.type == "$END":
+        return len(text.rstrip())
+    return error.pos_in_stream
+
+
+def _solid(text, offset):
+    """The last character that is no blank, where the text ends too early."""
+    return max(len(text[:offset].rstrip()) - 1, 0) if not text[offset:].strip() else offset
+
+
+def _reason(error, text, offset):
+    if isinstance(error, lark.UnexpectedCharacters):
+        return f"the character '{text[offset]}' has no meaning here"
+    found = "the file ends" if error.token.type == "$END" else f"'{error.token}' stands"
+    before = re.search(r"(\w+)\s*$", text[:offset])
+    if error.token == "<" and before:
+        found += f" behind '{before[1]}'{suggestion(before[1], _TEMPLATES)}"
+    accepted = set(error.accepts or error.expected) - {"ANNOTATION", "AT_ANNOTATION"}
+    expected = [name for key, name in _NAMES.items() if key in accepted]
+    if expected and len(expected) == len(accepted):
+        return f"{found} where {' or '.join(expected)} is expected"
+    return f"{found} where a declaration or a type is expected" if "IDENTIFIER" in accepted else f"{found} where it cannot"
+
+
+def _declaration(text, offset):
+    """What surrounds the error: from behind the last `;`, `{` or `}` to the next `;` on the same level, at least one character. Where
+    a block ends too early, the declaration whose block it is."""
+    if text[offset] == "}":
+        offset = _opening(text, offset)
+    begin = max(text.rfind(mark, 0, offset) for mark in ";{}") + 1
+    depth = 0
+    for index in range(offset, len(text)):
+        if text[index] == "{":
+            depth += 1
+        elif text[index] == "}":
+            if depth == 0:
+                return begin, max(index, offset + 1)
+            depth -= 1
+        elif text[index] == ";" and depth == 0:
+            return begin, index + 1
+    return begin, len(text)
+
+
+def _opening(text, offset):
+    """Where the block begins that ends at `offset`; `offset` itself where none does."""
+    depth = 0
+    for index in range(offset - 1, -1, -1):
+        if text[index] == "}":
+            depth += 1
+        elif text[index] == "{":
+            if depth == 0:
+                return index
+            depth -= 1
+    return offset
+
+
+_cached = None
+
+
+def _parser():
+    global _cached
+    _cached = _cached or _load()
+    return _cached
+
+
+class _NameBeforeKeyword:
+    """Lets the lexer read a name wherever a name is longest: otherwise `interfaces` would be the keyword `interface` and an `s` where
+    the grammar has no name."""
+
+    always_accept = ("IDENTIFIER",)
+
+    @staticmethod
+    def process(tokens):
+        return tokens
+
+
+def _load():
+    """The grammar's tables, from the user's own cache where they are there."""
+    folder = os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "skein")
+    with open(_GRAMMAR, encoding="utf-8") as stream:
+        grammar = stream.read()
+    options = {"parser": "lalr", "propagate_positions": True, "maybe_placeholders": True, "postlex": _NameBeforeKeyword()}
+    try:
+        os.makedirs(folder, exist_ok=True)
+        key = hashlib.sha256(f"{grammar} {lark.__version__} {sys.version}".encode()).hexdigest()[:16]
+        return lark.Lark(grammar, cache=os.path.join(folder, f"idl-grammar-{key}"), **options)
+    except OSError:  # a cache that cannot be written costs time alone
+        return lark.Lark(grammar, **options)

@@ -1,0 +1,102 @@
+"""Names and where they are known (OMG IDL 4.2, clause 7.5). Names that differ only in case are two names."""
+
+from dataclasses import dataclass
+
+from report import suggestion
+
+
+def plain(name):
+    """An identifier without the escape that lets a keyword be one."""
+    return str(name).removeprefix("_")
+
+
+@dataclass(eq=False)
+class Symbol:
+    """What a name stands for: `what` is a declaration of the model, an `Enumerator`, a `LeftOut`, or None for a module."""
+
+    what: object
+    place: object
+    scope: object = None  # of what holds names itself
+
+
+@dataclass(eq=False)
+class Enumerator:
+    name: str
+    enum: object  # model.Enum
+
+
+@dataclass(eq=False)
+class Flag:
+    """A bit of a bitmask, as a constant."""
+
+    value: int
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why something cannot be used."""
+
+    place: object
+    reason: str
+
+    def seen_from(self, file):
+        """Where to look; and why, unless that was said of `file` itself."""
+        return f"{self.place}: {self.reason}" if self.reason and self.place.file != file else str(self.place)
+
+
+@dataclass(eq=False)
+class LeftOut:
+    """A declaration of which nothing is generated."""
+
+    cause: Cause
+
+
+# Of which names may be almost right.
+_TYPES = "boolean char wchar octet short long float double string wstring int8 int16 int32 int64 uint8 uint16 uint32 uint64".split()
+
+
+class Scope:
+    def __init__(self, name="", outer=None):
+        self.outer = outer
+        self.path = outer.path + (name,) if outer else ()
+        self.bases = []  # scopes of inherited interfaces and structs
+        self.names = {}
+
+    def own(self, name, seen=None):
+        """The symbol of that name here or in a base; None where there is none."""
+        if name in self.names:
+            return self.names[name]
+        seen = set() if seen is None else seen
+        for base in self.bases:
+            if id(base) not in seen:
+                seen.add(id(base))
+                if found := base.own(name, seen):
+                    return found
+        return None
+
+    def find(self, parts, absolute):
+        """The symbol of a scoped name that is used here, or None and why there is none."""
+        scope = self
+        while scope.outer and (absolute or scope.own(parts[0]) is None):
+            scope = scope.outer
+        found = scope.own(parts[0])
+        if found is None:
+            return None, f"there is no '{parts[0]}' here{suggestion(parts[0], self._known() + _TYPES)}"
+        for index, part in enumerate(parts[1:], 1):
+            outer = "::".join(parts[:index])
+            if isinstance(found.what, LeftOut):
+                return found, ""
+            if found.scope is None:
+                return None, f"{outer} holds no names"
+            inner = found.scope.own(part)
+            if inner is None:
+                return None, f"there is no '{part}' in {outer}{suggestion(part, found.scope.names)}"
+            found = inner
+        return found, ""
+
+    def _known(self):
+        scope, known = self, []
+        while scope:
+            known += scope.names
+            scope = scope.outer
+        return known

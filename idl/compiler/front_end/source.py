@@ -1,0 +1,153 @@
+"""An IDL file after the preprocessor: one text, of which each position is known by file, line and column."""
+
+import bisect
+import os
+import re
+import subprocess
+from dataclasses import dataclass
+
+from report import Place
+
+_MARKER = re.compile(r'# (\d+) "((?:[^"\\]|\\.)*)"((?: \d)*)$')
+_PRAGMA = re.compile(r"\s*#\s*pragma\b(.*)$")
+_COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
+_INCLUDE = re.compile(r'\s*#\s*include\s*["<]([^">]*)[">]')
+_FINDING = re.compile(r"(.+?):(\d+):(\d+): (?:fatal )?error: (.*)$")
+_ENTER, _LEAVE = " 1", " 2"
+
+
+@dataclass(frozen=True)
+class Comment:
+    text: str
+    first: Place
+    last: Place
+    begin: int  # offsets in the source's text
+    end: int
+    behind: bool  # something else stands before it on its line
+
+
+@dataclass(frozen=True)
+class Pragma:
+    text: str  # behind `#pragma`
+    place: Place
+    offset: int
+
+
+class Source:
+    """`text` has blanks where comments, pragmas and the preprocessor's marks stood. What the preprocessor says is reported, and the
+    text is what it made before it gave up."""
+
+    def __init__(self, path, folders, definitions, report):
+        command = ["cpp", "-x", "c", "-C", "-undef", "-nostdinc", "-w", "-fdiagnostics-plain-output", "-D__SKEIN_IDL__"]
+        command += ["-I" + folder for folder in folders] + ["-D" + definition for definition in definitions]
+        done = subprocess.run([*command, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        report.source = self
+        self.path = path
+        self.files = [path]  # each that was read, as the preprocessor names it
+        self.direct = []  # what the main file includes: as written, as the preprocessor names it, place of the directive
+        self.included = {}  # file: what it includes, directly or not
+        self.comments = []
+        self.pragmas = []
+        self._lines = {}  # file: its lines
+        self._solid = {}  # file and line: where its characters stand that are no blanks
+        self._places = []  # of each line of the text: file, line
+        self._around = [path]
+        self.text = self._without_comments("\n".join(map(self._read, map(_decoded, done.stdout.split(b"\n")))))
+        self._starts = _line_starts(self.text)
+        self.pragmas = [Pragma(text, Place(*self._places[index]), self._starts[index]) for index, text in self.pragmas]
+        for line in done.stderr.decode(errors="replace").splitlines():
+            if found := _FINDING.match(line):
+                self._report(found, report)
+
+    def place(self, offset):
+        index = bisect.bisect_right(self._starts, offset) - 1
+        end = self._starts[index + 1] - 1 if index + 1 < len(self._starts) else len(self.text)
+        file, number = self._places[index]
+        return Place(file, number, self._column(file, number, self.text[self._starts[index] : offset], self.text[offset:end]))
+
+    def line(self, place):
+        """A line of a file as it stands there."""
+        if place.file not in self._lines:
+            try:
+                with open(place.file, "rb") as stream:
+                    self._lines[place.file] = [_decoded(line.rstrip(b"\r")) for line in stream.read().split(b"\n")]
+            except OSError:
+                self._lines[place.file] = []
+        lines = self._lines[place.file]
+        return lines[place.line - 1] if 0 < place.line <= len(lines) else ""
+
+    def _read(self, line):
+        """A line without what the preprocessor wrote for us; notes where it is from."""
+        if found := _MARKER.match(line):
+            self._enter(found[2], int(found[1]), found[3])
+            self._places.append((found[2], int(found[1]) - 1))
+            return ""
+        file, number = self._places[-1] if self._places else (self.path, 0)
+        self._places.append((file, number + 1))
+        if found := _PRAGMA.match(line):
+            self.pragmas.append((len(self._places) - 1, found[1].strip()))
+            return ""
+        return line
+
+    def _enter(self, file, number, flags):
+        if flags.startswith(_ENTER):
+            if file not in self.files:
+                self.files.append(file)
+            for outer in self._around:
+                self.included.setdefault(outer, set()).add(file)
+            self._around.append(file)
+        elif flags.startswith(_LEAVE) and len(self._around) > 1:
+            left = self._around.pop()
+            if len(self._around) == 1 and all(left != path for _, path, _ in self.direct):
+                place = Place(self.path, number - 1)
+                written = _INCLUDE.match(self.line(place))
+                self.direct.append((written[1] if written else os.path.basename(left), left, place))
+
+    def _without_comments(self, text):
+        starts = _line_starts(text)
+
+        def where(offset):
+            return Place(*self._places[bisect.bisect_right(starts, offset) - 1])
+
+        def blank(match):
+            if match[0][0] in "\"'":
+                return match[0]
+            begin, end = match.span()
+            before = text[starts[bisect.bisect_right(starts, begin) - 1] : begin]
+            behind = bool(_COMMENT_OR_TEXT.sub(lambda found: "" if found[0][0] == "/" else found[0], before).strip())
+            self.comments.append(Comment(match[0], where(begin), where(end - 1), begin, end, behind))
+            return re.sub(r"[^\n]", " ", match[0])
+
+        return _COMMENT_OR_TEXT.sub(blank, text)
+
+    def _column(self, file, number, before, behind):
+        """The preprocessor draws blanks together; characters that are none stand in the same order, unless a macro was there."""
+        written = self.line(Place(file, number))
+        count = len(re.sub(r"\s", "", before))
+        if (file, number) not in self._solid:
+            self._solid[file, number] = [index for index, character in enumerate(written) if not character.isspace()]
+        solid = self._solid[file, number]
+        rest = re.sub(r"\s", "", behind[:200])[:8]
+        if count < len(solid) and "".join(written[index] for index in solid[count : count + 8]).startswith(rest):
+            return solid[count] + 1
+        return 0
+
+    def _report(self, found, report):
+        reason = found[4]
+        missing = re.match(r"(?P<name>.*): No such file or directory$|no include path in which to search for (?P<angled>.*)$", reason)
+        if missing:
+            name = missing["name"] or missing["angled"]
+            reason = f"there is no file '{name}' here or in the folders given by -I; add the folder that holds it"
+        report.error(Place(os.path.normpath(found[1]), int(found[2]), int(found[3])), reason)
+
+
+def _line_starts(text):
+    return [0] + [match.end() for match in re.finditer("\n", text)]
+
+
+def _decoded(line):
+    """IDL is UTF-8 by convention; older files have comments in Latin-1."""
+    try:
+        return line.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return line.decode("latin-1")

@@ -1,0 +1,154 @@
+"""Types where they are used."""
+
+import model
+
+from . import annotations, constants, scopes
+
+_PRIMITIVES = {
+    "boolean": "boolean",
+    "char": "char",
+    "wchar": "wchar",
+    "int8": "int8",
+    "octet": "octet",
+    "short": "short",
+    "unsigned_short": "unsigned short",
+    "long": "long",
+    "unsigned_long": "unsigned long",
+    "long_long": "long long",
+    "unsigned_long_long": "unsigned long long",
+    "float": "float",
+    "double": "double",
+    "long_double": "long double",
+}
+
+_REFUSED = {
+    "fixed": "fixed is not supported: DDS has no such type; use double, or long long with a documented unit",
+    "any": "any is not supported: its type would not be known to the reader; use a union of the types that occur",
+    "object": "Object is not supported: a reference names its interface; use the interface as the type",
+    "value_base": "ValueBase is not supported: objects do not travel by value; use a struct",
+}
+_BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+_NO_TYPE = {model.Constant: "a constant", model.Exception_: "an exception", scopes.Enumerator: "an enumerator", scopes.Flag: "a bit", type(None): "a module"}
+
+
+class Types:
+    """The part of the builder that makes types of the model; None, with an error, of what is not supported."""
+
+    def _type_or_definition(self, tree):
+        """A type that is used, or declared where it is used."""
+        if tree.data not in ("struct", "union", "enum"):
+            return self._type(tree)
+        name = tree.children[0]
+        lenient, self._lenient = self._lenient, False
+        getattr(self, "_" + tree.data)(tree, annotations.Annotations())
+        self._lenient = lenient
+        return self._declared(name, self._scope.names[scopes.plain(name)])
+
+    def _type(self, tree):
+        if tree.data in _PRIMITIVES:
+            return model.Primitive(_PRIMITIVES[tree.data])
+        if tree.data in _REFUSED:
+            return self._unusable(tree, _REFUSED[tree.data], scopes.Cause(self._place(tree), _REFUSED[tree.data]))
+        if tree.data == "string":
+            return model.String(self._bound(tree.children[0]))
+        if tree.data == "wstring":
+            return model.WideString(self._bound(tree.children[0]))
+        if tree.data == "map":
+            return self._map(*tree.children)
+        if tree.data == "sequence":
+            element, bound = tree.children
+            built = self._type(element.children[1])
+            return built and model.Sequence(built, self._bound(bound))
+        return self._declared(tree, self._symbol(tree))
+
+    def _map(self, key, value, bound):
+        built = self._type(key.children[1]), self._type(value.children[1])
+        if None in built:
+            return None
+        if not _may_be_key(built[0]):
+            return self._error(key, "the key of a map is a number, a character, text, a boolean or an enumeration")
+        return model.Map(*built, self._bound(bound))
+
+    def _bound(self, tree):
+        return constants.size(tree, self._resolve) if tree is not None else 0
+
+    def _with_sizes(self, kind, declarator):
+        """The type with the sizes of an array that stand behind its name."""
+        if declarator.children[2].children and not _is(declarator.children[-1], "dimension"):
+            raise constants.Fault(declarator.children[2], "an annotation stands before what it is about, not behind")
+        sizes = [constants.size(child.children[0], self._resolve) for child in declarator.children if _is(child, "dimension")]
+        for size in reversed(sizes):
+            kind = model.Array(kind, size)
+        return kind
+
+    def _symbol(self, tree):
+        """What a scoped name stands for; None, with an error, where it is unknown."""
+        parts = [scopes.plain(token) for token in tree.children]
+        found, reason = self._scope.find(parts, tree.data == "absolute_name")
+        if found is None:
+            self._error(tree, "" if self._quiet else reason)
+        return found
+
+    def _resolve(self, tree):
+        """What a name in a constant expression stands for. `true` and `false`, which IDL writes in capitals, are taken, too."""
+        spelled = _BOOLEANS.get(str(tree.children[0])) if len(tree.children) == 1 else None
+        if spelled is not None and self._scope.find([str(tree.children[0])], False)[0] is None:
+            place = self._place(tree)
+            if place.file == self.source.path:
+                self.report.warning(place, f"IDL writes {str(spelled).upper()}")
+            return spelled
+        found = self._symbol(tree)
+        if found is None:
+            raise constants.Fault(tree, "")
+        if isinstance(found.what, scopes.LeftOut):
+            raise constants.Fault(tree, f"{_spoken(tree)} cannot be used, see {found.what.cause.seen_from(self._place(tree).file)}")
+        if isinstance(found.what, (model.Constant, scopes.Enumerator, scopes.Flag)):
+            return found.what
+        raise constants.Fault(tree, f"'{_spoken(tree)}' is no constant")
+
+    def _usable(self, tree, found, use):
+        """The declaration behind a symbol; None, with an error, where it was refused or lies in a refused file."""
+        if found is None:
+            return None
+        here = self._place(tree).file
+        if isinstance(found.what, scopes.LeftOut):
+            cause = found.what.cause
+        elif found.place.file != here and found.place.file in self.broken:
+            cause = self.broken[found.place.file]
+        else:
+            return found
+        name = found.what.idl_name if isinstance(found.what, model.Declaration) else _spoken(tree)
+        return self._unusable(tree, f"{name} cannot {use}, see {cause.seen_from(here)}" if cause else "", cause)
+
+    def _unusable(self, tree, reason, cause):
+        if self._lenient:
+            self._reason, self._cause = reason, cause
+        else:
+            self._fail(tree, reason, cause)
+
+    def _declared(self, tree, found):
+        found = self._usable(tree, found, "be used")
+        if found is None:
+            return None
+        if type(found.what) in _NO_TYPE:
+            return self._error(tree, f"'{_spoken(tree)}' is {_NO_TYPE[type(found.what)]}, no type")
+        return model.Reference(found.what) if isinstance(found.what, model.Interface) else model.Named(found.what)
+
+
+def _may_be_key(kind):
+    kind = model.unaliased(kind)
+    if isinstance(kind, model.Primitive):
+        return kind.idl not in ("float", "double", "long double")
+    return isinstance(kind, (model.String, model.WideString)) or (isinstance(kind, model.Named) and isinstance(kind.decl, model.Enum))
+
+
+def _is(child, name):
+    return getattr(child, "data", None) == name
+
+
+def _parts(tree):
+    return [str(token) for token in getattr(tree, "children", [tree])]
+
+
+def _spoken(tree):
+    return "::".join(_parts(tree))

@@ -1,0 +1,106 @@
+#include <cstdio>
+
+#include "check.hpp"
+#include "doctor/diagnosis.hpp"
+#include "doctor/encounter.hpp"
+#include "doctor/purpose.hpp"
+#include "doctor/report.hpp"
+#include "interruption.hpp"
+#include "profile/check.hpp"
+#include "profile/mission_profile.hpp"
+
+namespace skein::command {
+namespace {
+
+using doctor::Severity;
+using doctor::Symptoms;
+
+/// What `skein check` finds, for a doctor's report.
+Symptoms findings(const DoctorArguments& arguments) {
+  CheckArguments of_check;
+  of_check.profile = arguments.profile;
+  of_check.host = arguments.host;
+  of_check.variables = arguments.variables;
+  Symptoms symptoms;
+  for (const profile::Finding& finding : findings_of(of_check)) {
+    const bool error = finding.severity == profile::Severity::Error;
+    symptoms.push_back({error ? Severity::Error : Severity::Warning, "profile", finding.problem,
+                        profile::to_text(finding.where), finding.remedy});
+  }
+  if (symptoms.empty())
+    symptoms.push_back({Severity::Fine, "profile", "`skein check` finds nothing", "", ""});
+  return symptoms;
+}
+
+struct Read {
+  std::optional<profile::MissionProfile> mission;  ///< What could be read of it.
+  bool sound = false;                              ///< Whether the profile has no errors.
+};
+
+Read read(const DoctorArguments& arguments) {
+  if (arguments.profile.empty()) return {};
+  std::vector<profile::Finding> findings;
+  auto mission = profile::read_and_check(arguments.profile, findings,
+                                         profile::parse_variables(arguments.variables));
+  if (mission.peers.empty()) return {};
+  return {std::move(mission), !profile::has_errors(findings)};
+}
+
+doctor::Purpose purpose_of(const DoctorArguments& arguments,
+                           const std::optional<profile::MissionProfile>& mission) {
+  doctor::Purpose purpose;
+  if (mission) purpose = doctor::purpose_of(*mission, arguments.host);
+  if (arguments.domain) {
+    purpose.domain = *arguments.domain;
+  } else if (arguments.profile.empty()) {
+    purpose.domain = Onlooker().watched_domain();
+  }
+  if (!arguments.interface.empty()) purpose.interfaces = {arguments.interface};
+  return purpose;
+}
+
+/// Where the doctor joins: as the mission's peers do where a sound profile tells.
+Onlooker place_of(const DoctorArguments& arguments, const doctor::Purpose& purpose, bool sound) {
+  Onlooker place;
+  if (sound && !arguments.domain && arguments.interface.empty()) {
+    place.profile = arguments.profile;
+    place.host = arguments.host;
+    place.variables = arguments.variables;
+    return place;
+  }
+  place.domain = purpose.domain;
+  place.interface = purpose.interfaces.empty() ? "" : purpose.interfaces.front();
+  return place;
+}
+
+std::vector<std::string> usable_vendors(const doctor::Facts& facts) {
+  std::vector<std::string> names;
+  for (const doctor::VendorModule& vendor : facts.vendors)
+    if (vendor.failure.empty()) names.push_back(vendor.name);
+  return names;
+}
+
+}  // namespace
+
+int examine(const DoctorArguments& arguments) {
+  const Interruption interruption;
+  const auto [mission, sound] = read(arguments);
+  const doctor::Purpose purpose = purpose_of(arguments, mission);
+  const doctor::Facts facts = doctor::collect_facts();
+  Symptoms symptoms = doctor::diagnose(purpose, facts);
+  const auto add = [&](const Symptoms& more) {
+    symptoms.insert(symptoms.end(), more.begin(), more.end());
+  };
+  if (!arguments.profile.empty()) add(findings(arguments));
+  add(doctor::encounter(place_of(arguments, purpose, sound), usable_vendors(facts),
+                        mission ? &*mission : nullptr, interruption));
+  if (arguments.json) {
+    doctor::print_as_json(symptoms);
+  } else {
+    std::fputs(doctor::to_text(symptoms).c_str(), stdout);
+  }
+  const Severity worst = worst_of(symptoms);
+  return worst == Severity::Error ? 2 : worst == Severity::Warning ? 1 : 0;
+}
+
+}  // namespace skein::command

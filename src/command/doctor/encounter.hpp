@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "command/domain_picture.hpp"
+#include "command/interruption.hpp"
+#include "command/onlooker.hpp"
+#include "profile/mission_profile.hpp"
+#include "symptom.hpp"
+
+namespace skein::command::doctor {
+
+/// Joins the domain with one peer on each of `vendors`, and tells which of them do not find each
+/// other; then which peers of the mission (null: of none) do not answer. Takes a second, or five
+/// where somebody is not found; an interruption ends it sooner.
+Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
+                   const profile::MissionProfile* mission, const Interruption& interruption);
+
+/// What is odd about peers that are there: those that do not answer, or do not work, or are of
+/// another version of Skein. A pure function.
+Symptoms diagnose_peers(const DomainPicture& picture);
+
+}  // namespace skein::command::doctor

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brokerless_discovery/broker.hpp"
+#include "skein/guid.hpp"
+#include "skein/inspector.hpp"
+
+namespace skein {
+class Entity;
+}
+
+namespace skein::command {
+
+/// A peer as others see it, and what it says of itself.
+struct PeerPicture {
+  std::string name;  ///< `system/entity`; of a CSP that only the Broker knows, its owner's.
+  Guid participant;
+  std::optional<inspection::Peer> process;  ///< Nothing: it does not answer.
+  /// What it provides, managed services included; sorted by name.
+  std::vector<std::shared_ptr<const discovery::ServiceDescription>> services;
+  std::vector<inspection::TopicEndpoint> topics;
+  std::vector<inspection::Connection> connections;
+};
+
+/// Who is on a domain at one moment, ordered by name; not who looks.
+using DomainPicture = std::vector<PeerPicture>;
+
+/// Puts together what the Broker knows of services, and what peers answer.
+class DomainLook {
+ public:
+  /// `entity` must outlive it. Throws as Inspector.
+  explicit DomainLook(Entity& entity) : entity_(entity), inspector_(entity) {}
+
+  /// Topics and connections only where `whole`. Takes as long as the slowest peer that answers, at
+  /// most a second, or two where `whole`.
+  DomainPicture take(bool whole);
+
+ private:
+  Entity& entity_;
+  Inspector inspector_;
+};
+
+/// The peer of a picture by its participant; null where there is none.
+const PeerPicture* find_peer(const DomainPicture& picture, const Guid& participant);
+
+/// Whether it is one of Skein's commands, and not of a mission.
+bool is_tool(const PeerPicture& peer);
+
+}  // namespace skein::command

@@ -1,0 +1,29 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "json_output.hpp"
+#include "recording/perfetto_trace.hpp"
+
+namespace skein::command {
+
+int export_recording(const ExportArguments& arguments) {
+  const recording::Reader reader(arguments.file);
+  const auto done = recording::export_to_perfetto(reader, arguments.perfetto);
+  if (arguments.json) {
+    print_json({{"file", arguments.perfetto},
+                {"events", done.events},
+                {"decisions", done.decisions},
+                {"malformed", done.malformed}},
+               false);
+    return 0;
+  }
+  std::printf("%s: %zu events of calls, %zu decisions\n", arguments.perfetto.c_str(), done.events,
+              done.decisions);
+  if (done.malformed > 0) {
+    std::fprintf(stderr, "skein: %zu messages could not be read\n", done.malformed);
+  }
+  return 0;
+}
+
+}  // namespace skein::command

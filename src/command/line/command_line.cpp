@@ -1,0 +1,201 @@
+#include "command_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "command/wrapped.hpp"
+#include "dds/vendor_names.hpp"
+#include "help.hpp"
+#include "profile/dictionary.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command {
+namespace {
+
+const launch::ExitCode& looking_code(std::string_view code) {
+  return *std::ranges::find(kLookingExitCodes, code, &launch::ExitCode::code);
+}
+
+/// Of all commands: those of a launch are the same for the others, as far as they concern them.
+std::string exit_codes() {
+  std::vector<launch::ExitCode> codes{
+      {"0", "done; of a mission: its own code 0"},
+      {"1, 2", "what doctor, call, echo, info or decisions --replay found: see their help"},
+      {"other", "of launch: the code with which the mission's peer ended"}};
+  // The first two are what was said above; the last is not of a launch alone.
+  for (const launch::ExitCode& code : std::span(launch::kExitCodes).subspan(2)) {
+    if (code.code == "70") codes.push_back(looking_code("69"));
+    if (code.code == "128 + N") codes.push_back(looking_code("124"));
+    codes.push_back(code);
+  }
+  codes.back().meaning = "interrupted by signal N before it was done";
+  return exit_codes_text(codes);
+}
+
+std::string examples_text(const std::vector<Example>& examples) {
+  std::string text = "Examples:\n";
+  for (const Example& example : examples)
+    text += "  " + example.line + "\n      " + example.purpose + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string exit_codes_text(std::span<const launch::ExitCode> codes) {
+  constexpr std::size_t kTextColumn = 12;
+  std::string text = "Exit codes:\n";
+  for (const launch::ExitCode& entry : codes) {
+    std::string line = "  " + std::string(entry.code);
+    line.resize(kTextColumn, ' ');
+    text += line + wrapped(entry.meaning, 80, kTextColumn) + "\n";
+  }
+  return text;
+}
+
+void add_exit_codes(CLI::App& command) {
+  command.footer(command.get_footer() + "\n" + exit_codes_text(kLookingExitCodes));
+}
+
+void make_command_line(CLI::App& app, int& result) {
+  app.name("skein");
+  app.description("Skein: autonomous entities on DDS");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", SKEIN_VERSION, "Print the version and exit");
+  // Subcommands take the group from their parent.
+  app.group("Missions");
+  add_mission_commands(app, result);
+  app.group("Looking at a domain");
+  add_inspection_commands(app, result);
+  add_topic_commands(app, result);
+  add_recording_commands(app, result);
+  app.group("Measuring");
+  add_measuring_commands(app, result);
+  app.group("For the shell");
+  add_shell_commands(app);
+  app.footer(exit_codes() + "\n" +
+             examples_text({{"skein check mission.xml && skein launch mission.xml",
+                             "Fly a mission if nothing is missing"},
+                            {"skein services --profile mission.xml",
+                             "Who provides what in a mission that flies"},
+                            {"skein services --help", "Everything about one command"}}));
+}
+
+CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& description,
+                      const std::vector<Example>& examples) {
+  CLI::App& command = *parent.add_subcommand(name, description);
+  command.footer(examples_text(examples));
+  return command;
+}
+
+std::string one_of(const std::vector<std::string>& words) { return CLI::detail::join(words, "|"); }
+
+void add_onlooker(CLI::App& command, Onlooker& onlooker) {
+  command.add_option("--vendor", onlooker.vendor, "DDS vendor by which it joins the domain")
+      ->type_name(one_of(dds::networked_vendors()))
+      ->capture_default_str();
+  auto* domain = command
+                     .add_option("--domain", onlooker.domain,
+                                 "DDS domain of the mission; default: SKEIN_DOMAIN of the "
+                                 "environment, or 0")
+                     ->type_name("NUMBER");
+  auto* interface =
+      command.add_option("--interface", onlooker.interface, "Network interface; default: loopback")
+          ->type_name(kInterface);
+  command
+      .add_option("--peers", onlooker.peers,
+                  "Hosts to ask for peers, with commas between them; default: this one")
+      ->type_name("HOSTS")
+      ->delimiter(',')
+      ->needs(interface);
+  command
+      .add_flag("--multicast", onlooker.multicast,
+                "Find peers by multicast; default: ask hosts one by one")
+      ->needs(interface);
+  auto* profile =
+      command
+          .add_option("--profile", onlooker.profile,
+                      "Mission profile: domain and network are those of its peers on this host; "
+                      "default: the other options'")
+          ->type_name(kFile)
+          ->excludes(domain)
+          ->excludes(interface);
+  command
+      .add_option("--host", onlooker.host,
+                  "Which host of the profile this is; default: as names tell")
+      ->type_name("NAME")
+      ->needs(profile);
+  add_variables(command, onlooker.variables)->needs(profile);
+}
+
+CLI::Option* add_variables(CLI::App& command, std::vector<std::string>& variables) {
+  return command
+      .add_option("--variable", variables,
+                  "A value for a variable of the profile; may be given several times; default: as "
+                  "the profile says")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_json(CLI::App& command, bool& json, const std::string& form) {
+  return command.add_flag("--json", json,
+                          "Print JSON, for programs" + (form.empty() ? "" : ": " + form));
+}
+
+void add_wait(CLI::App& command, double& seconds) {
+  add_duration(command, "--wait", seconds, "How long to listen before it prints", Zero::Taken)
+      ->default_str(default_duration(seconds));
+}
+
+CLI::Option* add_duration(CLI::App& command, const std::string& name, double& seconds,
+                          const std::string& what, Zero zero) {
+  const auto refusal = [zero](std::string& text) -> std::string {
+    try {
+      if (profile::parse_seconds(text) > 0 || zero == Zero::Taken) return {};
+      return "must be more than 0";
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+  };
+  return command
+      .add_option_function<std::string>(
+          name, [&seconds](const std::string& text) { seconds = profile::parse_seconds(text); },
+          what)
+      ->type_name(kDuration)
+      ->check(CLI::Validator(refusal, ""));
+}
+
+CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        double number = 0;
+        if (!CLI::detail::lexical_cast(text, number)) return "is no number: " + text;
+        return number > 0 && std::isfinite(number) ? "" : "must be more than 0";
+      },
+      "");
+}
+
+std::string default_duration(double seconds) {
+  std::ostringstream text;
+  text << seconds << 's';
+  return text.str();
+}
+
+std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+void for_each_command(const CLI::App& app,
+                      const std::function<void(const CLI::App&, const std::string&)>& visit) {
+  const std::function<void(const CLI::App&, const std::string&)> descend =
+      [&](const CLI::App& command, const std::string& words) {
+        visit(command, words);
+        for (const CLI::App* child : shown_commands(command))
+          descend(*child, words + " " + child->get_name());
+      };
+  descend(app, app.get_name());
+}
+
+}  // namespace skein::command

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command/onlooker.hpp"
+#include "launch/exit_codes.hpp"
+
+// What the command line of `skein` is made of. Only this folder includes CLI11, which takes long to
+// compile. Help, manual pages and completion are made from the same CLI::App.
+namespace skein::command {
+
+/// Adds every subcommand, with its help, to `app`. The one that is run leaves its exit code in
+/// `result`, which must outlive `app`.
+void make_command_line(CLI::App& app, int& result);
+
+/// The subcommands by group, each group in its own file.
+void add_mission_commands(CLI::App& app, int& result);
+void add_inspection_commands(CLI::App& app, int& result);
+void add_topic_commands(CLI::App& app, int& result);
+void add_recording_commands(CLI::App& app, int& result);
+void add_measuring_commands(CLI::App& app, int& result);
+void add_shell_commands(CLI::App& app);
+
+/// A command line as a user would type it, and what it does.
+struct Example {
+  std::string line;
+  std::string purpose;
+};
+
+/// A subcommand. The first line of `description` is its summary in lists of commands; more may
+/// follow after an empty line.
+CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& description,
+                      const std::vector<Example>& examples);
+
+/// Makes `command` run `function`, whose exit code becomes `result`. Returns the arguments for its
+/// options to fill.
+template <typename Arguments>
+Arguments& arguments_of(CLI::App& command, int (*function)(const Arguments&), int& result) {
+  const auto arguments = std::make_shared<Arguments>();
+  command.callback([arguments, function, &result] {
+    if constexpr (std::is_base_of_v<Onlooker, Arguments>) {
+      result = look(*arguments, [&] { return function(*arguments); });
+    } else {
+      result = function(*arguments);
+    }
+  });
+  return *arguments;
+}
+
+/// The codes with their meanings, for the end of a help.
+std::string exit_codes_text(std::span<const launch::ExitCode> codes);
+
+/// Those of a command that looks, at the end of its help.
+void add_exit_codes(CLI::App& command);
+
+/// The kinds of values that completion knows. Any other text may be an option's `type_name`: the
+/// unit of its value, or a word for it.
+inline constexpr const char* kFile = "FILE";
+inline constexpr const char* kDirectory = "DIRECTORY";
+inline constexpr const char* kInterface = "INTERFACE";
+std::string one_of(const std::vector<std::string>& words);  ///< `a|b|c`
+
+/// A length of time, with or without a unit; help says once what that is.
+inline constexpr const char* kDuration = "DURATION";
+inline constexpr const char* kDurationHelp =
+    "DURATION: seconds, or a number with a unit: 500ms, 2min (us, ms, s, min, h)";
+
+/// Whether no time at all makes sense.
+enum class Zero { Taken, Refused };
+
+/// An option for a length of time, which becomes `seconds`.
+CLI::Option* add_duration(CLI::App& command, const std::string& name, double& seconds,
+                          const std::string& what, Zero zero);
+/// How help writes it: `1.5s`.
+std::string default_duration(double seconds);
+
+/// For an option whose value must be a number above 0.
+CLI::Validator above_zero();
+
+/// The options of a command that joins a domain to look at it.
+void add_onlooker(CLI::App& command, Onlooker& onlooker);
+
+/// The option --variable of a command that reads a mission profile.
+CLI::Option* add_variables(CLI::App& command, std::vector<std::string>& variables);
+
+/// The option --wait of a command that listens before it prints.
+void add_wait(CLI::App& command, double& seconds);
+
+/// The option --json of a command that prints; `form` says what is printed.
+CLI::Option* add_json(CLI::App& command, bool& json, const std::string& form = "");
+
+/// Calls `visit` with each command, `app` first, and its words: `skein`, `skein bench latency`.
+/// Hidden ones (of an empty group) are left out.
+void for_each_command(const CLI::App& app,
+                      const std::function<void(const CLI::App&, const std::string&)>& visit);
+
+/// The subcommands that are shown, in the order in which they were added.
+std::vector<const CLI::App*> shown_commands(const CLI::App& app);
+
+}  // namespace skein::command

@@ -1,0 +1,151 @@
+#include "command/commands.hpp"
+#include "command_line.hpp"
+
+// What looks at a domain while it runs, or at what was recorded of it.
+namespace skein::command {
+namespace {
+
+void add_watching(CLI::App& command, double& seconds) {
+  add_duration(command, "--for", seconds, "How long to watch; default: until interrupted",
+               Zero::Refused);
+}
+
+void add_calls(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "calls", "Show what happens to each call on a domain, live",
+                  {{"skein calls --domain 47", "Each step of each call, until Ctrl-C"},
+                   {"skein calls --profile mission.xml --for 10", "Ten seconds of a mission"}});
+  auto& arguments = arguments_of(command, show_calls, result);
+  add_onlooker(command, arguments);
+  add_watching(command, arguments.seconds);
+  add_json(command, arguments.json, "each step a line");
+}
+
+void add_decisions(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "decisions", "Show how the Heads on a domain decide, live or from a log",
+                  {{"skein decisions --domain 47", "Why each CSP was chosen, until Ctrl-C"},
+                   {"skein decisions --log decisions.jsonl", "The same, of a past mission"},
+                   {"skein decisions --log decisions.jsonl --replay",
+                    "Make the choices again; exit code 1 where one comes out differently"}});
+  auto& arguments = arguments_of(command, show_decisions, result);
+  add_onlooker(command, arguments);
+  add_watching(command, arguments.seconds);
+  auto* log =
+      command
+          .add_option("--log", arguments.log, "A Head's log to read; default: look at the domain")
+          ->type_name(kFile);
+  auto* replays = command.add_flag("--replay", arguments.replays,
+                                   "Make the choices of the log again and tell of any difference");
+  replays->needs(log);
+  add_json(command, arguments.json,
+           "each record a line, as in a log; with --replay each that differs, and the counts");
+  command
+      .add_option("--plugin", arguments.plugins,
+                  "A plugin whose selection strategies were used; may be given several times; "
+                  "default: Skein's own strategies alone")
+      ->type_name("NAME")
+      ->needs(replays);
+}
+
+void add_graph(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "graph", "Draw who speaks to whom on a domain now",
+      {{"skein graph --domain 47 | dot -Tsvg > mission.svg", "A picture, by Graphviz"},
+       {"skein graph --domain 47 --format mermaid", "Text for a README or an issue"},
+       {"skein graph --profile mission.xml --format json", "Nodes and edges, for programs"}});
+  auto& arguments = arguments_of(command, draw_graph, result);
+  add_onlooker(command, arguments);
+  auto* format = command.add_option("--format", arguments.format, "The notation")
+                     ->type_name(one_of({"dot", "mermaid", "json"}))
+                     ->capture_default_str();
+  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "as --format json")->excludes(format);
+}
+
+void add_peers(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "peers", "List who is on a domain now",
+                  {{"skein peers --domain 47", "Each peer with its process and its services"},
+                   {"skein peers --profile mission.xml --json", "The same, for programs"}});
+  auto& arguments = arguments_of(command, list_peers, result);
+  add_onlooker(command, arguments);
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "a list");
+}
+
+void add_services(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "services", "List what is provided on a domain now",
+      {{"skein services --domain 47", "Who provides what, with which attributes"},
+       {"skein services --domain 47 --statistics", "What became of the calls, and their times"},
+       {"skein services --interface eth0 --multicast", "On a network, not within this host"}});
+  auto& arguments = arguments_of(command, list_services, result);
+  add_onlooker(command, arguments);
+  command.add_flag("--statistics", arguments.statistics,
+                   "Show what became of the calls of each service, and how long they took");
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "a list");
+}
+
+void add_top(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "top",
+      "Watch peers, services and decisions of a domain on a whole screen\n\n"
+      "Shows what each process uses, how often each service is called and how long its slowest "
+      "operation runs (the 50th and 99th percentile since it began), and the latest decisions of "
+      "Heads. Keys: q leaves; arrows, j, k and page keys scroll; tab goes from peers to services; "
+      "n, c, m, r and l sort by name, CPU, memory, calls and p99. Where NO_COLOR is set there is "
+      "no "
+      "colour; on a dumb terminal, and into a pipe, frames follow each other as text.",
+      {{"skein top --domain 47", "Until q or Ctrl-C"},
+       {"skein top --profile mission.xml --once", "One frame as plain text, of all rows"}});
+  auto& arguments = arguments_of(command, show_top, result);
+  add_onlooker(command, arguments);
+  add_duration(command, "--every", arguments.every, "How often it looks again", Zero::Refused)
+      ->default_str(default_duration(arguments.every));
+  auto* once = command.add_flag("--once", arguments.once,
+                                "Print one frame as plain text, after three seconds");
+  add_json(command, arguments.json, "one frame")->needs(once);
+  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
+}
+
+void add_view(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "view", "Show a domain to Lichtblick or Foxglove, live",
+                  {{"skein view --domain 47", "Prints the URL to open there, until Ctrl-C"},
+                   {"skein view --profile mission.xml --port 9000", "A mission, on another port"}});
+  auto& arguments = arguments_of(command, serve_view, result);
+  add_onlooker(command, arguments);
+  command.add_option("--port", arguments.port, "TCP port on loopback; 0 takes any that is free")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command
+      .add_option("--token", arguments.token,
+                  "What the URL must contain, which others can see on the command line, but not in "
+                  "the environment; default: a random one")
+      ->type_name("TOKEN")
+      ->envname("SKEIN_VIEW_TOKEN");
+  command
+      .add_option("--origin", arguments.origins,
+                  "A web page that may look, such as http://localhost:8080; may be given several "
+                  "times; default: all pages that know the token")
+      ->type_name("URL");
+  command.add_flag("--calls", arguments.calls,
+                   "Let those who look also call services: they can then steer the mission");
+}
+
+}  // namespace
+
+void add_inspection_commands(CLI::App& app, int& result) {
+  add_calls(app, result);
+  add_decisions(app, result);
+  add_graph(app, result);
+  add_peers(app, result);
+  add_services(app, result);
+  add_top(app, result);
+  add_view(app, result);
+}
+
+}  // namespace skein::command

@@ -1,0 +1,204 @@
+#include "command/commands.hpp"
+#include "command_line.hpp"
+#include "launch/exit_codes.hpp"
+
+// What checks missions and flies them.
+namespace skein::command {
+namespace {
+
+CLI::Option* add_profile(CLI::App& command, std::string& profile) {
+  return command.add_option("PROFILE", profile, "Mission profile (XML)")->type_name(kFile);
+}
+
+void add_host(CLI::App& command, std::string& host) {
+  command.add_option("--host", host, "Which host of the profile this is; default: as names tell")
+      ->type_name("NAME");
+}
+
+void add_mission(CLI::App& command, MissionArguments& arguments) {
+  add_profile(command, arguments.profile)->required();
+  command
+      .add_option("--set", arguments.settings,
+                  "A parameter's value for this run: PEER.PARAMETER=VALUE or "
+                  "PEER/CSP.PARAMETER=VALUE; may be given several times; default: the profile's")
+      ->type_name("SETTING");
+  add_variables(command, arguments.variables);
+}
+
+void add_plan(CLI::App& command, PlanArguments& arguments) {
+  add_mission(command, arguments);
+  add_host(command, arguments.host);
+  command
+      .add_option("--only", arguments.only,
+                  "A peer, or a group of peers, to start; may be given several times; default: all")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+}
+
+void add_process(CLI::App& command, std::string& process) {
+  command.add_option("PROCESS", process, "A peer, or PEER/CSP for a CSP's own process")
+      ->type_name("NAME")
+      ->required();
+}
+
+void add_check(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "check", "Check a mission profile and all that it names",
+                  {{"skein check mission.xml", "Every gap, with file, line and column"},
+                   {"skein check --host uav-1 mission.xml", "What is missing on that host"},
+                   {"skein check --json mission.xml", "The same, for an editor or a script"}});
+  auto& arguments = arguments_of(command, check, result);
+  add_profile(command, arguments.profile)->required();
+  add_host(command, arguments.host);
+  add_variables(command, arguments.variables);
+  add_json(command, arguments.json);
+}
+
+void add_doctor(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "doctor",
+      "Find what on this machine keeps peers from speaking to each other\n\n"
+      "Looks at network interfaces, firewall, UDP buffers and ports, other missions, DDS vendors, "
+      "clock, shared memory, limits and processors, and lets two peers find each other. With a "
+      "profile also at what `skein check` finds, and at which peers of the mission answer.\n\n"
+      "Exit code 0 where nothing is wrong, 1 with warnings, 2 with errors.",
+      {{"skein doctor", "This machine, for missions that stay on it"},
+       {"skein doctor --interface eth0", "For missions on a network"},
+       {"skein doctor mission.xml", "For this mission, also while it flies"}});
+  auto& arguments = arguments_of(command, examine, result);
+  add_profile(command, arguments.profile)
+      ->description("Mission profile (XML); default: none, this machine alone");
+  command
+      .add_option("--domain", arguments.domain,
+                  "DDS domain; default: the profile's; without one SKEIN_DOMAIN, or 0")
+      ->type_name("NUMBER");
+  command
+      .add_option("--interface", arguments.interface,
+                  "Network interface; default: the profile's, or loopback")
+      ->type_name(kInterface);
+  add_host(command, arguments.host);
+  add_variables(command, arguments.variables);
+  add_json(command, arguments.json, "an object with the list `findings`");
+}
+
+void add_launch(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "launch", "Fly a mission: each peer in a process of its own",
+      {{"skein launch mission.xml", "Start the peers of this host; end with the mission's peer"},
+       {"skein launch --ssh mission.xml", "Those of the mission's other hosts, too"},
+       {"skein launch --dry-run mission.xml", "Only say what would run"},
+       {"skein launch --only wing mission.xml", "Only the peers of the group wing"},
+       {"skein launch --set navigator.grid=100 mission.xml", "With another value, for this run"}});
+  auto& arguments = arguments_of(command, launch, result);
+  add_plan(command, arguments);
+  auto* ssh = command.add_flag("--ssh", arguments.ssh,
+                               "Start the peers of the mission's other hosts, too, over ssh: by "
+                               "your own configuration, without passwords");
+  command
+      .add_flag("--attended", arguments.attended,
+                "Obey another launcher on standard input, and report on standard output: what "
+                "--ssh runs on other hosts")
+      ->excludes(ssh);
+  command.add_flag("--dry-run", arguments.dry_run, "Only say what would run");
+  command.add_flag("--verbose", arguments.verbose,
+                   "Show the start, readiness and end of each process");
+  auto* no_log = command.add_flag("--no-log", arguments.no_log, "Keep no logs");
+  command
+      .add_option("--log-folder", arguments.log_folder,
+                  "Folder of the logs; default: the profile's logs=, or "
+                  "~/.local/state/skein/MISSION-DOMAIN")
+      ->type_name(kDirectory)
+      ->excludes(no_log);
+  command.add_option("--log-size", arguments.log_size, "Size at which a log begins a new file")
+      ->type_name("MIB")
+      ->capture_default_str()
+      ->check(CLI::Validator(CLI::Range(1, 1 << 20)).description(""));
+  command.add_option("--log-files", arguments.log_files, "Files that are kept of each log")
+      ->type_name("COUNT")
+      ->capture_default_str()
+      ->check(CLI::Validator(CLI::Range(1, 1000)).description(""));
+  command.footer(command.get_footer() + "\n" + exit_codes_text(launch::kExitCodes));
+}
+
+void add_peer(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "peer", "Run one process of a mission",
+      {{"skein peer mission.xml navigator", "As `skein launch` would start it, by itself"},
+       {"skein peer mission.xml navigator/AStar", "A CSP that has a process of its own"}});
+  auto& arguments = arguments_of(command, run_peer, result);
+  add_mission(command, arguments);
+  add_process(command, arguments.process);
+  command
+      .add_option(
+          "ARGUMENT", arguments.words,
+          "For its components to read; after -- where one begins with a dash; default: none")
+      ->type_name("WORD");
+}
+
+void add_running(CLI::App& command, RunningArguments& arguments) {
+  add_profile(command, arguments.profile)->required();
+  add_variables(command, arguments.variables);
+  add_host(command, arguments.host);
+}
+
+void add_restart(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "restart", "Start a process of a running mission anew",
+      {{"skein restart mission.xml navigator", "Also if it was given up: restarts count anew"}});
+  auto& arguments = arguments_of(command, restart_process, result);
+  add_running(command, arguments);
+  add_process(command, arguments.process);
+}
+
+void add_status(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "status", "Show what the launcher of a running mission knows",
+                  {{"skein status mission.xml", "State, process, restarts and last end of each"}});
+  auto& arguments = arguments_of(command, show_status, result);
+  add_running(command, arguments);
+  add_json(command, arguments.json);
+}
+
+/// Hidden: `launch --ssh` runs it.
+void add_attend(CLI::App& app, int& result) {
+  auto& command = add_command(app, "attend", "Fly another host's part of a mission over ssh", {});
+  command.group("");
+  auto& arguments = arguments_of(command, attend, result);
+  add_plan(command, arguments);
+  command.add_flag("--verbose", arguments.verbose,
+                   "Show the start, readiness and end of each process");
+}
+
+void add_script(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "script", "Write a mission as a shell script, or as services of systemd",
+      {{"skein script mission.xml --output start.sh",
+        "A script that starts it without Skein's launcher"},
+       {"skein script mission.xml --systemd units", "A unit for each process, and a target"}});
+  auto& arguments = arguments_of(command, write_script, result);
+  add_plan(command, arguments);
+  auto* output =
+      command
+          .add_option("--output", arguments.output, "The script's file; default: standard output")
+          ->type_name(kFile);
+  command
+      .add_option("--systemd", arguments.systemd,
+                  "Folder for units of systemd, instead; default: none")
+      ->type_name(kDirectory)
+      ->excludes(output);
+}
+
+}  // namespace
+
+void add_mission_commands(CLI::App& app, int& result) {
+  add_check(app, result);
+  add_doctor(app, result);
+  add_launch(app, result);
+  add_peer(app, result);
+  add_restart(app, result);
+  add_status(app, result);
+  add_script(app, result);
+  add_attend(app, result);
+}
+
+}  // namespace skein::command

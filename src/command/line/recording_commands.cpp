@@ -1,0 +1,102 @@
+#include "command/commands.hpp"
+#include "command_line.hpp"
+
+// Recordings of missions.
+namespace skein::command {
+namespace {
+
+void add_topics(CLI::App& command, std::vector<std::string>& topics, const char* what) {
+  command.add_option("--topics", topics, what)->type_name("NAMES")->delimiter(',');
+}
+
+void add_record(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "record",
+      "Record a mission while it flies\n\n"
+      "Topics, calls with their arguments and results, and decisions go into a file in the MCAP "
+      "format, which Lichtblick and Foxglove open. After a crash, what was written until a second "
+      "before can be read.",
+      {{"skein record --domain 42", "All of a mission, until Ctrl-C"},
+       {"skein record --domain 42 --topics pose,track --only-topics --for 60", "Two topics alone"},
+       {"skein record --profile mission.xml --output flight.mcap --split 500",
+        "flight_0.mcap, flight_1.mcap, ..."}});
+  auto& arguments = arguments_of(command, record, result);
+  add_onlooker(command, arguments);
+  command
+      .add_option("--output", arguments.output,
+                  "The file; default: mission_DATE_TIME.mcap, in this folder")
+      ->type_name(kFile);
+  add_topics(command, arguments.topics, "Topics, with commas between them; default: all");
+  command.add_flag("--only-topics", arguments.only_topics, "Neither calls nor decisions");
+  add_duration(command, "--for", arguments.seconds, "How long; default: until interrupted",
+               Zero::Refused);
+  command
+      .add_option("--split", arguments.split_megabytes,
+                  "Begin a new file before one is larger than this; default: one file")
+      ->type_name("MEGABYTES")
+      ->check(above_zero());
+  add_json(command, arguments.json, "what was recorded");
+}
+
+void add_replay(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "replay",
+      "Publish the topics of a recording again, or make its decisions again\n\n"
+      "Where it is interrupted before all is published, it says how much was, and its exit code is "
+      "128 + N for signal N.",
+      {{"skein replay flight.mcap --domain 43", "In the recorded order and pace"},
+       {"skein replay flight.mcap --rate 10 --topics pose --domain 43", "One topic, faster"},
+       {"skein replay flight.mcap --decisions", "Exit code 1 where one comes out differently"}});
+  auto& arguments = arguments_of(command, replay_recording, result);
+  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
+  add_onlooker(command, arguments);
+  add_topics(command, arguments.topics, "Topics, with commas between them; default: all");
+  command.add_option("--rate", arguments.rate, "So many times as fast as it was recorded")
+      ->check(above_zero())
+      ->type_name("NUMBER")
+      ->capture_default_str();
+  auto* decisions = command.add_flag("--decisions", arguments.decisions,
+                                     "Make the choices of the Heads again, bit for bit");
+  command
+      .add_option("--plugin", arguments.plugins,
+                  "A plugin whose selection strategies were used; may be given several times; "
+                  "default: Skein's own strategies alone")
+      ->type_name("NAME")
+      ->needs(decisions);
+  add_json(command, arguments.json,
+           "what was published; with --decisions a line for each that differs, and the counts");
+}
+
+void add_info(CLI::App& app, int& result) {
+  auto& command = add_command(app, "info", "Tell what a recording has",
+                              {{"skein info flight.mcap", "Channels, counts, times, drops"}});
+  auto& arguments = arguments_of(command, show_recording, result);
+  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
+  add_json(command, arguments.json);
+  add_exit_codes(command);
+}
+
+void add_export(CLI::App& app, int& result) {
+  auto& command = add_command(app, "export", "Write a recording for other viewers",
+                              {{"skein export flight.mcap --perfetto flight.pftrace",
+                                "Calls and decisions of all peers, for https://ui.perfetto.dev"}});
+  auto& arguments = arguments_of(command, export_recording, result);
+  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
+  command
+      .add_option("--perfetto", arguments.perfetto,
+                  "The file for a trace that Perfetto opens; default: none, which is refused")
+      ->type_name(kFile)
+      ->required();
+  add_json(command, arguments.json, "what was written");
+}
+
+}  // namespace
+
+void add_recording_commands(CLI::App& app, int& result) {
+  add_export(app, result);
+  add_info(app, result);
+  add_record(app, result);
+  add_replay(app, result);
+}
+
+}  // namespace skein::command

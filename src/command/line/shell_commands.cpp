@@ -1,0 +1,57 @@
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "command_line.hpp"
+#include "completion.hpp"
+#include "manual.hpp"
+#include "skein/error.hpp"
+
+// Completion and manual pages, both made from the command line itself.
+namespace skein::command {
+namespace {
+
+void write_manual(const CLI::App& app, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for_each_command(app, [&](const CLI::App& command, const std::string& words) {
+    const auto path = folder / (page_name(words) + ".1");
+    std::ofstream file(path);
+    file << manual_page(command, words);
+    if (!file.flush())
+      throw InvalidArgument(path.string() + " cannot be written; is its folder writable?");
+  });
+}
+
+void add_completion(CLI::App& app) {
+  auto& command = add_command(
+      app, "completion", "Print what completes Skein's commands in a shell",
+      {{"source <(skein completion bash)", "For this bash"},
+       {"skein completion zsh > ~/.zfunc/_skein", "For zsh, where ~/.zfunc is in fpath"},
+       {"skein completion fish | source", "For this fish"}});
+  const auto shell = std::make_shared<std::string>();
+  command.add_option("SHELL", *shell, "The shell: " + one_of(shells()))
+      ->type_name(one_of(shells()))
+      ->required();
+  command.callback([&app, shell] { std::cout << completion(app, *shell); });
+}
+
+/// Hidden: the build runs it.
+void add_man(CLI::App& app) {
+  auto& command = add_command(app, "man", "Write the manual pages into a folder",
+                              {{"skein man share/man/man1", "One page for each command"}});
+  command.group("");
+  const auto folder = std::make_shared<std::string>();
+  command.add_option("FOLDER", *folder, "Is made where it is missing")
+      ->type_name(kDirectory)
+      ->required();
+  command.callback([&app, folder] { write_manual(app, *folder); });
+}
+
+}  // namespace
+
+void add_shell_commands(CLI::App& app) {
+  add_completion(app);
+  add_man(app);
+}
+
+}  // namespace skein::command

@@ -1,0 +1,58 @@
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "core/printable.hpp"
+#include "interruption.hpp"
+#include "json_output.hpp"
+#include "recording/player.hpp"
+#include "skein/entity.hpp"
+
+namespace skein::command {
+namespace {
+
+/// Until those who listen have found the replay.
+constexpr double kDiscovery = 1.5;
+
+void print(const std::vector<std::string>& topics, std::uint64_t published, bool json) {
+  if (json) {
+    print_json({{"topics", topics}, {"published", published}}, false);
+  } else {
+    std::printf("%llu values published\n", static_cast<unsigned long long>(published));
+  }
+}
+
+}  // namespace
+
+int replay_recording(const ReplayArguments& arguments) {
+  if (arguments.decisions) {
+    DecisionsArguments decisions;
+    decisions.log = arguments.file;
+    decisions.replays = true;
+    decisions.json = arguments.json;
+    decisions.plugins = arguments.plugins;
+    return show_decisions(decisions);
+  }
+  const Interruption interruption;
+  const recording::Reader reader(arguments.file);
+  Entity entity(arguments.entity_options("replay"));
+  recording::Player player(entity, reader, {arguments.topics, arguments.rate});
+  for (const std::string& topic : player.topics()) {
+    std::fprintf(stderr, "skein: publishes %s\n", printable(topic).c_str());
+  }
+  if (interruption.wait(kDiscovery)) {
+    throw Interrupted("interrupted before it published", interruption.signal());
+  }
+  const std::uint64_t published = player.play([&](Duration time) {
+    return interruption.came() || (time > Duration::zero() &&
+                                   interruption.wait(std::chrono::duration<double>(time).count()));
+  });
+  print(player.topics(), published, arguments.json);
+  if (interruption.signal() != 0) {
+    throw Interrupted("interrupted before all was published", interruption.signal());
+  }
+  return 0;
+}
+
+}  // namespace skein::command

@@ -1,0 +1,50 @@
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "commands.hpp"
+#include "launch/start_script.hpp"
+#include "launch/systemd_units.hpp"
+#include "mission_plan.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command {
+namespace {
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text << std::flush;
+  if (!stream) throw InvalidArgument("'" + file.string() + "' cannot be written");
+}
+
+void make_executable(const std::filesystem::path& file) {
+  using std::filesystem::perms;
+  std::filesystem::permissions(file, perms::owner_exec | perms::group_exec | perms::others_exec,
+                               std::filesystem::perm_options::add);
+}
+
+}  // namespace
+
+int write_script(const ScriptArguments& given) {
+  ScriptArguments arguments = given;
+  arguments.profile = std::filesystem::absolute(given.profile).string();
+  const profile::MissionProfile mission = read_mission(arguments);
+  const auto plan = plan_of(mission, arguments);
+  if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
+  if (!arguments.systemd.empty()) {
+    std::filesystem::create_directories(arguments.systemd);
+    for (const auto& [name, text] : launch::systemd_units(plan)) {
+      write_file(std::filesystem::path(arguments.systemd) / name, text);
+      std::printf("%s\n", name.c_str());
+    }
+  } else if (!arguments.output.empty()) {
+    write_file(arguments.output, launch::start_script(plan));
+    make_executable(arguments.output);
+  } else {
+    std::fputs(launch::start_script(plan).c_str(), stdout);
+  }
+  return 0;
+}
+
+}  // namespace skein::command

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "commands.hpp"
+#include "core/printable.hpp"
+#include "launch/mission_claim.hpp"
+#include "profile/check.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/mission_status.idl.hpp"
+
+namespace skein::command {
+namespace {
+
+profile::MissionProfile mission_of(const RunningArguments& arguments) {
+  return profile::read_checked_profile(arguments.profile,
+                                       profile::parse_variables(arguments.variables));
+}
+
+/// The launcher knows peers by their own names; `skein peers` prints their system, too.
+std::string without_system(const profile::MissionProfile& mission, const std::string& process) {
+  for (const profile::PeerProfile& peer : mission.peers) {
+    const std::string name = peer.system + "/" + peer.name;
+    if (process == name || process.starts_with(name + "/"))
+      return process.substr(peer.system.size() + 1);
+  }
+  return process;
+}
+
+std::string seconds(double time) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f s", time);
+  return text.data();
+}
+
+void print(const launch::ProcessStatus& process) {
+  std::string line = "  " + printable(process.name) + ": " + printable(process.state);
+  if (process.pid != 0)
+    line += ", process " + std::to_string(process.pid) + " for " + seconds(process.uptime);
+  if (process.restarts > 0) line += ", restarted " + std::to_string(process.restarts) + " times";
+  if (!process.last_exit.empty()) line += ", last ended " + printable(process.last_exit);
+  if (!process.reason.empty()) line += "; " + printable(process.reason, process.reason.size());
+  std::printf("%s\n", line.c_str());
+}
+
+void print(const launch::MissionStatus& status) {
+  std::printf("mission %s, by launcher %u for %s%s\n", printable(status.mission).c_str(),
+              status.launcher, seconds(status.uptime).c_str(), status.degraded ? ", degraded" : "");
+  if (!status.ending.empty()) std::printf("  ends: %s\n", printable(status.ending, 4096).c_str());
+  for (const auto& process : status.processes) print(process);
+  for (const auto& name : status.elsewhere)
+    std::printf("  %s: not started here\n", printable(name).c_str());
+}
+
+}  // namespace
+
+int restart_process(const RestartArguments& arguments) {
+  const auto mission = mission_of(arguments);
+  const std::string answer = launch::ask_launcher(
+      mission, arguments.host, "restart " + without_system(mission, arguments.process));
+  std::printf("%s\n", printable(answer, answer.size()).c_str());
+  return 0;
+}
+
+int show_status(const StatusArguments& arguments) {
+  const std::string answer = launch::ask_launcher(mission_of(arguments), arguments.host, "status");
+  if (arguments.json) {
+    std::printf("%s\n", printable(answer, answer.size()).c_str());
+  } else {
+    print(idl::from_json<launch::MissionStatus>(answer));
+  }
+  return 0;
+}
+
+}  // namespace skein::command

@@ -1,0 +1,63 @@
+#include "topic_survey.hpp"
+
+#include <algorithm>
+
+#include "core/printable.hpp"
+#include "core/suggestion.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command {
+namespace {
+
+constexpr double kLookAgain = 0.1;
+/// Of one round of questions.
+constexpr std::chrono::milliseconds kShortest{100};
+constexpr std::chrono::milliseconds kLongest{1000};
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + printable(name);
+  return list.empty() ? "none" : list;
+}
+
+std::vector<std::string> names_of(const std::vector<KnownTopic>& topics) {
+  std::vector<std::string> names;
+  for (const KnownTopic& topic : topics) names.push_back(topic.name);
+  return names;
+}
+
+}  // namespace
+
+KnownTopic await_topic(Inspector& inspector, const std::string& name, double seconds,
+                       const Interruption& interruption) {
+  using std::chrono::steady_clock;
+  const auto end = steady_clock::now() +
+                   std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+  std::vector<KnownTopic> topics;
+  while (true) {
+    topics = known_topics(inspector,
+                          std::clamp<Duration>(end - steady_clock::now(), kShortest, kLongest));
+    std::vector<KnownTopic> found;
+    std::ranges::copy_if(topics, std::back_inserter(found),
+                         [&](const KnownTopic& topic) { return topic.name == name; });
+    if (found.size() == 1) return found.front();
+    if (found.size() > 1) {
+      throw InvalidArgument("topic '" + name + "' has several types here: " +
+                            printable(found[0].type) + " and " + printable(found[1].type));
+    }
+    if (steady_clock::now() >= end) break;
+    if (interruption.wait(kLookAgain)) {
+      throw Interrupted("interrupted while it looked for the topic '" + name + "'",
+                        interruption.signal());
+    }
+  }
+  throw Unavailable("no entity here has a topic '" + name + "'" +
+                    suggestion(name, names_of(topics)) + "; there are " +
+                    list_of(names_of(topics)));
+}
+
+types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic) {
+  return inspector.types(topic.type, {}, kAnswerPatience);
+}
+
+}  // namespace skein::command

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "interruption.hpp"
+#include "skein/inspector.hpp"
+
+namespace skein::command {
+
+/// How long entities that are known have to answer; who hangs is left out.
+inline constexpr std::chrono::seconds kAnswerPatience{2};
+
+/// The topic of that name, once an entity has it. Throws Unavailable with the most similar name
+/// where none has it after `seconds`, InvalidArgument where there are two of that name, and
+/// Interrupted.
+KnownTopic await_topic(Inspector& inspector, const std::string& name, double seconds,
+                       const Interruption& interruption);
+
+/// The types that a topic's type names, as its publishers and subscriptions tell them.
+types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic);
+
+}  // namespace skein::command

@@ -1,0 +1,75 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "brokerless_discovery/broker.hpp"
+#include "commands.hpp"
+#include "core/printable.hpp"
+#include "interruption.hpp"
+#include "json_output.hpp"
+#include "skein/entity.hpp"
+#include "topic_survey.hpp"
+
+namespace skein::command {
+namespace {
+
+std::string qos_of(const inspection::TopicEndpoint& endpoint) {
+  std::string text = endpoint.reliable ? "reliable" : "best effort";
+  if (endpoint.transient_local) text += ", kept for late joiners";
+  if (endpoint.exclusive) text += ", exclusive";
+  const auto add = [&](const char* name, const std::vector<std::uint64_t>& time) {
+    if (!time.empty())
+      text += std::string(", ") + name + " " + std::to_string(time[0] / 1'000'000) + " ms";
+  };
+  add("deadline", endpoint.deadline);
+  add("lifespan", endpoint.lifespan);
+  add("lease", endpoint.lease);
+  return text;
+}
+
+void print(const KnownTopic& topic) {
+  std::string systems;
+  for (const std::string& system : topic.systems())
+    systems += (systems.empty() ? "" : ", ") + printable(system);
+  std::printf("%-32s %s  in %s\n", printable(topic.name).c_str(), printable(topic.type).c_str(),
+              systems.c_str());
+  for (const auto& [participant, entity, told] : topic.endpoints) {
+    std::printf("    %s %-28s %s; %llu %s%s\n", told.publishes ? "published by " : "subscribed by",
+                printable(entity).c_str(), qos_of(told).c_str(),
+                static_cast<unsigned long long>(told.samples),
+                told.publishes ? "published" : "received",
+                told.matched == 0 ? "; nobody on the other side" : "");
+  }
+}
+
+nlohmann::ordered_json json_of(const KnownTopic& topic) {
+  nlohmann::ordered_json json{{"name", topic.name}, {"type", topic.type}};
+  for (const auto& [participant, entity, told] : topic.endpoints) {
+    auto endpoint = command::json_of(told);
+    endpoint["entity"] = entity;
+    json["endpoints"].push_back(std::move(endpoint));
+  }
+  return json;
+}
+
+}  // namespace
+
+int list_topics(const TopicsArguments& arguments) {
+  const Interruption interruption;
+  Entity entity(arguments.entity_options("topics"));
+  Inspector inspector(entity);
+  if (arguments.seconds > 0) interruption.wait(arguments.seconds);
+  const auto topics = known_topics(inspector, kAnswerPatience);
+  if (arguments.json) {
+    auto all = nlohmann::ordered_json::array();
+    for (const KnownTopic& topic : topics) all.push_back(json_of(topic));
+    print_json(all, true);
+    return 0;
+  }
+  for (const KnownTopic& topic : topics) print(topic);
+  std::printf("%zu %s in %s\n", topics.size(), topics.size() == 1 ? "topic" : "topics",
+              entity.broker().options().place.c_str());
+  if (topics.empty()) tell_missions_elsewhere(arguments);
+  return 0;
+}
+
+}  // namespace skein::command

@@ -1,0 +1,25 @@
+#include "topic_tap.hpp"
+
+#include <utility>
+
+namespace skein {
+
+std::unique_ptr<dds::Reader> tap_topic(dds::Participant& participant, const KnownTopic& topic,
+                                       std::vector<std::string> systems, TopicTap tap) {
+  const inspection::TopicEndpoint& told = topic.endpoints.front().told;
+  dds::Qos qos = topic.reading_qos();
+  qos.partitions = std::move(systems);
+  if (told.xcdr2) qos.representation = dds::DataRepresentation::Xcdr2;
+  dds::ReaderListener listener;
+  listener.on_data = [on_value = std::move(tap.on_value)](dds::Reader& reader) {
+    reader.take([&](const dds::Sample& sample) {
+      if (sample.state == dds::InstanceState::Alive) on_value(sample);
+    });
+  };
+  listener.on_matched = std::move(tap.on_matched);
+  // What comes without its key's hash is taken, too.
+  listener.find_key = [](std::span<const std::byte>) { return dds::KeyHash{}; };
+  return participant.create_reader({topic.name, topic.type, told.keyed}, qos, std::move(listener));
+}
+
+}  // namespace skein

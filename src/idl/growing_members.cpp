@@ -1,0 +1,29 @@
+#include "idl/growing_members.hpp"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+namespace skein::idl {
+namespace {
+
+void add(const TypeSupport& type, std::set<const TypeSupport*>& seen,
+         std::vector<GrowingMember>& found) {
+  if (!seen.insert(&type).second) return;
+  found.insert(found.end(), type.description.growing.begin(), type.description.growing.end());
+  for (const auto used : type.description.uses) add(used(), seen, found);
+}
+
+}  // namespace
+
+std::vector<GrowingMember> growing_members(const TypeSupport& type) {
+  std::set<const TypeSupport*> seen;
+  std::vector<GrowingMember> found;
+  add(type, seen, found);
+  std::ranges::sort(found, {}, [](const GrowingMember& member) {
+    return std::tuple(member.type, member.member);
+  });
+  return found;
+}
+
+}  // namespace skein::idl

@@ -1,0 +1,126 @@
+#include "findings_apart.hpp"
+
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <sstream>
+#include <string_view>
+
+#include "child_process.hpp"
+#include "pipe.hpp"
+#include "wake_up.hpp"
+
+namespace skein::launch {
+namespace {
+
+using profile::Finding;
+using profile::Severity;
+
+constexpr std::chrono::seconds kPatience{30};
+constexpr char kEndOfField = '\0';
+constexpr std::string_view kEnd = "end";  // in place of another finding
+
+std::string to_fields(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const Finding& finding : findings) {
+    for (const std::string& field :
+         {std::string(finding.severity == Severity::Error ? "error" : "warning"),
+          finding.where.file, std::to_string(finding.where.line),
+          std::to_string(finding.where.column), finding.problem, finding.remedy})
+      text.append(field) += kEndOfField;
+  }
+  return text.append(kEnd) += kEndOfField;
+}
+
+/// False where the end is missing.
+bool read_fields(const std::string& text, std::vector<Finding>& findings) {
+  std::istringstream stream(text);
+  const auto next = [&] {
+    std::string field;
+    std::getline(stream, field, kEndOfField);
+    return field;
+  };
+  for (std::string severity = next(); stream; severity = next()) {
+    if (severity == kEnd) return true;
+    Finding finding;
+    finding.severity = severity == "error" ? Severity::Error : Severity::Warning;
+    finding.where.file = next();
+    finding.where.line = std::atoi(next().c_str());
+    finding.where.column = std::atoi(next().c_str());
+    finding.problem = next();
+    finding.remedy = next();
+    findings.push_back(std::move(finding));
+  }
+  return false;
+}
+
+[[noreturn]] void look_and_tell(const std::function<std::vector<Finding>()>& look, int teller,
+                                const std::string& file, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  std::string text;
+  try {
+    text = to_fields(look());
+  } catch (const std::exception& error) {
+    text = to_fields({{Severity::Error, {file}, error.what(), ""}});
+  }
+  for (std::size_t at = 0; at < text.size();) {
+    const auto size = ::write(teller, text.data() + at, text.size() - at);
+    if (size < 0 && errno != EINTR) ::_exit(1);
+    if (size > 0) at += static_cast<std::size_t>(size);
+  }
+  ::_exit(0);  // no destructor of what was loaded runs
+}
+
+/// All that comes until the other side closes the pipe; false where that takes too long.
+bool read_all(int descriptor, std::string& text) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  std::array<char, 4096> buffer;
+  for (;;) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    pollfd watched{descriptor, POLLIN, 0};
+    if (left.count() <= 0 || ::poll(&watched, 1, static_cast<int>(left.count())) == 0) return false;
+    const auto size = ::read(descriptor, buffer.data(), buffer.size());
+    if (size == 0) return true;
+    if (size > 0) text.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> findings_apart(const std::function<std::vector<Finding>()>& look,
+                                    const std::string& file) {
+  Pipe pipe = make_pipe();
+  const pid_t parent = ::getpid();
+  const pid_t id = ::fork();
+  if (id < 0) throw_system_error("a process");
+  if (id == 0) look_and_tell(look, pipe.write_end.get(), file, parent);
+  pipe.write_end.reset();
+  std::string text;
+  const bool in_time = read_all(pipe.read_end.get(), text);
+  if (!in_time) ::kill(id, SIGKILL);
+  siginfo_t end{};
+  while (::waitid(P_PID, static_cast<id_t>(id), &end, WEXITED) < 0 && errno == EINTR) {
+  }
+  std::vector<Finding> findings;
+  if (in_time && read_fields(text, findings)) return findings;
+  const std::string how =
+      in_time ? "ends its process " + to_text(ExitStatus{end.si_code != CLD_EXITED, end.si_status})
+              : "takes longer than " + std::to_string(kPatience.count()) + " s";
+  findings.push_back({Severity::Error,
+                      {file},
+                      "loading the plugins of its peers " + how,
+                      "'skein peer' starts one peer alone, and shows which it is"});
+  return findings;
+}
+
+}  // namespace skein::launch

@@ -1,0 +1,197 @@
+#include "recording/recorder.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "core/log.hpp"
+#include "core/wall_clock.hpp"
+#include "recording/recorded_calls.hpp"
+#include "recording/recorded_topic.hpp"
+#include "recording/recorded_types.hpp"
+#include "rpc/introspection_topic.hpp"
+#include "skein/describe.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/inspector.hpp"
+#include "skein/introspection.idl.hpp"
+
+namespace skein::recording {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
+/// What a replay needs beside the type.
+std::map<std::string, std::string> metadata_of(const KnownTopic& topic) {
+  const TopicQos qos = topic.writing_qos();
+  std::map<std::string, std::string> metadata{
+      {"type", topic.type},
+      {"systems", joined(topic.systems())},
+      {"transient_local", qos.transient_local ? "true" : "false"},
+      {"exclusive", qos.exclusive ? "true" : "false"},
+      {"reliable", topic.reading_qos().reliable ? "true" : "false"}};
+  if (qos.deadline) metadata["deadline_ms"] = std::to_string(qos.deadline->count());
+  if (qos.liveliness_lease) metadata["lease_ms"] = std::to_string(qos.liveliness_lease->count());
+  return metadata;
+}
+
+/// How often entities are asked for the types of a topic. What comes until they tell them has no
+/// schema.
+constexpr int kMostQuestions = 3;
+
+}  // namespace
+
+struct Recorder::State {
+  /// A topic that is recorded.
+  struct Recorded {
+    std::atomic<std::uint16_t> channel{0};
+    bool has_schema = false;
+    int questions = 0;                       // for its types
+    std::string failure{};                   // why it is not read
+    std::unique_ptr<RecordedTopic> topic{};  // last: its readers use the rest
+  };
+
+  State(Entity& entity_, const std::string& path, RecorderOptions options_)
+      : entity(entity_),
+        options(std::move(options_)),
+        writer(path, options.writer),
+        types(writer),
+        inspector(entity),
+        calls(writer, types, [this](const std::string& service, const Guid& participant) {
+          return inspector.types(service, participant, std::chrono::seconds(2));
+        }) {
+    if (options.decisions) record_own(introspection::kDecisions);
+    if (!options.calls) return;
+    record_own(introspection::kCalls);
+    call_reader = std::make_unique<introspection::AnyReader>(
+        entity.participant(), introspection::kCallRecords,
+        introspection::AnyReader::Listener{
+            [this](const dds::Sample& sample) { calls.receive(sample); }});
+  }
+
+  /// One of Skein's own topics, as it travels.
+  template <class T>
+  void record_own(const introspection::Topic<T>& topic) {
+    const std::string type = topic.type_name;
+    const std::uint16_t channel =
+        types.add_channel(topic.name, type, skein::describe(idl::type_support<T>()),
+                          {{"type", type}, {"introspection", "true"}});
+    own_readers.push_back(std::make_unique<introspection::AnyReader>(
+        entity.participant(), topic,
+        introspection::AnyReader::Listener{[this, channel](const dds::Sample& sample) {
+          if (sample.state == dds::InstanceState::Alive) write(channel, sample.cdr);
+        }}));
+  }
+
+  void write(std::uint16_t channel, std::span<const std::byte> cdr) {
+    const std::uint64_t time = nanoseconds_since_1970();
+    writer.write({channel, ++sequence, time, time, cdr});
+  }
+
+  bool is_wanted(const KnownTopic& topic) const {
+    return options.topics.empty() || std::ranges::count(options.topics, topic.name) > 0;
+  }
+
+  /// What it says of a topic that is new, or of which there is news; nothing otherwise.
+  std::optional<std::string> follow(const KnownTopic& topic, Duration patience) {
+    Recorded& known = recorded[{topic.name, topic.type}];
+    const bool is_new = known.channel == 0;
+    const std::string name = topic.name + " (" + topic.type + ")";
+    std::string problem;
+    if (!known.has_schema && known.questions < kMostQuestions) {
+      problem = name_channel(known, topic, patience);
+    }
+    const std::string failure = listen(known, topic);
+    if (!failure.empty()) return name + " is not recorded: " + failure;
+    if (!is_new) return std::nullopt;
+    return problem.empty() ? name : name + ", without schema: " + problem;
+  }
+
+  /// With a schema, once somebody tells its types; what comes until then has none. Says why not.
+  std::string name_channel(Recorded& known, const KnownTopic& topic, Duration patience) {
+    ++known.questions;
+    try {
+      known.channel = types.add_channel(
+          topic.name, topic.type, inspector.types(topic.type, {}, patience), metadata_of(topic));
+      known.has_schema = true;
+      return "";
+    } catch (const Error& error) {
+      if (known.channel == 0) known.channel = writer.add_channel(topic.name, 0, metadata_of(topic));
+      return error.what();
+    }
+  }
+
+  /// Says why not, once for each reason. One topic must not end the recording of others.
+  std::string listen(Recorded& known, const KnownTopic& topic) {
+    if (!known.topic) {
+      known.topic = std::make_unique<RecordedTopic>(
+          [this, &known](std::span<const std::byte> cdr) { write(known.channel, cdr); });
+    }
+    try {
+      known.topic->follow(entity.participant(), topic);
+      return "";
+    } catch (const Error& error) {
+      return std::exchange(known.failure, error.what()) == error.what() ? "" : error.what();
+    }
+  }
+
+  void end() {
+    std::lock_guard lock(looking);
+    call_reader.reset();
+    own_readers.clear();
+    recorded.clear();
+    calls.name_channels();
+  }
+
+  Entity& entity;
+  const RecorderOptions options;
+  Writer writer;
+  RecordedTypes types;
+  Inspector inspector;
+  RecordedCalls calls;
+  std::atomic<std::uint32_t> sequence{0};
+  std::mutex looking;                                                // guards what follows
+  std::map<std::pair<std::string, std::string>, Recorded> recorded;  // by name and type
+  // These go first: their listeners use the rest.
+  std::vector<std::unique_ptr<introspection::AnyReader>> own_readers;
+  std::unique_ptr<introspection::AnyReader> call_reader;
+};
+
+Recorder::Recorder(Entity& entity, const std::string& path, RecorderOptions options)
+    : state_(std::make_unique<State>(entity, path, std::move(options))) {}
+
+Recorder::~Recorder() {
+  try {
+    state_->end();
+  } catch (const std::exception& error) {
+    log(LogLevel::Error, "recording",
+        std::string("what came last is not recorded: ") + error.what());
+  }
+}
+
+std::vector<std::string> Recorder::look(Duration patience) {
+  std::vector<std::string> found;
+  std::lock_guard lock(state_->looking);
+  for (const KnownTopic& topic : known_topics(state_->inspector, patience)) {
+    if (!state_->is_wanted(topic) || !topic.has_publisher()) continue;
+    if (auto said = state_->follow(topic, patience)) found.push_back(std::move(*said));
+  }
+  state_->calls.name_channels();
+  return found;
+}
+
+WriterStatistics Recorder::statistics() const { return state_->writer.statistics(); }
+
+void Recorder::close() {
+  state_->end();
+  state_->writer.close();
+}
+
+}  // namespace skein::recording

@@ -1,0 +1,208 @@
+// What the command line says of itself.
+#include "command/line/command_line.hpp"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "command/line/completion.hpp"
+#include "command/line/familiar_names.hpp"
+#include "command/line/help.hpp"
+#include "command/line/manual.hpp"
+#include "skein/error.hpp"
+
+using namespace skein;
+using namespace skein::command;
+using Catch::Contains;
+
+namespace {
+
+struct Line {
+  CLI::App app;
+  int result = 0;
+
+  Line() { make_command_line(app, result); }
+
+  /// The command that the words of `text` begin with, `skein` first; nothing where there is none.
+  const CLI::App* command_of(const std::string& text) const {
+    const CLI::App* found = nullptr;
+    for_each_command(app, [&](const CLI::App& command, const std::string& words) {
+      if ((text + " ").starts_with(words + " ")) found = &command;
+    });
+    return found;
+  }
+
+  /// Calls `check` for each command, with its words as what is captured.
+  template <typename Check>
+  void each(Check check) const {
+    for_each_command(app, [&](const CLI::App& command, const std::string& words) {
+      CAPTURE(words);
+      check(command, words);
+    });
+  }
+};
+
+/// The command lines that the end of a command's help shows, which may call Skein twice.
+std::vector<std::string> examples_of(const CLI::App& command) {
+  std::vector<std::string> examples;
+  std::istringstream lines(command.get_footer());
+  bool begun = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(' ')) begun = line == "Examples:";
+    if (!begun || !line.starts_with("  ") || line.starts_with("   ")) continue;
+    std::size_t at = line.find("skein ");
+    while (at != std::string::npos) {
+      const std::size_t next = line.find("skein ", at + 1);
+      examples.push_back(line.substr(at, next - at));
+      at = next;
+    }
+  }
+  return examples;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("each command says what it is for, and shows how it is used") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string&) {
+    CHECK(!summary_of(command).empty());
+    CHECK(summary_of(command).size() <= 75);
+    CHECK(!examples_of(command).empty());
+  });
+}
+
+TEST_CASE("examples name commands and options that there are") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string&) {
+    for (const std::string& example : examples_of(command)) {
+      CAPTURE(example);
+      const CLI::App* called = line.command_of(example);
+      REQUIRE(called);
+      CHECK(shown_commands(*called).empty());
+      for (const std::string& word : words_of(example)) {
+        if (word.starts_with("--")) CHECK(called->get_option_no_throw(word) != nullptr);
+      }
+    }
+  });
+}
+
+TEST_CASE(
+    "each option says what it does; one with a value, in which unit and what stands without it") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string&) {
+    for (const CLI::Option* option : command.get_options()) {
+      CAPTURE(option->get_name());
+      CHECK(!option->get_description().empty());
+      if (option->get_items_expected_max() == 0) continue;
+      // These are CLI11's words for C++ types, which tell nobody a unit.
+      for (const char* type : {"TEXT", "UINT", "FLOAT", ":"})
+        CHECK_THAT(option->get_type_name(), !Contains(type));
+      CHECK((option->get_required() || text_of(*option).find("default: ") != std::string::npos));
+    }
+  });
+}
+
+TEST_CASE("help fits into 80 columns and does not lose a word") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string& words) {
+    const std::string help = command.get_formatter()->make_help(&command, words, {});
+    std::istringstream lines(help);
+    for (std::string text; std::getline(lines, text);) {
+      CAPTURE(text);
+      CHECK(text.size() <= 80);
+    }
+    const auto shown = words_of(help);
+    for (const CLI::Option* option : command.get_options())
+      for (const std::string& word : words_of(text_of(*option)))
+        CHECK_THAT(shown, Catch::VectorContains(word));
+  });
+}
+
+TEST_CASE("help and the manual page of the whole list every exit code once") {
+  const Line line;
+  for (const std::string& text : {line.app.help(), manual_page(line.app, "skein")}) {
+    for (const char* code : {"\n  0 ", "\n  64 ", "\n  70 ", "\n  71 ", "\n  74 ", "\n  75 ",
+                             "\n  76 ", "\n  78 ", "\n  128 + N "}) {
+      CAPTURE(code);
+      CHECK(text.find(code) != std::string::npos);
+      CHECK(text.find(code) == text.rfind(code));
+    }
+  }
+}
+
+TEST_CASE("a manual page has the sections that people look for") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string& words) {
+    const std::string page = manual_page(command, words);
+    for (const char* section :
+         {".SH NAME\n", ".SH SYNOPSIS\n", ".SH OPTIONS\n", ".SH \"EXAMPLES\"\n"})
+      CHECK_THAT(page, Contains(section));
+  });
+}
+
+TEST_CASE("numbers that make no sense are refused with the option and the range") {
+  const auto refusal = [](const char* text) -> std::string {
+    Line line;
+    try {
+      line.app.parse(text);
+    } catch (const CLI::ParseError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  for (const char* wrong : {"echo pose --count 0", "echo pose --count -1", "echo pose --for 0",
+                            "publish pose 1 --rate 0", "publish pose 1 --rate nan",
+                            "publish pose 1 --rate inf", "top --every 0", "record --split 0",
+                            "replay a.mcap --rate -1", "bench latency --count 0"}) {
+    CAPTURE(wrong);
+    CHECK_THAT(refusal(wrong), Contains("--") && Contains(": must be more than 0"));
+  }
+  for (const char* wrong : {"echo pose --wait -1", "echo pose --for nan", "top --every -1",
+                            "call IGreeter greet --within soon", "calls --for 5x"}) {
+    CAPTURE(wrong);
+    CHECK_THAT(refusal(wrong), Contains("is no length of time"));
+  }
+}
+
+TEST_CASE("help says once what a length of time is, where an option takes one") {
+  const Line line;
+  line.each([&](const CLI::App& command, const std::string& words) {
+    const std::string help = command.get_formatter()->make_help(&command, words, {});
+    const std::size_t first = help.find(kDurationHelp);
+    CHECK((first != std::string::npos) == takes_duration(command));
+    CHECK(first == help.rfind(kDurationHelp));
+  });
+}
+
+TEST_CASE("commands that look list their exit codes") {
+  const Line line;
+  for (const char* command : {"call", "echo", "describe", "info"}) {
+    CAPTURE(command);
+    const std::string help = line.command_of(std::string("skein ") + command)->get_footer();
+    for (const launch::ExitCode& code : kLookingExitCodes)
+      CHECK_THAT(help, Contains("\n  " + std::string(code.code) + " "));
+  }
+}
+
+TEST_CASE("what users of other software type leads to a command that there is") {
+  const Line line;
+  for (const FamiliarName& name : familiar_names()) {
+    CAPTURE(name.theirs, name.ours);
+    CHECK(line.command_of("skein " + name.ours) != &line.app);
+    CHECK(line.command_of("skein " + name.theirs) == &line.app);
+  }
+  CHECK(familiar_name({"service", "list", "-t"}) == "services");
+  CHECK(familiar_name({"nothing", "of", "this"}).empty());
+}
+
+TEST_CASE("there is no completion for a shell that is not known") {
+  const Line line;
+  CHECK_THROWS_AS(completion(line.app, "fishh"), InvalidArgument);
+  CHECK_THROWS_WITH(completion(line.app, "fishh"), Contains("did you mean 'fish'?"));
+}

@@ -1,0 +1,106 @@
+// How the doctor reads this machine.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "command/doctor/reading.hpp"
+#include "core/file_descriptor.hpp"
+#include "launch/mission_claim.hpp"
+
+using namespace skein;
+using namespace skein::command::doctor;
+
+namespace fs = std::filesystem;
+
+TEST_CASE("the kernel's list of UDP sockets is read by its columns") {
+  const std::string text =
+      "   sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout "
+      "inode ref pointer drops            \n"
+      "14340: 0100007F:1CE8 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 "
+      "2174065 2 00000000b6b2d9e4 17\n"
+      "a line that is none\n";
+  const auto sockets = parse_udp(text);
+  REQUIRE(sockets.size() == 1);
+  CHECK(sockets[0].port == 7400);
+  CHECK(sockets[0].inode == 2174065);
+  CHECK(sockets[0].dropped == 17);
+  CHECK(parse_udp("").empty());
+}
+
+TEST_CASE("a library's version is what follows .so") {
+  CHECK(version_of("/usr/lib/libfastrtps.so.2.9.1") == "2.9.1");
+  CHECK(version_of("/usr/lib/libfastrtps.so").empty());
+  CHECK(version_of("").empty());
+}
+
+TEST_CASE("a segment in shared memory is in use while somebody has it open, or holds its lock") {
+  std::string pattern = (fs::temp_directory_path() / "skein-shm-XXXXXX").string();
+  REQUIRE(mkdtemp(pattern.data()));
+  const fs::path folder = pattern;
+  for (const char* name :
+       {"fastrtps_dead", "fastrtps_open", "fastrtps_locked", "fastrtps_locked_el",
+        "sem.fastrtps_open_mutex", "sem.fastrtps_dead_mutex", "somebody_elses"})
+    std::ofstream(folder / name) << "x";
+  const FileDescriptor open_one(open((folder / "fastrtps_open").c_str(), O_RDONLY | O_CLOEXEC));
+  FileDescriptor lock(open((folder / "fastrtps_locked_el").c_str(), O_RDONLY | O_CLOEXEC));
+  REQUIRE(flock(lock.get(), LOCK_EX) == 0);
+  const auto in_use = [&](const std::string& name) {
+    const auto memory = read_shared_memory(folder);
+    for (const SharedFile& file : memory.value().files)
+      if (file.path == folder / name) return file.in_use;
+    FAIL(name << " is not told");
+    return false;
+  };
+  CHECK(!in_use("fastrtps_dead"));
+  CHECK(in_use("fastrtps_open"));
+  CHECK(in_use("fastrtps_locked"));
+  CHECK(in_use("fastrtps_locked_el"));
+  CHECK(in_use("sem.fastrtps_open_mutex"));
+  CHECK(!in_use("sem.fastrtps_dead_mutex"));
+  CHECK(read_shared_memory(folder)->files.size() == 6);
+  lock.reset();
+  CHECK(!in_use("fastrtps_locked"));
+  fs::remove_all(folder);
+  CHECK(!read_shared_memory(folder));
+}
+
+TEST_CASE("a launcher is seen by its claim, with the domain of its mission") {
+  profile::MissionProfile mission;
+  mission.name = "survey";
+  mission.domain = 48;
+  const auto on_48 = [] {
+    std::size_t count = 0;
+    for (const Launcher& launcher : read_launchers({})) count += launcher.domain == 48 ? 1 : 0;
+    return count;
+  };
+  CHECK(on_48() == 0);
+  {
+    const launch::MissionClaim claim(mission, "");
+    CHECK(on_48() == 1);
+  }
+  CHECK(on_48() == 0);
+}
+
+TEST_CASE("other sockets are no launchers") {
+  CHECK(launch::claimed_domain("@skein-launch-1000-48-123") == 48);
+  for (const char* name : {"", "@", "@skein-launch-", "@skein-launch-1000",
+                           "skein-launch-1000-48-1", "@skein-launch-1000-x", "/run/x"}) {
+    CAPTURE(name);
+    CHECK(!launch::claimed_domain(name));
+  }
+}
+
+TEST_CASE("this machine can be read") {
+  const Facts facts = collect_facts();
+  CHECK(!facts.interfaces.empty());
+  CHECK(facts.processors.present >= 1);
+  CHECK(facts.vendors.size() >= 2);
+  for (const VendorModule& vendor : facts.vendors) {
+    CAPTURE(vendor.name, vendor.library);
+    CHECK(vendor.failure.empty() == !vendor.version.empty());
+  }
+}

@@ -1,0 +1,136 @@
+// What the doctor concludes about the system beside its network, of machines that do not exist.
+#include "machines.hpp"
+
+using namespace skein::command::doctor;
+using Catch::Contains;
+using skein::test::only;
+using skein::test::sound_machine;
+
+namespace {
+
+constexpr std::uint64_t kMiB = 1 << 20;
+
+}  // namespace
+
+TEST_CASE(
+    "a vendor that is missing is an error where the mission uses it, or where there is no other") {
+  Facts facts = sound_machine();
+  facts.vendors[0].failure = "no libskein_fastdds.so";
+  Symptom symptom = only(diagnose_system({}, facts), "fastdds");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK(symptom.evidence == "no libskein_fastdds.so");
+  Purpose purpose;
+  purpose.vendors = {"fastdds"};
+  CHECK(only(diagnose_system(purpose, facts), "fastdds").severity == Severity::Error);
+  facts.vendors[1].failure = "no libskein_cyclonedds.so";
+  CHECK(only(diagnose_system({}, facts), "fastdds").severity == Severity::Error);
+}
+
+TEST_CASE("another version of a vendor than the tested one is a warning") {
+  Facts facts = sound_machine();
+  facts.vendors[1].version = "0.11.0";
+  const Symptom symptom = only(diagnose_system({}, facts), "cyclonedds");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK_THAT(symptom.cause, Contains("tested with version 0.10.2") && Contains("this is 0.11.0"));
+}
+
+TEST_CASE("a clock that is not synchronised matters between hosts") {
+  Facts facts = sound_machine();
+  facts.clock->synchronised = false;
+  CHECK(only(diagnose_system({}, facts), "clock").severity == Severity::Note);
+  Purpose purpose;
+  SECTION("on an interface") { purpose.interfaces = {"eth0"}; }
+  SECTION("with peers elsewhere") { purpose.several_hosts = true; }
+  CHECK(only(diagnose_system(purpose, facts), "clock").severity == Severity::Warning);
+}
+
+TEST_CASE("a clock that jumps is a warning even where it is synchronised") {
+  Facts facts = sound_machine();
+  facts.clock->stepped = std::chrono::milliseconds(-250);
+  const Symptom symptom = only(diagnose_system({}, facts), "clock");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK_THAT(symptom.evidence, Contains("-250 ms"));
+}
+
+TEST_CASE(
+    "files that dead processes left in shared memory are told with their size and how to remove "
+    "them") {
+  Facts facts = sound_machine();
+  facts.shared_memory->files = {{"/dev/shm/fastrtps_1", 16 * kMiB, false},
+                                {"/dev/shm/fastrtps_2", 16 * kMiB, true}};
+  const Symptom symptom = only(diagnose_system({}, facts), "shared memory");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK_THAT(symptom.cause, Contains("1 file behind, 16 MiB"));
+  CHECK(symptom.remedy == "rm /dev/shm/fastrtps_1");
+  facts.shared_memory->files[0].in_use = true;
+  CHECK(only(diagnose_system({}, facts), "shared memory").severity == Severity::Fine);
+}
+
+TEST_CASE("shared memory without room matters to missions that use it") {
+  Facts facts = sound_machine();
+  facts.shared_memory->free = 16 * kMiB;
+  CHECK(worst_of(diagnose_system({}, facts)) == Severity::Note);
+  Purpose purpose;
+  purpose.shared_memory = true;
+  CHECK(worst_of(diagnose_system(purpose, facts)) == Severity::Warning);
+  facts.shared_memory = std::nullopt;
+  CHECK(worst_of(diagnose_system(purpose, facts)) == Severity::Error);
+}
+
+TEST_CASE("few files, little address space, no priority and no locked memory are each a warning") {
+  Facts facts = sound_machine();
+  Purpose purpose;
+  std::string evidence;
+  SECTION("files") {
+    facts.limits.open_files = 256;
+    evidence = "ulimit -n";
+  }
+  SECTION("address space") {
+    facts.limits.address_space = 1024 * kMiB;
+    evidence = "ulimit -v";
+  }
+  SECTION("priority") {
+    facts.limits.real_time_priority = 0;
+    purpose.priority = 80;
+    evidence = "ulimit -r";
+  }
+  SECTION("locked memory") {
+    facts.limits.locked_memory = 8 * kMiB;
+    purpose.locks_memory = true;
+    evidence = "ulimit -l";
+  }
+  const Symptom symptom = only(diagnose_system(purpose, facts), "limits");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK(symptom.evidence == evidence);
+}
+
+TEST_CASE("limits on what the mission does not ask for are none") {
+  Facts facts = sound_machine();
+  facts.limits.real_time_priority = 0;
+  facts.limits.locked_memory = 0;
+  CHECK(only(diagnose_system({}, facts), "limits").severity == Severity::Fine);
+}
+
+TEST_CASE("too little address space for one entity is an error") {
+  Facts facts = sound_machine();
+  facts.limits.address_space = 200 * kMiB;
+  CHECK(only(diagnose_system({}, facts), "limits").severity == Severity::Error);
+}
+
+TEST_CASE("less than a processor, or than 256 MiB, is a warning") {
+  Facts facts = sound_machine();
+  facts.processors.quota = 1.5;
+  CHECK(only(diagnose_system({}, facts), "processors").severity == Severity::Note);
+  facts.processors.quota = 0.5;
+  CHECK_THAT(only(diagnose_system({}, facts), "processors").cause,
+             Contains("may use 0.5 of 4 processors"));
+  CHECK(only(diagnose_system({}, facts), "processors").severity == Severity::Warning);
+  facts.processors.memory = 128 * kMiB;
+  CHECK(only(diagnose_system({}, facts), "memory").severity == Severity::Warning);
+}
+
+TEST_CASE("a folder of plugins that is not there is a warning") {
+  Facts facts = sound_machine();
+  facts.missing_folders = {"/opt/plugins"};
+  CHECK(only(diagnose_system({}, facts), "plugins").evidence == "/opt/plugins");
+}

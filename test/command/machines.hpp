@@ -1,0 +1,44 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "command/doctor/diagnosis.hpp"
+
+// Machines that do not exist, for the doctor.
+namespace skein::test {
+
+/// One on which nothing is wrong.
+inline command::doctor::Facts sound_machine() {
+  using namespace command::doctor;
+  constexpr std::uint64_t kMiB = 1 << 20;
+  Facts facts;
+  facts.interfaces = {{"lo", {"127.0.0.1"}, true, false}, {"eth0", {"10.0.0.2"}, true, true}};
+  facts.receive_buffer = facts.send_buffer = 4 * kMiB;
+  facts.any_ports = {32768, 60999};
+  facts.vendors = {{"fastdds", "", "libfastrtps.so.2.9.1", "2.9.1", "2.9.1"},
+                   {"cyclonedds", "", "libddsc.so.0.10.2", "0.10.2", "0.10.2"}};
+  facts.clock = SystemClock{true, {}};
+  facts.shared_memory = SharedMemory{1024 * kMiB, {}};
+  facts.firewall = "";
+  facts.limits = {1024, std::nullopt, std::nullopt, 99};
+  facts.processors = {4, 4, std::nullopt, std::nullopt};
+  return facts;
+}
+
+/// What was found about a thing; the test fails unless it is one finding.
+inline command::doctor::Symptom only(const command::doctor::Symptoms& symptoms,
+                                     const std::string& about) {
+  const command::doctor::Symptom* found = nullptr;
+  for (const auto& symptom : symptoms) {
+    if (symptom.about != about) continue;
+    INFO("two findings about " << about << ": " << symptom.cause);
+    REQUIRE(!found);
+    found = &symptom;
+  }
+  INFO("no finding about " << about);
+  REQUIRE(found);
+  return *found;
+}
+
+}  // namespace skein::test

@@ -1,0 +1,18 @@
+#include "launch/exit_codes.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+using namespace skein::launch;
+
+TEST_CASE("The documentation lists every exit code of a launch, in the same words") {
+  std::ostringstream text;
+  text << std::ifstream(SKEIN_MISSION_PROFILES "/README.md").rdbuf();
+  for (const ExitCode& entry : kExitCodes) {
+    const std::string row =
+        "| " + std::string(entry.code) + " | " + std::string(entry.meaning) + " |";
+    CAPTURE(row);
+    CHECK(text.str().find(row) != std::string::npos);
+  }
+}

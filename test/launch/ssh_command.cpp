@@ -1,0 +1,36 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+#include "launch/shell_word.hpp"
+#include "launch/ssh_attendance.hpp"
+#include "temporary_folder.hpp"
+
+using namespace skein::launch;
+
+TEST_CASE("A connection to another host is its own, whatever the user's ssh would share") {
+  if (std::system("command -v ssh > /dev/null") != 0) {
+    WARN("not checked: ssh is not installed");
+    return;
+  }
+  TemporaryFolder folder;
+  const std::string config =
+      folder.write("config", "ControlMaster auto\nControlPath /tmp/shared\nControlPersist yes\n");
+  SshAttendance attendance;
+  attendance.host = "beta";
+  attendance.command = "true";
+  std::string command;  // -G: what would be done, by the user's configuration and these words
+  for (const std::string& word : ssh_command(attendance))
+    command += (command.empty() ? "" : " ") + shell_word(word) +
+               (command.empty() ? " -G -F " + config : "");
+  std::FILE* output = ::popen(command.c_str(), "r");
+  REQUIRE(output != nullptr);
+  std::string said;
+  std::array<char, 4096> buffer;
+  while (const auto size = std::fread(buffer.data(), 1, buffer.size(), output))
+    said.append(buffer.data(), size);
+  CHECK(::pclose(output) == 0);
+  CHECK_THAT(said, Catch::Contains("controlmaster false\n"));
+  CHECK_THAT(said, !Catch::Contains("/tmp/shared"));
+}

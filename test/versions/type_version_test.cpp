@@ -1,0 +1,65 @@
+#include "dds/type_version.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "dds/compatibility.hpp"
+
+using namespace skein;
+using namespace skein::dds;
+
+namespace {
+
+/// A version with so many members; the last one must be understood.
+Qos version_of(std::uint32_t members) {
+  Qos qos;
+  qos.type.signature = 7;
+  for (std::uint32_t i = 0; i < members; ++i) {
+    qos.type.members.push_back({1, i, 100 + i, i + 1 == members, "A::S.m"});
+  }
+  return qos;
+}
+
+/// As discovery brings it.
+Qos carried(const Qos& qos) {
+  Qos result = qos;
+  result.type = from_user_data(to_user_data(qos.type));
+  return result;
+}
+
+bool match(const Qos& one, const Qos& other) {
+  return !find_incompatibility("t", {}, one, other) && !find_incompatibility("t", {}, other, one);
+}
+
+}  // namespace
+
+TEST_CASE("a version is carried by discovery and compared on the other side") {
+  CHECK(match(version_of(3), carried(version_of(3))));
+  CHECK_FALSE(match(version_of(3), carried(version_of(4))));  // the fourth must be understood
+  CHECK(match(version_of(3), Qos{}));                         // whose peer tells none
+  Qos another = version_of(3);
+  another.type.members[1].digest = 9;
+  const auto why = find_incompatibility("t", {}, another, carried(version_of(3)));
+  REQUIRE(why);
+  CHECK(why->policy == "type");
+  CHECK(why->offered == "A::S.m in version 00000009");
+  CHECK(why->requested == "A::S.m in version 00000065");
+}
+
+TEST_CASE("members that discovery does not carry are not compared") {
+  CHECK(to_user_data(version_of(500).type).size() < 2048);
+  CHECK(match(version_of(130), carried(version_of(130))));
+  CHECK(match(version_of(130), carried(version_of(500))));
+  Qos another = version_of(130);
+  another.type.members[100].digest = 9;
+  CHECK_FALSE(match(another, carried(version_of(130))));
+}
+
+TEST_CASE("user data of others, or broken one, tells no version") {
+  auto data = to_user_data(version_of(3).type);
+  CHECK(from_user_data(data).members.size() == 3);
+  data.pop_back();
+  CHECK(from_user_data(data).signature == 0);
+  data[0] = 'X';
+  CHECK(from_user_data(data).signature == 0);
+  CHECK(from_user_data({}).signature == 0);
+}
