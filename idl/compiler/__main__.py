@@ -46,11 +46,15 @@ def _namespace(text):
 
 def _compiled(path, arguments):
     if not os.path.isfile(path):
-        sys.stderr.write(f"{path}: error: there is no such file\n")
+        sys.stderr.write(f"{path}: error: {'it is no file' if os.path.exists(path) else 'there is no such file'}\n")
         return False
     compilation = Compilation(path, [*arguments.folders, *_OWN_FOLDERS], arguments.definitions, arguments.namespace)
     if compilation.accepted and not arguments.check:
-        compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile)
+        try:
+            compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile)
+        except OSError as error:
+            sys.stderr.write(f"{error.filename or arguments.out}: error: cannot be written: {error.strerror}; name another folder by --out\n")
+            return False
     return compilation.accepted
 
 

@@ -19,7 +19,7 @@ UNION_MEMBER = MEMBER | {"discriminator", "select", "tag_", "held_", "index_of"}
 PARAMETER = MACROS | {"in", "out"}
 OPERATION = MEMBER | {
     "Proxy", "Skeleton", "interface_info", "channel", "disconnect", "within", "dispatch", "call", "async_call",
-    "set_timeout", "call_time", "ProxyBase", "kDefaultTimeout", "implementation", "TypedCall",
+    "set_timeout", "call_time", "ProxyBase", "kDefaultTimeout", "implementation", "TypedCall", "type_support",
 }  # fmt: skip
 
 

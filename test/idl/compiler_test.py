@@ -90,6 +90,11 @@ class WhatIsNotSupported(CompilerTest):
         for text, said in {
             "typedef sequence<any> T[3];": "the typedef T is left out: " + ANY,
             "native T;": "the native T is left out: it has no form on the wire",
+            "valuetype T { public long x; };": "the valuetype T is left out: objects do not travel by value; use a struct",
+            "abstract valuetype T { void f(); };": "the valuetype T is left out: objects do not travel by value; use a struct",
+            "valuetype T;": "the valuetype T is left out: objects do not travel by value; use a struct",
+            "valuetype T long;": "the boxed valuetype T is left out: objects do not travel by value; use @optional, or a sequence with a "
+            "bound of 1, for what may be absent",
             "local interface T {};": "the local interface T is left out: nothing of it travels; write a C++ class",
             "abstract interface T;": "the abstract interface T is left out: it may stand for an object that travels by value; use an "
             "ordinary interface or a struct",
@@ -101,9 +106,6 @@ class WhatIsNotSupported(CompilerTest):
 
     def test_declarations_that_are_refused_by_name(self):
         refusals = {
-            "valuetype V { public long x; };": "valuetype is not supported: objects do not travel by value; use a struct",
-            "valuetype V long;": "boxed valuetypes are not supported: use @optional, or a sequence with a bound of 1, for what may be "
-            "absent",
             "component C {};": "components are not supported: an entity is written in C++; use its interfaces",
             "module M<typename T> { struct S { T x; }; };": "template modules are not supported: write out the module for each of its "
             "arguments",
@@ -231,7 +233,48 @@ class WhatMakesNoSense(CompilerTest):
             self.assert_finding(f"interface I {{ {operation} }};", refusal)
 
 
+    def test_a_conditional_that_does_not_end(self):
+        self.assert_refused("#ifndef G\n#define G\nstruct S { long x; };\n", "x.idl:1: error: this #ifndef does not end; add the #endif")
+
+    def test_what_several_bases_declare_alike_is_named_with_its_base(self):
+        bases = "interface A { typedef long T; };\ninterface B { typedef string T; };\n"
+        self.assert_refused(bases + "interface C : A, B { attribute T x; };\n",
+                            "x.idl:3: error: 'T' is inherited from several bases, see x.idl:1 and x.idl:2; write which, as in Base::T")  # fmt: skip
+        self.assert_compiles(bases + "interface C : A, B { attribute A::T x; };\n")
+        self.assert_compiles("interface R { typedef long T; };\ninterface A : R { };\ninterface B : R { };\n"
+                             "interface C : A, B { attribute T x; };\n")  # fmt: skip
+
+    def test_an_attribute_is_no_array(self):
+        self.assert_refused("interface I { attribute long v[3]; };\n",
+                            "x.idl:1: error: the attribute 'v' cannot be an array; give the array a name by typedef, and use that")  # fmt: skip
+
+    def test_a_name_with_quotes_is_a_file_like_others(self):
+        code, said = self.compile("struct S { Nope x; };\n", name='a"b.idl')
+        self.assertNotEqual(code, 0, said)
+
+
+class Annotations(CompilerTest):
+    def test_a_flag_may_be_said_not_to_be_set(self):
+        self.assert_compiles("const boolean NO = FALSE;\nstruct S { @key(FALSE) long a; @optional(NO) long b; @key(TRUE) long c; };\n")
+        self.assertEqual(re.findall(r"@\w+|\b[abc];", self.output("x.dds.idl"))[-4:], ["a;", "b;", "@key", "c;"])
+        self.assert_refused_anew("struct S { @key(3) long a; };\n", "x.idl:1: error: TRUE or FALSE is expected here, for boolean")
+
+    def test_autoid_is_by_hash_and_holds_for_what_a_module_declares(self):
+        self.assert_compiles("@mutable @autoid struct A { long color; };\n@mutable @autoid(HASH) union B switch (long) { case 1: long color; };\n"
+                             "@autoid(HASH) module m { @mutable struct C { long color; };\n"
+                             "  @mutable @autoid(SEQUENTIAL) struct D { long color; }; };\n@mutable struct E { long color; };\n")  # fmt: skip
+        color, discriminator = "262528368", "0"
+        self.assertEqual(re.findall(r"writer.member\((\d+),", self.output("x.idl.cpp")), [color, discriminator, color, color, "0", "0"])
+
+    def assert_refused_anew(self, text, *findings):
+        shutil.rmtree(os.path.join(self.folder, "out"))
+        self.assert_refused(text, *findings)
+
+
 class Constants(CompilerTest):
+    def test_the_greatest_float_is_a_float_however_it_is_written(self):
+        self.assert_compiles("const float A = 3.40282347e+38; const float B = -3.4028235e38; const double C = 1.7976931348623157e308;\n")
+
     def test_expressions_are_those_of_exact_integers(self):
         values = {
             "long A = -2147483648;": "inline constexpr std::int32_t A = -2147483648;",

@@ -155,7 +155,7 @@ _IDLC = [
     Rule("idlc: wide characters", "idlc", r"syntax error|'L' cannot be resolved|signal 6", r"\bw(char|string)\b",
          "7.4.1.4.4: valid; idlc has neither wchar nor wstring, and aborts where a type has one."),
     Rule("idlc: extended types", "idlc", r"syntax error", r"\b(map<|bitset|bitfield)", "7.4.13: valid; idlc has no maps and no bitsets."),
-    Rule("idlc: other building blocks", "idlc", r"syntax error", r"\b(exception|interface|any|fixed|native|typeid|typeprefix|import)\b",
+    Rule("idlc: other building blocks", "idlc", r"syntax error", r"\b(exception|interface|any|fixed|native|valuetype|typeid|typeprefix|import)\b",
          "7.4.2 to 7.4.6: valid; idlc has data types alone. Skein reads the others, and leaves out with a warning what cannot travel "
          "and is not used."),
     Rule("idlc: loose constants", "idlc", r"Cannot evaluate (enumerator|integer literal) as|name '([Tt]rue|false)'", r"const |case ",

@@ -10,9 +10,13 @@ KNOWN = frozenset(
     """ami appendable autoid bit_bound allowed_data_representation data_representation default default_literal default_nested extensibility external final
     hashid id ignore_literal_names key max min must_understand mutable nested non_serialized oneway optional position range
     service topic try_construct unit value verbatim
-    DDSService DDSRequestTopic DDSReplyTopic Choice Empty Mutable
+    DDSService DDSRequestTopic DDSReplyTopic Choice Empty
     idempotent stream""".split()
 )
+
+
+# Those that are set or not: `@key`, `@key(FALSE)`.
+FLAGS = frozenset("external idempotent key must_understand non_serialized nested oneway optional".split())
 
 
 @dataclass(eq=False)
@@ -21,6 +25,7 @@ class Annotation:
     arguments: dict  # name: tree of the value; what has no name is `value`
     tree: object
     token: object
+    off: bool = False  # a flag that is said not to be set
 
 
 class Annotations:
@@ -43,8 +48,7 @@ class Annotations:
     def has(self, name):
         """Whether a flag is set: `@key`, `@key(TRUE)`."""
         found = self.find(name)
-        value = found and found.arguments.get("value")
-        return found is not None and (value is None or value.data != "false")
+        return found is not None and not found.off
 
 
 def _read(tree):

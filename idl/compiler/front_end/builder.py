@@ -15,11 +15,10 @@ _NOT_TRAVELLING = {
     "native": "it has no form on the wire",
     "local": "nothing of it travels; write a C++ class",
     "abstract": "it may stand for an object that travels by value; use an ordinary interface or a struct",
+    "valuetype": "objects do not travel by value; use a struct",
+    "boxed valuetype": "objects do not travel by value; use @optional, or a sequence with a bound of 1, for what may be absent",
 }
 _REFUSED = {
-    "value": "valuetype is not supported: objects do not travel by value; use a struct",
-    "value_forward": "valuetype is not supported: objects do not travel by value; use a struct",
-    "value_box": "boxed valuetypes are not supported: use @optional, or a sequence with a bound of 1, for what may be absent",
     "component": "components are not supported: an entity is written in C++; use its interfaces",
     "component_forward": "components are not supported: an entity is written in C++; use its interfaces",
     "home": "homes are not supported: they make components; use an interface",
@@ -50,6 +49,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._comments = comments.Comments(source)
         self._scope = self.root = scopes.Scope()
         self._modules = ()
+        self._hashed = False  # by @autoid of an enclosing module
         self._outer = []  # enclosing structs, unions, interfaces
         self._cause = None  # of the last refusal
         self._lenient = False  # what cannot be used is no error here
@@ -147,7 +147,19 @@ class Builder(Types, Structures, Enumerations, Interfaces):
                 if each.name == name:  # once
                     self._annotations[name] = True
                 self.report.warning(self._place(each.token), said)
+            value = each.arguments.get("value")
+            if each.name in annotations.FLAGS and value is not None:
+                each.off = not constants.value(value, model.Primitive("boolean"), self._resolve)
         return found
+
+    def _by_hash(self, noted):
+        """Whether members have the hashes of their names as identifiers: HASH is what @autoid says without an argument, and what it says
+        of a module holds for the types in it (DDS-XTypes 1.3, 7.3.1.2.1.1)."""
+        given = noted.find("autoid")
+        if given is None:
+            return self._hashed
+        value = given.arguments.get("value")
+        return value is None or "HASH" in annotations.written(value)
 
     def scope_at(self, offset):
         """The path of the innermost module, interface or struct around an offset."""
@@ -219,9 +231,11 @@ class Builder(Types, Structures, Enumerations, Interfaces):
             self._check_free(name, plain)
             found = self._scope.names[plain] = scopes.Symbol(None, self._place(name), scopes.Scope(plain, self._scope))
         self._scope, scope = found.scope, self._scope
+        hashed, self._hashed = self._hashed, self._by_hash(noted)
         self._modules += (plain,)
         self._each(definitions)
         self._modules = self._modules[:-1]
+        self._hashed = hashed
         self._scope = scope
 
     def _const(self, tree, noted):
@@ -259,6 +273,14 @@ class Builder(Types, Structures, Enumerations, Interfaces):
     def _native(self, tree, noted):
         self._not_travelling(tree.children[0], "native", "native")
 
+    def _value(self, tree, noted):
+        self._not_travelling(_name(tree), "valuetype", "valuetype")
+
+    _value_forward = _value
+
+    def _value_box(self, tree, noted):
+        self._not_travelling(_name(tree), "boxed valuetype", "boxed valuetype")
+
     def _not_travelling(self, name, kind, spoken):
         cause = scopes.Cause(self._place(name), _NOT_TRAVELLING[kind])
         self._pass_over(name, f"the {spoken} {scopes.plain(name)} is left out: {_NOT_TRAVELLING[kind]}", cause)
@@ -280,5 +302,9 @@ class Builder(Types, Structures, Enumerations, Interfaces):
     _type_id = _import = _type_prefix
 
     def _refused(self, tree, noted):
-        name = next(each for each in tree.scan_values(lambda token: token.type == "IDENTIFIER"))
-        self._refuse(name, _REFUSED[tree.data])
+        self._refuse(_name(tree), _REFUSED[tree.data])
+
+
+def _name(tree):
+    """What a declaration declares."""
+    return next(each for each in tree.scan_values(lambda token: token.type == "IDENTIFIER"))

@@ -1,6 +1,7 @@
 """Constant expressions (OMG IDL 4.2, clause 7.4.1.4.3), in exact integers: what counts is whether the result fits."""
 
 import re
+import struct
 
 import lark
 
@@ -45,7 +46,6 @@ _RANGES = {
     "unsigned long long": (0, (1 << 64) - 1),
 }
 _WIDEST = 1 << 12  # bits of an intermediate result
-_FLOAT_MAX = 3.4028234663852886e38
 _ESCAPES = {"n": "\n", "t": "\t", "v": "\v", "b": "\b", "r": "\r", "f": "\f", "a": "\a"}
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{1,4}|x[0-9a-fA-F]{1,2}|[0-7]{1,3}|[ntvbrfa\\?'\"]|(?P<other>.))", re.DOTALL)
 
@@ -132,8 +132,13 @@ def _fitted_number(tree, found, idl):
         number = float(found)
     except OverflowError:
         number = float("inf")
-    if abs(number) > (_FLOAT_MAX if idl == "float" else 1.7976931348623157e308):
-        raise Fault(tree, f"the number does not fit into {idl}")
+    try:
+        struct.pack("f" if idl == "float" else "d", number)  # rounds, as C++ does
+    except OverflowError:
+        number = float("inf")
+    if number in (float("inf"), float("-inf")):
+        least = ", of which this compiler knows double's range" if idl == "long double" else ""
+        raise Fault(tree, f"the number does not fit into {idl}{least}")
     return number
 
 

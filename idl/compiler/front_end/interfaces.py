@@ -149,6 +149,8 @@ class Interfaces:
         documentation = self._documentation(tree, export)
         for declarator in declarators.children:
             name = scopes.plain(declarator.children[1])
+            if len(declarator.children) > 3:
+                raise constants.Fault(declarator, f"the attribute '{name}' cannot be an array; give the array a name by typedef, and use that")
             shared = dict(
                 cpp_name=names.unique(name, names.OPERATION, taken),
                 async_name=_async_name(name, plain),

@@ -74,6 +74,13 @@ class Scope:
                     return found
         return None
 
+    def _inherited(self, name):
+        """All symbols of that name, here or, if there is none, in the bases."""
+        if name in self.names:
+            return [self.names[name]]
+        found = {id(symbol): symbol for base in self.bases for symbol in base._inherited(name)}
+        return list(found.values())
+
     def find(self, parts, absolute):
         """The symbol of a scoped name that is used here, or None and why there is none."""
         scope = self
@@ -82,6 +89,9 @@ class Scope:
         found = scope.own(parts[0])
         if found is None:
             return None, f"there is no '{parts[0]}' here{suggestion(parts[0], self._known() + _TYPES)}"
+        if len(several := scope._inherited(parts[0])) > 1:
+            places = " and ".join(str(symbol.place) for symbol in several)
+            return None, f"'{parts[0]}' is inherited from several bases, see {places}; write which, as in Base::{parts[0]}"
         for index, part in enumerate(parts[1:], 1):
             outer = "::".join(parts[:index])
             if isinstance(found.what, LeftOut):

@@ -12,7 +12,7 @@ _MARKER = re.compile(r'# (\d+) "((?:[^"\\]|\\.)*)"((?: \d)*)$')
 _PRAGMA = re.compile(r"\s*#\s*pragma\b(.*)$")
 _COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 _INCLUDE = re.compile(r'\s*#\s*include\s*["<]([^">]*)[">]')
-_FINDING = re.compile(r"(.+?):(\d+):(\d+): (?:fatal )?error: (.*)$")
+_FINDING = re.compile(r"(.+?):(\d+):(?:(\d+):)? (?:fatal )?error: (.*)$")
 _ENTER, _LEAVE = " 1", " 2"
 
 
@@ -40,9 +40,9 @@ class Source:
     def __init__(self, path, folders, definitions, report):
         command = ["cpp", "-x", "c", "-C", "-undef", "-nostdinc", "-w", "-fdiagnostics-plain-output", "-D__SKEIN_IDL__"]
         command += ["-I" + folder for folder in folders] + ["-D" + definition for definition in definitions]
-        done = subprocess.run([*command, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
         report.source = self
         self.path = path
+        done = _preprocessed([*command, path])
         self.files = [path]  # each that was read, as the preprocessor names it
         self.direct = []  # what the main file includes: as written, as the preprocessor names it, place of the directive
         self.included = {}  # file: what it includes, directly or not
@@ -55,9 +55,12 @@ class Source:
         self.text = self._without_comments("\n".join(map(self._read, map(_decoded, done.stdout.split(b"\n")))))
         self._starts = _line_starts(self.text)
         self.pragmas = [Pragma(text, Place(*self._places[index]), self._starts[index]) for index, text in self.pragmas]
-        for line in done.stderr.decode(errors="replace").splitlines():
+        said = done.stderr.decode(errors="replace").splitlines()
+        for line in said:
             if found := _FINDING.match(line):
                 self._report(found, report)
+        if done.returncode != 0 and report.errors == 0:
+            report.error(Place(path, 1), f"the preprocessor gave up: {said[-1] if said else f'it ended with {done.returncode}'}")
 
     def place(self, offset):
         index = bisect.bisect_right(self._starts, offset) - 1
@@ -79,8 +82,9 @@ class Source:
     def _read(self, line):
         """A line without what the preprocessor wrote for us; notes where it is from."""
         if found := _MARKER.match(line):
-            self._enter(found[2], int(found[1]), found[3])
-            self._places.append((found[2], int(found[1]) - 1))
+            file = re.sub(r"\\(.)", r"\1", found[2])
+            self._enter(file, int(found[1]), found[3])
+            self._places.append((file, int(found[1]) - 1))
             return ""
         file, number = self._places[-1] if self._places else (self.path, 0)
         self._places.append((file, number + 1))
@@ -138,7 +142,16 @@ class Source:
         if missing:
             name = missing["name"] or missing["angled"]
             reason = f"there is no file '{name}' here or in the folders given by -I; add the folder that holds it"
-        report.error(Place(os.path.normpath(found[1]), int(found[2]), int(found[3])), reason)
+        elif opened := re.match(r"unterminated (#\w+)$", reason):
+            reason = f"this {opened[1]} does not end; add the #endif"
+        report.error(Place(os.path.normpath(found[1]), int(found[2]), int(found[3] or 0)), reason)
+
+
+def _preprocessed(command):
+    try:
+        return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+    except FileNotFoundError:
+        return subprocess.CompletedProcess(command, 127, b"", b"there is no program 'cpp' in PATH; install it (Debian's package cpp)")
 
 
 def _line_starts(text):

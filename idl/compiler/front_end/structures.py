@@ -18,7 +18,7 @@ class Structures:
         base = rest.pop(0) if kind is model.Struct else None
         struct = self._defined(kind, name, tree)
         struct.extensibility = self._extensibility(noted)
-        hashed = "HASH" in annotations.written(noted.find("autoid").arguments.get("value")) if noted.find("autoid") else False
+        hashed = self._by_hash(noted)
         struct.documentation = struct.documentation or annotations.verbatim(noted)
         self._span(name, tree)
         supported = base is None or self._inherit(struct, base)
@@ -188,7 +188,7 @@ class Structures:
         used = {}
         for case in cases if supported else []:
             try:
-                supported = self._case(union, case, taken, used) and supported
+                supported = self._case(union, case, taken, used, self._by_hash(noted)) and supported
             except constants.Fault as fault:
                 self._fault(fault)
                 supported = False
@@ -203,7 +203,7 @@ class Structures:
         self._error(where, "a union is switched by a whole number, a character, a boolean or an enumeration")
         return False
 
-    def _case(self, union, tree, taken, used):
+    def _case(self, union, tree, taken, used, hashed):
         noted = [child for child in tree.children if child.data == "annotations"]
         labels = [child for child in tree.children if child.data in ("label", "default_label")]
         kind, declarator = tree.children[-2:]
@@ -229,7 +229,7 @@ class Structures:
             self._place(declarator),
             documentation=self._documentation(declarator) or self._documentation(kind) or self._documentation(tree),
             annotations=notes,
-            id=self._member_id(union.cases, declarator.children[1], notes, hashed=False, first=1, least=int(union.extensibility == "mutable")),
+            id=self._member_id(union.cases, declarator.children[1], notes, hashed, first=1, least=int(union.extensibility == "mutable")),
         )
         union.cases.append(case)
         return True
