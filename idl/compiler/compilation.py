@@ -30,10 +30,18 @@ class Compilation:
         self._built = builder.Builder(self._source, self._report, self._report.errors > 0, namespace)
         if tree is not None:
             self._built.build(tree)
+            self._check_includes()
         if self.accepted:
             keys.apply(self._built, pragmas.keylists(self._source, self._built.scope_at, self._report), self._report)
         if self.accepted:
             analysis.analyse(self._built, self._report)
+
+    def _check_includes(self):
+        """The header of an included file is included outside of everything."""
+        for written, path, place, offset in self._source.direct:
+            if self._built.scope_at(offset) and self._built.declaring & {path, *self._source.included.get(path, ())}:
+                self._report.error(place, f"'{written}' is included within '{'::'.join(self._built.scope_at(offset))}'; include it outside, and write the "
+                                   "module in it")  # fmt: skip
 
     @property
     def accepted(self):
@@ -65,7 +73,7 @@ class Compilation:
     def _usable_includes(self):
         """Without included files that declare nothing, and those that have no output, because they were refused; nothing of them is used."""
         found = []
-        for written, path, place in self._source.direct:
+        for written, path, place, _ in self._source.direct:
             if not self._built.declaring & {path, *self._source.included.get(path, ())}:
                 continue
             if path in self._built.broken:

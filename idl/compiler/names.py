@@ -1,6 +1,8 @@
 """IDL identifiers as C++ ones. A keyword gets the prefix `_cxx_`, as in the OMG's mappings (IDL to C++11, clause 6.1.2); whatever else
 the standard library or the generated code reserves, an underscore behind it."""
 
+from macros import MACROS
+
 KEYWORDS = frozenset(
     """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
     compl concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default
@@ -11,7 +13,6 @@ KEYWORDS = frozenset(
     xor_eq""".split()
 )
 # Macros of the standard library that a generated header may meet.
-MACROS = frozenset("NULL EOF errno assert stdin stdout stderr NAN INFINITY HUGE_VAL offsetof BUFSIZ".split())
 NAMESPACE = MACROS | {"std", "to_string", "type_support", "key_hash", "hash_value"}
 MEMBER = MACROS
 EXCEPTION_MEMBER = MEMBER | {"info", "value", "what", "text", "exception_info"}

@@ -248,6 +248,13 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_refused("interface I { attribute long v[3]; };\n",
                             "x.idl:1: error: the attribute 'v' cannot be an array; give the array a name by typedef, and use that")  # fmt: skip
 
+    def test_an_include_within_a_module(self):
+        self.write("part.idl", "struct Part { long x; };\n")
+        self.write("macros.idl", "#define SIZE 3\n")
+        self.assert_refused('module m {\n#include "part.idl"\nstruct S { Part p; };\n};\n',
+                            "x.idl:2: error: 'part.idl' is included within 'm'; include it outside, and write the module in it")  # fmt: skip
+        self.assert_compiles('module m {\n#include "macros.idl"\nstruct S { long x[SIZE]; };\n};\n#include "part.idl"\n')
+
     def test_a_name_with_quotes_is_a_file_like_others(self):
         code, said = self.compile("struct S { Nope x; };\n", name='a"b.idl')
         self.assertNotEqual(code, 0, said)
@@ -269,6 +276,15 @@ class Annotations(CompilerTest):
     def assert_refused_anew(self, text, *findings):
         shutil.rmtree(os.path.join(self.folder, "out"))
         self.assert_refused(text, *findings)
+
+
+class ReservedNames(CompilerTest):
+    def test_macros_and_names_of_the_generated_code_get_an_underscore(self):
+        self.assert_compiles("enum Source { CLOCK_REALTIME, BIG_ENDIAN, EINVAL, NAMED };\n"
+                             "interface I { struct Proxy { long x; }; void type_support(in Proxy p); };\n")  # fmt: skip
+        header = self.output("x.idl.hpp")
+        for name in ("CLOCK_REALTIME_", "BIG_ENDIAN_", "EINVAL_", "using Proxy_ =", "type_support_(", "NAMED,"):
+            self.assertIn(name, header)
 
 
 class Constants(CompilerTest):

@@ -30,7 +30,7 @@ def definition(interface):
     lines = cpp.documentation(interface.documentation)
     lines += [f"class {name}{' : ' + bases if bases else ''} {{", " public:"]
     lines += [f"  using Proxy = {interface.cpp}Proxy;", f"  using Skeleton = {interface.cpp}Skeleton;"]
-    lines += [types_template.alias(nested) for nested in interface.nested]
+    lines += [types_template.alias(nested, names.NAMESPACE | names.OPERATION) for nested in interface.nested]
     lines += ["", f"  virtual ~{name}();", "  static const ::skein::InterfaceInfo& interface_info();"]
     for operation in interface.operations:
         lines += ["", *cpp.documentation(_documentation(operation), "  ")]

@@ -23,12 +23,12 @@ def definition(decl):
     return cpp.documentation(decl.documentation) + emit(decl)
 
 
-def alias(decl, indent="  "):
+def alias(decl, reserved=names.NAMESPACE):
     """Inside what encloses a declaration in IDL: its short name."""
-    name = names.plain(decl.scope[-1])
+    name = names.plain(decl.scope[-1], reserved)
     if isinstance(decl, model.Constant):
-        return f"{indent}static constexpr auto {name} = {decl.cpp};"
-    return f"{indent}using {name} = {decl.cpp};"
+        return f"  static constexpr auto {name} = {decl.cpp};"
+    return f"  using {name} = {decl.cpp};"
 
 
 def functions(decl):

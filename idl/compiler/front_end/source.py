@@ -44,7 +44,7 @@ class Source:
         self.path = path
         done = _preprocessed([*command, path])
         self.files = [path]  # each that was read, as the preprocessor names it
-        self.direct = []  # what the main file includes: as written, as the preprocessor names it, place of the directive
+        self.direct = []  # what the main file includes: as written, as the preprocessor names it, place of the directive, offset
         self.included = {}  # file: what it includes, directly or not
         self.comments = []
         self.pragmas = []
@@ -52,8 +52,10 @@ class Source:
         self._solid = {}  # file and line: where its characters stand that are no blanks
         self._places = []  # of each line of the text: file, line
         self._around = [path]
+        self._entered = 0  # the line of the text where the file begins that the main file includes
         self.text = self._without_comments("\n".join(map(self._read, map(_decoded, done.stdout.split(b"\n")))))
         self._starts = _line_starts(self.text)
+        self.direct = [(*included, self._starts[index]) for *included, index in self.direct]
         self.pragmas = [Pragma(text, Place(*self._places[index]), self._starts[index]) for index, text in self.pragmas]
         said = done.stderr.decode(errors="replace").splitlines()
         for line in said:
@@ -99,13 +101,15 @@ class Source:
                 self.files.append(file)
             for outer in self._around:
                 self.included.setdefault(outer, set()).add(file)
+            if len(self._around) == 1:
+                self._entered = len(self._places)
             self._around.append(file)
         elif flags.startswith(_LEAVE) and len(self._around) > 1:
             left = self._around.pop()
-            if len(self._around) == 1 and all(left != path for _, path, _ in self.direct):
+            if len(self._around) == 1 and all(left != path for _, path, _, _ in self.direct):
                 place = Place(self.path, number - 1)
                 written = _INCLUDE.match(self.line(place))
-                self.direct.append((written[1] if written else os.path.basename(left), left, place))
+                self.direct.append((written[1] if written else os.path.basename(left), left, place, self._entered))
 
     def _without_comments(self, text):
         starts = _line_starts(text)
