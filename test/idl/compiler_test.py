@@ -248,6 +248,22 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_refused("interface I { attribute long v[3]; };\n",
                             "x.idl:1: error: the attribute 'v' cannot be an array; give the array a name by typedef, and use that")  # fmt: skip
 
+    def test_words_of_other_languages(self):
+        self.assert_refused("struct S { unsigned int x; };\n", "x.idl:1: error: IDL has no 'int'; write 'long'")
+        self.assert_refused("const char A = 'abc';\n", "x.idl:1: error: a character in quotes is one character; text stands in double quotes")
+        self.assert_refused('const string A = "abc;\n', "x.idl:1: error: this text does not end on its line; add the '\"' (texts that follow each "
+                            "other are joined)")  # fmt: skip
+
+    def test_more_errors_of_syntax_than_are_shown(self):
+        code, said = self.compile("".join(f"struct A{i} {{ long 3; }};\n" for i in range(30)))
+        self.assertIn("error: these were 20 errors of syntax; what follows was not read", said)
+        self.assertEqual(len(self.errors(said)), 21)
+
+    def test_keys_without_a_member_take_no_time(self):
+        self.assert_compiles("struct E { }; struct S { @key E x[2147483647]; @key long y; };\n")
+        self.assert_compiles("struct T0 { };\n" + "".join(f"struct T{i} {{ T{i - 1} a; T{i - 1} b; }};\n" for i in range(1, 30)) +
+                             "struct S { @key T29 t; @key long y; };\n")  # fmt: skip
+
     def test_an_include_within_a_module(self):
         self.write("part.idl", "struct Part { long x; };\n")
         self.write("macros.idl", "#define SIZE 3\n")

@@ -105,7 +105,7 @@ class Findings(SyntaxTest):
                          ["x.idl:1:8", "x.idl:3:12", "x.idl:4:23", "x.idl:6:1"])  # fmt: skip
 
     def test_a_file_that_ends_too_early(self):
-        self.assert_says("module M {\n  struct S { };\n", "x.idl:2:15: error: the file ends where it cannot", "  struct S { };", " " * 14 + "^")
+        self.assert_says("module M {\n  struct S { };\n", "x.idl:2:15: error: the file ends, but the '{' of line 1 is open; add the '};'", "  struct S { };", " " * 14 + "^")
 
     def test_a_file_that_is_missing(self):
         self.assert_says(

@@ -153,21 +153,29 @@ def size(kind, start=0):
         if struct and struct.keys and _in_skein(struct) != _whole(struct):
             return None  # DDS would take of each element its own keys alone
         for _ in range(kind.size):
-            start = size(kind.element, start)
+            begin, start = start, size(kind.element, start)
             if start is None or start > LONGEST:
                 return start and UNBOUNDED
+            if start == begin:  # elements without a member
+                break
         return start
     if isinstance(kind, model.Named) and isinstance(kind.decl, (model.Enum, model.Bitmask, model.Bitset)):
         length = kind.decl.bits // 8
         return start + -start % length + length
     if isinstance(kind, model.Named) and type(kind.decl) is model.Struct:
-        own = [key[-1] for key in kind.decl.keys]
-        for member in own or kind.decl.all_members():
-            if size_of_member(member) is None:
-                return None
-        for member in own or kind.decl.all_members():
-            start = size(member.type, start)
-            if start > LONGEST:
-                return UNBOUNDED
-        return start
+        ends = kind.decl.__dict__.setdefault("key_ends", {})  # by where it begins: structs of structs are asked again and again
+        if start not in ends:
+            ends[start] = _size_of_struct(kind.decl, start)
+        return ends[start]
     return None
+
+
+def _size_of_struct(struct, start):
+    members = [key[-1] for key in struct.keys] or list(struct.all_members())
+    if any(size_of_member(member) is None for member in members):
+        return None
+    for member in members:
+        start = size(member.type, start)
+        if start > LONGEST:
+            return UNBOUNDED
+    return start

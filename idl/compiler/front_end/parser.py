@@ -16,6 +16,8 @@ _KEYWORDS = frozenset(
     """any boolean case char const default double enum FALSE float long module native octet sequence short string struct switch TRUE typedef
     union unsigned void wchar wstring""".split()
 )
+# Words of other languages that people write.
+_MISTAKEN = {"int": "long", "bool": "boolean", "vector": "sequence", "list": "sequence", "uint32_t": "uint32", "int32_t": "int32"}
 _TEMPLATES = ["sequence", "string", "wstring", "map", "bitfield"]
 _NAMES = {"IDENTIFIER": "a name", "INTEGER": "a number", "STRING": "text", "SEMICOLON": "';'", "LBRACE": "'{'", "RBRACE": "'}'",
           "LPAR": "'('", "RPAR": "')'", "LESSTHAN": "'<'", "MORETHAN": "'>'", "COMMA": "','", "COLON": "':'", "EQUAL": "'='",
@@ -32,11 +34,12 @@ def parse(source, report):
             return tree
         except lark.UnexpectedInput as error:
             offset = min(_offset(error, text), len(text))
-            report.error(source.place(_solid(text, offset)), _reason(error, text, offset))
+            report.error(source.place(_solid(text, offset)), _reason(error, source, text, offset))
             if not text[offset:].strip():
                 return None
             begin, end = _declaration(text, offset)
             text = text[:begin] + re.sub(r"[^\n]", " ", text[begin:end]) + text[end:]
+    report.error(source.place(begin), f"these were {_MOST_ERRORS} errors of syntax; what follows was not read")
     return None
 
 
@@ -60,9 +63,17 @@ def _solid(text, offset):
     return max(len(text[:offset].rstrip()) - 1, 0) if not text[offset:].strip() else offset
 
 
-def _reason(error, text, offset):
+def _reason(error, source, text, offset):
     if isinstance(error, lark.UnexpectedCharacters):
+        if text[offset] == '"':
+            return "this text does not end on its line; add the '\"' (texts that follow each other are joined)"
+        if text[offset] == "'":
+            return "a character in quotes is one character; text stands in double quotes"
         return f"the character '{text[offset]}' has no meaning here"
+    if error.token.type == "$END" and (opened := _opening(text, len(text))) < len(text):
+        return f"the file ends, but the '{{' of line {source.place(opened).line} is open; add the '}};'"
+    if error.token in _MISTAKEN:
+        return f"IDL has no '{error.token}'; write '{_MISTAKEN[error.token]}'"
     found = "the file ends" if error.token.type == "$END" else f"'{error.token}' stands"
     before = re.search(r"(\w+)\s*$", text[:offset])
     if error.token == "<" and before:
