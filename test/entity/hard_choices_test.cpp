@@ -153,7 +153,8 @@ Request by_size(int, std::mt19937& random) {
 
 TEST_CASE(
     "learned closes most of the gap between the best CSP and the best choice, and misses as few as "
-    "even slices do") {
+    "even slices do",
+    "[long]") {
   struct Row {
     std::string name;
     Problem problem;
@@ -176,7 +177,8 @@ TEST_CASE(
   CHECK(missed <= missed_by_even_slices + missed_by_even_slices / 10);
 }
 
-TEST_CASE("learned is better than the best CSP where a feature, a speciality or the day decides") {
+TEST_CASE("learned is better than the best CSP where a feature, a speciality or the day decides",
+          "[long]") {
   struct Row {
     std::string name;
     Problem problem;
@@ -191,7 +193,8 @@ TEST_CASE("learned is better than the best CSP where a feature, a speciality or 
     CHECK(Simulation(make_learned_selection()).run(row.problem, seed).gap_closed >= row.least);
 }
 
-TEST_CASE("learned finds out who answers with all of the time when an even share is too short") {
+TEST_CASE("learned finds out who answers with all of the time when an even share is too short",
+          "[long]") {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const int missed =
         Simulation(make_learned_selection()).run(load_from_the_100th_on, seed).missed;
