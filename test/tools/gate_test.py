@@ -187,6 +187,16 @@ class Gate(unittest.TestCase):
         self.assertNotEqual(self.run_gate(), 0)
         self.assertSaid("4 tests in quarantine")
 
+    def test_a_run_that_is_ended_ends_its_tests(self):
+        self.add("sleeper", "echo >>sleeper.times; exec sleep 60")
+        (self.root / "test" / "area" / "CMakeLists.txt").write_text("".join(self.tests))
+        subprocess.run([CMAKE, "--preset", "default"], cwd=self.root, check=True, capture_output=True)
+        with subprocess.Popen([self.root / "test" / "tools" / "run_tests.py", "default"], cwd=self.root, stdout=subprocess.PIPE, text=True) as run:
+            while "Start 1: sleeper" not in run.stdout.readline():
+                pass
+            run.terminate()
+            self.assertNotEqual(run.wait(timeout=20), 0)
+
     def test_changed_runs_what_can_be_broken(self):
         git = ["git", "-C", self.root, "-c", "user.name=x", "-c", "user.email=x@y"]
         self.add("low", "echo >>low.times", "logic;floor_1")

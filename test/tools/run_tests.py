@@ -121,7 +121,11 @@ class Runner:
         command = ["ctest", "--preset", self.preset, "--output-junit", str(results), "--test-output-size-failed", "0", *arguments]
         with subprocess.Popen(command, cwd=self.root, stdout=subprocess.PIPE, text=True, errors="replace",
                               env=os.environ | (environment or {})) as process:
-            ends, loads = _follow(process.stdout)
+            try:
+                ends, loads = _follow(process.stdout)
+            except BaseException:
+                process.terminate()  # which is waited for, else
+                raise
         cases = list(xml.parse(results).getroot().iter("testcase")) if results.exists() else []
         outputs = {case.get("name"): case.findtext("system-out") or "" for case in cases}
         ran = {case.get("name") for case in cases if case.get("status") == "run"}
