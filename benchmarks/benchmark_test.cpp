@@ -6,12 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "../test/tools/places.hpp"
 #include "harness/comparison.hpp"
 #include "harness/goals.hpp"
 
 using Catch::Contains;
 using nlohmann::json;
 using skein::benchmarks::Comparison;
+using skein::test::built_file;
+using skein::test::built_program;
 
 namespace {
 
@@ -21,7 +24,8 @@ struct QuickRun {
   int exit_code = 0;
   json results;
 
-  explicit QuickRun(const std::string& name, const std::filesystem::path& program = SKEIN_BENCH,
+  explicit QuickRun(const std::string& name,
+                    const std::filesystem::path& program = built_program("skein_bench"),
                     const std::string& options = "")
       : folder(std::filesystem::current_path() / name) {
     std::filesystem::remove_all(folder);
@@ -44,8 +48,9 @@ class Workshop {
   explicit Workshop(const std::string& script) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
-    const std::filesystem::path programs = std::filesystem::path(SKEIN_BENCH).parent_path();
-    std::filesystem::copy_file(SKEIN_BENCH, program());  // looks for its peers beside itself
+    const std::filesystem::path programs = built_file("bin");
+    std::filesystem::copy_file(built_program("skein_bench"),
+                               program());  // looks for its peers beside itself
     for (const char* name : {"skein_bench_raw_unix", "skein_bench_raw_cyclonedds"}) {
       if (std::filesystem::exists(programs / name))
         std::filesystem::create_symlink(programs / name, folder_ / name);
@@ -58,8 +63,7 @@ class Workshop {
 
  private:
   // Beside the folder of programs: they look for their libraries from where they stand.
-  const std::filesystem::path folder_ =
-      std::filesystem::path(SKEIN_BENCH).parent_path().parent_path() / "broken_workshop";
+  const std::filesystem::path folder_ = built_file("broken_workshop");
 };
 
 bool is_about_raw_fastdds(const json& row) {
@@ -80,7 +84,7 @@ struct CommandResult {
 };
 
 CommandResult command_result(const std::string& arguments) {
-  FILE* const pipe = popen((std::string(SKEIN_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* const pipe = popen((built_program("skein") + " " + arguments + " 2>&1").c_str(), "r");
   CommandResult result{};
   char buffer[4096];
   for (std::size_t count; (count = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
@@ -398,7 +402,7 @@ TEST_CASE("a user measures calls by the command, and compares what it saved") {
   const auto folder = std::filesystem::current_path() / "command_bench";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
-  const std::string command = std::string(SKEIN_COMMAND) + " bench ";
+  const std::string command = built_program("skein") + " bench ";
   const auto file = [&](const std::string& name) {
     return " '" + (folder / (name + ".json")).string() + "'";
   };

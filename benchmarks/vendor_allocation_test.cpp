@@ -4,9 +4,12 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "../test/tools/places.hpp"
 #include "calls/configuration.hpp"
 
 using namespace skein::benchmarks;
+using skein::test::built_file;
+using skein::test::built_library;
 
 namespace {
 
@@ -55,8 +58,8 @@ Allocations measure(const Configuration& configuration) {
 }  // namespace
 
 TEST_CASE("a steady call over a vendor allocates no more than the vendor's own") {
-  setenv("LD_PRELOAD", SKEIN_ALLOCATION_COUNTER, 1);
-  Configurations configurations(SKEIN_BENCH_FOLDER);
+  setenv("LD_PRELOAD", built_library("libskein_bench_allocation_counter.so").c_str(), 1);
+  Configurations configurations(built_file("bin"));
   for (const char* vendor : kVendors) {
     DYNAMIC_SECTION(vendor) {
       try {

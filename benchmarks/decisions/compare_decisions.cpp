@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "data_files.hpp"
 #include "decisions/decision_table.hpp"
 #include "decisions/scores.hpp"
 #include "harness/goals.hpp"
@@ -27,7 +28,7 @@ bool is_valid(const Request& request, const AE_navigator::Route& route) {
 class Contest {
  public:
   explicit Contest(const DecisionPlan& plan)
-      : requests_(read_requests(SKEIN_DECISION_INSTANCES, algorithm_names(), plan.every)) {
+      : requests_(read_requests(kDecisionInstances, algorithm_names(), plan.every)) {
     const auto algorithms = make_algorithms(requests_.terrains, stage_);
     for (const Algorithm& algorithm : algorithms)
       contestants_.push_back(std::make_unique<Contestant>(algorithm, requests_.terrains));

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "data_files.hpp"
 #include "selection/replay.hpp"
 #include "skein/clock.hpp"
 
@@ -35,7 +36,7 @@ std::vector<std::filesystem::path> recorded_scenarios(std::size_t at_most) {
 
 std::map<std::string, double> gaps_of_forests() {
   std::map<std::string, double> gaps;
-  std::ifstream file(SKEIN_RANDOM_FOREST_GAPS);
+  std::ifstream file(kRandomForestGaps);
   for (std::string line; std::getline(file, line);) {
     const std::size_t comma = line.find(',');
     if (line.starts_with('#') || comma == std::string::npos) continue;

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "../tools/child_process.hpp"
+#include "../tools/places.hpp"
 #include "pairing.hpp"
 #include "relay_service.hpp"
 
@@ -12,7 +13,7 @@ using ::test::Relay;
 namespace {
 
 ChildProcess start_relay(const dds::Vendor& vendor, const std::string& name) {
-  ChildProcess relay(RELAY_PROCESS, {.arguments = {vendor.name(), name}});
+  ChildProcess relay(built_program("relay_process"), {.arguments = {vendor.name(), name}});
   relay.expect("ready");
   return relay;
 }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "../tools/invariant.hpp"
 #include "office.hpp"
 
 using namespace skein;
@@ -96,6 +97,23 @@ TEST_CASE("an instance in the process that is stuck is not entered again before 
     team.office.perform(Office::task(), 10s);
     return team.first->calls == 2;
   }));
+}
+
+TEST_CASE("CSPs that lie: no wrong result is passed on, and none of them stays the first") {
+  HeadOptions learned;
+  learned.strategy = "learned";
+  learned.exploration = 0;
+  Office office(std::move(learned));
+  office.add("honest", Place::Inside, answer_as("honest"), declared("20", "0.2"));
+  office.add("liar", Place::Inside, answer_as("wrong"), declared("5", "0.99"));
+  office.add("fraud", Place::Outside, answer_as("wrong fraud"), declared("4", "0.98"));
+  int honest_first = 0;
+  for (int request = 0; request < 30; ++request) {
+    const std::string answer = office.perform(Office::task(), 10s);
+    INVARIANT(answer == "honest did it");
+    if (request >= 20 && office.attempts().front() == "honest accepted") ++honest_first;
+  }
+  CHECK(honest_first > 5);
 }
 
 TEST_CASE("where every result is rejected the task fails with what was wrong with the last one") {

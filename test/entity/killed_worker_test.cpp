@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "../tools/child_process.hpp"
+#include "../tools/places.hpp"
 #include "office.hpp"
 
 using namespace skein;
@@ -13,7 +14,7 @@ using Lines = std::vector<std::string>;
 TEST_CASE("a CSP that is killed while it works is followed by the next best") {
   Office office;
   office.add("survivor", Place::Inside, answer_as("survivor"), declared("10", "0.5"));
-  ChildProcess victim(WORKER_PROCESS,
+  ChildProcess victim(built_program("worker_process"),
                       {.arguments = {Pairing::get().client->name(), "victim", office.owner->id()}});
   victim.expect("ready");
   REQUIRE(eventually([&] { return office.is_available("victim"); }));

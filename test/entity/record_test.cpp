@@ -7,6 +7,7 @@
 #include <fstream>
 #include <mutex>
 
+#include "../tools/places.hpp"
 #include "office.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "skein/detail/type_support.hpp"
@@ -181,7 +182,7 @@ TEST_CASE("a line of a log with an outcome that nobody knows is refused, with it
   std::ofstream(log.path) << line << '\n';
   const File said("said");
   const std::string command =
-      "'" SKEIN_COMMAND "' decisions --log " + log.path + " > " + said.path + " 2>&1";
+      "'" + built_program("skein") + "' decisions --log " + log.path + " > " + said.path + " 2>&1";
   const int status = std::system(command.c_str());
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) != 0);

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "../tools/child_process.hpp"
+#include "../tools/places.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 
@@ -33,7 +34,7 @@ class TemporaryFolder {
 
 /// A copy of libskein that does not know where it was built: there stand the modules.
 void copy_library(const fs::path& folder) {
-  const fs::path original = SKEIN_LIBRARY;
+  const fs::path original = built_library(SKEIN_LIBRARY_SONAME);
   std::ifstream file(original, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(file), {});
   const std::string home = original.parent_path().string();
@@ -77,7 +78,7 @@ TEST_CASE("a file that is no module is named with the loader's reason") {
 
 TEST_CASE("a module of another version is refused with both versions") {
   CHECK_THAT(
-      complaint({std::string("SKEIN_MODULE_PATH=") + SKEIN_WRONG_MODULES}),
+      complaint({"SKEIN_MODULE_PATH=" + built_file("test/faults/wrong_modules")}),
       Contains("Unavailable") && Contains("ABI 9999") && Contains("build both from one version"));
 }
 
@@ -88,7 +89,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(
       registry.load_plugin("skein_nowhere"),
       Contains("libskein_nowhere.so") && Contains("install the plugin 'skein_nowhere'"));
-  const std::string folder = SKEIN_WRONG_MODULES;
+  const std::string folder = built_file("test/faults/wrong_modules");
   CHECK_THROWS_WITH(registry.load_plugin(folder + "/libskein_wrong_plugin.so"),
                     Contains("ABI 9999") && Contains("build both from one version"));
   CHECK_THROWS_WITH(registry.load_plugin(folder + "/libskein_no_plugin.so"),

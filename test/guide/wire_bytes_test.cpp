@@ -2,6 +2,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "../tools/places.hpp"
 #include "dds/sample_format.hpp"
 #include "greeter.idl.hpp"
 #include "rpc/reply_encoding.hpp"
@@ -9,6 +10,7 @@
 
 using namespace std::chrono_literals;
 using skein::rpc::wire::RequestId;
+using skein::test::project_file;
 
 namespace {
 
@@ -17,7 +19,7 @@ const RequestId kId{*skein::Guid::from_hex("010f123456789abc0000000100000a03"), 
 /// What stands before the bar in each line of each ```hex block of idl/README.md.
 std::vector<std::string> quoted_bytes() {
   std::vector<std::string> blocks;
-  std::ifstream file(IDL_README);
+  std::ifstream file(project_file("idl/README.md"));
   bool inside = false;
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with("```")) {

@@ -6,10 +6,12 @@ compiler_test.py SKEIN_ROOT [unittest's arguments]
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from compiler_run import run_compiler
 
 ROOT = sys.argv.pop(1)
 ANY = "any is not supported: its type would not be known to the reader; use a union of the types that occur"
@@ -30,9 +32,8 @@ class CompilerTest(unittest.TestCase):
 
     def compile(self, text, name="x.idl", arguments=()):
         path = self.write(name, text)
-        command = [sys.executable, "-B", f"{ROOT}/idl/compiler", "--out", f"{self.folder}/out", *arguments, path]
-        done = subprocess.run(command, stderr=subprocess.PIPE, text=True, timeout=60)
-        return done.returncode, self.findings(done.stderr.replace(self.folder + "/", ""))
+        code, said = run_compiler(ROOT, "--out", f"{self.folder}/out", *arguments, path)
+        return code, self.findings(said.replace(self.folder + "/", ""))
 
     @staticmethod
     def findings(said):

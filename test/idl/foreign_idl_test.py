@@ -10,6 +10,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.dont_write_bytecode = True
+from compiler_run import run_compiler
+
 FOREIGN = {"omniorb-idl": "/usr/share/idl/omniORB", "cyclonedds-dev": "/usr/include/dds", "libfastrtps-dev": "/usr/include/fastdds"}
 LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "foreign_idl.txt")
 FINDING = re.compile(r"^(?P<path>[^:\s]+):(?P<line>\d+):\d+: error: (?P<reason>.*)$")
@@ -26,15 +29,14 @@ def foreign_files():
 
 def verdict(root, folder, name, directory):
     """`compiles`, or the first error as `file:line: reason`."""
-    command = [sys.executable, "-B", f"{root}/idl/compiler", f"-I{folder}", f"-I{folder}/COS", "--out", directory]
-    done = subprocess.run([*command, os.path.join(folder, name)], stderr=subprocess.PIPE, text=True, timeout=60)
-    if done.returncode == 0:
+    code, told = run_compiler(root, f"-I{folder}", f"-I{folder}/COS", "--out", directory, os.path.join(folder, name))
+    if code == 0:
         return "compiles"
-    for line in done.stderr.splitlines():
+    for line in told.splitlines():
         match = FINDING.match(line)
         if match:
             return f"{os.path.basename(match['path'])}:{match['line']}: {match['reason'].replace(folder + '/', '')}"
-    return f"no reason given: {done.stderr[:200]!r}"
+    return f"no reason given: {told[:200]!r}"
 
 
 def check_cpp(root, compiler, directory, names):

@@ -3,9 +3,10 @@
 syntax_test.py SKEIN_ROOT [unittest's arguments]
 """
 
+import contextlib
+import io
 import logging
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -13,6 +14,8 @@ import unittest
 ROOT = sys.argv.pop(1)
 sys.path.insert(0, f"{ROOT}/idl/compiler")
 sys.dont_write_bytecode = True
+from compiler_run import run_compiler
+
 try:
     import lark
     from front_end import parser, source
@@ -35,9 +38,9 @@ class SyntaxTest(unittest.TestCase):
         return path
 
     def check(self, text, *arguments):
-        command = [sys.executable, "-B", f"{ROOT}/idl/compiler", "--check", *arguments, self.write("x.idl", text)]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
-        return done.returncode, done.stderr.replace(self.folder + "/", "").splitlines()
+        with contextlib.redirect_stdout(io.StringIO()):
+            code, said = run_compiler(ROOT, "--check", *arguments, self.write("x.idl", text))
+        return code, said.replace(self.folder + "/", "").splitlines()
 
     def assert_reads(self, text, *definitions):
         """It has a tree, whatever it means."""

@@ -4,11 +4,14 @@
 #include <fstream>
 #include <sstream>
 
+#include "../tools/places.hpp"
+
 using namespace skein::launch;
+using skein::test::project_file;
 
 TEST_CASE("The documentation lists every exit code of a launch, in the same words") {
   std::ostringstream text;
-  text << std::ifstream(SKEIN_MISSION_PROFILES "/README.md").rdbuf();
+  text << std::ifstream(project_file("mission_profiles/README.md")).rdbuf();
   for (const ExitCode& entry : kExitCodes) {
     const std::string row =
         "| " + std::string(entry.code) + " | " + std::string(entry.meaning) + " |";

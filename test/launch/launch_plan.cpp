@@ -2,11 +2,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "../tools/places.hpp"
 #include "core/host.hpp"
 #include "profile_folder.hpp"
 
 using namespace skein::launch;
 using namespace skein::profile;
+using skein::test::project_file;
 
 namespace {
 
@@ -23,7 +25,7 @@ std::vector<std::string> names_of(const LaunchPlan& plan) {
 }  // namespace
 
 TEST_CASE("Every peer and every CSP with a process of its own becomes one child") {
-  const auto mission = read_checked_profile(SKEIN_MISSION_PROFILES "/route_planning.xml");
+  const auto mission = read_checked_profile(project_file("mission_profiles/route_planning.xml"));
   const auto plan = make_launch_plan(mission, argv_of);
   CHECK(names_of(plan) == std::vector<std::string>{"navigator", "navigator/RRTConnect",
                                                    "navigator/RRTstar", "flight_controller",

@@ -5,8 +5,11 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "../tools/places.hpp"
 #include "shell_mission.hpp"
 #include "temporary_folder.hpp"
+
+using skein::test::built_program;
 
 namespace {
 
@@ -23,13 +26,14 @@ class LauncherProcess {
                                "; setsid sh -c '" + "echo $$ >> " + pids +
                                "; while :; do sleep 1000; done' & " +
                                "ready; while :; do sleep 1000 & wait $!; done";
+    const std::string helper = built_program("launch_helper");
     id_ = ::fork();
     if (id_ == 0) {
       const int nowhere = ::open("/dev/null", O_WRONLY);
       ::dup2(nowhere, 1);
       ::dup2(nowhere, 2);
       ::setenv("STOP_TIMEOUT_MS", stop_timeout_ms, 1);
-      ::execl(SKEIN_LAUNCH_HELPER, SKEIN_LAUNCH_HELPER, script.c_str(), script.c_str(), nullptr);
+      ::execl(helper.c_str(), helper.c_str(), script.c_str(), script.c_str(), nullptr);
       ::_exit(127);
     }
     REQUIRE(wait_until([&] { return numbers_in(pids).size() == 6; }));

@@ -12,6 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "../tools/places.hpp"
+
 namespace skein::test {
 namespace {
 
@@ -25,7 +27,7 @@ std::filesystem::path make_folder() {
 
 CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandOptions& options)
     : folder_(make_folder()) {
-  std::vector<std::string> words{SKEIN_COMMAND};
+  std::vector<std::string> words{built_program("skein")};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

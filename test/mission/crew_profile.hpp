@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "../tools/places.hpp"
+
 namespace skein::test {
 
 /// A mission of the crew (see crew_components.cpp): an office with two CSPs, of which `moody`
@@ -28,9 +30,10 @@ class CrewProfile {
     write(mission + ".xml",
           "<component name='" + mission +
               "'><dependencies><depends>IDL:crew/Desk</depends></dependencies></component>");
-    write("mission.xml", "<mission name='moods' domain='47' system='uav-1' dictionary='" DICTIONARY
-                         "' plugin='skein_crew_components' vendor='" +
-                             vendor + "'><peer name='office' component='office.xml' " + office +
+    write("mission.xml", "<mission name='moods' domain='47' system='uav-1' dictionary='" +
+                             project_file("mission_profiles/dictionary.xml") +
+                             "' plugin='skein_crew_components' vendor='" + vendor +
+                             "'><peer name='office' component='office.xml' " + office +
                              "><csp component='sound.xml' process='in'/>"
                              "<csp component='moody.xml' " +
                              moody + "/></peer><peer name='client' component='" + mission +

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "../tools/places.hpp"
+
 namespace skein::test {
 
 /// A folder with the small mission's components, for profiles around them; it goes with this
@@ -40,10 +42,10 @@ class Errand {
 
   /// A profile with these attributes of <mission> and these peers.
   std::string profile(const std::string& attributes, const std::string& peers) const {
-    return write("errand.xml",
-                 "<mission name='errand' domain='48' system='uav-1' dictionary='" DICTIONARY
-                 "' plugin='skein_errand_components' " +
-                     attributes + ">" + peers + "</mission>");
+    return write("errand.xml", "<mission name='errand' domain='48' system='uav-1' dictionary='" +
+                                   project_file("mission_profiles/dictionary.xml") +
+                                   "' plugin='skein_errand_components' " + attributes + ">" +
+                                   peers + "</mission>");
   }
 
  private:

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "../tools/child_process.hpp"
+#include "../tools/places.hpp"
 #include "command_run.hpp"
 #include "installed.hpp"
 
@@ -225,22 +226,22 @@ std::vector<Call> calls_of_route_planning() {
 }
 
 std::vector<Example> examples() {
-  return {
-      {"01_first_service",
-       "0",
-       start_greeter,
-       {{"greeting/IGreeter", "greet", "world", "Hello, world!", ""}}},
-      {"06_own_planner", "43",
-       [] {
-         return launch(EXAMPLES "/06_own_planner/mission.xml", {"navigator", "flight_controller"});
-       },
-       calls_of_navigator()},
-      {"route_planning", "42",
-       [] {
-         return launch(PROFILES "/route_planning.xml",
-                       {"navigator", "flight_controller", "ad_manager"});
-       },
-       calls_of_route_planning()}};
+  return {{"01_first_service",
+           "0",
+           start_greeter,
+           {{"greeting/IGreeter", "greet", "world", "Hello, world!", ""}}},
+          {"06_own_planner", "43",
+           [] {
+             return launch(project_file("examples/06_own_planner/mission.xml"),
+                           {"navigator", "flight_controller"});
+           },
+           calls_of_navigator()},
+          {"route_planning", "42",
+           [] {
+             return launch(project_file("mission_profiles/route_planning.xml"),
+                           {"navigator", "flight_controller", "ad_manager"});
+           },
+           calls_of_route_planning()}};
 }
 
 // --- what runs
@@ -297,7 +298,7 @@ TEST_CASE("every example is called here, or exempt") {
   for (const Example& example : examples()) known.insert(example.folder);
   for (const auto& [folder, why] : kExempt) known.insert(folder);
   std::set<std::string> there;
-  for (const auto& entry : std::filesystem::directory_iterator(EXAMPLES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(project_file("examples"))) {
     if (entry.is_directory()) there.insert(entry.path().filename());
   }
   CHECK(known == there);
@@ -319,8 +320,8 @@ TEST_CASE("the command calls every operation of every example") {
 
 TEST_CASE("a managed interface of an example is its entity's alone") {
   if (!installed("fastdds") || !installed("cyclonedds")) return;
-  const auto peers =
-      launch(EXAMPLES "/06_own_planner/mission.xml", {"navigator", "flight_controller"});
+  const auto peers = launch(project_file("examples/06_own_planner/mission.xml"),
+                            {"navigator", "flight_controller"});
   for (const char* operation : {"plan", "improve"}) {
     const Done run = done({"call", "IPlanner", operation, "{}", "--domain", "43", "--wait", "2"});
     CHECK(run.code == 69);

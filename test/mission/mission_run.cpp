@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "../tools/places.hpp"
+
 namespace skein::test {
 namespace {
 
@@ -32,7 +34,8 @@ MissionRun::MissionRun(const std::filesystem::path& profile,
                        const std::vector<std::string>& arguments)
     : folder_(make_folder()) {
   std::string command = "cd " + quoted(folder_) + " && XDG_STATE_HOME=" + quoted(folder_) +
-                        " exec timeout 120 " + quoted(SKEIN_COMMAND) + " launch " + quoted(profile);
+                        " exec timeout 120 " + quoted(built_program("skein")) + " launch " +
+                        quoted(profile);
   for (const std::string& argument : arguments) command += " " + quoted(argument);
   std::FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
   if (!pipe) throw std::runtime_error("the mission could not be started: " + command);

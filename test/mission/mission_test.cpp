@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 #include <regex>
 
+#include "../tools/places.hpp"
 #include "mission_run.hpp"
 
 using namespace skein::test;
@@ -12,8 +13,8 @@ using Catch::Matches;
 
 namespace {
 
-const std::filesystem::path kMission = std::filesystem::path(PROFILES) / "route_planning.xml";
-const std::filesystem::path kTestProfiles = TEST_PROFILES;
+const std::filesystem::path kMission = project_file("mission_profiles/route_planning.xml");
+const std::filesystem::path kTestProfiles = project_file("test/mission/profiles");
 
 /// The mission, flown once for all that is looked at.
 const MissionRun& flown() {
@@ -80,7 +81,7 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
   }
   SECTION("how it was decided is kept: as a history, and as a log that comes out the same again") {
     CHECK(std::filesystem::file_size(run.file("navigator_history.json")) > 0);
-    const std::string replay = "'" SKEIN_COMMAND "' decisions --replay --log '" +
+    const std::string replay = "'" + built_program("skein") + "' decisions --replay --log '" +
                                run.file("decisions.jsonl").string() + "' > /dev/null";
     CHECK(std::system(replay.c_str()) == 0);
   }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "../tools/places.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
 #include "installed.hpp"
@@ -55,7 +56,7 @@ class InTerminal {
     pid_ = forkpty(&terminal_, nullptr, nullptr, &size);
     if (pid_ < 0) throw std::runtime_error("no terminal for a command");
     if (pid_ == 0) {
-      words.insert(words.begin(), SKEIN_COMMAND);
+      words.insert(words.begin(), built_program("skein"));
       std::vector<char*> argv;
       for (std::string& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);

@@ -111,7 +111,7 @@ TEST_CASE("F2: a planner hangs: answers in time all the same, it is quarantined,
   CHECK(eventually([&] { return stage.ask(10s).outcome_of("sleeper") == "accepted"; }));
 }
 
-TEST_CASE("F2: when every planner hangs, the refusal comes at the deadline") {
+TEST_CASE("F2: when every planner hangs, the refusal comes at the deadline", "[long]") {
   PlanningStage stage(by("declared"));
   ChildProcess& sleeper = stage.add("sleeper", "RRTConnect", {50, 0.9});
   sleeper.signal(SIGSTOP);
@@ -182,7 +182,8 @@ TEST_CASE(
   running.join();
 }
 
-TEST_CASE("F4: planners that lie: no wrong route is passed on, and none of them stays the first") {
+TEST_CASE("F4: planners that lie: no wrong route is passed on, and none of them stays the first",
+          "[long]") {
   PlanningStage stage(by("learned"));
   stage.add("honest", "RRTConnect", {200, 0.2});
   stage.add("short_cut", "short_cut", {50, 0.99});

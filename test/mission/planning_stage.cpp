@@ -5,6 +5,7 @@
 #include "../../src/navigation/components/flight_controller.hpp"
 #include "../../src/navigation/components/navigator.hpp"
 #include "../tools/eventually.hpp"
+#include "../tools/places.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "navigation/route_checker/route_checker.hpp"
 #include "navigation/routes/demo_problem.hpp"
@@ -58,7 +59,7 @@ PlanningStage::~PlanningStage() = default;
 
 std::vector<std::string> PlanningStage::command(const std::string& name, const std::string& kind,
                                                 Declared declared, int seed) const {
-  return {PLANNER_PROCESS,
+  return {built_program("planner_process"),
           Pairing::get().client->name(),
           name,
           navigator_->id(),

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "../tools/places.hpp"
 #include "mission_run.hpp"
 
 using namespace skein::test;
@@ -21,7 +22,7 @@ TEST_CASE("the mission flies over an SRTM tile that is given by a relative path"
           "[.][real_terrain]") {
   const auto from_mission_folder =
       std::filesystem::relative(tile(), std::filesystem::temp_directory_path() / "any");
-  const MissionRun run(std::filesystem::path(PROFILES) / "route_planning.xml",
+  const MissionRun run(project_file("mission_profiles/route_planning.xml"),
                        {"--set", "ground_station.Terrain=" + from_mission_folder.string()});
   INFO(run.output());
   CHECK(run.exit_code() == 0);

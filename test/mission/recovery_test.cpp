@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "../tools/places.hpp"
 #include "ad_manager.idl.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
@@ -58,11 +59,12 @@ bool runs(pid_t process) {
 
 /// The route mission's peers without the one that ends it.
 std::string write_route_mission(const std::filesystem::path& folder) {
-  const std::string components = std::string(PROFILES) + "/components/";
+  const std::string components = project_file("mission_profiles/components/");
   const auto file = folder / "routes.xml";
   std::ofstream(file)
-      << "<mission name='routes' domain='46' system='uav-1' dictionary='" DICTIONARY
-         "' plugin='skein_navigation_components'>"
+      << "<mission name='routes' domain='46' system='uav-1' dictionary='"
+      << project_file("mission_profiles/dictionary.xml")
+      << "' plugin='skein_navigation_components'>"
          "<peer name='navigator' component='"
       << components
       << "navigator.xml' vendor='cyclonedds' restart='on-failure' max_restarts='50' "

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "../tools/places.hpp"
 #include "../tools/ssh_host.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
@@ -177,7 +178,7 @@ TEST_CASE("what keeps the other host from flying is said, with what to do") {
   };
   const std::vector<Lack> lacks{
       {of_nothing + folder_of(profile), "errand.xml"},
-      {of_nothing + folder_of(SKEIN_COMMAND), "there is no Skein on 10.78.0.2"},
+      {of_nothing + folder_of(built_program("skein")), "there is no Skein on 10.78.0.2"},
       {"(cat " + profile + " && echo) > /run/other.xml && mount --bind /run/other.xml " + profile,
        "copy the profile with all that it names"}};
   const auto& [prepare, part] = lacks[GENERATE(0, 1, 2)];

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "../tools/places.hpp"
+
 using namespace skein::profile;
 using namespace std::chrono_literals;
+using skein::test::project_file;
 
 namespace {
 
@@ -31,7 +34,7 @@ std::string findings_of(const std::string& entries) {
 }  // namespace
 
 TEST_CASE("The dictionary that is shipped can be read and knows what the paper uses") {
-  const auto dictionary = read_dictionary(SKEIN_MISSION_PROFILES "/dictionary.xml");
+  const auto dictionary = read_dictionary(project_file("mission_profiles/dictionary.xml"));
   const auto* latency = dictionary.find(EntryKind::Attribute, "latency");
   REQUIRE(latency != nullptr);
   CHECK(std::get<std::chrono::nanoseconds>(parse_value(*latency, "100")) == 100ms);
@@ -95,7 +98,7 @@ TEST_CASE("A range holds its ends, and durations are compared in the unit of the
 }
 
 TEST_CASE("An unknown name is answered with the nearest of its kind") {
-  const auto dictionary = read_dictionary(SKEIN_MISSION_PROFILES "/dictionary.xml");
+  const auto dictionary = read_dictionary(project_file("mission_profiles/dictionary.xml"));
   CHECK_THAT(dictionary.suggestion(EntryKind::Attribute, "latancy"),
              Catch::Contains("did you mean 'latency'?"));
   CHECK_THAT(dictionary.suggestion(EntryKind::Parameter, "Time_limit"),

@@ -2,13 +2,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "../tools/places.hpp"
 #include "profile_folder.hpp"
 
 using namespace skein::profile;
 using namespace std::chrono_literals;
+using skein::test::project_file;
 
 TEST_CASE("The mission that is shipped reads as it is described, without a finding") {
-  const std::filesystem::path file = SKEIN_MISSION_PROFILES "/route_planning.xml";
+  const std::filesystem::path file = project_file("mission_profiles/route_planning.xml");
   CHECK(to_text(check_file(file)) == "");
   const auto mission = read_checked_profile(file);
   const auto* navigator = mission.find_peer("navigator");

@@ -3,16 +3,18 @@
 #include <random>
 #include <sstream>
 
+#include "../tools/places.hpp"
 #include "profile_folder.hpp"
 
 using namespace skein::profile;
+using skein::test::project_file;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
 
 std::string content_of(const std::string& name) {
-  std::ifstream file(SKEIN_MISSION_PROFILES "/" + name, std::ios::binary);
+  std::ifstream file(project_file("mission_profiles/" + name), std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

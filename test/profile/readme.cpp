@@ -3,15 +3,17 @@
 #include <fstream>
 #include <sstream>
 
+#include "../tools/places.hpp"
 #include "profile_folder.hpp"
 
 using namespace skein::profile;
+using skein::test::project_file;
 
 namespace {
 
 /// The texts between ```xml and ```.
 std::vector<std::string> examples() {
-  std::ifstream file(SKEIN_MISSION_PROFILES "/README.md");
+  std::ifstream file(project_file("mission_profiles/README.md"));
   std::vector<std::string> found;
   bool inside = false;
   for (std::string line; std::getline(file, line);) {

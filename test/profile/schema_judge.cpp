@@ -10,12 +10,14 @@
 #include <set>
 #include <sstream>
 
+#include "../tools/places.hpp"
 #include "../tools/prepare.hpp"
 #include "profile/component_xml.hpp"
 #include "profile/mission_profile.hpp"
 #include "temporary_folder.hpp"
 
 using namespace skein::profile;
+using skein::test::project_file;
 
 namespace fs = std::filesystem;
 
@@ -27,8 +29,8 @@ int skein::test::prepare() {
 
 namespace {
 
-const fs::path kSchemas = SKEIN_MISSION_PROFILES "/schema";
-const fs::path kSamples = SAMPLES;
+const fs::path kSchemas = project_file("mission_profiles/schema");
+const fs::path kSamples = project_file("test/profile/samples");
 
 /// The files that the schema allows.
 std::set<std::string> valid(const std::string& schema, const std::vector<std::string>& files) {
@@ -151,7 +153,7 @@ class Mutations {
 TEST_CASE("Every profile, component and dictionary of the tree is valid") {
   std::map<std::string, std::vector<std::string>> files;
   for (const char* folder : {"mission_profiles", "examples", "test"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SOURCES) / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(project_file(folder))) {
       if (entry.path().extension() != ".xml") continue;
       if (const auto schema = schema_for(entry.path()); !schema.empty())
         files[schema].push_back(entry.path().string());

@@ -4,10 +4,12 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "../tools/places.hpp"
 #include "dds/vendor_names.hpp"
 #include "profile/notation.hpp"
 
 using namespace skein::profile;
+using skein::test::project_file;
 
 namespace {
 
@@ -29,7 +31,7 @@ Shape shape_of(const Notation& notation) {
 class Schema {
  public:
   explicit Schema(const std::string& name) {
-    const std::string file = SKEIN_MISSION_PROFILES "/schema/" + name;
+    const std::string file = project_file("mission_profiles/schema/" + name);
     REQUIRE(document_.load_file(file.c_str()));
   }
 

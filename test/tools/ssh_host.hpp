@@ -12,7 +12,7 @@ namespace skein::test {
 
 /// A network namespace as a host that is reached by ssh: OpenSSH's server runs in it, with a folder
 /// for its keys, and nothing of this machine's own configuration. It is that of the machine, or one
-/// that `dev` has unpacked (SSH_SERVER); it is installed by nobody.
+/// that `dev` has unpacked (build/ssh-server); it is installed by nobody.
 class SshHost {
  public:
   /// Ends the program as skipped where there is no server, or where it may not be run. `prepare`, a
