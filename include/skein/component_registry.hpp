@@ -3,10 +3,12 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "skein/clock.hpp"
 #include "skein/detail/abi.hpp"
 #include "skein/detail/operation.hpp"
 #include "skein/parameters.hpp"
@@ -33,8 +35,18 @@ class ComponentRegistry {
   using BodyFactory = std::function<Body(Entity&, const ParameterValues&)>;
   /// Makes a CSP, which implements a managed interface and knows nothing of entities.
   using CspFactory = std::function<std::shared_ptr<Servant>(const ParameterValues&)>;
-  /// Runs a mission to its end; returns the mission's exit code.
+  /// Runs a mission to its end; returns the mission's exit code. Only a peer with role="mission"
+  /// runs it. It is not told to end: its process dies of the signal.
   using Mission = std::function<int(Entity&, const ParameterValues&)>;
+  /// What a peer does that provides nothing: it publishes, subscribes, and calls others. Runs on
+  /// the process's main thread, once what the peer depends on is there and the peer has reported
+  /// that it is ready. `told_to_end` is set when the launcher ends the peer, or by SIGINT, SIGTERM
+  /// or SIGHUP (see await_end()); an activity that does not return then is killed after the
+  /// profile's `stop_timeout`. It may also return by itself. What it returns is the process's exit
+  /// code, and the mission's where its peer has role="mission". What it throws ends the process
+  /// with exit code 76.
+  using Activity =
+      std::function<int(Entity&, const ParameterValues&, const std::stop_token& told_to_end)>;
 
   ComponentRegistry() = default;
   /// `arguments`: what its process was given for its components to read.
@@ -45,6 +57,7 @@ class ComponentRegistry {
   void add_body(const std::string& component, BodyFactory factory);
   void add_csp(const std::string& component, CspFactory factory);
   void add_mission(const std::string& component, Mission mission);
+  void add_activity(const std::string& component, Activity activity);
   /// Makes a strategy selectable by its name, for example as a profile's `strategy`. Throws
   /// InvalidArgument if the name is taken, also by a strategy of Skein's own.
   void add_strategy(std::shared_ptr<const SelectionStrategy> strategy);
@@ -53,6 +66,7 @@ class ComponentRegistry {
   const BodyFactory* find_body(const std::string& component) const;
   const CspFactory* find_csp(const std::string& component) const;
   const Mission* find_mission(const std::string& component) const;
+  const Activity* find_activity(const std::string& component) const;
 
   /// The `<argument>` elements of the process in its mission profile: what follows `--` on the
   /// command line of `skein peer`.
@@ -80,7 +94,15 @@ class ComponentRegistry {
   std::map<std::string, BodyFactory> bodies_;
   std::map<std::string, CspFactory> csps_;
   std::map<std::string, Mission> missions_;
+  std::map<std::string, Activity> activities_;
   std::vector<std::shared_ptr<const SelectionStrategy>> strategies_;
 };
+
+/// Waits until an activity is told to end, and no longer than `at_most` by the entity's clock.
+/// Whether it was told:
+///
+///     while (!await_end(entity, told_to_end, 100ms)) poses.publish(pose());
+bool await_end(Entity& entity, const std::stop_token& told_to_end,
+               Duration at_most = Duration::max());
 
 }  // namespace skein

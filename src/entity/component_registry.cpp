@@ -1,9 +1,13 @@
 #include "skein/component_registry.hpp"
 
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
 #include <set>
 
+#include "core/clock_wait.hpp"
 #include "core/shared_object.hpp"
+#include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/selection.hpp"
 
@@ -31,6 +35,11 @@ void ComponentRegistry::add_csp(const std::string& component, CspFactory factory
 void ComponentRegistry::add_mission(const std::string& component, Mission mission) {
   refuse_duplicate(component);
   missions_[component] = std::move(mission);
+}
+
+void ComponentRegistry::add_activity(const std::string& component, Activity activity) {
+  refuse_duplicate(component);
+  activities_[component] = std::move(activity);
 }
 
 void ComponentRegistry::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
@@ -62,11 +71,17 @@ const ComponentRegistry::Mission* ComponentRegistry::find_mission(
   return find_in(missions_, component);
 }
 
+const ComponentRegistry::Activity* ComponentRegistry::find_activity(
+    const std::string& component) const {
+  return find_in(activities_, component);
+}
+
 std::vector<std::string> ComponentRegistry::names() const {
   std::set<std::string> names;
   for (const auto& [name, factory] : bodies_) names.insert(name);
   for (const auto& [name, factory] : csps_) names.insert(name);
   for (const auto& [name, mission] : missions_) names.insert(name);
+  for (const auto& [name, activity] : activities_) names.insert(name);
   return {names.begin(), names.end()};
 }
 
@@ -77,10 +92,27 @@ void ComponentRegistry::load_plugin(const std::string& name) {
 }
 
 void ComponentRegistry::refuse_duplicate(const std::string& component) const {
-  if (find_body(component) || find_csp(component) || find_mission(component)) {
+  if (find_body(component) || find_csp(component) || find_mission(component) ||
+      find_activity(component)) {
     throw InvalidArgument("two implementations of component '" + component +
                           "' are registered; load only one of the plugins that hold it");
   }
+}
+
+bool await_end(Entity& entity, const std::stop_token& told_to_end, Duration at_most) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  const std::stop_callback wakes(told_to_end, [&] {
+    const std::lock_guard lock(mutex);
+    changed.notify_all();
+  });
+  std::unique_lock lock(mutex);
+  const auto told = [&] { return told_to_end.stop_requested(); };
+  Clock& clock = entity.clock();
+  const Instant now = clock.now();
+  if (at_most < Instant::max() - now) return wait_until(clock, now + at_most, lock, changed, told);
+  changed.wait(lock, told);
+  return true;
 }
 
 }  // namespace skein

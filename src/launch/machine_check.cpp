@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "component_code.hpp"
 #include "core/host.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
@@ -222,20 +223,9 @@ class PluginCheck {
     }
     check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner && csp.component)
-        demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
-               csp.where, registry);
+      if (csp.process == CspProcess::InOwner && csp.component) demand_code(csp, registry);
     }
-    if (!peer.component) return;
-    const std::string& component = peer.component->name;
-    if (!peer.component->interfaces.empty()) {
-      demand(registry.find_body(component), component, "component", peer.plugin, peer.where,
-             registry);
-    }
-    if (peer.runs_mission) {
-      demand(registry.find_mission(component), component, "mission", peer.plugin, peer.where,
-             registry);
-    }
+    if (peer.component) demand_code(peer, registry);
   }
 
   void check_strategy(const PeerProfile& peer, const ComponentRegistry& registry) {
@@ -251,27 +241,14 @@ class PluginCheck {
   void check_own(const CspProfile& csp) {
     ComponentRegistry registry;
     if (!load(registry, csp.plugin, csp.where)) return;
-    demand(registry.find_csp(csp.component->name), csp.component->name, "CSP", csp.plugin,
-           csp.where, registry);
+    demand_code(csp, registry);
   }
 
-  void demand(bool found, const std::string& component, const std::string& kind,
-              const std::string& plugin, const profile::SourcePosition& where,
-              const ComponentRegistry& registry) {
-    if (found) return;
-    if (plugin.empty()) {
-      add(where, "no plugin is named for the " + kind + " '" + component + "'",
-          "name the one that implements it: plugin=\"...\"");
-      return;
-    }
-    const auto known = registry.names();
-    const bool other_kind = std::ranges::count(known, component) > 0;
-    std::string names;
-    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-    add(where,
-        "the plugin '" + plugin + "' has no implementation of the " + kind + " '" + component +
-            "'" + (other_kind ? "" : suggestion(component, known)),
-        names.empty() ? "it has none at all" : "it implements " + names);
+  /// Of a peer or a CSP.
+  template <class Profile>
+  void demand_code(const Profile& profile, const ComponentRegistry& registry) {
+    if (const auto lack = find_lack(profile, registry))
+      add(profile.where, lack->problem, lack->remedy);
   }
 
   std::vector<Finding> findings_;

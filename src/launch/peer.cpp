@@ -1,14 +1,19 @@
 #include "launch/peer.hpp"
 
+#include <poll.h>
 #include <pthread.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <functional>
 #include <set>
+#include <stop_token>
+#include <thread>
 
+#include "component_code.hpp"
 #include "core/interface_name.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
@@ -23,6 +28,7 @@
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "wake_up.hpp"
 
 namespace skein::launch {
 namespace {
@@ -97,20 +103,19 @@ ServiceOptions service_options(const profile::ComponentDescription& component,
   return options;
 }
 
-template <class Factory>
-const Factory& required(const Factory* factory, const std::string& component, const char* kind,
-                        const ComponentRegistry& registry) {
-  if (factory) return *factory;
-  throw InvalidArgument("no implementation of " + std::string(kind) + " '" + component +
-                        "' is registered" + suggestion(component, registry.names()) +
-                        "; name the plugin that holds it in the profile");
+/// Throws InvalidArgument where no code would run for a peer or a CSP.
+template <class Profile>
+void demand_code(const Profile& profile, const ComponentRegistry& registry) {
+  const auto lack = find_lack(profile, registry);
+  if (!lack) return;
+  throw InvalidArgument(profile::to_text(profile.where) + ": " + lack->problem + "; " +
+                        lack->remedy);
 }
 
 void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp,
                  const ComponentRegistry& registry) {
-  const auto& factory =
-      required(registry.find_csp(csp.component->name), csp.component->name, "CSP", registry);
-  auto servant = factory(values_of(csp.parameters));
+  demand_code(csp, registry);
+  auto servant = (*registry.find_csp(csp.component->name))(values_of(csp.parameters));
   ServiceOptions options = service_options(*csp.component, *servant);
   options.thread = csp.threads.thread;
   options.scheduling = csp.threads.settings;
@@ -136,8 +141,7 @@ std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& b
 using SelfTest = std::function<void()>;
 
 SelfTest provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
-  const auto& factory = required(registry.find_body(peer.component->name), peer.component->name,
-                                 "component", registry);
+  const auto& factory = *registry.find_body(peer.component->name);
   ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
   ServiceOptions options = service_options(*peer.component, *body.servant);
   options.thread = peer.threads.thread;
@@ -207,6 +211,43 @@ int await_end() {
   return 0;
 }
 
+/// Tells an activity to end, when the process is told to.
+class EndWatch {
+ public:
+  EndWatch() : thread_([this] { watch(); }) {}
+  EndWatch(const EndWatch&) = delete;
+  EndWatch& operator=(const EndWatch&) = delete;
+  ~EndWatch() {
+    over_.raise();
+    thread_.join();
+  }
+
+  std::stop_token token() const noexcept { return told_.get_token(); }
+
+ private:
+  void watch() {
+    std::array<pollfd, 2> watched{
+        {{signals_.descriptor(), POLLIN, 0}, {over_.descriptor(), POLLIN, 0}}};
+    while (::poll(watched.data(), watched.size(), -1) < 0) {
+    }
+    if (signals_.take() != 0) told_.request_stop();
+  }
+
+  std::stop_source told_;
+  StopRequest over_;
+  SignalReader signals_{true};
+  std::thread thread_;
+};
+
+/// What a peer does that provides nothing.
+int run_own_code(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
+  const auto values = values_of(peer.parameters);
+  const auto* activity = registry.find_activity(peer.component->name);
+  if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
+  const EndWatch watch;
+  return (*activity)(entity, values, watch.token());
+}
+
 void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
   if (!plugin.empty()) registry.load_plugin(plugin);
 }
@@ -247,20 +288,19 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), csp, registry);
   }
+  demand_code(peer, registry);
   SelfTest self_test;
   if (!peer.component->interfaces.empty()) self_test = provide_body(entity, peer, registry);
   if (!await_dependencies(entity, peer, begun)) return 0;
   pass(self_test, entity);
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
-  if (!peer.runs_mission) return await_end();
-  const auto& mission_function = required(registry.find_mission(peer.component->name),
-                                          peer.component->name, "mission", registry);
+  if (!peer.component->interfaces.empty()) return await_end();
   try {
-    return mission_function(entity, values_of(peer.parameters));
+    return run_own_code(entity, peer, registry);
   } catch (const std::exception& error) {
-    const std::string text =
-        peer.name + ", which runs the mission, ended by an exception: " + error.what();
+    const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
+                             " ended by an exception: " + error.what();
     std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
     return kMissionFailed;
   }

@@ -21,14 +21,16 @@ EntityOptions entity_options(const profile::MissionProfile& mission,
 /// the plugins that the profile names: `navigator` for a peer with its in-process CSPs, whose Head
 /// knows their selection strategies, `navigator/RRTstar` for a CSP with a process of its own. Joins
 /// the mission, provides what the component implements, waits for what it depends on, passes the
-/// implementation's self-test, reports ready and, if the profile asks for it, progress, and returns
-/// the exit code: the mission's for the peer that runs it (kMissionFailed where it ends by an
-/// exception, which is told on stderr), 0 when told to end by SIGTERM, SIGINT or SIGHUP. While it
-/// waits it says for what, once a second has passed and whenever the reason changes.
+/// implementation's self-test, reports ready and, if the profile asks for it, progress. A peer that
+/// provides nothing then runs its activity or, with role="mission", its mission. Returns the exit
+/// code: that of the activity or mission (kMissionFailed where it ends by an exception, which is
+/// told on stderr); for others 0 when told to end by SIGTERM, SIGINT or SIGHUP. While it waits it
+/// says for what, once a second has passed and whenever the reason changes.
 ///
 /// Call it from main() before other threads exist: it blocks those signals for all that it starts.
 /// Throws InvalidArgument for a name that the profile or the registry does not have, a strategy's
-/// among them (with a suggestion), and for a peer with a program of its own; Unavailable where the
+/// among them (with a suggestion), for a peer for which no code would run, and for one with a
+/// program of its own; Unavailable where the
 /// self-test fails, or a dependency does not appear within four fifths of the ready timeout: before
 /// the launcher would end the process.
 int run_process(const profile::MissionProfile& mission, const std::string& process,

@@ -41,6 +41,13 @@ class Checker {
                         "the first is at " + to_text(first->where));
       }
       if (first == nullptr) first = &peer;
+      if (peer.component && !peer.component->interfaces.empty() && peer.start.program.empty()) {
+        findings_.error(peer.where,
+                        in_quotes(peer.name) + " has role=\"mission\" and provides " +
+                            peer.component->interfaces.front().type +
+                            ": a peer with a service runs until it is told to end",
+                        "give the role to a peer whose component implements nothing");
+      }
       if (peer.rules.restart.policy != RestartPolicy::Never) {
         findings_.error(peer.where,
                         in_quotes(peer.name) + " runs the mission and would be restarted",

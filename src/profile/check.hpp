@@ -18,7 +18,7 @@ namespace skein::profile {
 /// - two peers that write one history or decision log
 /// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
 /// - a service reference to something that the mission does not have
-/// - more than one peer that runs the mission, or one that would be restarted
+/// - more than one peer that runs the mission, one that would be restarted, or that has a service
 /// - a peer that is to look for others beyond this host, but names no network interface
 /// - a selection strategy that is none of Skein's own where no plugin could hold it: a warning,
 ///   since the program may bring it

@@ -1,11 +1,17 @@
 #include "skein/component_registry.hpp"
 
 #include <catch2/catch.hpp>
+#include <future>
 
+#include "../tools/eventually.hpp"
+#include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "skein/loopback.hpp"
+#include "skein/process.hpp"
 #include "skein/selection.hpp"
 
 using namespace skein;
+using namespace std::chrono_literals;
 
 namespace {
 
@@ -43,4 +49,35 @@ TEST_CASE("a second strategy of one name is refused, and so is one with a name o
   CHECK_THROWS_WITH(registry.add_strategy(std::make_shared<First>("learned")),
                     Catch::Contains("'learned' is one of Skein's own"));
   CHECK(registry.strategies().size() == 1);
+}
+
+TEST_CASE("the name of an activity is a component's, too") {
+  ComponentRegistry registry;
+  const auto idle = [](Entity&, const ParameterValues&, const std::stop_token&) { return 0; };
+  registry.add_activity("Beacon", idle);
+  CHECK(registry.find_activity("Beacon") != nullptr);
+  CHECK(registry.find_mission("Beacon") == nullptr);
+  CHECK(registry.names() == std::vector<std::string>{"Beacon"});
+  CHECK_THROWS_AS(registry.add_mission("Beacon", [](Entity&, const ParameterValues&) { return 0; }),
+                  InvalidArgument);
+}
+
+TEST_CASE("an activity waits by the clock of its entity, until it is told to end") {
+  const auto clock = std::make_shared<ManualClock>();
+  dds::LoopbackNetwork network(*clock);
+  Entity entity(
+      {.name = "a", .vendor = network.vendor(), .process = std::make_shared<Process>(clock)});
+  std::stop_source told;
+  CHECK_FALSE(await_end(entity, told.get_token(), Duration::zero()));
+  auto patient = std::async([&] { return await_end(entity, told.get_token(), 1h); });
+  REQUIRE(test::eventually([&] {
+    clock->advance(30min);
+    return patient.wait_for(0s) == std::future_status::ready;
+  }));
+  CHECK_FALSE(patient.get());
+  auto endless = std::async([&] { return await_end(entity, told.get_token()); });
+  clock->advance(24h);
+  told.request_stop();
+  CHECK(endless.get());
+  CHECK(await_end(entity, told.get_token(), 1h));
 }

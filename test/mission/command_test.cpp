@@ -170,8 +170,9 @@ TEST_CASE("a missing dependency is told at once, and is the reason when the peer
   const Errand errand;
   const std::string client =
       "<peer name='client' component='client.xml' role='mission' ready_timeout='10 s'/>";
-  // The office's process is there; it is in another domain of discovery.
-  const std::string office = "<peer name='office' component='office.xml' vendor='loopback'/>";
+  // The office's process is there, and provides nothing.
+  const std::string office =
+      "<peer name='office' component='office.xml' program='sleep'><argument value='1000'/></peer>";
   CommandRun run({"launch", errand.profile("", office + client)});
   CHECK(run.writes("waits for its dependency: no provider of 'crew/Desk'"));
   CHECK(run.wait() == 71);
@@ -249,15 +250,69 @@ TEST_CASE("what a profile names and this machine does not have is a finding with
 
 TEST_CASE("a component that its plugin does not implement is a finding with what it implements") {
   const Errand errand;
+  errand.write("misspelt.xml", "<component name='herlad'/>");
   const std::string command = GENERATE("check", "launch");
-  CommandRun run(
-      {command, errand.profile("",
-                               "<peer name='client' component='client.xml'/>"
-                               "<peer name='o' component='office.xml' role='mission'/>")});
+  CommandRun run({command, errand.profile("", "<peer name='m' component='misspelt.xml'/>")});
   CHECK(run.wait() == 78);
   CHECK_THAT(run.output(),
-             Contains("the plugin 'skein_errand_components' has no implementation of the mission "
-                      "'office'; it implements client, clumsy, office"));
+             Contains("errand.xml:1:") &&
+                 Contains("the plugin 'skein_errand_components' has no implementation of the "
+                          "activity 'herlad' (did you mean 'herald'?); it implements client, "
+                          "clumsy, herald, office"));
+}
+
+TEST_CASE("a peer for which no code would run is refused, and nothing is started") {
+  const Errand errand;
+  errand.write("idle_office.xml", "<component name='office'/>");
+  errand.write("busy_herald.xml",
+               "<component name='herald'><interfaces><implements>IDL:crew/Desk</implements>"
+               "</interfaces></component>");
+  const auto [peer, problem] = GENERATE(table<std::string, std::string>({
+      {"component='clumsy.xml'",
+       "no code would run for the activity 'clumsy': it is registered by add_mission, not by "
+       "add_activity; write role=\"mission\", or register it by add_activity"},
+      {"component='idle_office.xml'",
+       "no code would run for the activity 'office': it is registered by add_body, not by "
+       "add_activity; add what it implements to <interfaces>"},
+      {"component='busy_herald.xml'",
+       "no code would run for the component 'herald': it is registered by add_activity, not by "
+       "add_body; register what it provides by add_body, or remove <implements>"},
+      {"component='office.xml' role='mission'",
+       "\"p\" has role=\"mission\" and provides crew/Desk: a peer with a service runs until it is "
+       "told to end; give the role to a peer whose component implements nothing"},
+      {"component='herald.xml' plugin=''", "no plugin is named for the activity 'herald'"},
+  }));
+  const std::string command = GENERATE("check", "launch");
+  CAPTURE(peer, command);
+  CommandRun run({command, errand.profile("", "<peer name='p' " + peer + "/>")});
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(), Contains("errand.xml:1:") && Contains(problem));
+  CHECK_THAT(run.output(), !Contains("ready"));
+}
+
+TEST_CASE("a peer that provides nothing does its own until it is told to end") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string profile = errand.profile("", "<peer name='h' component='herald.xml'/>");
+  CommandRun check({"check", profile});
+  CHECK(check.wait() == 0);
+  CommandRun run({"launch", profile, "--verbose"});
+  REQUIRE(run.writes("hear, hear\nh"));
+  run.signal(SIGINT);
+  CHECK(run.wait() == 128 + SIGINT);
+  CHECK_THAT(run.output(),
+             Contains("the herald goes home") && Contains("h: ended with exit code 0"));
+}
+
+TEST_CASE("a peer that provides nothing may end by itself, and with it the mission") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"launch", errand.profile("",
+                                           "<peer name='h' component='herald.xml'/>"
+                                           "<peer name='p' component='page.xml' "
+                                           "role='mission'/>")});
+  CHECK(run.wait() == 3);
+  CHECK_THAT(run.output(), Contains("a word") && Contains("the herald goes home"));
 }
 
 TEST_CASE("of a mission that is launched in part, only that part's plugins must be there") {

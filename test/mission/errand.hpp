@@ -12,7 +12,8 @@ namespace skein::test {
 
 /// A folder with the small mission's components, for profiles around them; it goes with this
 /// object. `office` answers, `sick` would but fails its self-test, `client` asks and ends, `vexer`
-/// makes the office spin first, `clumsy` ends by an exception.
+/// makes the office spin first, `clumsy` ends by an exception, `herald` calls out until it is told
+/// to end, `page` does so three times.
 class Errand {
  public:
   Errand() {
@@ -29,7 +30,8 @@ class Errand {
                                 "'><dependencies><depends>IDL:crew/Desk</depends>"
                                 "</dependencies></component>");
     }
-    write("clumsy.xml", "<component name='clumsy'/>");
+    for (const std::string lone : {"clumsy", "herald", "page"})
+      write(lone + ".xml", "<component name='" + lone + "'/>");
   }
   ~Errand() {
     std::error_code ignored;
@@ -40,6 +42,12 @@ class Errand {
 
   const std::filesystem::path& path() const noexcept { return folder_; }
 
+  /// A file beside the profile; its path.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
   /// A profile with these attributes of <mission> and these peers.
   std::string profile(const std::string& attributes, const std::string& peers) const {
     return write("errand.xml", "<mission name='errand' domain='48' system='uav-1' dictionary='" +
@@ -49,11 +57,6 @@ class Errand {
   }
 
  private:
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-
   std::filesystem::path folder_;
 };
 

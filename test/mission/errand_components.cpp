@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,22 @@ int vex(Entity& entity, const ParameterValues&) {
   return 0;
 }
 
+int call_out(Entity& entity, const ParameterValues&, const std::stop_token& told_to_end) {
+  do {
+    std::puts("hear, hear");
+    std::fflush(stdout);
+  } while (!await_end(entity, told_to_end, 20ms));
+  std::puts("the herald goes home");
+  std::fflush(stdout);
+  return 0;
+}
+
+int call_thrice(Entity& entity, const ParameterValues&, const std::stop_token& told_to_end) {
+  for (int i = 0; i < 3 && !await_end(entity, told_to_end, 1ms); ++i) std::puts("a word");
+  std::fflush(stdout);
+  return 3;
+}
+
 int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the client stumbled"); }
 
 }  // namespace
@@ -85,5 +102,7 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   });
   registry.add_mission("vexer", vex);
   registry.add_mission("clumsy", stumble);
+  registry.add_activity("herald", call_out);
+  registry.add_activity("page", call_thrice);
   registry.add_strategy(std::make_shared<First>());
 }

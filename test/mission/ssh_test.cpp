@@ -150,13 +150,13 @@ TEST_CASE("peers of the other host that fail are told by name, and end the missi
   const TwoHosts hosts;
   const Errand errand;
   const SshHost there(hosts.beta, kThere);
-  // Nobody serves the client: the office's process is in another domain of discovery.
+  // Nobody serves the client: the office is a program that does not.
   Flight flight(
       hosts, there,
-      {errand.profile(
-          "interface='skein0'",
-          "<peer name='office' component='office.xml' vendor='loopback' host='10.78.0.1'/>" +
-              peer("client", kThere, "ready_timeout='5 s'"))});
+      {errand.profile("interface='skein0'",
+                      "<peer name='office' component='office.xml' program='sleep' host='10.78.0.1'>"
+                      "<argument value='1000'/></peer>" +
+                          peer("client", kThere, "role='mission' ready_timeout='5 s'"))});
   CHECK(flight.run().wait() == 71);
   CHECK_THAT(flight.run().output(),
              Contains("10.78.0.2 | * client: ended with exit code 71") &&
@@ -225,8 +225,8 @@ TEST_CASE("start over ssh, beside local", "[.measure]") {
   const Errand errand;
   const SshHost there(hosts.beta, kThere);
   const auto measure = [&](const std::string& host) {
-    const std::string profile =
-        errand.profile("interface='skein0'", peer("client", kHere) + peer("office", host));
+    const std::string profile = errand.profile(
+        "interface='skein0'", peer("client", kHere, "role='mission'") + peer("office", host));
     const auto begin = Clock::now();
     Flight flight(hosts, there, {profile});
     REQUIRE(flight.run().writes("processes are ready"));
