@@ -24,12 +24,6 @@ using AE_flightControllerI::IFlightController;
 using AE_navigator::Problem;
 using skein::ParameterValues;
 
-std::string value_or(const ParameterValues& values, const std::string& name,
-                     std::string otherwise) {
-  const auto found = values.find(name);
-  return found == values.end() ? std::move(otherwise) : found->second;
-}
-
 bool is_synthetic(const std::string& terrain) { return terrain.starts_with("synthetic:"); }
 
 /// Other peers look for the file too, from folders of their own.
@@ -84,10 +78,10 @@ double seconds(skein::Duration duration) { return std::chrono::duration<double>(
 
 GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& values)
     : entity_(entity),
-      picture_(value_or(values, "Picture", "route.svg")),
-      planners_(names_in(value_or(values, "Planners", ""))),
+      picture_(values.find<std::string>("Picture").value_or("route.svg")),
+      planners_(names_in(values.find<std::string>("Planners").value_or(""))),
       terrain_(skein::navigation::TerrainProvider().load(
-          name_for_all(value_or(values, "Terrain", "synthetic:7")))),
+          name_for_all(values.find<std::string>("Terrain").value_or("synthetic:7")))),
       terrain_title_(std::filesystem::path(terrain_->name()).filename().string()),
       ground_(ground_of(*terrain_)),
       navigator_(entity),

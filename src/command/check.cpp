@@ -13,8 +13,9 @@ namespace skein::command {
 
 std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
   std::vector<profile::Finding> findings;
-  const auto mission = profile::read_and_check(arguments.profile, findings,
-                                               profile::parse_variables(arguments.variables));
+  const auto mission =
+      profile::read_and_check(arguments.profile, findings,
+                              profile::parse_variables(arguments.variables), arguments.settings);
   if (mission.peers.empty()) return findings;
   const bool nobody_here = std::ranges::none_of(
       mission.peers, [&](const auto& peer) { return launch::is_here(peer.host, arguments.host); });

@@ -50,10 +50,14 @@ struct CallsArguments : Onlooker {
 /// `skein calls`: what happens to each call on a domain, live.
 int show_calls(const CallsArguments& arguments);
 
-struct CheckArguments {
+struct MissionArguments {
   std::string profile;
-  std::string host;
+  std::vector<std::string> settings;
   std::vector<std::string> variables;
+};
+
+struct CheckArguments : MissionArguments {
+  std::string host;
   bool json = false;
 };
 
@@ -72,12 +76,6 @@ struct DecisionsArguments : Onlooker {
 /// `skein decisions`: how the Heads on a domain decide, live or from a log. 1 where a replay comes
 /// out differently.
 int show_decisions(const DecisionsArguments& arguments);
-
-struct MissionArguments {
-  std::string profile;
-  std::vector<std::string> settings;
-  std::vector<std::string> variables;
-};
 
 struct DoctorArguments {
   std::string profile;  ///< Empty: this machine alone.

@@ -94,6 +94,7 @@ profile::MissionProfile read_or_tell_all(const LaunchArguments& arguments) {
     check.profile = arguments.profile;
     check.host = arguments.host;
     check.variables = arguments.variables;
+    check.settings = arguments.settings;
     const auto findings = findings_of(check);
     if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
     throw;

@@ -75,10 +75,8 @@ class Fingerprint {
 }  // namespace
 
 profile::MissionProfile read_mission(const MissionArguments& arguments) {
-  auto mission = profile::read_checked_profile(arguments.profile,
-                                               profile::parse_variables(arguments.variables));
-  for (const std::string& setting : arguments.settings) profile::apply_setting(mission, setting);
-  return mission;
+  return profile::read_checked_profile(
+      arguments.profile, profile::parse_variables(arguments.variables), arguments.settings);
 }
 
 launch::LaunchPlan plan_of(const profile::MissionProfile& mission, const PlanArguments& arguments) {

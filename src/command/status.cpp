@@ -14,7 +14,8 @@ namespace skein::command {
 namespace {
 
 profile::MissionProfile mission_of(const RunningArguments& arguments) {
-  return profile::read_checked_profile(arguments.profile,
+  // Its launcher has checked it, with the settings of its command line.
+  return profile::read_mission_profile(arguments.profile,
                                        profile::parse_variables(arguments.variables));
 }
 

@@ -79,15 +79,20 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   return options;
 }
 
-ParameterValues values_of(const std::vector<profile::Setting>& settings) {
+/// The profile's values, as the dictionary types them. It has been checked that it knows them.
+ParameterValues values_of(const std::vector<profile::Setting>& settings,
+                          const profile::Dictionary& dictionary) {
   ParameterValues values;
-  for (const profile::Setting& setting : settings) values[setting.name] = setting.value;
+  for (const profile::Setting& setting : settings) {
+    const auto* entry = dictionary.find(profile::EntryKind::Parameter, setting.name);
+    if (entry) values.set(setting.name, profile::parse_value(*entry, setting.value));
+  }
   return values;
 }
 
 // What the component's description declares of the interface that `servant` implements.
 ServiceOptions service_options(const profile::ComponentDescription& component,
-                               const Servant& servant) {
+                               const profile::Dictionary& dictionary, const Servant& servant) {
   const auto* implemented = component.find_interface(servant.interface_info().name);
   if (!implemented) {
     throw InvalidArgument(profile::to_text(component.where) + ": component '" + component.name +
@@ -96,7 +101,9 @@ ServiceOptions service_options(const profile::ComponentDescription& component,
   }
   ServiceOptions options;
   for (const auto& attribute : implemented->attributes) {
-    options.attributes.push_back({attribute.name, attribute.value});
+    const auto* entry = dictionary.find(profile::EntryKind::Attribute, attribute.name);
+    options.attributes.push_back(
+        {attribute.name, entry ? profile::plain_text(*entry, attribute.value) : attribute.value});
   }
   for (const auto& part : component.subcomponents) options.subcomponents.push_back(part.type);
   options.component = profile::write_component(component);
@@ -112,11 +119,12 @@ void demand_code(const Profile& profile, const ComponentRegistry& registry) {
                         lack->remedy);
 }
 
-void provide_csp(Entity& entity, const std::string& owner, const CspProfile& csp,
-                 const ComponentRegistry& registry) {
+void provide_csp(Entity& entity, const std::string& owner, const MissionProfile& mission,
+                 const CspProfile& csp, const ComponentRegistry& registry) {
   demand_code(csp, registry);
-  auto servant = (*registry.find_csp(csp.component->name))(values_of(csp.parameters));
-  ServiceOptions options = service_options(*csp.component, *servant);
+  auto servant =
+      (*registry.find_csp(csp.component->name))(values_of(csp.parameters, mission.dictionary));
+  ServiceOptions options = service_options(*csp.component, mission.dictionary, *servant);
   options.thread = csp.threads.thread;
   options.scheduling = csp.threads.settings;
   entity.provide_csp(csp.name, owner, std::move(servant), options);
@@ -140,10 +148,11 @@ std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& b
 
 using SelfTest = std::function<void()>;
 
-SelfTest provide_body(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
+SelfTest provide_body(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
+                      const ComponentRegistry& registry) {
   const auto& factory = *registry.find_body(peer.component->name);
-  ComponentRegistry::Body body = factory(entity, values_of(peer.parameters));
-  ServiceOptions options = service_options(*peer.component, *body.servant);
+  ComponentRegistry::Body body = factory(entity, values_of(peer.parameters, mission.dictionary));
+  ServiceOptions options = service_options(*peer.component, mission.dictionary, *body.servant);
   options.thread = peer.threads.thread;
   options.threads = threads_of(peer, body);
   options.scheduling = peer.threads.settings;
@@ -240,8 +249,9 @@ class EndWatch {
 };
 
 /// What a peer does that provides nothing.
-int run_own_code(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry) {
-  const auto values = values_of(peer.parameters);
+int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
+                 const ComponentRegistry& registry) {
+  const auto values = values_of(peer.parameters, mission.dictionary);
   const auto* activity = registry.find_activity(peer.component->name);
   if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
   const EndWatch watch;
@@ -258,7 +268,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
-  provide_csp(entity, peer.system + "/" + peer.name, csp, registry);
+  provide_csp(entity, peer.system + "/" + peer.name, mission, csp, registry);
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
   return await_end();
@@ -286,18 +296,19 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
       [&](const brokerless_discovery::Change& change) { end_stopped_csp(entity, peer, change); });
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
-      provide_csp(entity, entity.id(), csp, registry);
+      provide_csp(entity, entity.id(), mission, csp, registry);
   }
   demand_code(peer, registry);
   SelfTest self_test;
-  if (!peer.component->interfaces.empty()) self_test = provide_body(entity, peer, registry);
+  if (!peer.component->interfaces.empty())
+    self_test = provide_body(entity, mission, peer, registry);
   if (!await_dependencies(entity, peer, begun)) return 0;
   pass(self_test, entity);
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
   if (!peer.component->interfaces.empty()) return await_end();
   try {
-    return run_own_code(entity, peer, registry);
+    return run_own_code(entity, mission, peer, registry);
   } catch (const std::exception& error) {
     const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
                              " ended by an exception: " + error.what();

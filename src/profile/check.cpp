@@ -99,14 +99,18 @@ class Checker {
     for (const auto& csp : peer.csps) names.add(csp.name, csp.where, findings_);
     if (peer.component) {
       check_component(*peer.component, mission_.dictionary, findings_);
-      check_settings(peer.parameters, *peer.component, mission_.dictionary, findings_);
+      if (peer.start.program.empty()) {
+        check_settings(peer.name, peer.parameters, peer.where, *peer.component, mission_.dictionary,
+                       findings_);
+      }
       check_references(peer.parameters, peer);
       if (peer.start.program.empty()) check_subcomponents(peer);
     }
     for (const auto& csp : peer.csps) {
       if (!csp.component) continue;
       check_component(*csp.component, mission_.dictionary, findings_);
-      check_settings(csp.parameters, *csp.component, mission_.dictionary, findings_);
+      check_settings(peer.name + "/" + csp.name, csp.parameters, csp.where, *csp.component,
+                     mission_.dictionary, findings_);
       check_references(csp.parameters, peer);
       check_isolation(csp);
     }
@@ -281,10 +285,14 @@ class Checker {
 std::vector<Finding> check(const MissionProfile& profile) { return Checker(profile).run(); }
 
 MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
-                              const VariableValues& values) {
+                              const VariableValues& values,
+                              const std::vector<std::string>& settings) {
   FindingList list;
   std::vector<Finding> of_reading;
   auto profile = read_mission_profile(file, of_reading, values);
+  if (!has_errors(of_reading)) {
+    for (const std::string& setting : settings) apply_setting(profile, setting);
+  }
   list.add_all(of_reading);
   list.add_all(check(profile));
   findings.insert(findings.end(), list.list().begin(), list.list().end());
@@ -297,10 +305,10 @@ std::vector<Finding> check_file(const std::filesystem::path& file, const Variabl
   return findings;
 }
 
-MissionProfile read_checked_profile(const std::filesystem::path& file,
-                                    const VariableValues& values) {
+MissionProfile read_checked_profile(const std::filesystem::path& file, const VariableValues& values,
+                                    const std::vector<std::string>& settings) {
   std::vector<Finding> findings;
-  auto profile = read_and_check(file, findings, values);
+  auto profile = read_and_check(file, findings, values, settings);
   if (has_errors(findings)) throw DescriptionError(std::move(findings));
   return profile;
 }

@@ -13,7 +13,7 @@ namespace skein::profile {
 /// - a dependency that no peer provides, or that only a managed interface of another peer would
 /// - a cycle of dependencies, each named once with its way round
 /// - an attribute or parameter that the dictionary does not have, or whose value or declared type
-///   disagrees with it; a parameter that the component does not have
+///   disagrees with it; a parameter that the component does not have, or requires and is not given
 /// - names given twice: peers, groups, CSPs, parameters, attributes, interfaces
 /// - two peers that write one history or decision log
 /// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
@@ -27,11 +27,13 @@ namespace skein::profile {
 /// can tell is in launch/machine_check.hpp.
 std::vector<Finding> check(const MissionProfile& profile);
 
-/// Reads a profile and checks it: adds the findings of reading and those of check() to `findings`,
-/// and gives what could be read. Throws nothing for what files can contain; a file that is missing
-/// is a finding as well.
+/// Reads a profile, gives its parameters the values of `settings` (as apply_setting() does), and
+/// checks it: adds the findings of reading and those of check() to `findings`, and gives what could
+/// be read. Throws nothing for what files can contain; a file that is missing is a finding as well.
+/// Throws InvalidArgument for a setting that a profile without errors does not take.
 MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
-                              const VariableValues& values = {});
+                              const VariableValues& values = {},
+                              const std::vector<std::string>& settings = {});
 
 /// The findings of read_and_check().
 std::vector<Finding> check_file(const std::filesystem::path& file,
@@ -40,6 +42,7 @@ std::vector<Finding> check_file(const std::filesystem::path& file,
 /// Reads a profile that is going to be run: throws DescriptionError with every finding of
 /// check_file() if one of them is an error.
 MissionProfile read_checked_profile(const std::filesystem::path& file,
-                                    const VariableValues& values = {});
+                                    const VariableValues& values = {},
+                                    const std::vector<std::string>& settings = {});
 
 }  // namespace skein::profile

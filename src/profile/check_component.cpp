@@ -10,10 +10,7 @@ namespace {
 
 std::vector<std::string_view> parameter_names(const ComponentDescription& component) {
   std::vector<std::string_view> names;
-  for (const auto& implemented : component.interfaces) {
-    for (const auto& parameter : implemented.required) names.push_back(parameter.name);
-    for (const auto& parameter : implemented.optional) names.push_back(parameter.name);
-  }
+  for (const Parameter* parameter : component.parameters()) names.push_back(parameter->name);
   return names;
 }
 
@@ -68,15 +65,26 @@ void check_parameter(const Parameter& parameter, const Dictionary& dictionary,
                  "it is defined at " + to_text(entry->where));
 }
 
-void check_interface(const ImplementedInterface& implemented, const Dictionary& dictionary,
-                     FindingList& findings) {
+/// What a value looks like.
+std::string example_of(const DictionaryEntry& entry) {
+  if (entry.type == ValueType::Boolean) return "true";
+  return entry.unit.empty() ? "..." : "... " + entry.unit;
+}
+
+template <class Owner>
+void check_parameters(const Owner& owner, const Dictionary& dictionary, FindingList& findings) {
   Repeated parameters("the parameter");
-  for (const auto* group : {&implemented.required, &implemented.optional}) {
+  for (const auto* group : {&owner.required, &owner.optional}) {
     for (const auto& parameter : *group) {
       check_parameter(parameter, dictionary, findings);
       parameters.add(parameter.name, parameter.where, findings);
     }
   }
+}
+
+void check_interface(const ImplementedInterface& implemented, const Dictionary& dictionary,
+                     FindingList& findings) {
+  check_parameters(implemented, dictionary, findings);
   Repeated attributes("the attribute");
   for (const auto& attribute : implemented.attributes) {
     check_attribute(attribute, dictionary, findings);
@@ -88,6 +96,7 @@ void check_interface(const ImplementedInterface& implemented, const Dictionary& 
 
 void check_component(const ComponentDescription& component, const Dictionary& dictionary,
                      FindingList& findings) {
+  check_parameters(component, dictionary, findings);
   Repeated interfaces("the interface");
   for (const auto& implemented : component.interfaces) {
     check_interface(implemented, dictionary, findings);
@@ -101,22 +110,36 @@ void check_component(const ComponentDescription& component, const Dictionary& di
   }
 }
 
-void check_settings(const std::vector<Setting>& settings, const ComponentDescription& component,
+void check_settings(const std::string& owner, const std::vector<Setting>& settings,
+                    const SourcePosition& where, const ComponentDescription& component,
                     const Dictionary& dictionary, FindingList& findings) {
   const auto known = parameter_names(component);
+  const bool takes_any = known.empty() && component.interfaces.empty();
   Repeated names("the parameter");
   for (const auto& setting : settings) {
     if (setting.name.empty()) continue;  // a finding of the reader
     names.add(setting.name, setting.where, findings);
-    if (!component.interfaces.empty() && !is_known(setting.name, known)) {
+    if (!takes_any && !is_known(setting.name, known)) {
       findings.error(setting.where,
                      in_quotes(component.name) + " has no parameter " + in_quotes(setting.name),
                      remedy_for(setting.name, known));
     } else if (const auto* entry = dictionary.find(EntryKind::Parameter, setting.name)) {
       if (!setting.value.empty()) check_value(*entry, setting.value, setting.where, findings);
-    } else if (component.interfaces.empty()) {
+    } else if (takes_any) {
       refuse_unknown_parameter(setting.name, setting.where, dictionary, findings);
     }
+  }
+  for (const Parameter* parameter : component.required_parameters()) {
+    const bool given = std::ranges::any_of(
+        settings, [&](const Setting& setting) { return setting.name == parameter->name; });
+    if (given || parameter->name.empty()) continue;
+    const auto* entry = dictionary.find(EntryKind::Parameter, parameter->name);
+    findings.error(where,
+                   in_quotes(owner) + " has no value for the parameter " +
+                       in_quotes(parameter->name) + ", which its component requires (" +
+                       to_text(parameter->where) + ")",
+                   "write <parameter name=" + in_quotes(parameter->name) + " value=\"" +
+                       (entry ? example_of(*entry) : "...") + "\"/>");
   }
 }
 

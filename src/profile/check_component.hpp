@@ -10,9 +10,11 @@ namespace skein::profile {
 void check_component(const ComponentDescription& component, const Dictionary& dictionary,
                      FindingList& findings);
 
-/// The parameters that a profile sets, against the component and the dictionary. A component that
-/// implements no interface is a client only, and may be given any parameter of the dictionary.
-void check_settings(const std::vector<Setting>& settings, const ComponentDescription& component,
+/// The parameters that a profile sets for `owner`, a peer or `peer/csp` that stands at `where`,
+/// against the component and the dictionary; and those that the component requires. A component
+/// that implements no interface and declares no parameters may be given any of the dictionary.
+void check_settings(const std::string& owner, const std::vector<Setting>& settings,
+                    const SourcePosition& where, const ComponentDescription& component,
                     const Dictionary& dictionary, FindingList& findings);
 
 }  // namespace skein::profile

@@ -34,6 +34,24 @@ const ImplementedInterface* ComponentDescription::find_interface(
   return found == interfaces.end() ? nullptr : &*found;
 }
 
+std::vector<const Parameter*> ComponentDescription::required_parameters() const {
+  std::vector<const Parameter*> found;
+  for (const Parameter& parameter : required) found.push_back(&parameter);
+  for (const auto& implemented : interfaces) {
+    for (const Parameter& parameter : implemented.required) found.push_back(&parameter);
+  }
+  return found;
+}
+
+std::vector<const Parameter*> ComponentDescription::parameters() const {
+  auto found = required_parameters();
+  for (const Parameter& parameter : optional) found.push_back(&parameter);
+  for (const auto& implemented : interfaces) {
+    for (const Parameter& parameter : implemented.optional) found.push_back(&parameter);
+  }
+  return found;
+}
+
 bool ComponentDescription::has_subcomponent(std::string_view interface_name) const {
   const std::string type = canonical_interface_name(interface_name);
   return std::any_of(subcomponents.begin(), subcomponents.end(),

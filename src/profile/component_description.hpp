@@ -16,7 +16,8 @@ struct Attribute {
   SourcePosition where;
 };
 
-/// A parameter of a service that a client, a profile or the Body provides.
+/// A parameter of a component, whose value the profile gives, or of a service, whose value a client
+/// or the Body may give, too.
 struct Parameter {
   std::string name;
   /// The canonical name of an interface for a service reference, a type word of the dictionary
@@ -49,6 +50,8 @@ struct InterfaceReference {
 /// A plain value; component_xml.hpp reads and writes it as XML.
 struct ComponentDescription {
   std::string name;
+  std::vector<Parameter> required;  ///< Beside those of its interfaces.
+  std::vector<Parameter> optional;  ///< The same.
   std::vector<ImplementedInterface> interfaces;
   std::vector<InterfaceReference>
       dependencies;  ///< Services of others without which it cannot work.
@@ -58,6 +61,10 @@ struct ComponentDescription {
   /// The implemented interface of that name in any spelling, or null.
   /// Throws InvalidArgument if `interface_name` is no interface name.
   const ImplementedInterface* find_interface(std::string_view interface_name) const;
+  /// Its own parameters and those of its interfaces: those that the profile has to give a value, or
+  /// all. The pointers live as long as this object is unchanged.
+  std::vector<const Parameter*> required_parameters() const;
+  std::vector<const Parameter*> parameters() const;
   /// Whether one of the subcomponents is that interface. Throws as find_interface() does.
   bool has_subcomponent(std::string_view interface_name) const;
 };

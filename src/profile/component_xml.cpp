@@ -37,9 +37,10 @@ Parameter read_parameter(const XmlElement& element) {
   return parameter;
 }
 
-std::vector<Parameter> read_parameters(const XmlElement& implements, std::string_view group_name) {
+/// Of a component, or of an interface that it implements.
+std::vector<Parameter> read_parameters(const XmlElement& owner, std::string_view group_name) {
   std::vector<Parameter> parameters;
-  const auto group = implements.maybe_child(group_name);
+  const auto group = owner.maybe_child(group_name);
   if (!group) return parameters;
   for (const auto& child : group->children("parameter")) {
     parameters.push_back(read_parameter(child));
@@ -99,6 +100,8 @@ ComponentDescription read_component(const XmlNode& node, FindingList& findings) 
       }
     }
   }
+  component.required = read_parameters(root, "required");
+  component.optional = read_parameters(root, "optional");
   component.dependencies = read_references(root, "dependencies", "depends");
   component.subcomponents = read_references(root, "subcomponents", "subcomponent");
   return component;
@@ -124,10 +127,10 @@ void add_text_child(pugi::xml_node parent, const char* name, const std::string& 
   parent.append_child(name).append_child(pugi::node_pcdata).set_value(text.c_str());
 }
 
-void write_parameters(pugi::xml_node implements, const char* group_name,
+void write_parameters(pugi::xml_node owner, const char* group_name,
                       const std::vector<Parameter>& parameters) {
   if (parameters.empty()) return;
-  auto group = implements.append_child(group_name);
+  auto group = owner.append_child(group_name);
   for (const auto& parameter : parameters) {
     auto node = group.append_child("parameter");
     node.append_attribute("name") = parameter.name.c_str();
@@ -172,6 +175,8 @@ std::string write_component(const ComponentDescription& component) {
     auto interfaces = root.append_child("interfaces");
     for (const auto& implemented : component.interfaces) write_implements(interfaces, implemented);
   }
+  write_parameters(root, "required", component.required);
+  write_parameters(root, "optional", component.optional);
   write_references(root, "dependencies", "depends", component.dependencies);
   write_references(root, "subcomponents", "subcomponent", component.subcomponents);
   std::ostringstream text;

@@ -16,7 +16,7 @@ namespace skein::profile {
 ///           <type>IDL:AE_navigatorI/INavigator</type>
 ///           <required> <parameter name="..."> <type>...</type> </parameter> </required>
 ///           <optional> <parameter name="Time limit"/> </optional>
-///           <attribute name="latency" value="100"/>
+///           <attribute name="latency" value="100 ms"/>
 ///         </implements>
 ///       </interfaces>
 ///       <dependencies> <depends>IDL:AE_flightControllerI/IFlightController</depends>

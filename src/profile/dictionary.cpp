@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "words.hpp"
@@ -49,18 +50,72 @@ const TimeUnit* find_time_unit(std::string_view name) {
   return nullptr;
 }
 
-/// Nothing for what is no length of time; may be longer than any clock counts.
-std::optional<double> maybe_nanoseconds(std::string_view text, std::string_view default_unit) {
+struct NumberWithUnit {
+  std::optional<double> number;
+  std::string_view unit;
+};
+
+NumberWithUnit split(std::string_view text) {
   const std::string_view whole = trimmed(text);
   const auto number_end = whole.find_last_of("0123456789.") + 1;
-  const auto number = maybe_finite(whole.substr(0, number_end));
-  const auto unit_name = trimmed(whole.substr(number_end));
+  return {maybe_finite(whole.substr(0, number_end)), trimmed(whole.substr(number_end))};
+}
+
+/// Nothing for what is no length of time; may be longer than any clock counts.
+std::optional<double> maybe_nanoseconds(std::string_view text, std::string_view default_unit) {
+  const auto [number, unit_name] = split(text);
   const auto* unit = find_time_unit(unit_name.empty() ? default_unit : unit_name);
   if (!number || unit == nullptr || std::signbit(*number)) return std::nullopt;
   return *number * unit->nanoseconds;
 }
 
+/// Units of numbers that are converted, if the dictionary has another one of the same quantity.
+struct Unit {
+  std::string_view name;
+  enum class Quantity { Length, Speed, Angle, Mass, Frequency } quantity;
+  double factor;
+};
+constexpr std::array<Unit, 17> kUnits{{
+    {"mm", Unit::Quantity::Length, 1e-3},
+    {"cm", Unit::Quantity::Length, 1e-2},
+    {"m", Unit::Quantity::Length, 1},
+    {"km", Unit::Quantity::Length, 1e3},
+    {"ft", Unit::Quantity::Length, 0.3048},
+    {"m/s", Unit::Quantity::Speed, 1},
+    {"km/h", Unit::Quantity::Speed, 1 / 3.6},
+    {"kn", Unit::Quantity::Speed, 1852.0 / 3600},
+    {"deg", Unit::Quantity::Angle, std::numbers::pi / 180},
+    {"rad", Unit::Quantity::Angle, 1},
+    {"g", Unit::Quantity::Mass, 1e-3},
+    {"kg", Unit::Quantity::Mass, 1},
+    {"t", Unit::Quantity::Mass, 1e3},
+    {"Hz", Unit::Quantity::Frequency, 1},
+    {"kHz", Unit::Quantity::Frequency, 1e3},
+    {"MHz", Unit::Quantity::Frequency, 1e6},
+    {"GHz", Unit::Quantity::Frequency, 1e9},
+}};
+
+/// What a number in unit `from` is multiplied by to be one in unit `to`.
+std::optional<double> conversion(std::string_view from, std::string_view to) {
+  if (from.empty() || from == to) return 1;
+  const auto* of = std::ranges::find(kUnits, from, &Unit::name);
+  const auto* wanted = std::ranges::find(kUnits, to, &Unit::name);
+  if (of == kUnits.end() || wanted == kUnits.end() || of->quantity != wanted->quantity)
+    return std::nullopt;
+  return of->factor / wanted->factor;
+}
+
+/// What to write in place of a bare number; empty for any other text.
+std::string missing_unit(std::string_view text) {
+  const std::string number(trimmed(text));
+  if (!maybe_finite(number)) return "";
+  return "has no unit of time; write " + in_quotes(number + " ms") + " or " +
+         in_quotes(number + " s") + ", whichever it is (ns, us, ms, s, min, h)";
+}
+
 [[noreturn]] void refuse_duration(std::string_view text) {
+  if (const auto missing = missing_unit(text); !missing.empty())
+    throw InvalidArgument(in_quotes(text) + " " + missing);
   throw InvalidArgument(in_quotes(text) +
                         " is no length of time; write one like \"100 ms\" (ns, us, ms, s, min, h)");
 }
@@ -91,13 +146,31 @@ void demand_range(const DictionaryEntry& entry, double number) {
                              : "more than " + with_unit(*entry.maximum, entry.unit)));
 }
 
-Value parse_time(const DictionaryEntry& entry, std::string_view text) {
-  std::chrono::nanoseconds time{};
-  try {
-    time = parse_duration(text, entry.unit);
-  } catch (const InvalidArgument&) {
-    refuse_type(entry, text);
+double parse_real(const DictionaryEntry& entry, std::string_view text) {
+  const auto [number, unit] = split(text);
+  const auto factor = conversion(unit, entry.unit);
+  if (!number || !factor) refuse_type(entry, text);
+  const double converted = *number * *factor;
+  demand_range(entry, converted);
+  return converted;
+}
+
+std::int64_t parse_integer(const DictionaryEntry& entry, std::string_view text) {
+  if (!entry.unit.empty() && text.ends_with(entry.unit))
+    text = trimmed(text.substr(0, text.size() - entry.unit.size()));
+  const auto number = maybe_number<std::int64_t>(text);
+  if (!number) refuse_type(entry, text);
+  demand_range(entry, static_cast<double>(*number));
+  return *number;
+}
+
+std::chrono::nanoseconds parse_time(const DictionaryEntry& entry, std::string_view text) {
+  const auto nanoseconds = maybe_nanoseconds(text, "");
+  if (const auto missing = missing_unit(text); !missing.empty()) {
+    throw InvalidArgument(in_quotes(entry.name) + " is " + in_quotes(text) + ", which " + missing);
   }
+  if (!nanoseconds || *nanoseconds > kLongestNanoseconds) refuse_type(entry, text);
+  const std::chrono::nanoseconds time(std::llround(*nanoseconds));
   demand_range(entry, static_cast<double>(time.count()) / find_time_unit(entry.unit)->nanoseconds);
   return time;
 }
@@ -118,8 +191,8 @@ std::optional<ValueType> maybe_value_type(std::string_view word) noexcept {
   return std::nullopt;
 }
 
-std::chrono::nanoseconds parse_duration(std::string_view text, std::string_view default_unit) {
-  const auto time = maybe_nanoseconds(text, default_unit);
+std::chrono::nanoseconds parse_duration(std::string_view text) {
+  const auto time = maybe_nanoseconds(text, "");
   if (!time || *time > kLongestNanoseconds) refuse_duration(text);
   return std::chrono::nanoseconds(std::llround(*time));
 }
@@ -130,21 +203,13 @@ double parse_seconds(std::string_view text) {
   return std::min(*time, kLongestNanoseconds) / 1e9;
 }
 
-Value parse_value(const DictionaryEntry& entry, std::string_view text) {
+ParameterValue parse_value(const DictionaryEntry& entry, std::string_view text) {
   text = trimmed(text);
   switch (entry.type) {
-    case ValueType::Integer: {
-      const auto number = maybe_number<std::int64_t>(text);
-      if (!number) refuse_type(entry, text);
-      demand_range(entry, static_cast<double>(*number));
-      return *number;
-    }
-    case ValueType::Real: {
-      const auto number = maybe_finite(text);
-      if (!number) refuse_type(entry, text);
-      demand_range(entry, *number);
-      return *number;
-    }
+    case ValueType::Integer:
+      return parse_integer(entry, text);
+    case ValueType::Real:
+      return parse_real(entry, text);
     case ValueType::Boolean:
       if (text != "true" && text != "false") refuse_type(entry, text);
       return text == "true";
@@ -155,6 +220,18 @@ Value parse_value(const DictionaryEntry& entry, std::string_view text) {
       break;
   }
   return std::string(text);
+}
+
+std::string plain_text(const DictionaryEntry& entry, std::string_view text) {
+  const ParameterValue value = parse_value(entry, text);
+  if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
+  const auto* time = std::get_if<std::chrono::nanoseconds>(&value);
+  if (time) {
+    return number_text(static_cast<double>(time->count()) /
+                       find_time_unit(entry.unit)->nanoseconds);
+  }
+  return std::string(trimmed(text));
 }
 
 Dictionary::Dictionary(std::vector<DictionaryEntry> entries) : entries_(std::move(entries)) {

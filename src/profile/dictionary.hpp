@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "profile/finding.hpp"
+#include "skein/parameters.hpp"
 
 namespace skein::profile {
 
@@ -36,18 +36,21 @@ struct DictionaryEntry {
   SourcePosition where;
 };
 
-/// A value as its type has it; text and the name of a service are strings.
-using Value = std::variant<std::int64_t, double, bool, std::string, std::chrono::nanoseconds>;
+/// Reads `text` as the entry demands. A boolean is `true` or `false`. A duration is a number with
+/// one of the units ns, us, ms, s, min, h. An integer or real is a number, in the entry's unit; it
+/// may name that unit, and a real also another one of the same quantity (lengths, speeds, angles,
+/// masses, frequencies: `26.5 km`), from which it is converted.
+/// Throws InvalidArgument with what is wrong: another type, a length of time without a unit, or a
+/// value outside of the range.
+ParameterValue parse_value(const DictionaryEntry& entry, std::string_view text);
 
-/// Reads `text` as the entry demands. An integer or real is a plain number; a boolean is `true` or
-/// `false`; a duration is a number in the entry's unit, or a number with one of the units ns, us,
-/// ms, s, min, h.
-/// Throws InvalidArgument with what is wrong: another type, or a value outside of the range.
-Value parse_value(const DictionaryEntry& entry, std::string_view text);
+/// The same value as a service's attribute says it to other peers: a duration, integer or real as a
+/// plain number in the entry's unit. Throws as parse_value() does.
+std::string plain_text(const DictionaryEntry& entry, std::string_view text);
 
-/// A length of time such as `100 ms`; a bare number counts in `default_unit`.
-/// Throws InvalidArgument for anything else, negative times and more than 200 years included.
-std::chrono::nanoseconds parse_duration(std::string_view text, std::string_view default_unit = "s");
+/// A length of time such as `100 ms`. Throws InvalidArgument for anything else: a number without a
+/// unit, negative times and more than 200 years included.
+std::chrono::nanoseconds parse_duration(std::string_view text);
 
 /// A length of time in seconds, as people write it at a command line: what is longer than 200 years
 /// becomes that. Throws InvalidArgument for what is no length of time.

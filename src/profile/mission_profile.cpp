@@ -29,13 +29,10 @@ auto& demand_named(Items& items, std::string_view name, const std::string& kind)
 }
 
 void demand_parameter(const ComponentDescription& component, std::string_view name) {
-  if (component.interfaces.empty()) return;
   std::vector<std::string_view> known;
-  for (const auto& implemented : component.interfaces) {
-    if (implemented.find_parameter(name) != nullptr) return;
-    for (const auto& parameter : implemented.required) known.push_back(parameter.name);
-    for (const auto& parameter : implemented.optional) known.push_back(parameter.name);
-  }
+  for (const Parameter* parameter : component.parameters()) known.push_back(parameter->name);
+  if (known.empty() && component.interfaces.empty()) return;
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
   throw InvalidArgument(in_quotes(component.name) + " has no parameter " + in_quotes(name) + "; " +
                         remedy_for(name, known));
 }

@@ -133,6 +133,8 @@ const Notation& component_notation() {
                                         {"optional", {}, kParameters},
                                         leaf("attribute", {"name", "value"})},
                                        true}}},
+                                    {"required", {}, kParameters},
+                                    {"optional", {}, kParameters},
                                     {"dependencies", {}, {text("depends")}},
                                     {"subcomponents", {}, {text("subcomponent")}}}};
   return kComponent;

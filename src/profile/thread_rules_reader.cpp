@@ -64,7 +64,7 @@ std::chrono::microseconds read_spin(const XmlElement& element) {
                              "spin is " + in_quotes(text->value) + ", more than 100 ms",
                              "write what a wake-up costs, as in \"50 us\"");
   } catch (const InvalidArgument& error) {
-    element.findings().error(text->where, error.what());
+    element.findings().error(text->where, std::string("spin: ") + error.what());
   }
   return {};
 }

@@ -55,7 +55,7 @@ std::optional<TopicRules::Period> read_period(const XmlElement& topic, const cha
     }
     return TopicRules::Period{std::chrono::duration_cast<milliseconds>(time)};
   } catch (const InvalidArgument& error) {
-    return refuse(error.what());
+    return refuse(std::string(name) + ": " + error.what());
   }
 }
 

@@ -46,7 +46,7 @@ nanoseconds read_time(const XmlElement& element, const char* name, nanoseconds f
     if (time > nanoseconds(0)) return time;
     element.findings().error(text->where, std::string(name) + " is zero", "write a length of time");
   } catch (const InvalidArgument& error) {
-    element.findings().error(text->where, error.what());
+    element.findings().error(text->where, std::string(name) + ": " + error.what());
   }
   return fallback;
 }

@@ -12,7 +12,7 @@ namespace skein::profile {
 /// `true` or `false`.
 bool read_boolean(const XmlElement& element, const char* name, bool fallback);
 
-/// A length of time greater than zero, with its unit; a bare number counts seconds.
+/// A length of time greater than zero, with its unit.
 std::chrono::nanoseconds read_time(const XmlElement& element, const char* name,
                                    std::chrono::nanoseconds fallback);
 

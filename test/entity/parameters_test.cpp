@@ -5,6 +5,7 @@
 #include "skein/error.hpp"
 
 using namespace skein;
+using namespace std::chrono_literals;
 
 namespace {
 
@@ -15,16 +16,15 @@ const ParameterResolver kResolver("INavigator",
 
 TEST_CASE("a parameter's value comes from the caller, then the profile, then the dependencies") {
   const ParameterValues caller{{"Planner", "AStar"}};
-  const ParameterValues profile{{"Planner", "RRTstar"}, {"Time limit", "2 s"}};
-  const ParameterValues dependencies{{"Time limit", "9 s"}, {"Aircraft", "60 m/s"}};
+  const ParameterValues profile{{"Planner", "RRTstar"}, {"Time limit", 2s}};
+  const ParameterValues dependencies{{"Time limit", 9s}, {"Aircraft", 60.0}};
   const ParameterValues resolved = kResolver.resolve({caller, profile, dependencies});
-  CHECK(resolved ==
-        ParameterValues{{"Planner", "AStar"}, {"Time limit", "2 s"}, {"Aircraft", "60 m/s"}});
+  CHECK(resolved == ParameterValues{{"Planner", "AStar"}, {"Time limit", 2s}, {"Aircraft", 60.0}});
 }
 
 TEST_CASE("an optional parameter may stay without a value") {
   CHECK_FALSE(
-      kResolver.resolve({{}, {{"Time limit", "1"}, {"Aircraft", "x"}}}).contains("Planner"));
+      kResolver.resolve({{}, {{"Time limit", 1ms}, {"Aircraft", "x"}}}).contains("Planner"));
 }
 
 TEST_CASE("every required parameter without a value is named, with what to do") {
@@ -40,6 +40,32 @@ TEST_CASE("a caller's parameter that is not declared is refused with the nearest
 }
 
 TEST_CASE("a value of a dependency that is not declared does not matter") {
-  const ParameterValues profile{{"Time limit", "1"}, {"Aircraft", "x"}};
+  const ParameterValues profile{{"Time limit", 1ms}, {"Aircraft", "x"}};
   CHECK(kResolver.resolve({{}, profile, {{"Weather", "fog"}}}) == profile);
+}
+
+TEST_CASE("a value is read by its type, and converted where nothing is lost") {
+  const ParameterValues values{
+      {"Speed", 62.5}, {"Seed", 7}, {"Patience", 1500ms}, {"Loud", true}, {"Picture", "route.svg"}};
+  CHECK(values.get<double>("Speed") == 62.5);
+  CHECK(values.get<std::uint32_t>("Seed") == 7);
+  CHECK(values.get<double>("Seed") == 7);
+  CHECK(values.get<std::chrono::milliseconds>("Patience") == 1500ms);
+  CHECK(values.get<std::chrono::seconds>("Patience") == 1s);
+  CHECK(values.get<bool>("Loud"));
+  CHECK(values.get<std::string>("Picture") == "route.svg");
+  CHECK(values.find<double>("Climb") == std::nullopt);
+}
+
+TEST_CASE("a value of another type, of another size, or none, is refused by the parameter's name") {
+  const ParameterValues values{{"Speed", 62.5}, {"Seed", 70'000}, {"Picture", "route.svg"}};
+  CHECK_THROWS_WITH(values.get<std::uint32_t>("Speed"),
+                    Catch::Contains("'Speed' is 62.5") && Catch::Contains("not an integer"));
+  CHECK_THROWS_WITH(values.find<std::uint16_t>("Seed"),
+                    Catch::Contains("'Seed' is 70000") && Catch::Contains("of that size"));
+  CHECK_THROWS_WITH(values.find<double>("Picture"), Catch::Contains("not a number"));
+  CHECK_THROWS_WITH(values.find<std::chrono::milliseconds>("Seed"),
+                    Catch::Contains("not a duration"));
+  CHECK_THROWS_WITH(values.get<double>("Climb"),
+                    Catch::Contains("'Climb' has no value") && Catch::Contains("<required>"));
 }

@@ -11,10 +11,11 @@ using namespace std::chrono_literals;
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_activity("Beacon", [](skein::Entity& entity, const skein::ParameterValues&,
+  registry.add_activity("Beacon", [](skein::Entity& entity, const skein::ParameterValues& values,
                                      const std::stop_token& told_to_end) {
+    const auto period = values.get<std::chrono::milliseconds>("Period");
     auto poses = entity.publisher<survey::Pose>("pose", skein::TopicQos::sensor());
-    for (double north_m = 0; !skein::await_end(entity, told_to_end, 100ms); ++north_m)
+    for (double north_m = 0; !skein::await_end(entity, told_to_end, period); ++north_m)
       poses.publish({"drone", north_m, 0});
     return 0;  // the process's exit code
   });

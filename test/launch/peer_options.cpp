@@ -11,7 +11,7 @@ TEST_CASE("What a profile says of a peer's Head is how its entity decides") {
   const auto mission = profile::read_mission_profile(folder.mission(
       R"(<peer name="n" component="n.xml" vendor="loopback" system="uav" strategy="learned"
            history="h.json" decision_log="d.jsonl" exploration="0.25" max_stuck="7"
-           quarantine_after="2" first_quarantine="300 ms" longest_quarantine="5"/>)"));
+           quarantine_after="2" first_quarantine="300 ms" longest_quarantine="5 s"/>)"));
   const EntityOptions options = launch::entity_options(mission, mission.peers.at(0));
   CHECK(options.system == "uav");
   CHECK(options.head.strategy == "learned");

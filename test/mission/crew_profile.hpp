@@ -54,7 +54,7 @@ class CrewProfile {
     return "<component name='" + name +
            "'><interfaces><implements><type>IDL:crew/Worker</type>"
            "<attribute name='latency' value='" +
-           latency_ms + "'/><attribute name='quality' value='" + quality +
+           latency_ms + " ms'/><attribute name='quality' value='" + quality +
            "'/></implements></interfaces></component>";
   }
   void write(const std::string& name, const std::string& text) {

@@ -53,8 +53,8 @@ struct AllClear : AE_adManagerI::IAdManager {
 };
 
 /// A flight controller of a given speed.
-std::shared_ptr<IFlightController> flying_at(const std::string& speed) {
-  return std::make_shared<FlightController>(ParameterValues{{"Cruising speed", speed}});
+std::shared_ptr<IFlightController> flying_at(double speed_m_s) {
+  return std::make_shared<FlightController>(ParameterValues{{"Cruising speed", speed_m_s}});
 }
 
 /// A navigator, and a client who asks it for a route across `synthetic:7` that A* found.
@@ -84,7 +84,7 @@ TEST_CASE(
     "a caller may bring a planner of its own, as a reference: it is asked, and its route is "
     "judged") {
   Flight flight;
-  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide<IFlightController>(flying_at(60));
   const Guid own = flight.client->provide<IPlanner>(flight.planner);
   flight.request.own_planner = flight.client->reference<IPlanner>(own);
 
@@ -99,7 +99,7 @@ TEST_CASE(
 
 TEST_CASE("a reference to a planner that is gone is answered as such, and the navigator works on") {
   Flight flight;
-  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide<IFlightController>(flying_at(60));
   const Guid own = flight.client->provide<IPlanner>(flight.planner);
   flight.request.own_planner = flight.client->reference<IPlanner>(own);
   flight.client->withdraw(own);
@@ -116,14 +116,14 @@ TEST_CASE("a reference to a planner that is gone is answered as such, and the na
 TEST_CASE("the flight limits come from the next flight controller when the first one leaves") {
   Flight flight;
   auto first = make_entity("first", Pairing::get().client);
-  const Guid leaving = first->provide<IFlightController>(flying_at("60"));
+  const Guid leaving = first->provide<IFlightController>(flying_at(60));
   flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
   flight.ask();
   REQUIRE(flight.planner->asked.size() == 1);
   CHECK(flight.planner->asked[0].limits.speed_m_s == 60);
 
   auto second = make_entity("second", Pairing::get().client);
-  second->provide<IFlightController>(flying_at("55"));
+  second->provide<IFlightController>(flying_at(55));
   auto& broker = flight.navigator->broker();
   const auto query = broker.query("AE_flightControllerI/IFlightController");
   REQUIRE(eventually([&] { return broker.find_service(query).size() == 2; }));
@@ -138,7 +138,7 @@ TEST_CASE(
     "where no route keeps the exposure cap, the AD manager is asked once, and it is planned anew "
     "with its threats") {
   Flight flight;
-  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide<IFlightController>(flying_at(60));
   flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
   const auto manager = make_entity("ad_manager", Pairing::get().client);
   const auto all_clear = std::make_shared<AllClear>();
@@ -173,7 +173,7 @@ TEST_CASE(
 
 TEST_CASE("where no AD manager answers, the refusal names the cap") {
   Flight flight;
-  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide<IFlightController>(flying_at(60));
   flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
   flight.request.problem.exposure_cap_m = 10;
   flight.request.problem.threat_epoch = 3;
@@ -195,7 +195,7 @@ TEST_CASE("the best route so far is taken when a planner's time is up") {
   };
   Flight flight;
   const auto controller = make_entity("controller", Pairing::get().client);
-  controller->provide<IFlightController>(flying_at("60"));
+  controller->provide<IFlightController>(flying_at(60));
   const auto planner = std::make_shared<NeverContent>();
   planner->route = flight.planner->route;
   flight.navigator->provide_csp<IPlanner>("NeverContent", flight.navigator->id(), planner, {});
@@ -205,7 +205,7 @@ TEST_CASE("the best route so far is taken when a planner's time is up") {
 
 TEST_CASE("the best route so far of those that improve theirs is taken when their time is up") {
   Flight flight;
-  flight.navigator->provide<IFlightController>(flying_at("60"));
+  flight.navigator->provide<IFlightController>(flying_at(60));
   PlannerOptions endless;
   endless.now = [] { return Instant(); };  // For all that it knows there is time.
   for (const char* name : {"RRTstar", "InformedRRTstar"}) {

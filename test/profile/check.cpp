@@ -77,11 +77,11 @@ TEST_CASE("Names that are given twice are named with the place of the first") {
                  "m.xml:3:1: error: the peer \"f\" is there twice; the first is at m.xml:2:1"));
   CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
 <csp component="p.xml"/><csp component="p.xml"/>
-<parameter name="Time limit" value="1"/><parameter name="Time limit" value="2"/></peer>)"),
+<parameter name="Time limit" value="1 s"/><parameter name="Time limit" value="2 s"/></peer>)"),
              Catch::Contains("the CSP \"P\" is there twice") &&
                  Catch::Contains("the parameter \"Time limit\" is there twice"));
   folder.write("d.xml", R"(<component name="D"><interfaces>
-    <implements><type>M/IF</type><attribute name="latency" value="1"/><attribute name="latency" value="1"/></implements>
+    <implements><type>M/IF</type><attribute name="latency" value="1 ms"/><attribute name="latency" value="1 ms"/></implements>
     <implements>M::IF</implements></interfaces></component>)");
   CHECK_THAT(folder.check(R"(<peer name="d" component="d.xml"/>)"),
              Catch::Contains("the attribute \"latency\" is there twice") &&
@@ -112,9 +112,11 @@ TEST_CASE("Attributes and parameters are compared with the dictionary") {
 TEST_CASE("A profile's parameters are compared with the component and the dictionary") {
   ProfileFolder folder;
   const auto [parameter, finding] = GENERATE(table<std::string, std::string>({
-      {R"(name="Time limt" value="1")", "\"N\" has no parameter \"Time limt\"; did you mean"},
+      {R"(name="Time limt" value="1 s")", "\"N\" has no parameter \"Time limt\"; did you mean"},
       {R"(name="Time limit" value="x")", "\"Time limit\" is \"x\", which is no duration in ms"},
-      {R"(name="Time limit" value="0")", "\"Time limit\" is 0 ms, less than 1 ms"},
+      {R"(name="Time limit" value="0 ms")", "\"Time limit\" is 0 ms, less than 1 ms"},
+      {R"(name="Time limit" value="300")",
+       "\"Time limit\" is \"300\", which has no unit of time; write \"300 ms\" or \"300 s\""},
       {R"(name="Planner" value="Q")",
        "\"Planner\" refers to \"Q\", which is no peer or CSP with "
        "M/IP; did you mean 'P'?"},
@@ -133,11 +135,46 @@ TEST_CASE("A service reference to a CSP of the peer is in order") {
                              <parameter name="Planner" value="P"/></peer>)") == "");
 }
 
+TEST_CASE("A parameter that a component requires must have a value, also one of no interface") {
+  ProfileFolder folder;
+  folder.write("r.xml", R"(<component name="R"><interfaces><implements><type>M/IF</type>
+<required><parameter name="Time limit"/></required></implements></interfaces></component>)");
+  folder.write("own.xml", R"(<component name="Own">
+<required><parameter name="Time limit"/></required><optional><parameter name="Planner"/></optional>
+</component>)");
+  const auto [file, missing] = GENERATE(table<std::string, std::string>({
+      {"r.xml",
+       "m.xml:2:1: error: \"r\" has no value for the parameter \"Time limit\", which its component "
+       "requires (r.xml:2:11); write <parameter name=\"Time limit\" value=\"... ms\"/>\n"},
+      {"own.xml",
+       "m.xml:2:1: error: \"r\" has no value for the parameter \"Time limit\", which its component "
+       "requires (own.xml:2:11); write <parameter name=\"Time limit\" value=\"... ms\"/>\n"},
+  }));
+  const auto peer = [file = file](const std::string& inner) {
+    return "<peer name=\"r\" component=\"" + file + "\">" + inner + "</peer>";
+  };
+  CHECK(folder.check(peer("")) == missing);
+  CHECK(folder.check(peer(R"(<parameter name="Time limit" value="1 s"/>)")) == "");
+  CHECK_NOTHROW(read_checked_profile(folder.mission(peer("")), {}, {"r.Time limit=1 s"}));
+  CHECK_THAT(folder.check(peer(R"(<parameter name="Time limti" value="1 s"/>)")),
+             Catch::Contains("has no parameter \"Time limti\"; did you mean 'Time limit'?"));
+}
+
+TEST_CASE("A CSP's component requires values, too") {
+  ProfileFolder folder;
+  folder.write("p.xml", R"(<component name="P"><interfaces><implements><type>M/IP</type>
+<required><parameter name="Time limit"/></required></implements></interfaces></component>)");
+  CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
+<csp component="p.xml"/></peer>)"),
+             Catch::Contains("m.xml:3:1: error: \"n/P\" has no value for the parameter \"Time "
+                             "limit\", which its component requires (p.xml:2:11)"));
+}
+
 TEST_CASE("A client that offers no service may be given any parameter of the dictionary") {
   ProfileFolder folder;
   const auto check = [&](const std::string& name) {
     return folder.check(kF + kN + R"(<peer name="g" component="g.xml"><parameter name=")" + name +
-                        R"(" value="5"/></peer>)");
+                        R"(" value="5 s"/></peer>)");
   };
   CHECK(check("Time limit") == "");
   CHECK_THAT(check("Time_limit"), Catch::Contains("the parameter \"Time_limit\" is unknown"));

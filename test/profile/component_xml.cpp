@@ -17,7 +17,7 @@ const std::string kFigure2 = R"(<component name="Navigator">
         </parameter>
         <parameter name="Time limit"></parameter>
       </optional>
-      <attribute name="latency" value="100" />
+      <attribute name="latency" value="100 ms" />
     </implements>
   </interfaces>
   <dependencies>
@@ -62,7 +62,7 @@ TEST_CASE("The paper's description of the navigator is read as printed") {
   CHECK(implemented.optional[1].name == "Time limit");
   CHECK(implemented.optional[1].type.empty());
   REQUIRE(implemented.find_attribute("latency") != nullptr);
-  CHECK(implemented.find_attribute("latency")->value == "100");
+  CHECK(implemented.find_attribute("latency")->value == "100 ms");
   REQUIRE(component.dependencies.size() == 1);
   CHECK(component.dependencies[0].type == "AE_flightControllerI/IFlightController");
   CHECK(component.has_subcomponent("AE_navigator::IPlanner"));
@@ -108,7 +108,13 @@ TEST_CASE("Names with markup survive writing and reading") {
   ComponentDescription component;
   component.name = "A<&\"'>B \xC3\xA4";
   component.interfaces.push_back({"M/I", {{"r", "integer", {}}}, {}, {{"a&b", "<1>", {}}}, {}});
+  component.required = {{"Period", "", {}}};
+  component.optional = {{"Speed", "real", {}}};
   const auto read = parse_component(write_component(component), "c.xml");
+  REQUIRE(read.required_parameters().size() == 2);
+  CHECK(read.required_parameters()[0]->name == "Period");
+  CHECK(read.parameters().size() == 3);
+  CHECK(read.optional.at(0).type == "real");
   CHECK(read.name == component.name);
   REQUIRE(read.interfaces.size() == 1);
   CHECK(read.interfaces[0].required.at(0).type == "integer");

@@ -37,7 +37,7 @@ TEST_CASE("The dictionary that is shipped can be read and knows what the paper u
   const auto dictionary = read_dictionary(project_file("mission_profiles/dictionary.xml"));
   const auto* latency = dictionary.find(EntryKind::Attribute, "latency");
   REQUIRE(latency != nullptr);
-  CHECK(std::get<std::chrono::nanoseconds>(parse_value(*latency, "100")) == 100ms);
+  CHECK(std::get<std::chrono::nanoseconds>(parse_value(*latency, "100 ms")) == 100ms);
   const auto* planner = dictionary.find(EntryKind::Parameter, "Planner");
   REQUIRE(planner != nullptr);
   CHECK(planner->interface == "AE_navigator/IPlanner");
@@ -52,6 +52,42 @@ TEST_CASE("Values are read by their type") {
   const auto duration = entry_of(ValueType::Duration, "ms");
   CHECK(std::get<std::chrono::nanoseconds>(parse_value(duration, "1.5 s")) == 1500ms);
   CHECK(std::get<std::chrono::nanoseconds>(parse_value(duration, "250us")) == 250us);
+}
+
+TEST_CASE("A length of time without a unit is refused, and both readings are offered") {
+  const auto duration = entry_of(ValueType::Duration, "ms");
+  CHECK_THROWS_WITH(parse_value(duration, "300"),
+                    "\"x\" is \"300\", which has no unit of time; write \"300 ms\" or \"300 s\", "
+                    "whichever it is (ns, us, ms, s, min, h)");
+  CHECK_THROWS_WITH(parse_duration(" 3000 "),
+                    "\" 3000 \" has no unit of time; write \"3000 ms\" or \"3000 s\", "
+                    "whichever it is (ns, us, ms, s, min, h)");
+  CHECK_THROWS_AS(parse_duration("0"), skein::InvalidArgument);
+}
+
+TEST_CASE("A number may name its unit, or another of the same quantity") {
+  const auto real = [](const std::string& unit, const std::string& text) {
+    return std::get<double>(parse_value(entry_of(ValueType::Real, unit), text));
+  };
+  CHECK(real("m", "26.5 km") == 26500);
+  CHECK(real("m/s", "90 km/h") == Approx(25));
+  CHECK(real("deg", "3.14159265358979 rad") == Approx(180));
+  CHECK(real("m", "5m") == 5);
+  CHECK(real("m", "5") == 5);
+  CHECK(std::get<std::int64_t>(parse_value(entry_of(ValueType::Integer, "px"), "5 px")) == 5);
+  CHECK_THROWS_WITH(real("m", "5 s"), "\"x\" is \"5 s\", which is no real in m");
+  CHECK_THROWS_WITH(real("", "5 m"), "\"x\" is \"5 m\", which is no real");
+  CHECK_THROWS_WITH(parse_value(entry_of(ValueType::Real, "m", 0, 1000), "26.5 km"),
+                    "\"x\" is 26500 m, more than 1000 m");
+  CHECK_THROWS_AS(parse_value(entry_of(ValueType::Integer, "m"), "5 km"), skein::InvalidArgument);
+}
+
+TEST_CASE("Other peers are told numbers and durations in the unit of the dictionary") {
+  CHECK(plain_text(entry_of(ValueType::Duration, "ms"), "1.5 s") == "1500");
+  CHECK(plain_text(entry_of(ValueType::Real, "m"), "26.5 km") == "26500");
+  CHECK(plain_text(entry_of(ValueType::Integer), " 7 ") == "7");
+  CHECK(plain_text(entry_of(ValueType::Boolean), " true ") == "true");
+  CHECK(plain_text(entry_of(ValueType::Text), " a b ") == "a b");
 }
 
 TEST_CASE("A length of time at a command line is seconds, or has a unit, and fits into a clock") {
@@ -91,9 +127,9 @@ TEST_CASE("A value of another type is refused") {
 
 TEST_CASE("A range holds its ends, and durations are compared in the unit of their entry") {
   const auto entry = entry_of(ValueType::Duration, "ms", 10, 1000);
-  CHECK_NOTHROW(parse_value(entry, "10"));
+  CHECK_NOTHROW(parse_value(entry, "10 ms"));
   CHECK_NOTHROW(parse_value(entry, "1 s"));
-  CHECK_THROWS_WITH(parse_value(entry, "9.9"), "\"x\" is 9.9 ms, less than 10 ms");
+  CHECK_THROWS_WITH(parse_value(entry, "9.9 ms"), "\"x\" is 9.9 ms, less than 10 ms");
   CHECK_THROWS_WITH(parse_value(entry, "2 s"), "\"x\" is 2000 ms, more than 1000 ms");
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("Restart rules are read with their units") {
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(
       R"(<peer name="f" component="f.xml" restart="always" restart_delay="50 ms"
-           max_restart_delay="2" max_restarts="3" restart_window="1 min" ready_timeout="10 s"
+           max_restart_delay="2 s" max_restarts="3" restart_window="1 min" ready_timeout="10 s"
            stop_timeout="500ms"/>)"));
   const auto& rules = mission.peers.at(0).rules;
   CHECK(rules.restart.policy == RestartPolicy::Always);
@@ -146,7 +146,7 @@ TEST_CASE("How a Head decides is read for peers; without a word it is as the Hea
   const auto mission = read_mission_profile(folder.mission(
       R"(<peer name="n" component="n.xml" strategy="learned" history="h.json" decision_log="d.jsonl"
            exploration="0.25" max_stuck="7" quarantine_after="2" first_quarantine="300 ms"
-           longest_quarantine="5"/>
+           longest_quarantine="5 s"/>
          <peer name="f" component="f.xml"/>)"));
   const skein::HeadOptions& head = mission.peers.at(0).head;
   CHECK(head.strategy == "learned");
@@ -183,7 +183,7 @@ TEST_CASE("A Head that cannot decide as the profile says is found, with its plac
       {R"(exploration="much")", "write a number from 0 to 1"},
       {R"(max_stuck="0")", "write a number from 1 to 1000"},
       {R"(quarantine_after="0")", "write a number from 1 to 1000"},
-      {R"(first_quarantine="0")", "first_quarantine is zero"},
+      {R"(first_quarantine="0 s")", "first_quarantine is zero"},
       {R"(first_quarantine="2 min")", "longest_quarantine is shorter than first_quarantine"},
       {R"(longest_quarantine="soon")", "\"soon\" is no length of time"},
   }));
@@ -280,8 +280,10 @@ TEST_CASE("A profile's words that are unknown are answered with the nearest know
       {R"(role="boss")", "\"boss\" is no role"},
       {R"(restrat="always")", "<peer> has no \"restrat\"; did you mean 'restart'?"},
       {R"(on_loss="abord")", "\"abord\" is no answer to a loss; did you mean 'abort'?"},
-      {R"(progress_timeout="0")", "progress_timeout is zero"},
-      {R"(stop_timeout="0")", "stop_timeout is zero"},
+      {R"(progress_timeout="0 s")", "progress_timeout is zero"},
+      {R"(stop_timeout="0 s")", "stop_timeout is zero"},
+      {R"(stop_timeout="3000")",
+       "stop_timeout: \"3000\" has no unit of time; write \"3000 ms\" or \"3000 s\""},
       {R"(stop_timeout="long")", "\"long\" is no length of time"},
       {R"(max_restarts="0")", "\"max_restarts\" is 0, less than 1"},
       {R"(restart="always" restart_window="1 s")", "do not fit into restart_window"},
@@ -329,17 +331,18 @@ TEST_CASE("Reading a profile with mistakes throws all of them") {
 TEST_CASE("A setting from the command line takes the place of the profile's") {
   ProfileFolder folder;
   auto mission = read_mission_profile(folder.mission(
-      R"(<peer name="n" component="n.xml"><parameter name="Time limit" value="5"/></peer>
+      R"(<peer name="n" component="n.xml"><parameter name="Time limit" value="5 s"/></peer>
          <peer name="g" component="g.xml"/>)"));
   apply_setting(mission, "n.Time limit=2 s");
   CHECK(mission.peers[0].find_parameter("Time limit")->value == "2 s");
-  apply_setting(mission, "g.Time limit=7");
-  CHECK(mission.peers[1].find_parameter("Time limit")->value == "7");
+  apply_setting(mission, "g.Time limit=7 ms");
+  CHECK(mission.peers[1].find_parameter("Time limit")->value == "7 ms");
   CHECK_THROWS_WITH(apply_setting(mission, "m.Time limit=1"), Catch::Contains("no peer \"m\""));
   CHECK_THROWS_WITH(apply_setting(mission, "n/x.Time limit=1"), Catch::Contains("no CSP \"x\""));
   CHECK_THROWS_WITH(apply_setting(mission, "n.Timelimit=1"),
                     Catch::Contains("did you mean 'Time limit'?"));
-  CHECK_THROWS_WITH(apply_setting(mission, "n.Time limit=0"), Catch::Contains("less than 1 ms"));
+  CHECK_THROWS_WITH(apply_setting(mission, "n.Time limit=0 ms"), Catch::Contains("less than 1 ms"));
+  CHECK_THROWS_WITH(apply_setting(mission, "n.Time limit=9"), Catch::Contains("no unit of time"));
   CHECK_THROWS_WITH(apply_setting(mission, "Time limit=0"),
                     Catch::Contains("PEER.PARAMETER=VALUE"));
 }

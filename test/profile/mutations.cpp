@@ -67,7 +67,7 @@ TEST_CASE("A mutated mission is read or refused, and its refusal names a place")
   <include file="part.xml"/>
   <group name="all" restart="on-failure" max_restarts="${size}"><include file="inner.xml"/>
     <peer name="n" component="n.xml" count="${d}" history="${instance}$$">
-      <csp component="p.xml" process="own"><parameter name="Time limit" value="5"/></csp>
+      <csp component="p.xml" process="own"><parameter name="Time limit" value="5 s"/></csp>
     </peer>
   </group>
   <peer name="tool" program="true" process_cpus="0-${d}"><argument value="${size}"/></peer>

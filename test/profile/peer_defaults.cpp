@@ -19,12 +19,12 @@ TEST_CASE("The number of a peer may stand anywhere in its name and in what it ho
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(R"(<variable name="n" default="2"/>
 <peer name="n${instance}th" component="n.xml" count="${n}">
-<csp component="p.xml" name="p${instance}"/><parameter name="Time limit" value="${instance}0"/>
+<csp component="p.xml" name="p${instance}"/><parameter name="Time limit" value="${instance}0 ms"/>
 <environment name="NUMBER" value="${instance}"/></peer>)"));
   REQUIRE(mission.peers.size() == 2);
   CHECK(mission.peers[1].name == "n2th");
   CHECK(mission.peers[1].csps[0].name == "p2");
-  CHECK(mission.peers[1].parameters[0].value == "20");
+  CHECK(mission.peers[1].parameters[0].value == "20 ms");
   CHECK(mission.peers[1].start.environment[0].second == "2");
 }
 

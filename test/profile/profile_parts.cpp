@@ -27,7 +27,7 @@ TEST_CASE("What a part holds stands in the place of its include") {
 TEST_CASE("Parts go into groups and peers as well") {
   ProfileFolder folder;
   folder.write("csps.xml", R"(<part><csp component="p.xml"/>
-<parameter name="Time limit" value="5"/></part>)");
+<parameter name="Time limit" value="5 s"/></part>)");
   folder.write("peers.xml", R"(<part><peer name="n" component="n.xml"><include file="csps.xml"/>
 </peer></part>)");
   const auto mission = read_mission_profile(

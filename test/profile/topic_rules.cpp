@@ -11,7 +11,7 @@ TEST_CASE("A topic may have each QoS, or none of it") {
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(R"(<peer name="f" component="f.xml">
 <topic name="a/b" reliability="best-effort" durability="transient-local" history="4"
-       deadline="100 ms" lifespan="2" lease="1 min" ownership="exclusive" strength="3"/>
+       deadline="100 ms" lifespan="2 s" lease="1 min" ownership="exclusive" strength="3"/>
 <topic name="c" history="all" deadline="none" ownership="shared"/></peer>)"));
   REQUIRE(mission.peers.at(0).topics.size() == 2);
   const TopicRules& all = *find_topic(mission.peers[0].topics, "a/b");

@@ -48,9 +48,8 @@ void add_check(CLI::App& app, int& result) {
                    {"skein check --host uav-1 mission.xml", "What is missing on that host"},
                    {"skein check --json mission.xml", "The same, for an editor or a script"}});
   auto& arguments = arguments_of(command, check, result);
-  add_profile(command, arguments.profile)->required();
+  add_mission(command, arguments);
   add_host(command, arguments.host);
-  add_variables(command, arguments.variables);
   add_json(command, arguments.json);
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include "skein/error.hpp"
-#include "values.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -16,8 +15,10 @@ void require(bool right, const char* name, double value, const char* range) {
 }  // namespace
 
 FlightController::FlightController(const ParameterValues& values)
-    : limits_{number_of(values, "Cruising speed", 60), number_of(values, "Climb angle", 12),
-              number_of(values, "Bank angle", 30), number_of(values, "Highest altitude", 4000)} {
+    : limits_{values.find<double>("Cruising speed").value_or(60),
+              values.find<double>("Climb angle").value_or(12),
+              values.find<double>("Bank angle").value_or(30),
+              values.find<double>("Highest altitude").value_or(4000)} {
   const double climb = limits_.maximum_climb_angle_deg;
   const double bank = limits_.maximum_bank_angle_deg;
   require(limits_.speed_m_s > 0, "Cruising speed", limits_.speed_m_s, "greater than 0 m/s");

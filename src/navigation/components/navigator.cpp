@@ -10,7 +10,6 @@
 #include "route_judge.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
-#include "values.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -31,9 +30,9 @@ constexpr milliseconds kAdManagerPatience{500};
 
 ParameterValues values_of(const AE_navigatorI::RouteRequest& request) {
   ParameterValues values;
-  if (!request.planner.empty()) values["Planner"] = request.planner;
+  if (!request.planner.empty()) values.set("Planner", request.planner);
   if (request.problem.time_limit_ms > 0) {
-    values["Time limit"] = std::to_string(request.problem.time_limit_ms);
+    values.set("Time limit", milliseconds(request.problem.time_limit_ms));
   }
   return values;
 }
@@ -127,11 +126,10 @@ Route Navigator::decide(const AE_navigatorI::RouteRequest& request,
   const ParameterValues parameters = parameters_.resolve({values_of(request), profile_});
   Problem problem = request.problem;
   problem.limits = flight_limits();
-  const Duration limit = in_call(duration_of(parameters, "Time limit").value_or(kLongestRequest));
+  const Duration limit = in_call(parameters.find<Duration>("Time limit").value_or(kLongestRequest));
   const Instant end = entity_.clock().now() + limit;
   const std::string id = request.request_id;
-  const auto planner = parameters.find("Planner");
-  const std::string only = planner == parameters.end() ? "" : planner->second;
+  const std::string only = parameters.find<std::string>("Planner").value_or("");
   try {
     if (!request.own_planner.is_nil())
       return ask(request.own_planner, problem, limit, plannings.emplace_back().record);

@@ -4,7 +4,6 @@
 
 #include "navigation/planners/planners.hpp"
 #include "navigator.idl.hpp"
-#include "values.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -41,13 +40,12 @@ std::shared_ptr<Servant> make_planner_csp(const std::string& name,
                                           std::shared_ptr<TerrainProvider> terrains,
                                           const ParameterValues& values) {
   PlannerOptions options;
-  options.seed = static_cast<std::uint32_t>(number_of(values, "Seed", options.seed));
-  options.exposure_cap_m = number_of(values, "Exposure cap", options.exposure_cap_m);
+  options.seed = values.find<std::uint32_t>("Seed").value_or(options.seed);
+  options.exposure_cap_m = values.find<double>("Exposure cap").value_or(options.exposure_cap_m);
   auto planner = make_planner(name, std::move(terrains), std::move(options));
-  if (const auto limit = duration_of(values, "Time limit")) {
-    const auto limit_ms =
-        std::max(milliseconds(1), std::chrono::duration_cast<milliseconds>(*limit));
-    planner = std::make_unique<LimitedPlanner>(std::move(planner), limit_ms);
+  if (const auto limit = values.find<milliseconds>("Time limit")) {
+    planner =
+        std::make_unique<LimitedPlanner>(std::move(planner), std::max(milliseconds(1), *limit));
   }
   return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::move(planner));
 }
