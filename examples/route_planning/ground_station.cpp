@@ -74,12 +74,15 @@ std::chrono::milliseconds hurry_of(const Answer& answer) {
 
 double seconds(skein::Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
+std::string in_words(skein::Duration duration) { return fmt::format("{:g} s", seconds(duration)); }
+
 }  // namespace
 
 GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& values)
     : entity_(entity),
       picture_(values.find<std::string>("Picture").value_or("route.svg")),
       planners_(names_in(values.find<std::string>("Planners").value_or(""))),
+      time_limit_(values.find<std::chrono::milliseconds>("Time limit").value_or(2s)),
       terrain_(skein::navigation::TerrainProvider().load(
           name_for_all(values.find<std::string>("Terrain").value_or("synthetic:7")))),
       terrain_title_(std::filesystem::path(terrain_->name()).filename().string()),
@@ -133,19 +136,22 @@ void GroundStation::brief_planners() {
 }
 
 void GroundStation::ask_with_time() {
-  print_heading("1  Two seconds to think; planners are selected by what they declare");
+  print_heading("1  " + in_words(time_limit_) +
+                " to think; planners are selected by what they declare");
   navigator_.select_by("declared");
-  const Question question{"crossing", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
-  accept("2 s, by declaration", question, show(question, navigator_.ask(question)));
+  const Question question{"crossing", flyable(skein::navigation::demo_problem(*terrain_)),
+                          time_limit_};
+  accept(in_words(time_limit_) + ", by declaration", question,
+         show(question, navigator_.ask(question)));
 }
 
 void GroundStation::ask_for_what_was_shown() {
   print_heading("2  The same question; planners are selected by what they have shown");
   navigator_.select_by("learned");
   const Question question{"crossing again", flyable(skein::navigation::demo_problem(*terrain_)),
-                          2s};
+                          time_limit_};
   const Answer answer = show(question, navigator_.ask(question));
-  accept("2 s, by experience", question, answer);
+  accept(in_words(time_limit_) + ", by experience", question, answer);
   hurry_ = hurry_of(answer);
 }
 
@@ -155,7 +161,7 @@ void GroundStation::ask_in_a_hurry() {
   Question question{"hurry", flyable(skein::navigation::demo_problem(*terrain_)), limit, 10};
   Answer answer = show(question, navigator_.ask(question));
   // What this machine could do in that time before, it may not when it is busy.
-  while (!answer.route && !answer.proven && limit < 2s) {
+  while (!answer.route && !answer.proven && limit < time_limit_) {
     question.time_to_think = limit *= 2;
     question.id = fmt::format("hurry, {} ms", limit.count());
     print_field("again", fmt::format("with {} milliseconds", limit.count()));
@@ -166,9 +172,9 @@ void GroundStation::ask_in_a_hurry() {
 
 // The one that declares most thinks for long enough to be found at work.
 void GroundStation::ask_and_kill_the_planner() {
-  print_heading("4  Two seconds to think, and the planner is killed");
+  print_heading("4  " + in_words(time_limit_) + " to think, and the planner is killed");
   navigator_.select_by("declared");
-  const Question question{"loss", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
+  const Question question{"loss", flyable(skein::navigation::demo_problem(*terrain_)), time_limit_};
   Kill kill;
   const Answer answer = navigator_.ask_and_kill(question, kill);
   print_field("kill", fmt::format("{} (process {}) after {:.0f} ms", kill.planner, kill.pid,
@@ -190,7 +196,8 @@ void GroundStation::ask_with_an_old_picture() {
   if (routes_.empty()) return fail("there is no route yet on which missiles could stand");
   navigator_.select_by("learned");
   auto ad_manager = entity_.connect<AE_adManagerI::IAdManager>({.timeout = 20s}).within(20s);
-  Question question{"old picture", flyable(skein::navigation::demo_problem(*terrain_)), 2s};
+  Question question{"old picture", flyable(skein::navigation::demo_problem(*terrain_)),
+                    time_limit_};
   Problem& problem = question.problem;
   const AE_navigator::Route& before = routes_.back().route;
   const std::string& name = problem.terrain;
@@ -216,7 +223,8 @@ void GroundStation::ask_with_an_old_picture() {
 void GroundStation::ask_for_the_unreachable() {
   print_heading("6  A goal that cannot be reached");
   const Question question{"unreachable",
-                          flyable(skein::navigation::unreachable_demo_problem(*terrain_)), 5s};
+                          flyable(skein::navigation::unreachable_demo_problem(*terrain_)),
+                          time_limit_ * 5 / 2};
   const Answer answer = show(question, navigator_.ask(question));
   if (answer.route) return fail("a route to the unreachable goal was returned");
   if (!answer.proven) return fail("the unreachable goal was not refused as such");

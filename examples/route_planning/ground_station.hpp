@@ -21,7 +21,8 @@ namespace route_planning {
 ///
 /// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the
 /// SVG to write; route.svg), `Planners` (names, separated by commas, of the planners that must know
-/// the terrain before the first question).
+/// the terrain before the first question), `Time limit` (the longest time that it waits for a
+/// route; 2 s).
 class GroundStation {
  public:
   /// Throws InvalidArgument for a terrain that cannot be read, Unavailable without a navigator or
@@ -51,6 +52,7 @@ class GroundStation {
   skein::Entity& entity_;
   std::filesystem::path picture_;
   std::vector<std::string> planners_;
+  std::chrono::milliseconds time_limit_;
   std::shared_ptr<const skein::navigation::Terrain> terrain_;
   std::string terrain_title_;
   skein::navigation::HeightGrid ground_;

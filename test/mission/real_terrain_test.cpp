@@ -23,7 +23,8 @@ TEST_CASE("the mission flies over an SRTM tile that is given by a relative path"
   const auto from_mission_folder =
       std::filesystem::relative(tile(), std::filesystem::temp_directory_path() / "any");
   const MissionRun run(project_file("mission_profiles/route_planning.xml"),
-                       {"--set", "ground_station.Terrain=" + from_mission_folder.string()});
+                       {"--set", "ground_station.Terrain=" + from_mission_folder.string(), "--set",
+                        "ground_station.Time limit=10 s"});
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(), Contains("Route planning over N53E027.hgt"));
