@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "../tools/stepped_clock.hpp"
 #include "wire.hpp"
 
 using namespace skein::dds;
@@ -23,6 +24,11 @@ int write_on_demand(Participant& participant, std::chrono::milliseconds liveline
   say("writer " + outbox.writer().guid().hex());
   std::uint32_t next = 1;
   for (std::string line; std::getline(std::cin, line);) {
+    if (line == "step back") {
+      skein::test::step_wall_clock(-1h);
+      say("stepped back");
+      continue;
+    }
     outbox.writer().write(make_number(next), make_key(1));
     say("wrote " + std::to_string(next++));
   }

@@ -19,7 +19,7 @@ constexpr const char* kPeer = "skein_conformance_peer";
 
 Child start(const std::string& role, std::uint32_t domain, const std::string& lease_ms,
             std::vector<std::string> environment = {}, const std::string& directory = ".") {
-  const std::string& vendor = role == "write" ? kPairing.writing : kPairing.reading;
+  const std::string& vendor = role == "read" ? kPairing.reading : kPairing.writing;
   return Child(kPeer, {role, vendor, std::to_string(domain), lease_ms}, std::move(environment),
                directory);
 }
@@ -119,6 +119,24 @@ TEST_CASE("a process that ends in order is gone at once") {
   CHECK(peer.finish() == 0);
   CHECK(eventually([&] { return told_last(inbox.matches(), writer, false); }));
   CHECK(inbox.liveliness().empty());
+}
+
+TEST_CASE("a process whose wall clock is set back stays known") {
+  const std::uint32_t domain = fresh_domain();
+  const auto participant = make_participant(kPairing.reading, domain);
+  Inbox inbox(*participant, keyed(), last_state());
+  Child peer = start("write_rarely", domain, "1000");
+  const Guid writer = endpoint(peer);
+  // Found before the step: whoever is found wakes the threads that wait.
+  Child other = start("write_rarely", domain, "3000");
+  const Guid others_writer = endpoint(other);
+  REQUIRE(eventually([&] { return inbox.reader().matched_writers().size() == 2; }));
+  peer.send("step back");
+  REQUIRE(peer.read() == "stepped back");
+  // It takes longer to miss this one.
+  other.signal(SIGKILL);
+  REQUIRE(eventually([&] { return told_since(0, inbox.matches(), others_writer, false); }));
+  CHECK_FALSE(told_since(0, inbox.matches(), writer, false));
 }
 
 TEST_CASE("a stopped reader makes a bounded writer refuse, not hang, and nothing written is lost") {

@@ -2,13 +2,17 @@
 
 #include "log.hpp"
 #include "participant.hpp"
+#include "steady_waits.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {
 
 class CycloneVendor final : public Vendor {
  public:
-  CycloneVendor() { route_log(); }
+  CycloneVendor() {
+    route_log();
+    wait_by_steady_clock();
+  }
   std::string name() const override { return "cyclonedds"; }
   std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) override {
     return std::make_unique<CycloneParticipant>(options);
