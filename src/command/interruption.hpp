@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/ending_signals.hpp"
 #include "core/file_descriptor.hpp"
 #include "skein/error.hpp"
 
@@ -25,15 +26,12 @@ class Interrupted : public Cancelled {
   int signal_;
 };
 
-/// Lets a command that watches end in order: while this lives, SIGINT, SIGTERM and SIGHUP end
-/// wait(), not the process. Make it before the entity, whose threads inherit what is blocked.
+/// Lets a command that watches end in order: while this lives, SIGTERM, SIGINT and SIGHUP, unless
+/// they are ignored, end wait(), not the process. Make it before the entity, whose threads inherit
+/// what is blocked.
 class Interruption {
  public:
-  Interruption() {
-    sigemptyset(&signals_);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, signal);
-    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-  }
+  Interruption() { pthread_sigmask(SIG_BLOCK, &signals_, nullptr); }
 
   /// Until a signal comes or end() is called (true then), `seconds` have passed (0: no limit), or
   /// stdout takes no more.
@@ -76,7 +74,7 @@ class Interruption {
     return taken > 0;
   }
 
-  sigset_t signals_{};
+  const sigset_t signals_ = ending_signals();
   mutable int signal_ = 0;
 };
 

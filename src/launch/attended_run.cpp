@@ -12,6 +12,7 @@
 #include <set>
 #include <thread>
 
+#include "../core/ending_signals.hpp"
 #include "launch/attended_report.hpp"
 #include "line_splitter.hpp"
 #include "wake_up.hpp"
@@ -118,9 +119,7 @@ class Attendance {
 };
 
 void leave_signals_to_supervisor() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  const sigset_t signals = ending_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
 }

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "component_code.hpp"
+#include "core/ending_signals.hpp"
 #include "core/interface_name.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
@@ -38,13 +39,6 @@ using profile::MissionProfile;
 using profile::PeerProfile;
 
 constexpr std::size_t kLongestError = 4096;
-
-sigset_t ending_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
-  return signals;
-}
 
 [[noreturn]] void refuse_process(const MissionProfile& mission, const std::string& process) {
   std::vector<std::string> names;

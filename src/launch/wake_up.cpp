@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <system_error>
 
+#include "../core/ending_signals.hpp"
+
 namespace skein::launch {
 
 SystemError::SystemError(const std::string& what, int number)
@@ -46,9 +48,7 @@ bool StopRequest::take() noexcept {
 
 SignalReader::SignalReader(bool enabled) {
   if (!enabled) return;
-  sigset_t wanted;
-  sigemptyset(&wanted);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
+  const sigset_t wanted = ending_signals();
   signals_ = FileDescriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
   if (!signals_) throw_system_error("a signal descriptor");
   pthread_sigmask(SIG_BLOCK, &wanted, &before_);

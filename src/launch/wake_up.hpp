@@ -34,9 +34,9 @@ class StopRequest {
   FileDescriptor event_;
 };
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP are read from a descriptor instead of ending the
-/// process; afterwards everything is as before, signals that came in between and were not read
-/// included.
+/// While it lives, SIGINT, SIGTERM and SIGHUP, unless they are ignored, are read from a descriptor
+/// instead of ending the process; afterwards everything is as before, signals that came in between
+/// and were not read included.
 class SignalReader {
  public:
   explicit SignalReader(bool enabled);

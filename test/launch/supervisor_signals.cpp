@@ -18,7 +18,8 @@ namespace {
 /// this constructor returns.
 class LauncherProcess {
  public:
-  explicit LauncherProcess(const std::string& preamble = "", const char* stop_timeout_ms = "500") {
+  explicit LauncherProcess(const std::string& preamble = "", const char* stop_timeout_ms = "500",
+                           int ignored_signal = 0) {
     folder_.write("pids", "");
     const std::string pids = (folder_.path() / "pids").string();
     const std::string script = preamble + "echo $$ >> " + pids + "; (" + preamble +
@@ -29,6 +30,7 @@ class LauncherProcess {
     const std::string helper = built_program("launch_helper");
     id_ = ::fork();
     if (id_ == 0) {
+      if (ignored_signal != 0) ::signal(ignored_signal, SIG_IGN);
       const int nowhere = ::open("/dev/null", O_WRONLY);
       ::dup2(nowhere, 1);
       ::dup2(nowhere, 2);
@@ -81,6 +83,17 @@ TEST_CASE("A signal to the launcher ends the mission in order, and the exit code
   const int status = launcher.wait();
   REQUIRE(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 128 + signal);
+  CHECK(launcher.all_gone());
+}
+
+TEST_CASE("A launcher that was started with a signal ignored, as by nohup or `&`, goes on") {
+  const int signal = GENERATE(SIGHUP, SIGINT);
+  LauncherProcess launcher("", "500", signal);
+  launcher.send(signal);
+  launcher.send(SIGTERM);
+  const int status = launcher.wait();
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 128 + SIGTERM);
   CHECK(launcher.all_gone());
 }
 
