@@ -9,11 +9,15 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "../core/file_descriptor.hpp"
+#include "../core/log.hpp"
 #include "skein/error.hpp"
 #include "wake_up.hpp"
 
@@ -22,14 +26,18 @@ namespace {
 
 constexpr std::string_view kPrefix = "skein-launch-";
 
-/// Two launchers of one name start the same peers.
-std::string name_of(const profile::MissionProfile& mission, const std::string& host) {
+/// A launcher takes the first name that no process of another user has: anybody may take any name.
+constexpr int kNames = 16;
+
+/// Two launchers of one name start the same peers. `number` is less than kNames.
+std::string name_of(const profile::MissionProfile& mission, const std::string& host, int number) {
   std::set<std::string> systems;
   for (const auto& peer : mission.peers) systems.insert(peer.system);
   std::string all = mission.name + '\0' + host;
   for (const std::string& system : systems) all += '\0' + system;
   return std::string(kPrefix) + std::to_string(::getuid()) + "-" + std::to_string(mission.domain) +
-         "-" + std::to_string(std::hash<std::string>()(all));
+         "-" + std::to_string(std::hash<std::string>()(all)) +
+         (number == 0 ? "" : "-" + std::to_string(number));
 }
 
 /// In the abstract namespace, which begins with a zero and is each network namespace's own.
@@ -51,9 +59,53 @@ std::optional<ucred> connect(const FileDescriptor& client, const sockaddr_un& ad
   return holder;
 }
 
-std::optional<ucred> holder_of(const sockaddr_un& address) {
-  return connect(FileDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)),
-                 address);
+/// The inode of the socket of that name, as a process's descriptor shows it.
+std::optional<std::string> link_to(const std::string& name) {
+  std::ifstream sockets("/proc/net/unix");
+  for (std::string line; std::getline(sockets, line);) {
+    std::istringstream columns(line);
+    std::string word, inode, shown;
+    for (int i = 0; i < 6; ++i) columns >> word;
+    columns >> inode >> shown;
+    // Each zero shows as '@', and the name is filled up with them.
+    shown.erase(shown.find_last_not_of('@') + 1);
+    if (shown == "@" + name) return "socket:[" + inode + "]";
+  }
+  return std::nullopt;
+}
+
+/// Not by the owner of the folder, which is root where a process has changed its user.
+bool is_ours(const std::filesystem::path& process) {
+  std::ifstream status(process / "status");
+  std::string word;
+  uid_t user = 0;
+  while (status >> word && word != "Uid:") {
+  }
+  return status >> user && user == ::getuid();
+}
+
+bool has_open(const std::filesystem::path& process, const std::string& link) {
+  std::error_code error;
+  for (const auto& each : std::filesystem::directory_iterator(process / "fd", error)) {
+    if (std::filesystem::read_symlink(each, error) == link) return true;
+  }
+  return false;
+}
+
+/// The process of this user whose socket has that name. One that listens is known by its
+/// connection, any other by its descriptors.
+std::optional<pid_t> own_holder_of(const std::string& name) {
+  const FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (const auto holder = connect(client, address_of(name)))
+    return holder->uid == ::getuid() ? std::optional(holder->pid) : std::nullopt;
+  const auto link = link_to(name);
+  if (!link) return std::nullopt;
+  for (const auto& each : std::filesystem::directory_iterator("/proc")) {
+    const std::string number = each.path().filename();
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    if (is_ours(each) && has_open(each, *link)) return std::stoi(number);
+  }
+  return std::nullopt;
 }
 
 constexpr timeval kPatience{10, 0};
@@ -80,8 +132,12 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
   if (!socket) throw_system_error("a socket");
   for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
     ::setsockopt(socket.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
-  const auto holder = connect(socket, address_of(name_of(mission, host)));
-  if (!holder || holder->uid != ::getuid()) {
+  std::optional<ucred> holder;
+  for (int number = 0; number < kNames && !holder; ++number) {
+    const std::string name = name_of(mission, host, number);
+    if (own_holder_of(name)) holder = connect(socket, address_of(name));
+  }
+  if (!holder) {
     throw Unavailable("the mission '" + mission.name + "' is not flown here on domain " +
                       std::to_string(mission.domain) +
                       (host.empty() ? "" : " as host '" + host + "'") +
@@ -105,20 +161,29 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
 MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::string& host) {
   FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket) throw_system_error("a socket");
-  const sockaddr_un address = address_of(name_of(mission, host));
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-    if (::listen(socket.get(), 8) != 0) throw_system_error("a socket that listens");
-    socket_ = socket.release();
-    return;
+  const auto refuse_if_flown = [&](int number) {
+    const auto holder = own_holder_of(name_of(mission, host, number));
+    if (!holder) return;
+    throw InvalidArgument("the mission '" + mission.name + "' is flown here already, on domain " +
+                          std::to_string(mission.domain) + ", by process " +
+                          std::to_string(*holder) +
+                          " (skein launch); end that one first, or fly this one on another domain");
+  };
+  // Another user may have given back a name since a launcher of this user took a later one.
+  for (int number = 0; number < kNames; ++number) refuse_if_flown(number);
+  for (int number = 0; number < kNames; ++number) {
+    const sockaddr_un address = address_of(name_of(mission, host, number));
+    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+      if (::listen(socket.get(), 8) != 0) throw_system_error("a socket that listens");
+      socket_ = socket.release();
+      return;
+    }
+    if (errno != EADDRINUSE) throw_system_error("a socket with a name");
+    refuse_if_flown(number);
   }
-  if (errno != EADDRINUSE) throw_system_error("a socket with a name");
-  const auto holder = holder_of(address);
-  // Somebody else's process may take any name; that must not keep a mission from flying.
-  if (holder && holder->uid != ::getuid()) return;
-  const std::string who = holder ? "process " + std::to_string(holder->pid) : "another process";
-  throw InvalidArgument("the mission '" + mission.name + "' is flown here already, on domain " +
-                        std::to_string(mission.domain) + ", by " + who +
-                        " (skein launch); end that one first, or fly this one on another domain");
+  log(LogLevel::Warning, "launch",
+      "other users' processes have taken all names of the socket for requests (`ss -xlp` shows "
+      "them): skein status finds nothing, and nothing keeps this mission from being flown twice");
 }
 
 MissionClaim::~MissionClaim() {

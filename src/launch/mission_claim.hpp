@@ -31,7 +31,7 @@ class MissionClaim {
   MissionClaim(const MissionClaim&) = delete;
   MissionClaim& operator=(const MissionClaim&) = delete;
 
-  /// A non-blocking socket that listens; -1 where another user's process has taken its name.
+  /// A non-blocking socket that listens; -1 where other users' processes have taken all its names.
   int requests() const noexcept { return socket_; }
 
  private:

@@ -1,5 +1,7 @@
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 
 #include <catch2/catch.hpp>
 #include <future>
@@ -137,6 +139,52 @@ TEST_CASE("Clients that say nothing, too much, or go away do not keep others fro
   CHECK_THAT(mission.ask("status"), Contains("\"a\""));
   char answer = 0;
   CHECK(::read(talkative.get(), &answer, 1) <= 0);  // it was sent away
+}
+
+TEST_CASE("Another user's process that takes a launcher's name keeps no mission from flying") {
+  if (::getuid() != 0) {
+    WARN("not tested: only root can be another user");
+    return;
+  }
+  profile::MissionProfile mission;
+  mission.name = "wanted by process " + std::to_string(::getpid());
+  const std::string name = [&] {
+    const MissionClaim claim(mission, "");
+    sockaddr_un address{};
+    socklen_t size = sizeof address;
+    ::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size);
+    return std::string(reinterpret_cast<const char*>(&address), size);
+  }();
+  const bool listens = GENERATE(false, true);
+  CAPTURE(listens);
+  int done[2];
+  int end[2];
+  REQUIRE((::pipe2(done, O_CLOEXEC) == 0 && ::pipe2(end, O_CLOEXEC) == 0));
+  const pid_t stranger = ::fork();
+  if (stranger == 0) {
+    constexpr uid_t kNobody = 65534;
+    ::close(end[1]);
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    const auto* address = reinterpret_cast<const sockaddr*>(name.data());
+    const bool taken = ::setuid(kNobody) == 0 &&
+                       ::bind(socket, address, static_cast<socklen_t>(name.size())) == 0 &&
+                       (!listens || ::listen(socket, 0) == 0);
+    char byte = taken ? 1 : 0;
+    if (::write(done[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) >= 0) ::_exit(0);
+    ::_exit(1);
+  }
+  ::close(end[0]);
+  char taken = 0;
+  REQUIRE(::read(done[0], &taken, 1) == 1);
+  REQUIRE(taken == 1);
+  {
+    const MissionClaim claim(mission, "");
+    CHECK(claim.requests() >= 0);
+    CHECK_THROWS_WITH(MissionClaim(mission, ""),
+                      Contains("by process " + std::to_string(::getpid())));
+  }
+  for (const int each : {done[0], done[1], end[1]}) ::close(each);
+  ::waitpid(stranger, nullptr, 0);
 }
 
 TEST_CASE("Without a launcher there is nobody to ask, and what to do is said") {
