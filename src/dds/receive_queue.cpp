@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/log.hpp"
 #include "sample_format.hpp"
 
 namespace skein::dds {
@@ -19,18 +20,20 @@ class Owner final : public SampleOwner {
 
 }  // namespace
 
-ReceiveQueue::ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed)
-    : ReceiveQueue(qos, std::move(find_key), std::move(missed), deadline_clock(),
+ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed)
+    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), deadline_clock(),
                    [] { return SourceTime(std::chrono::system_clock::now().time_since_epoch()); }) {
 }
 
-ReceiveQueue::ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Clock& clock)
-    : ReceiveQueue(qos, std::move(find_key), std::move(missed), clock,
+ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed,
+                           Clock& clock)
+    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), clock,
                    [&clock] { return SourceTime(clock.now().time_since_epoch()); }) {}
 
-ReceiveQueue::ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Clock& deadlines,
-                           std::function<SourceTime()> source_time)
-    : representation_(qos.representation),
+ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed,
+                           Clock& deadlines, std::function<SourceTime()> source_time)
+    : topic_(std::move(topic)),
+      representation_(qos.representation),
       exclusive_(qos.exclusive),
       find_key_(std::move(find_key)),
       source_time_(std::move(source_time)),
@@ -118,7 +121,11 @@ std::optional<SourceTime> ReceiveQueue::admit(const Arrival& arrival, const KeyH
   if (offer.lifespan && arrival.state == InstanceState::Alive) {
     expiry = (arrival.written ? *arrival.written : source_time_()) + *offer.lifespan;
   }
-  if (drop_expired(expiry)) return std::nullopt;
+  if (drop_expired(expiry)) {
+    note_expired_on_arrival(arrival, *offer.lifespan);
+    return std::nullopt;
+  }
+  if (!expired_in_a_row_.empty()) expired_in_a_row_.erase(arrival.writer);
   if (exclusive_ && !ownership_.owns(key, arrival.writer, offer.strength)) return std::nullopt;
   return expiry;
 }
@@ -128,6 +135,27 @@ bool ReceiveQueue::drop_expired(SourceTime expiry) {
   if (expiry == kNever || source_time_() < expiry) return false;
   ++counters_.expired;
   return true;
+}
+
+/// A slow network delivers such samples, too; where no other comes, the clocks differ.
+void ReceiveQueue::note_expired_on_arrival(const Arrival& arrival, SourceTime lifespan) {
+  constexpr unsigned kTold = 10;
+  constexpr std::size_t kMostWriters = 1024;
+  if (told_of_expired_) return;
+  if (expired_in_a_row_.size() >= kMostWriters) expired_in_a_row_.clear();
+  if (++expired_in_a_row_[arrival.writer] < kTold) return;
+  told_of_expired_ = true;
+  expired_in_a_row_.clear();
+  const auto to_text = [](SourceTime time) {
+    return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(time).count()) +
+           " ms";
+  };
+  log(LogLevel::Warning, "dds",
+      "topic '" + topic_ + "': what participant " + arrival.writer.participant().hex() +
+          " writes is " + to_text(source_time_() - *arrival.written) +
+          " old when it comes, by the two hosts' clocks, and its lifespan is " + to_text(lifespan) +
+          ": all of it is dropped. If the clocks differ, set them by NTP or PTP; otherwise publish "
+          "with a longer lifespan");
 }
 
 std::optional<ReceiveQueue::Item> ReceiveQueue::pop() {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <unordered_map>
 
 #include "dds/port.hpp"
@@ -52,12 +53,12 @@ class ReceiveQueue {
   using FindKey = decltype(ReaderListener::find_key);
   using Missed = decltype(ReaderListener::on_deadline_missed);
 
-  /// Source timestamps are of the hosts' clocks; `missed` is called on a thread of the process for
-  /// all deadlines. Either function may be empty.
-  ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed);
+  /// For samples of that topic. Source timestamps are of the hosts' clocks; `missed` is called on a
+  /// thread of the process for all deadlines. Either function may be empty.
+  ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed);
 
   /// Source timestamps are of `clock`, which outlives the queue; `missed` is called on its thread.
-  ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Clock& clock);
+  ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed, Clock& clock);
 
   /// Waits until `missed` does not run; not from it. No thread may be in any other member.
   ~ReceiveQueue();
@@ -92,7 +93,7 @@ class ReceiveQueue {
     SourceTime expiry;
   };
 
-  ReceiveQueue(const Qos& qos, FindKey find_key, Missed missed, Clock& deadlines,
+  ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed, Clock& deadlines,
                std::function<SourceTime()> source_time);
 
   bool put(Arrival& arrival, const WriterOffer* offer);
@@ -101,8 +102,10 @@ class ReceiveQueue {
   std::optional<SourceTime> admit(const Arrival& arrival, const KeyHash& key,
                                   const WriterOffer& offer);
   bool drop_expired(SourceTime expiry);
+  void note_expired_on_arrival(const Arrival& arrival, SourceTime lifespan);
   std::optional<Item> pop();
 
+  const std::string topic_;
   const DataRepresentation representation_;
   const bool exclusive_;
   const FindKey find_key_;
@@ -113,6 +116,9 @@ class ReceiveQueue {
   /// Of the matched writers whose samples expire or contend.
   std::unordered_map<Guid, WriterOffer> offers_;
   ReceiveCounters counters_;
+  /// How many samples in a row had expired when they came; until that was told.
+  std::unordered_map<Guid, unsigned> expired_in_a_row_;
+  bool told_of_expired_ = false;
   std::unique_ptr<DeadlineTimer> deadline_;  // goes first: it uses the rest
 };
 

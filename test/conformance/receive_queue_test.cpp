@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../tools/log.hpp"
 #include "skein/clock.hpp"
 
 using namespace skein;
@@ -48,7 +49,7 @@ Guid guid(std::uint8_t value) {
 struct Stage {
   explicit Stage(const Qos& qos = {}, ReceiveQueue::FindKey find_key = {})
       : queue(
-            qos, std::move(find_key), [this](const KeyHash& key) { missed.push_back(key); },
+            "pose", qos, std::move(find_key), [this](const KeyHash& key) { missed.push_back(key); },
             clock) {}
 
   SourceTime now() const { return clock.now().time_since_epoch(); }
@@ -170,6 +171,28 @@ TEST_CASE("a sample expires to the instant, on its way and while it waits") {
   stage.clock.advance(100ms);
   CHECK(stage.take().empty());
   CHECK(stage.queue.counters().expired == 3);
+}
+
+TEST_CASE("a writer of whom all has expired when it comes is told of once, with the difference") {
+  Stage stage;
+  test::Log log;
+  const WriterOffer offer{0, 500ms};
+  const auto comes = [&](std::uint8_t writer, SourceTime written) {
+    return stage.queue.store(
+        {payload(number(1)), InstanceState::Alive, KeyHash{}, guid(writer), written}, offer);
+  };
+  // Late now and then, and another one in time.
+  for (int i = 0; i < 9; ++i) CHECK_FALSE(comes(1, stage.now() - 3600s));
+  CHECK(comes(1, stage.now()));
+  for (int i = 0; i < 9; ++i) {
+    CHECK_FALSE(comes(1, stage.now() - 3600s));
+    CHECK(comes(2, stage.now()));
+  }
+  CHECK(log.text() == "");
+  for (int i = 0; i < 20; ++i) CHECK_FALSE(comes(1, stage.now() - 3600s));
+  CHECK(log.count("topic 'pose'") == 1);
+  CHECK(log.count("is 3600000 ms old") == 1);
+  CHECK(log.count("lifespan is 500 ms") == 1);
 }
 
 TEST_CASE("an instance is its strongest writer's, of equals the one with the lesser GUID") {

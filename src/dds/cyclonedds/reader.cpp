@@ -10,7 +10,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
       topic_(topic),
       handle_(participant.acquire_topic(topic)),
       listener_(std::move(listener)),
-      queue_(qos, listener_.find_key, listener_.on_deadline_missed),
+      queue_(topic.name, qos, listener_.find_key, listener_.on_deadline_missed),
       cache_(queue_),
       matches_(
           [this](dds_instance_handle_t* handles, std::size_t room) {

@@ -18,7 +18,8 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
       tells_incompatible_(listener.on_incompatible != nullptr),
       events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
       history_(history_attributes(0)),
-      queue_(qos, std::move(listener.find_key), std::move(listener.on_deadline_missed)) {
+      queue_(topic.name, qos, std::move(listener.find_key),
+             std::move(listener.on_deadline_missed)) {
   participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());

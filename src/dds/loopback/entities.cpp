@@ -98,7 +98,7 @@ std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, c
 
 std::unique_ptr<Reader> LoopbackParticipant::create_reader(const Topic& topic, const Qos& qos,
                                                            ReaderListener listener) {
-  auto core = std::make_shared<ReaderCore>(qos, *hub_);
+  auto core = std::make_shared<ReaderCore>(topic, qos, *hub_);
   prepare(*core, topic, qos, kReaderKind);
   core->listener = std::move(listener);
   return std::make_unique<LoopbackReader>(hub_, std::move(core));

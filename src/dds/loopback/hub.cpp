@@ -17,9 +17,9 @@ WriterCore::WriterCore(const Qos& qos, Hub& hub)
           qos, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); }, hub.clock())) {
 }
 
-ReaderCore::ReaderCore(const Qos& qos, Hub& hub)
+ReaderCore::ReaderCore(const Topic& topic, const Qos& qos, Hub& hub)
     : queue(
-          qos, {}, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); },
+          topic.name, qos, {}, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); },
           hub.clock()) {}
 
 Hub::Hub(Clock& clock) : clock_(clock), may_wait_(dynamic_cast<SystemClock*>(&clock) != nullptr) {}

@@ -68,7 +68,7 @@ struct WriterCore final : EndpointCore {
 };
 
 struct ReaderCore final : EndpointCore {
-  ReaderCore(const Qos& qos, Hub& hub);
+  ReaderCore(const Topic& topic, const Qos& qos, Hub& hub);
   Reader* self = nullptr;
   ReaderListener listener;
   bool told = false;  // an on_data is on its way
