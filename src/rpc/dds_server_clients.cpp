@@ -287,10 +287,21 @@ void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
   control.post_or_run([state = weak_from_this(), key, matched] {
     const auto self = state.lock();
     if (!self) return;
-    if (!matched) return self->drop_unless_matched(key);
+    if (!matched) {
+      self->end_foreign_calls(key);
+      return self->drop_unless_matched(key);
+    }
     self->drop(key);
     self->dismiss({key, 0});
   });
+}
+
+// One that has no session is known by its request writer alone.
+void DdsServer::State::end_foreign_calls(const Guid& writer) {
+  std::lock_guard lock(mutex);
+  for (const auto& [id, invocation] : active) {
+    if (invocation->connection == writer) invocation->cancel();
+  }
 }
 
 void DdsServer::State::drop_unless_matched(const Guid& key) {

@@ -136,6 +136,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   void on_request_writer(const Guid& key, bool matched);
   void remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
               std::chrono::milliseconds after);
+  void end_foreign_calls(const Guid& writer);
   void drop_unless_matched(const Guid& key);
   void drop(const Guid& key);
   void send_unsent(const std::shared_ptr<Client>& client);

@@ -107,17 +107,22 @@ Bytes open_request(const Guid& client) {
   return message;
 }
 
-/// One for an hour's work.
-Bytes long_request(const Guid& client, std::uint64_t number) {
+/// One for an hour's work, as one without Skein writes it.
+Bytes foreign_request(const Guid& client, std::uint64_t number) {
   for (const OperationInfo& operation : Echo::interface_info().operations) {
     if (operation.name != "wait") continue;
     const ::test::Echo_wait_In in{3'600'000};
     Bytes message = request(client, number, operation.hash);
     operation.in->encode(&in, message);
-    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1h});
     return message;
   }
   throw std::logic_error("the interface has no operation 'wait'");
+}
+
+Bytes long_request(const Guid& client, std::uint64_t number) {
+  Bytes message = foreign_request(client, number);
+  rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1h});
+  return message;
 }
 
 /// An echo service for clients that the test plays.
@@ -132,7 +137,7 @@ struct Provider {
                         std::make_shared<rpc::Service>(
                             std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()),
                             executor, clock, rpc::Service::Options{}),
-                        {}};
+                        {.foreign_clients = true}};
 };
 
 }  // namespace
@@ -184,6 +189,22 @@ TEST_CASE("a client that leaves before it is admitted takes no session with it")
   REQUIRE(eventually([&] { return participant.answers(next); }));
   CHECK_FALSE(participant.answers(client));
   CHECK(server.counters().clients == 1);
+}
+
+TEST_CASE("a request of a client without Skein ends when its sender leaves, others go on") {
+  Provider provider;
+  const Guid leaving = Guid::random();
+  const Guid staying = Guid::random();
+  for (const Guid& writer : {leaving, staying}) {
+    provider.participant.match_request_writer(writer);
+    // Its name for itself need not be its writer's.
+    provider.participant.request(writer, foreign_request(Guid::random(), 1));
+  }
+  REQUIRE(provider.server.counters().active == 2);
+  provider.participant.match_request_writer(leaving, false);
+  CHECK(eventually([&] { return provider.server.counters().active == 1; }));
+  provider.participant.match_request_writer(staying, false);
+  CHECK(eventually([&] { return provider.server.counters().active == 0; }));
 }
 
 TEST_CASE("a client that leaves before its reader was found keeps no session for long") {
