@@ -101,8 +101,29 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
     options.journal->note(introspection::CallStep::Sent, client, number, address.service,
                           call.operation());
   }
-  writer.write(message);
+  write_in_time(writer, message, call);
   if (message.capacity() > kKeptCapacity) message = Bytes();
+}
+
+// A caller that waits for the answer also waits for room, as long as it has time; others are told.
+// The writer itself waits before it throws: tries are counted, for a clock that may stand still. The
+// last one is over before the deadline is: what was not sent does not end as TimedOut.
+void DdsChannel::State::write_in_time(dds::Writer& writer, const Bytes& message,
+                                      const PendingCall& call) const {
+  const Duration a_try = dds::Qos().max_blocking;
+  for (Duration left = call.deadline() - clock.now();; left -= a_try) {
+    try {
+      return writer.write(message);
+    } catch (const Overloaded&) {
+      const bool may_wait = call.blocking() && left > 2 * a_try;
+      if (!may_wait || !is_open()) throw;
+    }
+  }
+}
+
+bool DdsChannel::State::is_open() const {
+  std::lock_guard lock(mutex);
+  return phase == Phase::Open;
 }
 
 // The call, which is not known by its number any more; a stream stays known until its last reply.

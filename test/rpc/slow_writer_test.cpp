@@ -31,16 +31,16 @@ class Valve {
     changed_.notify_all();
   }
 
-  /// Inside write(): waits while the valve holds; throws while there is no room.
+  /// Inside write(): waits while the valve holds; throws where there is no room in time.
   void pass() {
     std::unique_lock lock(mutex_);
     ++inside_;
     changed_.wait(lock, [&] { return mode_ != Mode::Holding; });
     --inside_;
-    if (mode_ == Mode::Full) {
-      ++refused_;
+    if (mode_ != Mode::Full) return;
+    ++refused_;
+    if (!changed_.wait_for(lock, dds::Qos().max_blocking, [&] { return mode_ != Mode::Full; }))
       throw Overloaded("no room");
-    }
   }
   bool full() const {
     std::lock_guard lock(mutex_);
@@ -213,6 +213,28 @@ TEST_CASE("answers for which there is no room arrive once there is some, within 
   CHECK(numbers.next() == std::nullopt);
   CHECK(pair.server->counters().lost == 0);
   CHECK(pair.echo().echo("again") == "again");
+}
+
+TEST_CASE("a caller that waits for its answer waits for room, too; one that does not is told") {
+  Pair pair;
+  pair.calling.valve.set(Valve::Mode::Full);
+  auto asked = pair.echo().async_echo("y");
+  CHECK_THROWS_AS(asked.get(), Overloaded);
+  auto calling = std::async(std::launch::async, [&] { return pair.echo().echo("x"); });
+  REQUIRE(eventually([&] { return pair.calling.valve.refused() > 3; }));
+  pair.calling.valve.set(Valve::Mode::Open);
+  CHECK(calling.get() == "x");
+  CHECK(pair.implementation->calls == 1);
+}
+
+TEST_CASE("a call for which there is no room until its deadline is refused, and not executed") {
+  Pair pair;
+  pair.calling.valve.set(Valve::Mode::Full);
+  CHECK_THROWS_AS(pair.echo(300ms).echo("x"), Overloaded);
+  CHECK(pair.calling.valve.refused() > 1);
+  pair.calling.valve.set(Valve::Mode::Open);
+  CHECK(pair.echo().echo("y") == "y");
+  CHECK(pair.implementation->calls == 1);
 }
 
 TEST_CASE("an answer for which there is no room until its deadline is given up, and counted") {
