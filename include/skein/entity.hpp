@@ -86,7 +86,9 @@ class Entity {
   /// Ends all connections: pending calls and streams end as Disconnected, later calls as
   /// Unavailable. Withdraws all services, stops running calls, runs the continuations that are due,
   /// and leaves the mission. Waits at most 2 s in all for calls that hang; their threads are left
-  /// behind. Do not destroy an entity from one of its continuations or from a call that it serves.
+  /// behind, and what these calls return, should they ever, goes nowhere. While a Body hangs, the
+  /// entity stays in the mission, without services: the Body may use the Head. Do not destroy an
+  /// entity from one of its continuations or from a call that it serves.
   ~Entity();
 
   const EntityOptions& options() const noexcept;
@@ -116,8 +118,9 @@ class Entity {
                    std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
   /// Withdraws one service of this entity. Queued calls are refused; running calls are told to
-  /// stop, and awaited for up to 2 s. Other providers' identities and unknown ones are ignored. Do
-  /// not call it from a call of that service.
+  /// stop, and awaited for up to 2 s; what those that hang return later goes nowhere. Other
+  /// providers' identities and unknown ones are ignored. Do not call it from a call of that
+  /// service.
   void withdraw(const Guid& provider);
 
   /// Counters and latencies of each operation of the services that this entity provides, CSPs

@@ -192,6 +192,7 @@ struct Entity::State {
   mutable std::mutex mutex;
   std::unique_ptr<ThreadExecutor> topics;  // once there is a subscription
   std::map<Guid, std::unique_ptr<Provided>> provided;
+  std::vector<std::shared_ptr<rpc::Service>> hung;  // Bodies that were withdrawn meanwhile
   // These go first: they ask all that stands above.
   std::optional<introspection::StatisticsTopic> statistics_topic;
   std::optional<introspection::Answerer> answerer;
@@ -206,6 +207,13 @@ struct Entity::State {
         return "the calls of '" + service->name + "' do not return, and their deadlines are over";
     }
     return {};
+  }
+
+  /// Waits for the calls of a service that has been closed.
+  void note_hung(Provided& closed, std::chrono::steady_clock::time_point deadline) {
+    if (closed.await_end(deadline) || !closed.owner.empty()) return;
+    std::lock_guard lock(mutex);
+    hung.push_back(closed.service);
   }
 
   std::vector<introspection::ServiceStatistics> statistics() const {
@@ -287,15 +295,15 @@ Entity::~Entity() {
   for (const auto& [id, service] : provided) state_->process->directory()->remove(id);
   for (const auto& [id, service] : provided) service->close();
   const auto deadline = std::chrono::steady_clock::now() + kStopPatience;  // of all together
-  bool stuck = false;
-  for (const auto& [id, service] : provided) {
-    if (!service->await_end(deadline) && service->owner.empty()) stuck = true;
-  }
+  for (const auto& [id, service] : provided) state_->note_hung(*service, deadline);
   provided.clear();
+  const bool stuck =
+      std::ranges::any_of(state_->hung, [](const auto& body) { return !body->await_end({}); });
   state_->continuations->finish();
   state_->journal->close();
   state_->recorder->close();
-  // A Body may use the Head, and all that this uses, should it ever come back.
+  // A Body may use the Head, and all that this uses, should it ever come back; a CSP knows nothing
+  // of them.
   if (stuck) leave_behind(std::shared_ptr<State>(std::move(state_)));
 }
 
@@ -416,7 +424,10 @@ void Entity::withdraw(const Guid& provider) {
     std::lock_guard lock(state_->mutex);
     if (auto node = state_->provided.extract(provider)) provided = std::move(node.mapped());
   }
-  if (provided) state_->process->directory()->remove(provider);
+  if (!provided) return;
+  state_->process->directory()->remove(provider);
+  provided->close();
+  state_->note_hung(*provided, std::chrono::steady_clock::now() + kStopPatience);
 }
 
 }  // namespace skein

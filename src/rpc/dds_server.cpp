@@ -7,6 +7,7 @@
 #include "common.hpp"
 #include "core/interface_name.hpp"
 #include "core/log.hpp"
+#include "core/sole_owner.hpp"
 #include "dds_server_state.hpp"
 #include "skein/error.hpp"
 
@@ -273,6 +274,7 @@ DdsServer::~DdsServer() {
   }
   for (const TimerId timer : timers) state_->clock.cancel(timer);
   state_->writers.await_end();
+  await_sole_owner(state_);
 }
 
 DdsServer::Counters DdsServer::counters() const {

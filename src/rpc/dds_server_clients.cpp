@@ -21,11 +21,12 @@ constexpr std::size_t kRefused = 128;
 
 }  // namespace
 
-// The last to let go of a client may be a vendor's thread, which must not destroy its writer.
+// The last to let go of a client may be a vendor's thread, which must not destroy its writer; or
+// the thread of a call that hung, when the server has ended, and taken the writer with it.
 std::shared_ptr<DdsServer::State::Client> DdsServer::State::make_client() {
-  return {new Client, [&control = control](Client* client) {
+  return {new Client, [state = weak_from_this()](Client* client) {
             const std::shared_ptr<Client> owned(client);
-            control.post_or_run([owned] {});
+            if (const auto self = state.lock()) self->control.post_or_run([owned] {});
           }};
 }
 
