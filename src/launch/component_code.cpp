@@ -41,10 +41,10 @@ std::optional<Kind> kind_of(const std::string& component, const ComponentRegistr
 }
 
 /// For a component that is registered, but as `found` where it has to be `wanted`.
-std::string remedy_for(Kind wanted, Kind found) {
+const char* remedy_for(Kind wanted, Kind found) {
   if (found == Kind::Csp)
     return "write it as a <csp> of the peer that uses it, or name another component";
-  if (wanted == Kind::Csp) return std::string("register it by ") + words_for(wanted).registered_by;
+  if (wanted == Kind::Csp) return "register it by add_csp";
   if (found == Kind::Body) return "add what it implements to <interfaces> in its description";
   if (found == Kind::Mission && wanted == Kind::Activity)
     return "write role=\"mission\", or register it by add_activity, so that it can be told to end";

@@ -97,7 +97,6 @@ constexpr std::array<Unit, 17> kUnits{{
 
 /// What a number in unit `from` is multiplied by to be one in unit `to`.
 std::optional<double> conversion(std::string_view from, std::string_view to) {
-  if (from.empty() || from == to) return 1;
   const auto* of = std::ranges::find(kUnits, from, &Unit::name);
   const auto* wanted = std::ranges::find(kUnits, to, &Unit::name);
   if (of == kUnits.end() || wanted == kUnits.end() || of->quantity != wanted->quantity)
@@ -146,19 +145,26 @@ void demand_range(const DictionaryEntry& entry, double number) {
                              : "more than " + with_unit(*entry.maximum, entry.unit)));
 }
 
+/// Without the entry's own unit, which may hold digits.
+std::string_view without_unit(const DictionaryEntry& entry, std::string_view text) {
+  return text.ends_with(entry.unit) ? trimmed(text.substr(0, text.size() - entry.unit.size()))
+                                    : text;
+}
+
 double parse_real(const DictionaryEntry& entry, std::string_view text) {
-  const auto [number, unit] = split(text);
-  const auto factor = conversion(unit, entry.unit);
-  if (!number || !factor) refuse_type(entry, text);
-  const double converted = *number * *factor;
-  demand_range(entry, converted);
-  return converted;
+  auto number = maybe_finite(without_unit(entry, text));
+  if (!number) {
+    const auto [of_other_unit, unit] = split(text);
+    const auto factor = conversion(unit, entry.unit);
+    if (!of_other_unit || !factor) refuse_type(entry, text);
+    number = *of_other_unit * *factor;
+  }
+  demand_range(entry, *number);
+  return *number;
 }
 
 std::int64_t parse_integer(const DictionaryEntry& entry, std::string_view text) {
-  if (!entry.unit.empty() && text.ends_with(entry.unit))
-    text = trimmed(text.substr(0, text.size() - entry.unit.size()));
-  const auto number = maybe_number<std::int64_t>(text);
+  const auto number = maybe_number<std::int64_t>(without_unit(entry, text));
   if (!number) refuse_type(entry, text);
   demand_range(entry, static_cast<double>(*number));
   return *number;

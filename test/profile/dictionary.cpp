@@ -74,6 +74,7 @@ TEST_CASE("A number may name its unit, or another of the same quantity") {
   CHECK(real("deg", "3.14159265358979 rad") == Approx(180));
   CHECK(real("m", "5m") == 5);
   CHECK(real("m", "5") == 5);
+  CHECK(real("m/s2", "5 m/s2") == 5);
   CHECK(std::get<std::int64_t>(parse_value(entry_of(ValueType::Integer, "px"), "5 px")) == 5);
   CHECK_THROWS_WITH(real("m", "5 s"), "\"x\" is \"5 s\", which is no real in m");
   CHECK_THROWS_WITH(real("", "5 m"), "\"x\" is \"5 m\", which is no real");
