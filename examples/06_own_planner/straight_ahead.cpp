@@ -32,7 +32,7 @@ class StraightAhead : public AE_navigator::IPlanner {
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_csp("StraightAhead", [](const skein::ParameterValues&) {
+  registry.add_csp<AE_navigator::IPlanner>("StraightAhead", [](const skein::ParameterValues&) {
     return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::make_shared<StraightAhead>());
   });
 }

@@ -56,6 +56,19 @@ class ComponentRegistry {
   /// These throw InvalidArgument if the name of the component is taken.
   void add_body(const std::string& component, BodyFactory factory);
   void add_csp(const std::string& component, CspFactory factory);
+  /// As above. `Interface` is what the servants implement, as `survey::IPlanner`: with it `skein
+  /// check` compares the component's description before anything starts. Without it, it says that
+  /// it could not.
+  template <class Interface>
+  void add_body(const std::string& component, BodyFactory factory) {
+    add_body(component, std::move(factory));
+    implemented_[component] = &Interface::interface_info();
+  }
+  template <class Interface>
+  void add_csp(const std::string& component, CspFactory factory) {
+    add_csp(component, std::move(factory));
+    implemented_[component] = &Interface::interface_info();
+  }
   void add_mission(const std::string& component, Mission mission);
   void add_activity(const std::string& component, Activity activity);
   /// Makes a strategy selectable by its name, for example as a profile's `strategy`. Throws
@@ -67,6 +80,8 @@ class ComponentRegistry {
   const CspFactory* find_csp(const std::string& component) const;
   const Mission* find_mission(const std::string& component) const;
   const Activity* find_activity(const std::string& component) const;
+  /// What a Body or a CSP implements; nullptr if its registration does not say it.
+  const InterfaceInfo* find_interface(const std::string& component) const;
 
   /// The `<argument>` elements of the process in its mission profile: what follows `--` on the
   /// command line of `skein peer`.
@@ -83,8 +98,8 @@ class ComponentRegistry {
   /// Loads a plugin (it is never unloaded) and calls its `skein_register_components`. `name` is a
   /// path, or a name such as `skein_navigation_components` for `libskein_navigation_components.so`,
   /// which is searched in the folders of SKEIN_MODULE_PATH and beside libskein. Throws Unavailable
-  /// with these folders if it cannot be loaded, InvalidArgument if it is no plugin or was built for
-  /// another version.
+  /// with these folders if it cannot be loaded; InvalidArgument if it is no plugin, was built for
+  /// another version, or lies where every user may write: it is not loaded then.
   void load_plugin(const std::string& name);
 
  private:
@@ -95,6 +110,7 @@ class ComponentRegistry {
   std::map<std::string, CspFactory> csps_;
   std::map<std::string, Mission> missions_;
   std::map<std::string, Activity> activities_;
+  std::map<std::string, const InterfaceInfo*> implemented_;
   std::vector<std::shared_ptr<const SelectionStrategy>> strategies_;
 };
 

@@ -11,11 +11,26 @@
 
 namespace skein::command {
 
-std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
-  std::vector<profile::Finding> findings;
-  const auto mission =
+CheckedMission check_mission(const PlanArguments& arguments) {
+  CheckedMission checked;
+  auto& [mission, findings] = checked;
+  mission =
       profile::read_and_check(arguments.profile, findings,
                               profile::parse_variables(arguments.variables), arguments.settings);
+  if (mission.peers.empty()) return checked;
+  auto chosen = mission;
+  std::erase_if(chosen.peers, [&](const profile::PeerProfile& peer) {
+    return !launch::is_chosen(peer, arguments.only);
+  });
+  for (const auto& more : {launch::check_machine(mission, arguments.host),
+                           launch::check_plugins(chosen, arguments.host)}) {
+    findings.insert(findings.end(), more.begin(), more.end());
+  }
+  return checked;
+}
+
+std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
+  auto [mission, findings] = check_mission(arguments);
   if (mission.peers.empty()) return findings;
   const bool nobody_here = std::ranges::none_of(
       mission.peers, [&](const auto& peer) { return launch::is_here(peer.host, arguments.host); });
@@ -23,11 +38,8 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
     findings.push_back({profile::Severity::Warning, mission.peers.front().where,
                         launch::nobody_here(mission, arguments.host), ""});
   }
-  for (const auto& more : {launch::check_machine(mission, arguments.host),
-                           launch::check_hosts(mission, arguments.host),
-                           launch::check_plugins(mission, arguments.host)}) {
-    findings.insert(findings.end(), more.begin(), more.end());
-  }
+  const auto of_hosts = launch::check_hosts(mission, arguments.host);
+  findings.insert(findings.end(), of_hosts.begin(), of_hosts.end());
   return findings;
 }
 
@@ -36,11 +48,10 @@ namespace {
 std::string to_json(const std::vector<profile::Finding>& findings) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& finding : findings) {
-    const bool error = finding.severity == profile::Severity::Error;
     list.push_back({{"file", finding.where.file},
                     {"line", finding.where.line},
                     {"column", finding.where.column},
-                    {"severity", error ? "error" : "warning"},
+                    {"severity", to_string(finding.severity)},
                     {"problem", finding.problem},
                     {"remedy", finding.remedy}});
   }
@@ -58,7 +69,10 @@ int check(const CheckArguments& arguments) {
   }
   std::fputs(profile::to_text(findings).c_str(), stderr);
   if (result == 0) {
-    std::printf("%s: complete: every dependency is resolved\n", arguments.profile.c_str());
+    const auto unchecked =
+        std::ranges::count(findings, profile::Severity::Note, &profile::Finding::severity);
+    std::printf("%s: complete: every dependency is resolved%s\n", arguments.profile.c_str(),
+                unchecked > 0 ? "; what was not checked, the notes say" : "");
   }
   return result;
 }

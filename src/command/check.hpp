@@ -4,10 +4,22 @@
 
 #include "commands.hpp"
 #include "profile/finding.hpp"
+#include "profile/mission_profile.hpp"
 
 namespace skein::command {
 
-/// What `skein check` finds. Throws nothing for what files can contain.
+struct CheckedMission {
+  profile::MissionProfile mission;  ///< What could be read.
+  std::vector<profile::Finding> findings;
+};
+
+/// Reads a mission and finds what is wrong with it, in the profile and on this machine: what
+/// keeps `launch` from starting anything. Plugins and vendors' modules are
+/// those of the peers that the arguments choose. Throws InvalidArgument for a setting that the
+/// profile does not take.
+CheckedMission check_mission(const PlanArguments& arguments);
+
+/// The same, with what concerns other hosts: all that `check` tells.
 std::vector<profile::Finding> findings_of(const CheckArguments& arguments);
 
 }  // namespace skein::command

@@ -56,15 +56,6 @@ struct MissionArguments {
   std::vector<std::string> variables;
 };
 
-struct CheckArguments : MissionArguments {
-  std::string host;
-  bool json = false;
-};
-
-/// `skein check PROFILE`: everything that is wrong with a mission profile, for people on stderr or
-/// as JSON on stdout.
-int check(const CheckArguments& arguments);
-
 struct DecisionsArguments : Onlooker {
   double seconds = 0;  ///< 0: until interrupted.
   std::string log;     ///< Empty: live.
@@ -94,6 +85,14 @@ struct PlanArguments : MissionArguments {
   std::string host;
   std::vector<std::string> only;  ///< Peers and groups; empty for all.
 };
+
+struct CheckArguments : PlanArguments {
+  bool json = false;
+};
+
+/// `skein check PROFILE`: everything that is wrong with a mission profile, for people on stderr or
+/// as JSON on stdout.
+int check(const CheckArguments& arguments);
 
 struct LaunchArguments : PlanArguments {
   bool dry_run = false;

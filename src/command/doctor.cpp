@@ -23,9 +23,11 @@ Symptoms findings(const DoctorArguments& arguments) {
   of_check.variables = arguments.variables;
   Symptoms symptoms;
   for (const profile::Finding& finding : findings_of(of_check)) {
-    const bool error = finding.severity == profile::Severity::Error;
-    symptoms.push_back({error ? Severity::Error : Severity::Warning, "profile", finding.problem,
-                        profile::to_text(finding.where), finding.remedy});
+    const auto severity = finding.severity == profile::Severity::Error     ? Severity::Error
+                          : finding.severity == profile::Severity::Warning ? Severity::Warning
+                                                                           : Severity::Note;
+    symptoms.push_back(
+        {severity, "profile", finding.problem, profile::to_text(finding.where), finding.remedy});
   }
   if (symptoms.empty())
     symptoms.push_back({Severity::Fine, "profile", "`skein check` finds nothing", "", ""});

@@ -85,33 +85,13 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
   return options;
 }
 
-/// Of a broken profile all is told at once, as by `check`.
-profile::MissionProfile read_or_tell_all(const LaunchArguments& arguments) {
-  try {
-    return read_mission(arguments);
-  } catch (const profile::DescriptionError&) {
-    CheckArguments check;
-    check.profile = arguments.profile;
-    check.host = arguments.host;
-    check.variables = arguments.variables;
-    check.settings = arguments.settings;
-    const auto findings = findings_of(check);
-    if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
-    throw;
-  }
-}
-
-/// Throws DescriptionError where this machine lacks something that is to be started.
-void demand_machine(profile::MissionProfile mission, const launch::LaunchPlan& plan,
-                    const std::string& host) {
-  auto findings = launch::check_machine(mission, host);
-  std::erase_if(mission.peers, [&](const profile::PeerProfile& peer) {
-    return std::ranges::none_of(plan.children,
-                                [&](const auto& child) { return child.name == peer.name; });
-  });
-  const auto more = launch::check_plugins(mission, host);
-  findings.insert(findings.end(), more.begin(), more.end());
+/// Throws DescriptionError with all that `check` finds, where one of it is an error. A dry run
+/// starts nothing, and does not need what this machine may lack.
+profile::MissionProfile read_checked(const LaunchArguments& arguments) {
+  if (arguments.dry_run) return read_mission(arguments);
+  auto [mission, findings] = check_mission(arguments);
   if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+  return std::move(mission);
 }
 
 /// Last of all, where it is read.
@@ -143,7 +123,7 @@ int run_for_another(const launch::LaunchPlan& plan, const launch::MissionClaim& 
 }  // namespace
 
 int launch(const LaunchArguments& arguments) {
-  const profile::MissionProfile mission = read_or_tell_all(arguments);
+  const profile::MissionProfile mission = read_checked(arguments);
   auto plan = plan_of(mission, arguments);
   if (arguments.ssh) add_other_hosts(plan, mission, arguments);
   if (arguments.dry_run) {
@@ -151,7 +131,6 @@ int launch(const LaunchArguments& arguments) {
     return 0;
   }
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
-  demand_machine(mission, plan, arguments.host);
   launch::demand_address_space();
   const launch::MissionClaim claim(mission, arguments.host);
   // Who reads what it says may go; the mission goes on. Its processes get the default back.

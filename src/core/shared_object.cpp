@@ -34,9 +34,27 @@ std::vector<Path> module_directories() {
   return places;
 }
 
+/// What every user may write on the way to a file: the file, its folder, or a folder above, where
+/// no sticky bit keeps others from replacing what lies in it. Empty if there is nothing.
+std::string open_to_all(const Path& file) {
+  using std::filesystem::perms;
+  std::error_code unknown;
+  const Path real = std::filesystem::canonical(file, unknown);
+  if (unknown) return {};
+  for (Path place = real; place != place.root_path(); place = place.parent_path()) {
+    const auto mode = std::filesystem::status(place, unknown).permissions();
+    if (unknown || (mode & perms::others_write) == perms::none) continue;
+    const bool above = place != real && place != real.parent_path();
+    if (above && (mode & perms::sticky_bit) != perms::none) continue;
+    return place.string();
+  }
+  return {};
+}
+
 }  // namespace
 
-SharedObject::SharedObject(const std::string& name, const std::string& remedy) : file_(name) {
+SharedObject::SharedObject(const std::string& name, const std::string& remedy, Maker maker)
+    : file_(name) {
   std::string looked_in;
   if (name.find('/') == std::string::npos) {
     file_ = "lib" + name + ".so";
@@ -46,6 +64,13 @@ SharedObject::SharedObject(const std::string& name, const std::string& remedy) :
       if (!std::filesystem::exists(directory / file_, ignored)) continue;
       file_ = (directory / file_).string();
       break;
+    }
+  }
+  if (maker == Maker::User) {
+    const std::string open = open_to_all(file_);
+    if (!open.empty()) {
+      throw InvalidArgument(file_ + " is not loaded, since every user may write to " + open +
+                            "; take that right away (chmod o-w), or move it to another folder");
     }
   }
   handle_ = dlopen(file_.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -11,8 +11,10 @@ class SharedObject {
   /// `name` is `skein_fastdds` for `libskein_fastdds.so`, or a path. Looks in the directories that
   /// SKEIN_MODULE_PATH lists, in libskein's own and its `skein/`, then where the loader looks.
   /// Throws Unavailable with the places looked in, or with the loader's reason followed by
-  /// `remedy`.
-  SharedObject(const std::string& name, const std::string& remedy);
+  /// `remedy`; InvalidArgument for a user's object that every user may replace: its constructors
+  /// are not run.
+  enum class Maker { Skein, User };
+  SharedObject(const std::string& name, const std::string& remedy, Maker maker = Maker::Skein);
 
   /// Throws InvalidArgument where the object exports no such symbol.
   template <class Function>

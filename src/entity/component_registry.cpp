@@ -76,6 +76,11 @@ const ComponentRegistry::Activity* ComponentRegistry::find_activity(
   return find_in(activities_, component);
 }
 
+const InterfaceInfo* ComponentRegistry::find_interface(const std::string& component) const {
+  const auto found = implemented_.find(component);
+  return found == implemented_.end() ? nullptr : found->second;
+}
+
 std::vector<std::string> ComponentRegistry::names() const {
   std::set<std::string> names;
   for (const auto& [name, factory] : bodies_) names.insert(name);
@@ -86,7 +91,8 @@ std::vector<std::string> ComponentRegistry::names() const {
 }
 
 void ComponentRegistry::load_plugin(const std::string& name) {
-  const SharedObject plugin(name, "build or install the plugin '" + name + "'");
+  const SharedObject plugin(name, "build or install the plugin '" + name + "'",
+                            SharedObject::Maker::User);
   plugin.check_abi("skein_plugin_abi");
   plugin.function<void(ComponentRegistry&)>("skein_register_components")(*this);
 }

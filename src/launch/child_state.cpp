@@ -95,17 +95,17 @@ ChildAction ChildStateMachine::progress(Time now) {
   return ChildAction::None;
 }
 
-ChildAction ChildStateMachine::exited(bool failed, Time now) {
+ChildAction ChildStateMachine::exited(bool failed, Time now, bool misconfigured) {
   if (!is_running()) return ChildAction::None;
   if (stopping_) return enter(ChildState::Ended, std::nullopt, ChildAction::None);
   if (restarting_) return begin_anew(now);
-  return restart_or_give_up(failed || hang_ != Hang::None, now);
+  return restart_or_give_up(failed || hang_ != Hang::None, !misconfigured, now);
 }
 
-ChildAction ChildStateMachine::restart_or_give_up(bool failed, Time now) {
+ChildAction ChildStateMachine::restart_or_give_up(bool failed, bool may_help, Time now) {
   const auto& restart = rules_.restart;
-  const bool again = restart.policy == RestartPolicy::Always ||
-                     (restart.policy == RestartPolicy::OnFailure && failed);
+  const bool again = may_help && (restart.policy == RestartPolicy::Always ||
+                                  (restart.policy == RestartPolicy::OnFailure && failed));
   if (!again) {
     return enter(failed ? ChildState::Lost : ChildState::Ended, std::nullopt, ChildAction::None);
   }

@@ -65,8 +65,9 @@ class ChildStateMachine {
   ChildAction ready(Time now);
   /// A sign that the process makes progress.
   ChildAction progress(Time now);
-  /// The process ended; `failed` unless with exit code 0.
-  ChildAction exited(bool failed, Time now);
+  /// The process ended; `failed` unless with exit code 0. No restart follows if it is
+  /// `misconfigured`, with kConfigurationError: that would not help.
+  ChildAction exited(bool failed, Time now, bool misconfigured = false);
   /// The mission ends. Asked a second time: kill at once.
   ChildAction stop(Time now);
   /// Somebody wants the process started anew, also one that was given up: its restarts are
@@ -94,7 +95,7 @@ class ChildStateMachine {
   ChildAction begin(Time now);
   ChildAction interrupt(Time now);
   ChildAction begin_anew(Time now);
-  ChildAction restart_or_give_up(bool failed, Time now);
+  ChildAction restart_or_give_up(bool failed, bool may_help, Time now);
   ChildAction enter(ChildState state, std::optional<Time> due, ChildAction action);
 
   profile::ProcessRules rules_;

@@ -40,7 +40,8 @@ inline constexpr std::array kExitCodes{
     ExitCode{"76", "the mission ended by an exception, which is on stderr"},
     ExitCode{"78",
              "the profile, a file or a name is wrong, there was nothing to start here, or the "
-             "mission is running here already; nothing was started"},
+             "mission is running here already; nothing was started. Or a process with "
+             "on_loss=abort ended with this code"},
     ExitCode{"128 + N", "the launcher was interrupted by signal N"},
 };
 

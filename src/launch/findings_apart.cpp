@@ -32,9 +32,9 @@ std::string to_fields(const std::vector<Finding>& findings) {
   std::string text;
   for (const Finding& finding : findings) {
     for (const std::string& field :
-         {std::string(finding.severity == Severity::Error ? "error" : "warning"),
-          finding.where.file, std::to_string(finding.where.line),
-          std::to_string(finding.where.column), finding.problem, finding.remedy})
+         {std::string(to_string(finding.severity)), finding.where.file,
+          std::to_string(finding.where.line), std::to_string(finding.where.column), finding.problem,
+          finding.remedy})
       text.append(field) += kEndOfField;
   }
   return text.append(kEnd) += kEndOfField;
@@ -51,7 +51,9 @@ bool read_fields(const std::string& text, std::vector<Finding>& findings) {
   for (std::string severity = next(); stream; severity = next()) {
     if (severity == kEnd) return true;
     Finding finding;
-    finding.severity = severity == "error" ? Severity::Error : Severity::Warning;
+    finding.severity = severity == "error"     ? Severity::Error
+                       : severity == "warning" ? Severity::Warning
+                                               : Severity::Note;
     finding.where.file = next();
     finding.where.line = std::atoi(next().c_str());
     finding.where.column = std::atoi(next().c_str());

@@ -115,13 +115,13 @@ void demand_known(const std::vector<std::string>& only, const profile::MissionPr
   }
 }
 
+}  // namespace
+
 bool is_chosen(const profile::PeerProfile& peer, const std::vector<std::string>& only) {
   return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& name) {
            return name == peer.name || name == peer.group;
          });
 }
-
-}  // namespace
 
 bool is_here(const std::string& wanted, const std::string& self) {
   if (wanted.empty() || wanted == "localhost") return true;

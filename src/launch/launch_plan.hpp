@@ -45,6 +45,9 @@ using MakeArgv = std::function<std::vector<std::string>(const profile::PeerProfi
 /// Nothing and `localhost` do always. Where `self` is empty the machine tells: see is_this_host().
 bool is_here(const std::string& wanted, const std::string& self);
 
+/// Whether `only` names the peer or its group, or nothing at all.
+bool is_chosen(const profile::PeerProfile& peer, const std::vector<std::string>& only);
+
 /// The hosts that the mission's peers name, each once, without `localhost`.
 std::vector<std::string> hosts_of(const profile::MissionProfile& mission);
 

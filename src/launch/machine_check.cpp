@@ -20,6 +20,7 @@
 #include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 #include "skein/selection.hpp"
+#include "skein/vendor.hpp"
 
 namespace skein::launch {
 namespace {
@@ -182,21 +183,43 @@ class PluginCheck {
   std::vector<Finding> run(const MissionProfile& mission, const std::string& host) {
     for (const PeerProfile& peer : mission.peers) {
       if (!is_here(peer.host, host) || !peer.start.program.empty()) continue;
-      if (!looks_elsewhere(peer.start)) check_process(peer);
+      if (can_check(peer, peer.name)) check_process(peer);
       for (const CspProfile& csp : peer.csps) {
-        const bool own = csp.process == CspProcess::Own && csp.component;
-        if (own && !looks_elsewhere(csp.start)) check_own(csp);
+        if (csp.process != CspProcess::Own || !csp.component) continue;
+        if (can_check(csp, peer.name + "/" + csp.name)) check_own(csp);
       }
     }
     return std::move(findings_);
   }
 
  private:
-  void add(const profile::SourcePosition& where, std::string problem, std::string remedy) {
+  void add(const profile::SourcePosition& where, std::string problem, std::string remedy,
+           Severity severity = Severity::Error) {
     const bool known = std::ranges::any_of(
         findings_, [&](const Finding& finding) { return finding.problem == problem; });
     if (known) return;  // many peers may name one plugin
-    findings_.push_back({Severity::Error, where, std::move(problem), std::move(remedy)});
+    findings_.push_back({severity, where, std::move(problem), std::move(remedy)});
+  }
+
+  /// Of a peer, or a CSP with a process of its own: false, with a note, where the process loads
+  /// what this one does not find. Otherwise its vendor's module is checked.
+  template <class Profile>
+  bool can_check(const Profile& profile, const std::string& name) {
+    if (looks_elsewhere(profile.start)) {
+      add(profile.where,
+          "the vendor and the plugins of '" + name +
+              "' were not checked, since its <environment> says where libraries are",
+          "its process says at its start what is missing", Severity::Note);
+      return false;
+    }
+    const auto& vendors = dds::vendor_names();
+    if (std::ranges::count(vendors, profile.vendor) == 0) return true;  // an error of the reader
+    try {
+      dds::load_vendor(profile.vendor);
+    } catch (const Error& error) {
+      add(profile.where, "the vendor '" + profile.vendor + "': " + error.what(), "");
+    }
+    return true;
   }
 
   /// False, with a finding, where it cannot be loaded.
@@ -207,8 +230,13 @@ class PluginCheck {
       return true;
     } catch (const Error& error) {
       add(where, "the plugin '" + plugin + "': " + error.what(), "");
-      return false;
+    } catch (const std::exception& error) {
+      add(where,
+          "the plugin '" + plugin +
+              "': it threw an exception while it registered its components: " + error.what(),
+          "");
     }
+    return false;
   }
 
   /// A peer with the CSPs in its process, as it would be started.
@@ -240,15 +268,48 @@ class PluginCheck {
 
   void check_own(const CspProfile& csp) {
     ComponentRegistry registry;
-    if (!load(registry, csp.plugin, csp.where)) return;
-    demand_code(csp, registry);
+    if (load(registry, csp.plugin, csp.where)) demand_code(csp, registry);
   }
 
   /// Of a peer or a CSP.
   template <class Profile>
   void demand_code(const Profile& profile, const ComponentRegistry& registry) {
-    if (const auto lack = find_lack(profile, registry))
+    if (const auto lack = find_lack(profile, registry)) {
       add(profile.where, lack->problem, lack->remedy);
+    } else if (!profile.component->interfaces.empty()) {
+      check_interfaces(*profile.component, registry);
+    }
+  }
+
+  /// What the description declares against what the code implements.
+  void check_interfaces(const profile::ComponentDescription& component,
+                        const ComponentRegistry& registry) {
+    const InterfaceInfo* code = registry.find_interface(component.name);
+    if (!code) {
+      add(component.where,
+          "whether the code of '" + component.name +
+              "' implements what its description says was not checked, since its plugin does not "
+              "name the interface",
+          "register it by add_body<INTERFACE> or add_csp<INTERFACE>", Severity::Note);
+      return;
+    }
+    std::vector<std::string> provided{std::string(code->name)};
+    for (const InterfaceInfo* base : code->bases) provided.emplace_back(base->name);
+    bool all = true;
+    for (const auto& declared : component.interfaces) {
+      if (std::ranges::count(provided, declared.type) > 0) continue;
+      all = false;
+      add(declared.where,
+          "'" + component.name + "' declares " + declared.type +
+              ", which its code does not implement" + suggestion(declared.type, provided),
+          "its code implements " + provided.front());
+    }
+    if (all && !component.find_interface(code->name)) {
+      add(component.where,
+          "'" + component.name + "' does not declare " + provided.front() +
+              ", which its code implements",
+          "write <implements>IDL:" + provided.front() + "</implements>");
+    }
   }
 
   std::vector<Finding> findings_;
@@ -263,16 +324,20 @@ std::vector<Finding> check_machine(const MissionProfile& mission, const std::str
 std::vector<Finding> check_hosts(const MissionProfile& mission, const std::string& host) {
   std::vector<Finding> findings;
   for (const std::string& name : hosts_of(mission)) {
-    if (is_here(name, host) || obstacle(name).empty()) continue;
+    if (is_here(name, host)) continue;
+    const auto first = std::ranges::find(mission.peers, name, &PeerProfile::host);
+    findings.push_back({Severity::Note, first->where,
+                        "of the host '" + name + "' only the profile was checked",
+                        "'skein check' there checks its plugins, vendors, CPUs and interfaces"});
+    if (obstacle(name).empty()) continue;
     const bool asked = std::ranges::any_of(mission.peers, [&](const PeerProfile& peer) {
       return is_here(peer.host, host) &&
              std::ranges::count(network_of(mission, peer).peers, name) > 0;
     });
     if (asked) continue;  // which is an error of check_machine()
-    const auto peer = std::ranges::find(mission.peers, name, &PeerProfile::host);
     findings.push_back(
-        {Severity::Warning, peer->where,
-         "the host '" + name + "' of '" + peer->name + "' has no address that is known here",
+        {Severity::Warning, first->where,
+         "the host '" + name + "' of '" + first->name + "' has no address that is known here",
          "there, 'skein launch --host " + name + "' starts its peers"});
   }
   return findings;

@@ -19,14 +19,18 @@ std::vector<profile::Finding> check_machine(const profile::MissionProfile& missi
                                             const std::string& host);
 
 /// Warnings of hosts without an address that nobody here has to ask: there, names do not tell a
-/// launcher where it is. May ask the network's name servers.
+/// launcher where it is. A note for each other host, of which nothing but the profile was checked.
+/// May ask the network's name servers.
 std::vector<profile::Finding> check_hosts(const profile::MissionProfile& mission,
                                           const std::string& host);
 
-/// Plugins of those peers that cannot be opened, components that no plugin of theirs implements,
-/// components for which no plugin is named, and selection strategies that neither their plugins nor
-/// Skein hold. Components that could not be read (null) are passed over, and processes whose
-/// environment in the profile says where libraries are. A process of its own loads the plugins.
+/// Vendors' modules and plugins of those peers that cannot be opened; plugins that every user may
+/// replace, which are not opened; components that no plugin of theirs implements, or for which none
+/// is named; interfaces that a component declares and its implementation lacks, or the other way
+/// round; selection strategies that neither their plugins nor Skein hold. Components that could not
+/// be read (null) are passed over. Notes say what was not checked: implementations whose
+/// registration does not name their interface, and processes whose environment in the profile says
+/// where libraries are. A process of its own loads the modules and plugins.
 std::vector<profile::Finding> check_plugins(const profile::MissionProfile& mission,
                                             const std::string& host);
 

@@ -99,9 +99,10 @@ MissionState::Steps MissionState::progress(std::size_t child, Time now) {
   return steps;
 }
 
-MissionState::Steps MissionState::exited(std::size_t child, bool failed, Time now) {
+MissionState::Steps MissionState::exited(std::size_t child, bool failed, Time now,
+                                         bool misconfigured) {
   const auto& machine = machines_[child];
-  Steps steps{{child, machines_[child].exited(failed, now)}};
+  Steps steps{{child, machines_[child].exited(failed, now, misconfigured)}};
   if (!verdict_ && roles_[child].runs_mission && machine.is_final() && machine.hang() == Hang::None)
     end({End::MissionEnded, child}, now, steps);
   judge_loss(child, now, steps);

@@ -45,7 +45,7 @@ class MissionState {
   Steps start(Time now);
   Steps ready(std::size_t child, Time now);
   Steps progress(std::size_t child, Time now);
-  Steps exited(std::size_t child, bool failed, Time now);
+  Steps exited(std::size_t child, bool failed, Time now, bool misconfigured = false);
   Steps spawn_failed(std::size_t child, bool passing, Time now);
   /// Asked a second time, and after any other end: kills at once.
   Steps stop(Time now);

@@ -93,6 +93,17 @@ ServiceOptions service_options(const profile::ComponentDescription& component,
                           "' does not declare " + std::string(servant.interface_info().name) +
                           ", which its implementation provides; add it to <interfaces>");
   }
+  const auto& bases = servant.interface_info().bases;
+  for (const auto& declared : component.interfaces) {
+    const bool is_base = std::any_of(bases.begin(), bases.end(), [&](const InterfaceInfo* base) {
+      return base->name == declared.type;
+    });
+    if (is_base || &declared == implemented) continue;
+    throw InvalidArgument(profile::to_text(declared.where) + ": component '" + component.name +
+                          "' declares " + declared.type +
+                          ", which its implementation does not provide; it provides " +
+                          std::string(servant.interface_info().name));
+  }
   ServiceOptions options;
   for (const auto& attribute : implemented->attributes) {
     const auto* entry = dictionary.find(profile::EntryKind::Attribute, attribute.name);

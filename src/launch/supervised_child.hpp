@@ -50,6 +50,10 @@ class SupervisedChild {
   const ChildPlan& plan() const noexcept { return plan_; }
   /// How the last process ended; nothing if none was ever started.
   const std::optional<ExitStatus>& last_status() const noexcept { return last_status_; }
+  /// Whether the last process ended with kConfigurationError, which a restart does not mend.
+  bool is_misconfigured() const noexcept {
+    return last_status_ && last_status_->exit_code() == kConfigurationError;
+  }
   /// ` (last it said: ...)`: what it waited for, if it was not ready; or empty.
   std::string last_reason() const;
   /// `ended by signal 9 (Killed)`, `did not become ready`: the last process's end.

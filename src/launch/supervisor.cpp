@@ -123,7 +123,7 @@ class MissionRun {
     if (!status) return;
     heed_signs(i);
     const bool fault = !state_.verdict() && (status->failed() || child_of(i).hang() != Hang::None);
-    const auto steps = state_.exited(i, status->failed(), now());
+    const auto steps = state_.exited(i, status->failed(), now(), child.is_misconfigured());
     child.tell_end();
     if (fault) note_fault(i, child.plan().name + " " + child.end_text() + child.last_reason());
     tell_loss(i);
@@ -217,6 +217,9 @@ class MissionRun {
                 ""};
       }
       case MissionState::End::Lost: {
+        if (children_[verdict.child].is_misconfigured()) {
+          return {Outcome::StartFailed, kConfigurationError, children_[verdict.child].loss(), ""};
+        }
         const bool started = child_of(verdict.child).was_ready();
         return {started ? Outcome::PeerLost : Outcome::StartFailed,
                 started ? kPeerLost : kStartFailed, children_[verdict.child].loss(), ""};

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/printable.hpp"
+#include "launch/exit_codes.hpp"
 #include "skein/error.hpp"
 
 namespace skein::launch {
@@ -102,7 +103,9 @@ std::string restart_text(const profile::RestartRules& rules) {
          "\n# The wait does not grow with each restart, as it does in Skein.\nRestartSec=" +
          seconds(rules.delay) +
          "\n# systemd takes these for an orderly end; Skein does not.\n"
-         "RestartForceExitStatus=SIGHUP SIGINT SIGPIPE SIGTERM\n";
+         "RestartForceExitStatus=SIGHUP SIGINT SIGPIPE SIGTERM\n"
+         "RestartPreventExitStatus=" +
+         std::to_string(kConfigurationError) + "\n";
 }
 
 /// After the providers of earlier layers, as the launcher starts it; with the one provider that a

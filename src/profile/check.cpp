@@ -64,9 +64,11 @@ class Checker {
     if (one_process) return;
     for (const auto& peer : mission_.peers) {
       if (peer.vendor != dds::kLoopback || !peer.start.program.empty()) continue;
-      findings_.warning(
-          peer.where, in_quotes(peer.name) + " is on loopback, a network inside of one process",
-          "other processes will not see it; write " + dds::alternatives(dds::networked_vendors()));
+      findings_.error(peer.where,
+                      in_quotes(peer.name) +
+                          " is on loopback, a network inside of one process, and the mission has "
+                          "more processes, which will not see it",
+                      "write " + dds::alternatives(dds::networked_vendors()));
     }
   }
 
@@ -80,13 +82,14 @@ class Checker {
     }
   }
 
-  /// Two processes that write one file spoil it.
+  /// What is written to one file twice spoils it, whatever the ways to it are called.
   void check_files() {
-    Repeated histories("the history");
-    Repeated logs("the decision_log");
+    Repeated files("the file of a history or decision_log");
     for (const auto& peer : mission_.peers) {
-      histories.add(peer.head.history, peer.host, peer.where, findings_);
-      logs.add(peer.head.log, peer.host, peer.where, findings_);
+      const std::string host = peer.host == "localhost" ? "" : peer.host;
+      for (const std::string& file : {peer.head.history, peer.head.log})
+        files.add(std::filesystem::path(file).lexically_normal().string(), host, peer.where,
+                  findings_);
     }
   }
 

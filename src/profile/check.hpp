@@ -15,7 +15,8 @@ namespace skein::profile {
 /// - an attribute or parameter that the dictionary does not have, or whose value or declared type
 ///   disagrees with it; a parameter that the component does not have, or requires and is not given
 /// - names given twice: peers, groups, CSPs, parameters, attributes, interfaces
-/// - two peers that write one history or decision log
+/// - two peers that write one history or decision log, or one peer that writes both to one file
+/// - a peer on loopback, a network inside of one process, in a mission of several processes
 /// - a subcomponent without a CSP, and a CSP whose interface is no subcomponent
 /// - a service reference to something that the mission does not have
 /// - more than one peer that runs the mission, one that would be restarted, or that has a service

@@ -9,9 +9,21 @@ std::string to_text(const SourcePosition& where) {
   return where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
 }
 
+std::string_view to_string(Severity severity) noexcept {
+  switch (severity) {
+    case Severity::Error:
+      return "error";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Note:
+      break;
+  }
+  return "note";
+}
+
 std::string to_text(const Finding& finding) {
-  const char* severity = finding.severity == Severity::Error ? ": error: " : ": warning: ";
-  std::string text = to_text(finding.where) + severity + finding.problem;
+  std::string text = to_text(finding.where) + ": " + std::string(to_string(finding.severity)) +
+                     ": " + finding.problem;
   return finding.remedy.empty() ? text : text + "; " + finding.remedy;
 }
 

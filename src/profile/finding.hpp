@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "skein/error.hpp"
@@ -16,6 +17,7 @@ struct SourcePosition {
 };
 
 enum class Severity {
+  Note,     ///< Nothing is wrong; but something was not checked.
   Warning,  ///< The mission can run, but hardly does what was meant.
   Error,    ///< The file is refused, or the mission cannot run as described.
 };
@@ -24,9 +26,12 @@ enum class Severity {
 struct Finding {
   Severity severity = Severity::Error;
   SourcePosition where;
-  std::string problem;  ///< What is wrong, in one clause, without a full stop.
+  std::string problem;  ///< What is wrong, or was not checked: one clause without a full stop.
   std::string remedy;   ///< What to write instead; may be empty.
 };
+
+/// `error`, `warning`, `note`.
+std::string_view to_string(Severity severity) noexcept;
 
 /// `file:line:column`, the form that editors turn into a link; `file` alone for a whole file.
 std::string to_text(const SourcePosition& where);
@@ -38,7 +43,7 @@ std::string to_text(const Finding& finding);
 /// One line for each finding, each ended by a line break.
 std::string to_text(const std::vector<Finding>& findings);
 
-/// Whether one of them is an error; warnings alone do not keep a mission from running.
+/// Whether one of them is an error; warnings and notes alone do not keep a mission from running.
 bool has_errors(const std::vector<Finding>& findings);
 
 /// A file was refused. The text of the exception is all of its findings, one a line.

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "brokerless_discovery/admission.hpp"
 #include "component_cache.hpp"
 #include "dds/allowed_sources.hpp"
 #include "dds/vendor_names.hpp"
@@ -164,7 +165,7 @@ class MissionReader {
     if (!peer.start.program.empty()) refuse_peer_options(element);
     read_component_of(element, peer);
     peer.vendor = vendor_of(element, dds::vendor_names().front());
-    peer.system = value_or(element, "system", "default");
+    peer.system = system_of(element);
     peer.host = value_or(element, "host", "");
     peer.interface = value_or(element, "interface", "");
     peer.peers = hosts_of(element);
@@ -181,6 +182,16 @@ class MissionReader {
     peer.parameters = parameters_of(element);
     for (const auto& child : element.children("csp")) peer.csps.push_back(csp_of(child, peer));
     return peer;
+  }
+
+  std::string system_of(const XmlElement& element) {
+    const auto system = element.maybe_attribute("system");
+    if (!system) return "default";
+    if (!brokerless_discovery::is_name(system->value)) {
+      findings_.error(system->where, in_quotes(system->value) + " is no name of a system",
+                      "use letters, digits, '_', '-' and '.'");
+    }
+    return system->value;
   }
 
   void read_component_of(const XmlElement& element, PeerProfile& peer) {

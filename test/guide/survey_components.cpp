@@ -9,16 +9,17 @@
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_csp("Rows", [](const skein::ParameterValues&) {
+  registry.add_csp<survey::IPlanner>("Rows", [](const skein::ParameterValues&) {
     return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Rows>());
   });
-  registry.add_csp("Spiral", [](const skein::ParameterValues&) {
+  registry.add_csp<survey::IPlanner>("Spiral", [](const skein::ParameterValues&) {
     return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Spiral>());
   });
-  registry.add_body("Navigator", [](skein::Entity& entity, const skein::ParameterValues&) {
-    return skein::ComponentRegistry::Body{
-        std::make_shared<survey::INavigator::Skeleton>(std::make_shared<Navigator>(entity.head()))};
-  });
+  registry.add_body<survey::INavigator>(
+      "Navigator", [](skein::Entity& entity, const skein::ParameterValues&) {
+        return skein::ComponentRegistry::Body{std::make_shared<survey::INavigator::Skeleton>(
+            std::make_shared<Navigator>(entity.head()))};
+      });
   registry.add_mission("Station", [](skein::Entity& entity, const skein::ParameterValues&) {
     auto navigator = entity.connect<survey::INavigator>();
     const auto track = navigator.plan({.length_m = 400, .width_m = 300});

@@ -342,3 +342,15 @@ TEST_CASE("A start that the machine lacks something for is not tried again witho
   machine.spawn_failed(true, Time{});
   CHECK(machine.state() == ChildState::Lost);
 }
+
+TEST_CASE("a wrong configuration is not mended by a restart, whatever the policy is") {
+  const auto policy = GENERATE(RestartPolicy::OnFailure, RestartPolicy::Always);
+  ProcessRules rules;
+  rules.restart.policy = policy;
+  ChildStateMachine machine(rules);
+  const Time now{};
+  machine.start(now);
+  CHECK(machine.exited(true, now, true) == ChildAction::None);
+  CHECK(machine.state() == ChildState::Lost);
+  CHECK(machine.restart(now) == ChildAction::Spawn);  // somebody has mended it
+}

@@ -252,7 +252,7 @@ system="${system}"/>)")),
       {"two peers write one file",
        mission(
            R"(<peer name="archive" component="parts/archive.xml" count="2" history="h.json"/>)"),
-       {"city.xml:2:1: error: the history \"h.json\" is there twice"}},
+       {"city.xml:2:1: error: the file of a history or decision_log \"h.json\" is there twice"}},
       {"a tag is not closed",
        "<mission name=\"city\">\n  <peer name=\"archive\" component=\"parts/archive.xml\">\n"
        "</mission>",

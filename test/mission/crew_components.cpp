@@ -101,9 +101,9 @@ ComponentRegistry::CspFactory worker(const std::string& name) {
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_csp("moody", worker("moody"));
-  registry.add_csp("sound", worker("sound"));
-  registry.add_body("office", [](skein::Entity& entity, const skein::ParameterValues&) {
+  registry.add_csp<crew::Worker>("moody", worker("moody"));
+  registry.add_csp<crew::Worker>("sound", worker("sound"));
+  registry.add_body<crew::Desk>("office", [](skein::Entity& entity, const skein::ParameterValues&) {
     return skein::ComponentRegistry::Body{
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>(entity.head()))};
   });

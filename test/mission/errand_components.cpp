@@ -86,7 +86,7 @@ int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the cli
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_body("office", [](skein::Entity&, const skein::ParameterValues&) {
+  registry.add_body<crew::Desk>("office", [](skein::Entity&, const skein::ParameterValues&) {
     return skein::ComponentRegistry::Body{
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>())};
   });
@@ -95,7 +95,7 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
     for (const std::string& word : arguments) std::printf("argument: %s\n", word.c_str());
     return ask(entity, values);
   });
-  registry.add_body("sick", [](skein::Entity&, const skein::ParameterValues&) {
+  registry.add_body<crew::Desk>("sick", [](skein::Entity&, const skein::ParameterValues&) {
     return skein::ComponentRegistry::Body{
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>()), 1,
         [] { throw std::runtime_error("no compass"); }};

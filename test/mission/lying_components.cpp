@@ -68,13 +68,14 @@ int bring_unreachable_planner(skein::Entity& entity, const skein::ParameterValue
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_csp("ShortCut", [](const skein::ParameterValues&) {
+  registry.add_csp<AE_navigator::IPlanner>("ShortCut", [](const skein::ParameterValues&) {
     return std::make_shared<AE_navigator::IPlanner::Skeleton>(std::make_shared<ShortCut>());
   });
-  registry.add_body("Navigator", [](skein::Entity&, const skein::ParameterValues&) {
-    return skein::ComponentRegistry::Body{std::make_shared<AE_navigatorI::INavigator::Skeleton>(
-                                              std::make_shared<CarelessNavigator>()),
-                                          2};
-  });
+  registry.add_body<AE_navigatorI::INavigator>(
+      "Navigator", [](skein::Entity&, const skein::ParameterValues&) {
+        return skein::ComponentRegistry::Body{std::make_shared<AE_navigatorI::INavigator::Skeleton>(
+                                                  std::make_shared<CarelessNavigator>()),
+                                              2};
+      });
   registry.add_mission("Stranger", bring_unreachable_planner);
 }

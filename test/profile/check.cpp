@@ -250,14 +250,14 @@ TEST_CASE("A CSP that is isolated must have a process of its own") {
   CHECK(findings("false", "in") == "");
 }
 
-TEST_CASE("Several processes on loopback are a warning, and no reason to refuse the profile") {
+TEST_CASE("Several processes on loopback are an error, one process is not") {
   ProfileFolder folder;
   const auto file = folder.mission(R"(<peer name="f" component="f.xml" vendor="loopback"/>
                                       <peer name="e" component="f.xml"/>)");
   const auto findings = check_file(file);
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0].severity == Severity::Warning);
-  CHECK_NOTHROW(read_checked_profile(file));
+  CHECK(findings[0].severity == Severity::Error);
+  CHECK_THROWS_AS(read_checked_profile(file), DescriptionError);
   CHECK(folder.check(R"(<peer name="f" component="f.xml" vendor="loopback"/>)") == "");
 }
 

@@ -17,7 +17,7 @@ class FlatTable : public tides::ITideTable {
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
-  registry.add_csp("FlatTable", [](const skein::ParameterValues&) {
+  registry.add_csp<tides::ITideTable>("FlatTable", [](const skein::ParameterValues&) {
     return std::make_shared<tides::ITideTable::Skeleton>(std::make_shared<FlatTable>());
   });
 }
