@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstdint>
 #include <string_view>
@@ -69,7 +70,7 @@ class LoadedLibrary {
   template <class T>
   T* at(std::uintptr_t offset) const {
     // The linker has added the base to some pointers already, which depends on the architecture.
-    return reinterpret_cast<T*>(offset < base_ ? base_ + offset : offset);
+    return std::bit_cast<T*>(offset < base_ ? base_ + offset : offset);
   }
 
   void read_dynamic(const ElfW(Dyn) * entry) {
@@ -87,7 +88,7 @@ class LoadedLibrary {
   bool write(void** slot, void* value) const {
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
     const auto place = reinterpret_cast<std::uintptr_t>(slot);
-    auto* const begin = reinterpret_cast<void*>(place / page * page);
+    auto* const begin = std::bit_cast<void*>(place / page * page);
     if (::mprotect(begin, page, PROT_READ | PROT_WRITE) != 0) return false;
     __atomic_store_n(slot, value, __ATOMIC_RELEASE);
     if (place < protected_end_) ::mprotect(begin, page, PROT_READ);
@@ -114,9 +115,8 @@ int redirect_cyclone(dl_phdr_info* info, std::size_t, void*) {
 void wait_by_steady_clock() {
   if (::dl_iterate_phdr(redirect_cyclone, nullptr) > 0) return;
   log(LogLevel::Warning, "dds/cyclonedds",
-      "this library of Cyclone DDS waits by the wall clock: when that is set back, its "
-      "participants "
-      "are silent, and lost to others, for as long; set the clock before they start");
+      "this Cyclone DDS waits by the wall clock: where that is set back, its participants are "
+      "silent for as long, and lost to others; set the clock before they start");
 }
 
 }  // namespace skein::dds::cyclonedds
