@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "commands.hpp"
+#include "core/whole_file.hpp"
 #include "launch/start_script.hpp"
 #include "launch/systemd_units.hpp"
 #include "mission_plan.hpp"
@@ -11,12 +11,6 @@
 
 namespace skein::command {
 namespace {
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text << std::flush;
-  if (!stream) throw InvalidArgument("'" + file.string() + "' cannot be written");
-}
 
 void make_executable(const std::filesystem::path& file) {
   using std::filesystem::perms;
@@ -35,11 +29,11 @@ int write_script(const ScriptArguments& given) {
   if (!arguments.systemd.empty()) {
     std::filesystem::create_directories(arguments.systemd);
     for (const auto& [name, text] : launch::systemd_units(plan)) {
-      write_file(std::filesystem::path(arguments.systemd) / name, text);
+      write_whole_file("the unit", std::filesystem::path(arguments.systemd) / name, text);
       std::printf("%s\n", name.c_str());
     }
   } else if (!arguments.output.empty()) {
-    write_file(arguments.output, launch::start_script(plan));
+    write_whole_file("the script", arguments.output, launch::start_script(plan));
     make_executable(arguments.output);
   } else {
     std::fputs(launch::start_script(plan).c_str(), stdout);

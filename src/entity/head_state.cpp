@@ -1,8 +1,11 @@
 #include "head_state.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <system_error>
 
 #include "core/log.hpp"
+#include "core/whole_file.hpp"
 #include "head_session.hpp"
 #include "rpc/local_directory.hpp"
 #include "service_history.hpp"
@@ -27,13 +30,17 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
       publisher(parts.participant, parts.control, introspection::kDecisions) {
   for (const auto& strategy : options.strategies) strategies.add(strategy);
   strategies.make(options.strategy);
-  if (!options.history.empty()) history = History::load(options.history);
+  if (!options.history.empty()) {
+    history = History::load(options.history);
+    try_whole_file("the Head's history", options.history);
+  }
   history.learn();
   if (options.log.empty()) return;
   log_file.open(options.log, std::ios::app | std::ios::binary);
   if (!log_file) {
     throw InvalidArgument("the Head of " + parts.entity + " cannot write its decisions to '" +
-                          options.log + "'; name a file in a folder that may be written to");
+                          options.log + "': " + std::generic_category().message(errno) +
+                          "; name a file in a folder that may be written to");
   }
 }
 
@@ -172,7 +179,9 @@ void Head::State::write_log(const Decision& record) {
   log_file << line << std::endl;
   if (log_file) return;
   log_file.clear();
-  log(LogLevel::Warning, parts.entity, "a decision could not be written to '" + options.log + "'");
+  log(LogLevel::Warning, parts.entity,
+      "a decision could not be written to '" + options.log +
+          "': " + std::generic_category().message(errno));
 }
 
 }  // namespace skein

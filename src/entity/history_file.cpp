@@ -1,7 +1,10 @@
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
+#include "core/whole_file.hpp"
 #include "service_history.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
@@ -82,14 +85,7 @@ History History::from_json(const std::string& text) {
 }
 
 void History::save(const std::string& path) const {
-  const std::string fresh = path + ".new";
-  std::ofstream file(fresh, std::ios::binary | std::ios::trunc);
-  file << to_json() << '\n';
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(fresh, path, error);
-  if (!file || error)
-    refuse(path, "cannot be written; name a file in a folder that may be written to");
+  write_whole_file("the Head's history", path, to_json() + '\n');
 }
 
 History History::load(const std::string& path) {
@@ -98,7 +94,7 @@ History History::load(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   text << file.rdbuf();
-  if (!file) refuse(path, "cannot be read");
+  if (!file) refuse(path, "cannot be read: " + std::generic_category().message(errno));
   try {
     return from_json(text.str());
   } catch (const InvalidArgument& wrong) {

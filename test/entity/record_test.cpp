@@ -191,9 +191,12 @@ TEST_CASE("a line of a log with an outcome that nobody knows is refused, with it
 }
 
 TEST_CASE(
-    "a log that cannot be written and a strategy that is not there are refused at the start") {
+    "a log or history that cannot be written, and a strategy that is not there, are refused at the "
+    "start") {
   CHECK_THROWS_WITH(Office(HeadOptions{.log = "no_such_folder/log"}),
-                    Catch::Contains("no_such_folder/log"));
+                    Catch::Contains("no_such_folder/log': No such file or directory"));
+  CHECK_THROWS_WITH(Office(HeadOptions{.history = "no_such_folder/history"}),
+                    Catch::Contains("no_such_folder/history.new': No such file or directory"));
   CHECK_THROWS_WITH(Office(HeadOptions{.strategy = "learnt"}),
                     Catch::Contains("did you mean 'learned'"));
 }

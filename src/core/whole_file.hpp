@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace skein {
+
+/// Writes a file whole: beside it at first (`FILE.new`), then to the disk, then in its place. A
+/// reader finds the old content or the new one, after a loss of power, too. What is no regular
+/// file, such as a terminal or a pipe, is written directly; a link is followed. Errors name `what`
+/// it is ("the picture"), the file, the step and the system's reason: InvalidArgument where it
+/// cannot be made, Unavailable where that fails later, which leaves the old file as it was.
+void write_whole_file(const std::string& what, const std::filesystem::path& file,
+                      std::string_view content);
+
+/// For those who will write the file later: throws as write_whole_file() would now. Changes
+/// nothing.
+void try_whole_file(const std::string& what, const std::filesystem::path& file);
+
+}  // namespace skein
