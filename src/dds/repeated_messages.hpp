@@ -15,8 +15,8 @@ constexpr bool is_told(std::uint64_t count) {
   return count == 1;
 }
 
-/// Messages of a vendor that a stranger's packets can cause without end. Those that are the same up
-/// to their first digit are of one kind. Bounded; thread-safe.
+/// Messages of a vendor that a stranger's packets, or a network that is cut, can cause without end.
+/// Those that are the same up to their first digit are of one kind. Bounded; thread-safe.
 class RepeatedMessages {
  public:
   /// What to log for `text`; nothing where enough was said of its kind.

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <random>
+#include <sstream>
 
 #include "../tools/cable.hpp"
 #include "../tools/seed.hpp"
@@ -16,7 +18,7 @@ namespace {
 /// the client's. Each provides the echo service.
 struct TwoHosts {
   TwoHosts() {
-    left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2"));
+    left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2", {"keep_log"}));
     right.emplace(peer("right", *Pairing::get().client, there, "10.77.0.1"));
     for (auto* one : {&*left, &*right}) {
       one->send("provide");
@@ -25,10 +27,12 @@ struct TwoHosts {
   }
 
   static ChildProcess peer(const std::string& name, const skein::dds::Vendor& vendor,
-                           const NetworkSpace& space, const std::string& other_host) {
+                           const NetworkSpace& space, const std::string& other_host,
+                           std::vector<std::string> more = {}) {
     ChildProcess::Options options;
     options.network = space.descriptor();
-    return start_peer(name, vendor, {"interface=skein0", "host=" + other_host}, options);
+    more.insert(more.end(), {"interface=skein0", "host=" + other_host});
+    return start_peer(name, vendor, more, options);
   }
 
   bool each_knows(int count) {
@@ -73,6 +77,23 @@ TEST_CASE("a provider killed on another host: its call ends as Disconnected with
   std::printf("killed to told, lease of 1000 ms, %s server, %s client: %.0f ms\n",
               Pairing::get().server->name().c_str(), Pairing::get().client->name().c_str(),
               std::chrono::duration<double, std::milli>(took).count());
+}
+
+TEST_CASE("a host that has lost its way to another says so in a few lines, however much it sends") {
+  TwoHosts hosts;
+  REQUIRE(hosts.each_knows(2));
+  hosts.connect();
+  hosts.here.run("ip route flush dev skein0");
+  // The other one, which hears nothing, while this one sends and still hears it.
+  REQUIRE(eventually([&] { return services_of(*hosts.right) == 1; }));
+  std::istringstream logged(hosts.left->ask("logged"));
+  std::map<std::string, int> lines;  // by what is the same up to their first number
+  for (std::string line; std::getline(logged, line, ';');)
+    ++lines[line.substr(0, line.find_first_of("0123456789"))];
+  for (const auto& [kind, count] : lines) {
+    CAPTURE(kind);
+    CHECK(count <= 4);  // the first, the tenth, …
+  }
 }
 
 TEST_CASE("two hosts that were cut off from each other find each other again, and call") {

@@ -14,9 +14,9 @@ constexpr const char* kPlace = "dds/cyclonedds";
 
 thread_local std::string* captured = nullptr;
 
-void warn(std::string_view text) {
-  static auto* repeated = new RepeatedMessages;  // Cyclone's threads may warn until the very end
-  if (const auto message = repeated->next(text)) log(LogLevel::Warning, kPlace, *message);
+void tell(LogLevel level, std::string_view text) {
+  static auto* repeated = new RepeatedMessages;  // Cyclone's threads may log until the very end
+  if (const auto message = repeated->next(text)) log(level, kPlace, *message);
 }
 
 void take_message(void*, const dds_log_data_t* data) {
@@ -26,9 +26,9 @@ void take_message(void*, const dds_log_data_t* data) {
   if (error && captured != nullptr) {
     captured->append(captured->empty() ? "" : "; ").append(text);
   } else if (error) {
-    log(LogLevel::Error, kPlace, text);
+    tell(LogLevel::Error, text);
   } else if ((data->priority & DDS_LC_WARNING) != 0) {
-    warn(text);
+    tell(LogLevel::Warning, text);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fastdds/dds/log/Log.hpp>
 
+#include "../repeated_messages.hpp"
 #include "core/log.hpp"
 
 namespace skein::dds::fastdds {
@@ -12,8 +13,12 @@ using eprosima::fastdds::dds::Log;
 class Consumer final : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
-    log(LogLevel::Error, "dds/fastdds", entry.message);
+    if (const auto message = repeated_.next(entry.message))
+      log(LogLevel::Error, "dds/fastdds", *message);
   }
+
+ private:
+  RepeatedMessages repeated_;
 };
 
 }  // namespace
