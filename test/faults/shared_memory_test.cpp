@@ -31,6 +31,17 @@ void hide_shared_memory() {
   std::_Exit(77);
 }
 
+/// Another one in front of that, of its own size, while this lives.
+class SmallSharedMemory {
+ public:
+  explicit SmallSharedMemory(const char* size) {
+    REQUIRE(mount("tmpfs", kFolder, "tmpfs", MS_NOSUID | MS_NODEV, size) == 0);
+  }
+  ~SmallSharedMemory() { umount2(kFolder, MNT_DETACH); }
+  SmallSharedMemory(const SmallSharedMemory&) = delete;
+  SmallSharedMemory& operator=(const SmallSharedMemory&) = delete;
+};
+
 std::ptrdiff_t segments() {
   return std::distance(std::filesystem::directory_iterator(kFolder),
                        std::filesystem::directory_iterator());
@@ -110,6 +121,19 @@ TEST_CASE(
   pair.client.send("connect");
   pair.client.expect("connected", 30s);
   CHECK(pair.call() == 0);
+}
+
+TEST_CASE("a peer for which there is no room in shared memory does without it, and says so") {
+  hide_shared_memory();
+  const auto* size = GENERATE("size=1m", "size=24m");  // for none, for one
+  CAPTURE(size);
+  const SmallSharedMemory small(size);
+  const std::vector<std::string> options{"shared_memory", "keep_log"};
+  Pair pair("fastdds", options, "fastdds", options);
+  CHECK(pair.call() > 0);
+  const std::string logged = pair.server.ask("logged") + pair.client.ask("logged");
+  CHECK_THAT(logged, Contains("' does without shared memory: /dev/shm has no 17 MiB left (No space "
+                              "left on device); make room"));
 }
 
 TEST_CASE("a vendor without shared memory says so") {

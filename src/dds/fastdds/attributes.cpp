@@ -12,6 +12,7 @@
 #include "../type_version.hpp"
 #include "announced_representation.hpp"
 #include "core/host.hpp"
+#include "shared_memory.hpp"
 
 namespace skein::dds::fastdds {
 namespace {
@@ -23,8 +24,6 @@ namespace policies = eprosima::fastdds::dds;
 /// again and again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the
 /// reader asks for what is on its way to him.
 constexpr std::uint32_t kSendBuffer = 64u << 20;
-/// Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
-constexpr std::uint32_t kSharedMemory = 16u << 20;
 constexpr auto kAnnouncementPeriod = 250ms;
 /// While a sample is not acknowledged. With 3 s, the default, a late joiner on Cyclone waits that
 /// long for the past.
@@ -119,7 +118,8 @@ std::uint32_t unused_port() {
 // writes by nothing else.
 void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
   const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
-  memory->segment_size(kSharedMemory);
+  // Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
+  memory->segment_size(kSegment);
   // The locator holds this host's number, which Fast DDS keeps to itself.
   const std::unique_ptr<eprosima::fastdds::rtps::TransportInterface> transport(
       memory->create_transport());

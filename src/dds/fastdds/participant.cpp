@@ -8,6 +8,7 @@
 
 #include "../options_check.hpp"
 #include "attributes.hpp"
+#include "core/log.hpp"
 #include "identity.hpp"
 #include "liveliness.hpp"
 #include "participant_leases.hpp"
@@ -25,14 +26,31 @@ constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
                     ": Fast DDS found no free port; end other participants or use another domain");
 }
 
+/// Without shared memory where there is no room.
+ParticipantOptions feasible(ParticipantOptions options) {
+  check_options(options);
+  if (!options.network.shared_memory) return options;
+  const auto reason = lacks_room_for_segments();
+  if (!reason) return options;
+  options.network.shared_memory = false;
+  log(LogLevel::Warning, "dds/fastdds",
+      "participant '" + options.name + "' does without shared memory: " + *reason +
+          "; make room (`fastdds shm clean` removes what ended processes have left), or make it "
+          "larger (mount -o remount,size=512m /dev/shm; docker run --shm-size=512m)");
+  return options;
+}
+
 }  // namespace
 
 FastParticipant::FastParticipant(const ParticipantOptions& options)
-    : options_((check_options(options), options)),
+    : FastParticipant(options, SegmentsTurn(options.network.shared_memory)) {}
+
+FastParticipant::FastParticipant(const ParticipantOptions& options, const SegmentsTurn&)
+    : options_(feasible(options)),
       transport_(make_transport(options)),
       events_([this] { tick(); }) {
   transport_->state->watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
-  const auto attributes = participant_attributes(options, transport_);
+  const auto attributes = participant_attributes(options_, transport_);
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.

@@ -11,6 +11,7 @@
 #include "dds/port.hpp"
 #include "endpoints.hpp"
 #include "events.hpp"
+#include "shared_memory.hpp"
 #include "transport.hpp"
 
 namespace eprosima::fastrtps::rtps {
@@ -52,6 +53,8 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void release_topic(const std::string& name);
 
  private:
+  FastParticipant(const ParticipantOptions& options, const SegmentsTurn& turn);
+
   void onParticipantDiscovery(rtps::RTPSParticipant* participant,
                               rtps::ParticipantDiscoveryInfo&& info) override;
   void onWriterDiscovery(rtps::RTPSParticipant* participant,
