@@ -44,6 +44,7 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
   guard_ = std::make_unique<PacketGuard>(*internals_, options_);
   absences_.emplace(*internals_);
   watch_participants();
+  if (options.network.multicast_discovery) membership_.emplace(options);
 }
 
 CycloneParticipant::~CycloneParticipant() {

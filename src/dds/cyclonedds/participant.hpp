@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "../multicast_membership.hpp"
 #include "../topic_table.hpp"
 #include "absence_watch.hpp"
 #include "entity.hpp"
@@ -64,6 +65,7 @@ class CycloneParticipant final : public Participant {
   std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first
   std::optional<AbsenceWatch> absences_;
+  std::optional<MulticastMembership> membership_;
 };
 
 }  // namespace skein::dds::cyclonedds

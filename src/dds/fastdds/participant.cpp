@@ -63,6 +63,7 @@ FastParticipant::FastParticipant(const ParticipantOptions& options, const Segmen
   guid_ = to_guid(participant_->getGuid()).participant();
   transport_->state->discovery.opened(discovery_mutex(*participant_));
   transport_->state->open = true;
+  if (options_.network.multicast_discovery) membership_.emplace(options_);
 }
 
 FastParticipant::~FastParticipant() {
@@ -75,6 +76,7 @@ void FastParticipant::end() {
     std::lock_guard lock(asserting_);
     assertion_period_.reset();
   }
+  membership_.reset();
   transport_->state->discovery.close();
   rtps::RTPSDomain::removeRTPSParticipant(participant_);
 }

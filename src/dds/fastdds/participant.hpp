@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "../multicast_membership.hpp"
 #include "../topic_table.hpp"
 #include "dds/port.hpp"
 #include "endpoints.hpp"
@@ -90,6 +91,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   std::chrono::steady_clock::time_point last_assertion_;
   EventThread events_;
   rtps::RTPSParticipant* participant_ = nullptr;
+  std::optional<MulticastMembership> membership_;
   Guid guid_;
 };
 
