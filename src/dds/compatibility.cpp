@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/growth.hpp"
+#include "core/printable.hpp"
 #include "type_version.hpp"
 
 namespace skein::dds {
@@ -67,9 +71,54 @@ std::string name_of(std::uint32_t type, const Members& ours, const Members& thei
   return "a type";
 }
 
+/// The next line of a type's text, without its end; nothing behind the last whole one.
+std::optional<std::string_view> take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end + 1);
+  return line;
+}
+
+/// What a line that opens a declaration declares: of `@final struct Pose {` that is Pose.
+std::string_view declared(std::string_view line) {
+  line = line.substr(0, line.find(" {"));
+  line = line.substr(0, line.find(" switch ("));
+  return line.substr(line.rfind(' ') + 1);
+}
+
+std::string shown(const std::string& scope, std::string_view line) {
+  if (scope.empty()) return std::string(line);
+  if (line.starts_with('}')) return scope + " without a further member";
+  if (line.ends_with(';')) line.remove_suffix(1);
+  return scope + " with '" + std::string(line) + "'";
+}
+
+/// What the first line in which the two texts differ says on either side; nothing where what is
+/// known of both is the same.
+std::optional<std::pair<std::string, std::string>> difference_of_texts(std::string_view offered,
+                                                                       std::string_view requested) {
+  std::vector<std::string> scopes{""};
+  for (;;) {
+    const auto one = take_line(offered);
+    const auto other = take_line(requested);
+    if (!one || !other) return std::nullopt;
+    if (*one != *other) return std::pair(shown(scopes.back(), *one), shown(scopes.back(), *other));
+    if (one->ends_with('{')) {
+      const std::string around = scopes.back().empty() ? "" : scopes.back() + "::";
+      scopes.push_back(around + std::string(declared(*one)));
+    } else if (one->starts_with('}') && scopes.size() > 1) {
+      scopes.pop_back();
+    }
+  }
+}
+
 std::optional<Mismatch> find_mismatch(const TypeVersion& offered, const TypeVersion& requested) {
   if (offered.signature == 0 || requested.signature == 0) return std::nullopt;
   if (offered.signature != requested.signature) {
+    if (auto texts = difference_of_texts(offered.text, requested.text)) {
+      return Mismatch{"type", std::move(texts->first), std::move(texts->second), kSameVersion};
+    }
     return Mismatch{"type", "version " + hexadecimal(offered.signature, 16),
                     "version " + hexadecimal(requested.signature, 16), kSameVersion};
   }
@@ -126,6 +175,14 @@ std::optional<Mismatch> find_mismatch(const Qos& offered, const Qos& requested) 
   return find_mismatch(offered.type, requested.type);
 }
 
+Incompatibility explained(const std::string& topic, const Guid& peer, const Mismatch& mismatch) {
+  return {peer, mismatch.policy, mismatch.offered, mismatch.requested,
+          "topic '" + topic + "': a writer and a reader do not match in " + mismatch.policy +
+              ": the writer offers " + mismatch.offered + ", the reader requests " +
+              mismatch.requested + "; " + mismatch.remedy + " (the other side is " + peer.hex() +
+              ")"};
+}
+
 }  // namespace
 
 bool share_partition(const Qos& writer, const Qos& reader) {
@@ -141,11 +198,16 @@ std::optional<Incompatibility> find_incompatibility(const std::string& topic, co
                                                     const Qos& offered, const Qos& requested) {
   const auto found = find_mismatch(offered, requested);
   if (!found) return std::nullopt;
-  return Incompatibility{peer, found->policy, found->offered, found->requested,
-                         "topic '" + topic + "': a writer and a reader do not match in " +
-                             found->policy + ": the writer offers " + found->offered +
-                             ", the reader requests " + found->requested + "; " + found->remedy +
-                             " (the other side is " + peer.hex() + ")"};
+  return explained(topic, peer, *found);
+}
+
+std::optional<Incompatibility> find_other_type(const std::string& topic, const Guid& peer,
+                                               const std::string& offered,
+                                               const std::string& requested) {
+  if (offered == requested) return std::nullopt;
+  return explained(topic, peer,
+                   {"type", printable(offered), printable(requested),
+                    "give both sides the same type, or one of them another topic"});
 }
 
 }  // namespace skein::dds

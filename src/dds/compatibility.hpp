@@ -14,4 +14,9 @@ bool share_partition(const Qos& writer, const Qos& reader);
 std::optional<Incompatibility> find_incompatibility(const std::string& topic, const Guid& peer,
                                                     const Qos& offered, const Qos& requested);
 
+/// The same, where topic and partition are shared, and the types have different names.
+std::optional<Incompatibility> find_other_type(const std::string& topic, const Guid& peer,
+                                               const std::string& offered,
+                                               const std::string& requested);
+
 }  // namespace skein::dds

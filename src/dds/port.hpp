@@ -41,9 +41,8 @@ struct Sample {
   std::shared_ptr<const void> keep() const { return owner->keep(); }
 };
 
-/// Why a writer and a reader of one topic, type and partition do not match: what is offered is less
-/// than what is requested. Vendors match two versions of a type all the same: who reads is to drop
-/// the other's samples.
+/// Why a writer and a reader of one topic and partition do not match: their types differ, or what
+/// is offered is less than what is requested.
 struct Incompatibility {
   Guid peer;
   /// `reliability`, `durability`, `deadline`, `liveliness`, `ownership`, `data representation` or

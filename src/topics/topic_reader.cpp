@@ -1,7 +1,6 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/log.hpp"
@@ -45,9 +44,6 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   void hand_over(const dds::Sample& sample);
   /// False for what is no value: disposals and malformed samples, which it deals with.
   bool decode(const dds::Sample& sample, void* into);
-  /// Nothing more is taken from a writer whose values would be misread.
-  void refuse(const Guid& writer);
-  bool is_refused(const Guid& writer) const;
   void report_malformed(const std::string& reason);
   SubscriptionCounters counters() const;
 
@@ -61,11 +57,9 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   std::atomic<std::uint64_t> received{0};
   std::atomic<std::uint64_t> malformed{0};
   std::atomic<std::uint64_t> missed_deadlines{0};
-  mutable std::mutex refusing;
-  std::set<Guid> refused;  // writers; under refusing
-  std::mutex running;      // one callback at a time
-  bool closed = false;     // under running
-  bool threw = false;      // under running
+  std::mutex running;   // one callback at a time
+  bool closed = false;  // under running
+  bool threw = false;   // under running
   std::unique_ptr<dds::Reader> reader;
   std::optional<Register::Entry> entry;  // until it is closed
 };
@@ -124,10 +118,8 @@ dds::ReaderListener TopicReader::State::listener() {
     if (!state->options.on_deadline_missed) return;
     state->post([key](State& self) { self.options.on_deadline_missed(key); });
   };
-  listener.on_incompatible = [weak](const dds::Incompatibility& why) {
+  listener.on_incompatible = [](const dds::Incompatibility& why) {
     log(LogLevel::Warning, "topics", why.explanation);
-    if (why.policy != "type") return;  // then DDS has not matched them
-    if (const auto state = weak.lock()) state->refuse(why.peer);
   };
   return listener;
 }
@@ -192,21 +184,7 @@ void TopicReader::State::hand_over(const dds::Sample& sample) {
   if (decode(sample, value.get())) consumer(value.get());
 }
 
-void TopicReader::State::refuse(const Guid& writer) {
-  std::lock_guard lock(refusing);
-  refused.insert(writer);
-}
-
-bool TopicReader::State::is_refused(const Guid& writer) const {
-  std::lock_guard lock(refusing);
-  return refused.contains(writer);
-}
-
 bool TopicReader::State::decode(const dds::Sample& sample, void* into) {
-  if (is_refused(sample.writer)) {
-    ++malformed;
-    return false;
-  }
   if (sample.state == dds::InstanceState::Disposed) {
     ++received;
     if (options.on_disposed) options.on_disposed(sample.key);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "idl/growing_members.hpp"
+#include "idl/type_text.hpp"
 #include "skein/detail/topic_type.hpp"
 #include "skein/topic_qos.hpp"
 
@@ -15,7 +16,8 @@ inline dds::Qos wire_qos(const TopicQos& qos, const TopicType& type) {
   if (is_xcdr2(type.support->representation)) {
     result.representation = dds::DataRepresentation::Xcdr2;
   }
-  result.type = {type.support->description.signature, idl::growing_members(*type.support)};
+  result.type = {type.support->description.signature, idl::growing_members(*type.support),
+                 idl::type_text(*type.support)};
   result.partitions = qos.systems;
   return result;
 }

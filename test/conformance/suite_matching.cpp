@@ -131,6 +131,50 @@ TEST_CASE("topics of one name and different types do not match") {
   CHECK(inbox.reader().matched_writers().empty());
 }
 
+TEST_CASE("another type of the same topic is told on both sides") {
+  Wire wire;
+  Outbox early(*wire.writing, {"early", "test::One", false}, keep_all());
+  Inbox inbox(*wire.reading, {"early", "test::Other", false}, keep_all());
+  Inbox waiting(*wire.reading, {"late", "test::Other", false}, keep_all());
+  Outbox late(*wire.writing, {"late", "test::One", false}, keep_all());
+  for (const auto* outbox : {&early, &late}) {
+    REQUIRE(eventually([&] { return !outbox->incompatible().empty(); }));
+    CHECK(outbox->incompatible().front().offered == "test::One");
+    CHECK(outbox->incompatible().front().requested == "test::Other");
+  }
+  for (const auto* each : {&inbox, &waiting}) {
+    REQUIRE(eventually([&] { return !each->incompatible().empty(); }));
+    CHECK(each->incompatible().front().policy == "type");
+    CHECK_THAT(each->incompatible().front().explanation,
+               Catch::Contains("the writer offers test::One, the reader requests test::Other"));
+  }
+}
+
+TEST_CASE("a writer of another version of the type is not matched, and nothing of it is taken") {
+  Wire wire;
+  Qos right = keep_all();
+  right.transient_local = true;
+  right.exclusive = true;
+  right.type.signature = 1;
+  Qos wrong = right;
+  wrong.type.signature = 2;
+  wrong.strength = 9;
+  Outbox changed(*wire.writing, keyless(), wrong);
+  for (std::uint32_t i = 0; i < 10; ++i) changed.writer().write(make_number(i));
+  Inbox inbox(*wire.reading, keyless(), right);
+  REQUIRE(
+      eventually([&] { return !inbox.incompatible().empty() && !changed.incompatible().empty(); }));
+  Outbox same(*wire.writing, keyless(), right);
+  same.writer().write(make_number(11));
+  changed.writer().write(make_number(12));
+  same.writer().write(make_number(13));
+  REQUIRE(eventually([&] { return inbox.count() >= 2; }));
+  CHECK(numbers(inbox.received()) == std::vector<std::uint32_t>{11, 13});
+  CHECK(inbox.reader().matched_writers() == std::vector{same.writer().guid()});
+  CHECK(changed.writer().matched_readers().empty());
+  CHECK(inbox.matches() == Events{{same.writer().guid(), true}});
+}
+
 TEST_CASE("a topic name that is in use with another type is refused") {
   Wire wire;
   const auto writer = wire.writing->create_writer({"taken", "test::One", false}, keep_all());

@@ -139,3 +139,40 @@ TEST_CASE("readers of either version of a type take what writers of the other on
   CHECK(heard_old.values()[0] == grown::Swell{1.5, 8, {}});
   CHECK(heard_grown.values()[0] == old::Swell{2.5});
 }
+
+TEST_CASE("members that were swapped are told on both sides, and nothing is taken") {
+  const auto ship = make_server("ship");
+  const auto shore = make_client("shore");
+  const Log log;
+  auto publisher = ship->publisher<old::Fix>("fix", TopicQos::state());
+  publisher.publish({1, 2});
+  Heard<changed::Fix> heard;
+  const auto subscription =
+      shore->subscription<changed::Fix>("fix", TopicQos::state(), heard.callback());
+  CHECK(eventually([&] {
+    return log.count(
+               "topics: topic 'fix': a writer and a reader do not match in type: the writer offers "
+               "sea::Fix with 'double x_m', the reader requests sea::Fix with 'double y_m'; build "
+               "both sides from the same version of the type") == 2;
+  }));
+  Heard<grown::Fix> right;
+  const auto other = shore->subscription<grown::Fix>("fix", TopicQos::state(), right.callback());
+  REQUIRE(eventually([&] { return !right.values().empty(); }));
+  CHECK(right.values()[0] == grown::Fix{1, 2});
+  CHECK(heard.values().empty());
+  CHECK(subscription.publishers() == 0);
+  CHECK(publisher.subscribers() == 1);
+}
+
+TEST_CASE("another type of the same topic is told by name") {
+  const auto ship = make_server("ship");
+  const auto shore = make_client("shore");
+  const Log log;
+  const auto publisher = ship->publisher<old::Fix>("fix", TopicQos::state());
+  Heard<changed::Place> heard;
+  const auto subscription =
+      shore->subscription<changed::Place>("fix", TopicQos::state(), heard.callback());
+  CHECK(eventually([&] {
+    return log.count("the writer offers sea::Fix, the reader requests sea::Place") == 2;
+  }));
+}

@@ -29,6 +29,8 @@ struct Topic {
 struct TypeVersion {
   std::uint64_t signature = 0;  ///< 0: not told, as by peers that are not built with Skein.
   std::vector<GrowingMember> members{};
+  /// Its IDL, for people: a member a line, without indentation; empty where that is not known.
+  std::string text{};
 };
 
 /// How samples are encoded. Any is said of foreign readers alone, which may take both.
@@ -72,8 +74,7 @@ struct Qos {
   std::int32_t strength = 0;
   /// A writer and a reader match that have the same. The type decides it.
   DataRepresentation representation = DataRepresentation::Xcdr1;
-  /// Where both sides tell it, and neither has only grown, they are reported as incompatible, and
-  /// match on vendors all the same.
+  /// Where both sides tell it, and neither has only grown, they do not match.
   TypeVersion type{};
   /// Only endpoints that share a partition match. Exact names without wildcards (vendors differ);
   /// empty: the default partition, whose name is "". Fixed at creation.

@@ -80,11 +80,13 @@ const dds_rhc_ops& HistoryCache::operations() {
   return kOperations;
 }
 
-HistoryCache::HistoryCache(ReceiveQueue& queue) : dds_rhc{}, queue_(queue) {
+HistoryCache::HistoryCache(ReceiveQueue& queue, const std::optional<EndpointWatch>& peers)
+    : dds_rhc{}, queue_(queue), peers_(peers) {
   common.ops = &operations();
 }
 
 void HistoryCache::store(const ddsi_writer_info& writer, Blob& blob) {
+  if (peers_ && peers_->refuses(to_guid(writer.guid))) return;
   const bool disposed = (blob.statusinfo & kDisposed) != 0;
   if (blob.kind != SDK_DATA && !disposed) {
     queue_.instance_unregistered(blob.key_hash, to_guid(writer.guid));

@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <dds/ddsc/dds_rhc.h>
 
+#include "../endpoints.hpp"
 #include "../receive_queue.hpp"
 #include "blob.hpp"
 
@@ -16,14 +17,15 @@ namespace skein::dds::cyclonedds {
 /// it.
 class HistoryCache : public dds_rhc {
  public:
-  /// `queue` outlives it.
-  explicit HistoryCache(ReceiveQueue& queue);
+  /// Both outlive it. Nothing is handed on of whom `peers` refuses.
+  HistoryCache(ReceiveQueue& queue, const std::optional<EndpointWatch>& peers);
 
  private:
   static const dds_rhc_ops& operations();
   void store(const ddsi_writer_info& writer, Blob& blob);
 
   ReceiveQueue& queue_;
+  const std::optional<EndpointWatch>& peers_;
   dds_reader* reader_ = nullptr;
 };
 

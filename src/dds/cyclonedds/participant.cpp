@@ -50,8 +50,7 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
 CycloneParticipant::~CycloneParticipant() {
   topics_.expect_unused(options_.name);
   watcher_.reset();
-  publications_.reset();
-  subscriptions_.reset();
+  endpoints_.reset();
   participant_.reset();
 }
 
@@ -102,21 +101,10 @@ void CycloneParticipant::adapt_heartbeats() const {
                                 std::chrono::nanoseconds(intervals.longest).count());
 }
 
-dds_entity_t CycloneParticipant::make_once(Entity& reader, dds_entity_t builtin_topic) {
-  std::lock_guard lock(builtin_);
-  if (reader.handle() == 0) {
-    reader = Entity(check(dds_create_reader(handle(), builtin_topic, nullptr, nullptr),
-                          "endpoints cannot be watched"));
-  }
-  return reader.handle();
-}
-
-dds_entity_t CycloneParticipant::publications() {
-  return make_once(publications_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
-}
-
-dds_entity_t CycloneParticipant::subscriptions() {
-  return make_once(subscriptions_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
+Endpoints& CycloneParticipant::endpoints() {
+  std::lock_guard lock(discovering_);
+  if (!endpoints_) endpoints_.emplace(handle());
+  return endpoints_->all();
 }
 
 TopicHandle CycloneParticipant::acquire_topic(const Topic& topic) {

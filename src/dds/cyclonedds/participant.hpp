@@ -8,6 +8,7 @@
 #include "../multicast_membership.hpp"
 #include "../topic_table.hpp"
 #include "absence_watch.hpp"
+#include "discovered_endpoints.hpp"
 #include "entity.hpp"
 #include "packet_guard.hpp"
 
@@ -38,14 +39,11 @@ class CycloneParticipant final : public Participant {
   TopicHandle acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
-  /// Cyclone's own reader of all publications or all subscriptions; made when first asked for, not
-  /// from a listener.
-  dds_entity_t publications();
-  dds_entity_t subscriptions();
+  /// Watched from when they are first asked for, not from a listener.
+  Endpoints& endpoints();
 
  private:
   ddsi_domaingv& find_internals();
-  dds_entity_t make_once(Entity& reader, dds_entity_t builtin_topic);
   void watch_participants();
   void take_presence();
   void adapt_heartbeats() const;
@@ -57,10 +55,9 @@ class CycloneParticipant final : public Participant {
   Guid guid_;
   ddsi_domaingv* internals_ = nullptr;
   TopicTable<TopicHandle> topics_;
-  std::mutex builtin_;
-  Entity publications_;
-  Entity subscriptions_;
-  std::mutex presence_;  // one call of on_participant at a time
+  std::mutex discovering_;
+  std::optional<DiscoveredEndpoints> endpoints_;  // made once, under discovering_
+  std::mutex presence_;                           // one call of on_participant at a time
   std::set<Guid> present_;
   std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first

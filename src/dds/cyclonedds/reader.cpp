@@ -11,7 +11,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
       handle_(participant.acquire_topic(topic)),
       listener_(std::move(listener)),
       queue_(topic.name, qos, listener_.find_key, listener_.on_deadline_missed),
-      cache_(queue_),
+      cache_(queue_, peers_),
       matches_(
           [this](dds_instance_handle_t* handles, std::size_t room) {
             return dds_get_matched_publications(reader_handle_, handles, room);
@@ -20,13 +20,16 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
             auto* data = dds_get_matched_publication_data(reader_handle_, peer);
             if (data == nullptr) return Guid{};
             const Guid guid = to_guid(data->key);
-            mismatches_.matched(*data);
             dds_builtintopic_free_endpoint(data);
-            return guid;
+            return peers_ && peers_->refuses(guid) ? Guid{} : guid;
           },
-          listener_.on_matched, listener_.on_liveliness),
-      mismatches_(participant, topic, qos, Mismatches::Side::Reader, listener_.on_incompatible) {
+          listener_.on_matched, listener_.on_liveliness) {
   try {
+    if (EndpointWatch::is_needed(qos, listener_.on_incompatible != nullptr)) {
+      peers_.emplace(participant_.endpoints(),
+                     Endpoint{Side::Reader, topic.name, topic.type_name, qos},
+                     listener_.on_incompatible);
+    }
     reader_ = make(topic, qos);
   } catch (...) {
     participant_.release_topic(topic_.name);
@@ -37,7 +40,6 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
   made_ = true;
   // What came while the reader was being made was not told: its listener's user had no reader yet.
   matches_.update();
-  mismatches_.update();
   if (!queue_.empty()) data_available();
 }
 
@@ -56,10 +58,6 @@ Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
                                 [](dds_entity_t, dds_subscription_matched_status_t, void* self) {
                                   static_cast<CycloneReader*>(self)->matches_.update();
                                 });
-  dds_lset_requested_incompatible_qos(
-      listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t status, void* self) {
-        static_cast<CycloneReader*>(self)->mismatches_.mismatched(status.last_policy_id);
-      });
   dds_lset_liveliness_changed(listener,
                               [](dds_entity_t, dds_liveliness_changed_status_t status, void* self) {
                                 static_cast<CycloneReader*>(self)->liveliness_changed(status);

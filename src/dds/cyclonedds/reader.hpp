@@ -5,7 +5,6 @@
 #include "../receive_queue.hpp"
 #include "history_cache.hpp"
 #include "matches.hpp"
-#include "mismatches.hpp"
 #include "participant.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -32,10 +31,10 @@ class CycloneReader final : public Reader {
   const Topic topic_;
   const TopicHandle handle_;
   const ReaderListener listener_;
+  std::optional<EndpointWatch> peers_;
   ReceiveQueue queue_;
   HistoryCache cache_;
   Matches matches_;
-  Mismatches mismatches_;
   std::atomic<bool> made_{false};
   std::mutex data_;                             // one on_data at a time
   std::atomic<dds_entity_t> reader_handle_{0};  // 0 for listeners that come before it is made

@@ -21,15 +21,17 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
             auto* data = dds_get_matched_subscription_data(writer_handle_, peer);
             if (data == nullptr) return Guid{};
             const Guid guid = to_guid(data->key);
-            mismatches_.matched(*data);
             dds_builtintopic_free_endpoint(data);
-            return guid;
+            return peers_ && peers_->refuses(guid) ? Guid{} : guid;
           },
           std::move(listener.on_matched)),
-      mismatches_(participant, topic, qos, Mismatches::Side::Writer,
-                  std::move(listener.on_incompatible)),
       deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   try {
+    if (EndpointWatch::is_needed(qos, listener.on_incompatible != nullptr)) {
+      peers_.emplace(participant_.endpoints(),
+                     Endpoint{Side::Writer, topic.name, topic.type_name, qos},
+                     std::move(listener.on_incompatible));
+    }
     writer_ = make();
   } catch (...) {
     participant_.release_topic(topic_.name);
@@ -38,7 +40,6 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
   writer_handle_ = writer_.handle();
   guid_ = writer_.guid();
   matches_.update();
-  mismatches_.update();
 }
 
 CycloneWriter::~CycloneWriter() {
@@ -53,10 +54,6 @@ Entity CycloneWriter::make() {
                                [](dds_entity_t, dds_publication_matched_status_t, void* self) {
                                  static_cast<CycloneWriter*>(self)->matches_.update();
                                });
-  dds_lset_offered_incompatible_qos(
-      listener, [](dds_entity_t, dds_offered_incompatible_qos_status_t status, void* self) {
-        static_cast<CycloneWriter*>(self)->mismatches_.mismatched(status.last_policy_id);
-      });
   const dds_entity_t writer =
       dds_create_writer(participant_.handle(), handle_.entity, qos.get(), listener);
   dds_delete_listener(listener);

@@ -4,7 +4,6 @@
 
 #include "../deadline_watch.hpp"
 #include "matches.hpp"
-#include "mismatches.hpp"
 #include "participant.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -31,7 +30,7 @@ class CycloneWriter final : public Writer {
   const Qos qos_;
   const TopicHandle handle_;
   Matches matches_;
-  Mismatches mismatches_;
+  std::optional<EndpointWatch> peers_;
   const std::unique_ptr<DeadlineTimer> deadline_;
   std::atomic<std::uint32_t> written_{0};       // since all was acknowledged
   std::atomic<dds_entity_t> writer_handle_{0};  // 0 for listeners that come before it is made

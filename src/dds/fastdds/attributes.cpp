@@ -241,8 +241,15 @@ eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
   return result;
 }
 
-Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos) { return from_common(qos); }
-Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos) { return from_common(qos); }
+Endpoint to_endpoint(const rtps::WriterProxyData& writer) {
+  return {Side::Writer, writer.topicName().to_string(), writer.typeName().to_string(),
+          from_common(writer.m_qos)};
+}
+
+Endpoint to_endpoint(const rtps::ReaderProxyData& reader) {
+  return {Side::Reader, reader.topicName().to_string(), reader.typeName().to_string(),
+          from_common(reader.m_qos)};
+}
 
 std::optional<std::chrono::nanoseconds> from_duration(
     const eprosima::fastrtps::Duration_t& duration) {

@@ -4,13 +4,15 @@
 #include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
 #include <fastdds/rtps/attributes/ReaderAttributes.h>
 #include <fastdds/rtps/attributes/WriterAttributes.h>
+#include <fastdds/rtps/builtin/data/ReaderProxyData.h>
+#include <fastdds/rtps/builtin/data/WriterProxyData.h>
 #include <fastrtps/attributes/TopicAttributes.h>
 #include <fastrtps/qos/ReaderQos.h>
 #include <fastrtps/qos/WriterQos.h>
 
 #include <memory>
 
-#include "dds/port.hpp"
+#include "../endpoints.hpp"
 #include "transport.hpp"
 
 /// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands
@@ -35,8 +37,8 @@ eprosima::fastrtps::WriterQos writer_qos(const Qos& qos);
 eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos);
 
 /// What a peer announces; only what decides about a match.
-Qos from_writer_qos(const eprosima::fastrtps::WriterQos& qos);
-Qos from_reader_qos(const eprosima::fastrtps::ReaderQos& qos);
+Endpoint to_endpoint(const rtps::WriterProxyData& writer);
+Endpoint to_endpoint(const rtps::ReaderProxyData& reader);
 
 /// Nothing where it is infinite.
 std::optional<std::chrono::nanoseconds> from_duration(

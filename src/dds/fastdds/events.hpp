@@ -58,6 +58,7 @@ class EndpointEvents : public std::enable_shared_from_this<EndpointEvents> {
   void matched(const Guid& peer, bool now);
   void alive(const Guid& peer, bool now);
   void incompatible(const Incompatibility& why);
+  bool tells_incompatible() const { return listener_.on_incompatible != nullptr; }
   std::vector<Guid> peers() const;
 
   /// Waits for a running listener; none runs afterwards.

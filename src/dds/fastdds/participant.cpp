@@ -109,15 +109,13 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
 void FastParticipant::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return endpoints_.lost(guid);
-  endpoints_.found(guid, {Side::Writer, info.info.topicName().to_string(),
-                          info.info.typeName().to_string(), from_writer_qos(info.info.m_qos)});
+  endpoints_.found(guid, to_endpoint(info.info));
 }
 
 void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return endpoints_.lost(guid);
-  endpoints_.found(guid, {Side::Reader, info.info.topicName().to_string(),
-                          info.info.typeName().to_string(), from_reader_qos(info.info.m_qos)});
+  endpoints_.found(guid, to_endpoint(info.info));
 }
 
 void FastParticipant::follow(const Guid& participant,

@@ -7,10 +7,10 @@
 #include <optional>
 #include <set>
 
+#include "../endpoints.hpp"
 #include "../multicast_membership.hpp"
 #include "../topic_table.hpp"
 #include "dds/port.hpp"
-#include "endpoints.hpp"
 #include "events.hpp"
 #include "shared_memory.hpp"
 #include "transport.hpp"

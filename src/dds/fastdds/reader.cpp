@@ -15,7 +15,6 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
     : participant_(participant),
       topic_(topic),
       on_data_(std::move(listener.on_data)),
-      tells_incompatible_(listener.on_incompatible != nullptr),
       events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
       history_(history_attributes(0)),
       queue_(topic.name, qos, std::move(listener.find_key),
@@ -31,8 +30,10 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   }
   guid_ = to_guid(reader_->getGuid());
   if (qos.liveliness_lease) participant_.watch_liveliness(events_, *qos.liveliness_lease);
-  if (tells_incompatible_) {
-    participant_.endpoints().watch({Side::Reader, topic.name, topic.type_name, qos}, events_);
+  if (EndpointWatch::is_needed(qos, events_->tells_incompatible())) {
+    peers_.emplace(participant_.endpoints(),
+                   Endpoint{Side::Reader, topic.name, topic.type_name, qos},
+                   [events = events_](const Incompatibility& why) { events->incompatible(why); });
   }
   participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic),
                                                   reader_qos(qos));
@@ -52,6 +53,7 @@ FastReader::~FastReader() {
 void FastReader::onReaderMatched(rtps::RTPSReader*,
                                  const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
   const Guid writer = to_guid(status.last_publication_handle);
+  if (peers_ && peers_->refuses(writer)) return;
   events_->matched(writer, status.current_count_change > 0);
 }
 
@@ -75,6 +77,7 @@ void FastReader::on_writer_discovery(rtps::RTPSReader*,
     return;
   }
   const auto& qos = info->m_qos;
+  if (peers_) peers_->consider(to_guid(writer), to_endpoint(*info));
   queue_.writer_matched(to_guid(writer), {static_cast<std::int32_t>(qos.m_ownershipStrength.value),
                                           from_duration(qos.m_lifespan.duration)});
 }
@@ -87,6 +90,7 @@ void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChang
 }
 
 bool FastReader::store(const rtps::CacheChange_t& change) {
+  if (peers_ && peers_->refuses(to_guid(change.writerGUID))) return false;
   if (change.kind == rtps::NOT_ALIVE_UNREGISTERED) {
     queue_.instance_unregistered(to_guid(change.instanceHandle), to_guid(change.writerGUID));
     return false;

@@ -44,8 +44,8 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   FastParticipant& participant_;
   const Topic topic_;
   const std::function<void(Reader&)> on_data_;
-  const bool tells_incompatible_;
   const std::shared_ptr<EndpointEvents> events_;
+  std::optional<EndpointWatch> peers_;
   const std::shared_ptr<ReceivedPayloads> payloads_ = std::make_shared<ReceivedPayloads>();
   rtps::ReaderHistory history_;
   ReceiveQueue queue_;

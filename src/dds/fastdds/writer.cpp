@@ -35,7 +35,8 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
       qos_(qos),
       events_(std::make_shared<EndpointEvents>(
           participant.events(),
-          EndpointListener{std::move(listener.on_matched), {}, listener.on_incompatible})),
+          EndpointListener{
+              std::move(listener.on_matched), {}, std::move(listener.on_incompatible)})),
       history_(history_attributes(bounded() ? qos.max_samples : 0)),
       deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
   participant_.acquire_topic(topic);
@@ -53,8 +54,10 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
     lifespan_ =
         make_deadline_timer(every_lifespan, [this](const KeyHash& key) { drop_expired(key); });
   }
-  if (listener.on_incompatible) {
-    participant_.endpoints().watch({Side::Writer, topic.name, topic.type_name, qos}, events_);
+  if (EndpointWatch::is_needed(qos, events_->tells_incompatible())) {
+    peers_.emplace(participant_.endpoints(),
+                   Endpoint{Side::Writer, topic.name, topic.type_name, qos},
+                   [events = events_](const Incompatibility& why) { events->incompatible(why); });
   }
   participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
                                                   writer_qos(qos));
@@ -203,7 +206,18 @@ void FastWriter::onWriterMatched(rtps::RTPSWriter*,
                                  const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
   const bool matched = status.current_count_change > 0;
   if (matched) new_reader_at_ = last_sent_.load();
-  events_->matched(to_guid(status.last_subscription_handle), matched);
+  const Guid reader = to_guid(status.last_subscription_handle);
+  if (peers_ && peers_->refuses(reader)) return;
+  events_->matched(reader, matched);
+}
+
+/// Called before the match.
+void FastWriter::on_reader_discovery(rtps::RTPSWriter*,
+                                     rtps::ReaderDiscoveryInfo::DISCOVERY_STATUS reason,
+                                     const rtps::GUID_t& reader,
+                                     const rtps::ReaderProxyData* info) {
+  if (reason == rtps::ReaderDiscoveryInfo::REMOVED_READER || !peers_) return;
+  peers_->consider(to_guid(reader), to_endpoint(*info));
 }
 
 /// Called with the writer's mutex held, and perhaps with its locators locked. Then what waits to be

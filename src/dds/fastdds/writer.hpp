@@ -34,6 +34,9 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   void onWriterMatched(rtps::RTPSWriter*, rtps::MatchingInfo&) override {}
   void onWriterMatched(rtps::RTPSWriter* writer,
                        const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+  void on_reader_discovery(rtps::RTPSWriter* writer,
+                           rtps::ReaderDiscoveryInfo::DISCOVERY_STATUS reason,
+                           const rtps::GUID_t& reader, const rtps::ReaderProxyData* info) override;
   void onWriterChangeReceivedByAll(rtps::RTPSWriter* writer, rtps::CacheChange_t* change) override;
 
   bool bounded() const noexcept {
@@ -54,6 +57,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   const Topic topic_;
   const Qos qos_;
   const std::shared_ptr<EndpointEvents> events_;
+  std::optional<EndpointWatch> peers_;
   rtps::WriterHistory history_;
   /// Of each instance, oldest first, where a depth bounds them or late joiners get them.
   std::unordered_map<Guid, Changes> instances_;

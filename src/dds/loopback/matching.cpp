@@ -2,6 +2,19 @@
 #include "hub.hpp"
 
 namespace skein::dds::loopback {
+namespace {
+
+std::optional<Incompatibility> mismatch(const EndpointCore& writer, const EndpointCore& reader,
+                                        const Guid& peer) {
+  const std::string& topic = writer.topic.name;
+  if (auto why = find_other_type(topic, peer, writer.topic.type_name, reader.topic.type_name)) {
+    return why;
+  }
+  return find_incompatibility(topic, peer, writer.qos, reader.qos);
+}
+
+}  // namespace
+
 bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed) const {
   if (&observer == &observed) return true;
   const auto view = observer.views.find(observed.guid);
@@ -10,11 +23,14 @@ bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed
 
 void Hub::match(const std::shared_ptr<WriterCore>& writer,
                 const std::shared_ptr<ReaderCore>& reader) {
-  if (writer->topic != reader->topic || !share_partition(writer->qos, reader->qos)) return;
-  if (find_incompatibility(writer->topic.name, {}, writer->qos, reader->qos)) {
+  if (writer->topic.name != reader->topic.name || !share_partition(writer->qos, reader->qos)) {
+    return;
+  }
+  if (mismatch(*writer, *reader, {})) {
     tell_incompatible(writer, reader);
     return;
   }
+  if (writer->topic != reader->topic) return;
   const bool by_writer = knows(*writer->participant, *reader->participant);
   const bool by_reader = knows(*reader->participant, *writer->participant);
   if (!by_writer && !by_reader) return;
@@ -34,7 +50,7 @@ void Hub::tell_incompatible(const std::shared_ptr<WriterCore>& writer,
   const auto tell = [&](const auto& endpoint, const EndpointCore& peer) {
     if (!knows(*endpoint->participant, *peer.participant)) return;
     if (!endpoint->refused.insert(peer.guid).second) return;
-    const auto why = find_incompatibility(peer.topic.name, peer.guid, writer->qos, reader->qos);
+    const auto why = mismatch(*writer, *reader, peer.guid);
     post(endpoint.get(), [endpoint, why] {
       if (endpoint->listener.on_incompatible) endpoint->listener.on_incompatible(*why);
     });

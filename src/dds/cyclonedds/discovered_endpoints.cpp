@@ -1,12 +1,10 @@
-#include "mismatches.hpp"
+#include "discovered_endpoints.hpp"
 
 #include <algorithm>
 #include <vector>
 
-#include "../compatibility.hpp"
 #include "../type_version.hpp"
 #include "identity.hpp"
-#include "participant.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {
@@ -74,78 +72,40 @@ Qos to_qos(const dds_qos_t* from) {
   return qos;
 }
 
-/// All samples that a reader of a built-in topic holds, for as long as it lives.
-class Endpoints {
- public:
-  explicit Endpoints(dds_entity_t reader) : reader_(reader) {
-    for (std::size_t room = 64;; room *= 4) {
-      samples_.assign(room, nullptr);
-      infos_.resize(room);
-      count_ = dds_read_mask(reader_, samples_.data(), infos_.data(), room,
-                             static_cast<std::uint32_t>(room),
-                             DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE);
-      if (count_ < static_cast<dds_return_t>(room)) return;
-      dds_return_loan(reader_, samples_.data(), count_);
-    }
-  }
-  ~Endpoints() {
-    if (count_ > 0) dds_return_loan(reader_, samples_.data(), count_);
-  }
-  Endpoints(const Endpoints&) = delete;
-  Endpoints& operator=(const Endpoints&) = delete;
-
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (dds_return_t i = 0; i < count_; ++i) {
-      if (infos_[i].valid_data)
-        visit(*static_cast<const dds_builtintopic_endpoint_t*>(samples_[i]));
-    }
-  }
-
- private:
-  const dds_entity_t reader_;
-  std::vector<void*> samples_;
-  std::vector<dds_sample_info_t> infos_;
-  dds_return_t count_ = 0;
-};
-
 }  // namespace
 
-Mismatches::Mismatches(CycloneParticipant& participant, Topic topic, Qos qos, Side side, Told told)
-    : topic_(std::move(topic)),
-      qos_(std::move(qos)),
-      side_(side),
-      told_(std::move(told)),
-      peers_(!told_                 ? 0
-             : side == Side::Reader ? participant.publications()
-                                    : participant.subscriptions()) {}
-
-void Mismatches::mismatched(std::uint32_t policy) {
-  if (policy != DDS_PARTITION_QOS_POLICY_ID) update();
+DiscoveredEndpoints::DiscoveredEndpoints(dds_entity_t participant) {
+  open(writers_, participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
+  open(readers_, participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
 }
 
-void Mismatches::update() {
-  if (!told_) return;
-  std::lock_guard lock(mutex_);
-  const Endpoints endpoints(peers_);
-  endpoints.for_each([&](const dds_builtintopic_endpoint_t& peer) { consider(peer); });
+void DiscoveredEndpoints::open(Source& source, dds_entity_t participant, dds_entity_t topic) {
+  dds_listener_t* listener = dds_create_listener(&source);
+  dds_lset_data_available(listener,
+                          [](dds_entity_t, void* self) { take(*static_cast<Source*>(self)); });
+  const dds_entity_t reader = dds_create_reader(participant, topic, nullptr, listener);
+  dds_delete_listener(listener);
+  source.reader = Entity(check(reader, "endpoints cannot be watched"));
+  source.handle = reader;
+  take(source);  // those found before the reader's handle was known
 }
 
-void Mismatches::matched(const dds_builtintopic_endpoint_t& peer) {
-  if (!told_ || qos_.type.signature == 0) return;
-  std::lock_guard lock(mutex_);
-  consider(peer);
-}
-
-void Mismatches::consider(const dds_builtintopic_endpoint_t& peer) {
-  if (topic_.name != peer.topic_name || topic_.type_name != peer.type_name) return;
-  const Guid guid = to_guid(peer.key);
-  const Qos qos = to_qos(peer.qos);
-  const Qos& offered = side_ == Side::Writer ? qos_ : qos;
-  const Qos& requested = side_ == Side::Writer ? qos : qos_;
-  if (!share_partition(offered, requested)) return;
-  const auto why = find_incompatibility(topic_.name, guid, offered, requested);
-  if (why && known_.insert(guid).second) told_(*why);
+void DiscoveredEndpoints::take(Source& source) {
+  std::lock_guard lock(source.taking);
+  const dds_entity_t reader = source.handle;
+  void* samples[1] = {nullptr};
+  dds_sample_info_t info;
+  while (reader > 0 && dds_take(reader, samples, &info, 1, 1) == 1) {
+    const auto& found = *static_cast<const dds_builtintopic_endpoint_t*>(samples[0]);
+    const Guid guid = to_guid(found.key);
+    if (info.instance_state != DDS_IST_ALIVE) {
+      source.all.lost(guid);
+    } else if (info.valid_data) {
+      source.all.found(guid, {source.side, found.topic_name, found.type_name, to_qos(found.qos)});
+    }
+    dds_return_loan(reader, samples, 1);
+    samples[0] = nullptr;
+  }
 }
 
 }  // namespace skein::dds::cyclonedds

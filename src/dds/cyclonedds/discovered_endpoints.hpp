@@ -1,0 +1,40 @@
+#pragma once
+
+#include <dds/dds.h>
+
+#include <atomic>
+#include <mutex>
+
+#include "../endpoints.hpp"
+#include "entity.hpp"
+
+namespace skein::dds::cyclonedds {
+
+/// All endpoints that Cyclone tells of in its built-in topics. An endpoint is known here before it
+/// is matched, and so before the first of its samples comes: Cyclone calls this listener as it
+/// writes the built-in sample, on the thread that matches afterwards.
+class DiscoveredEndpoints {
+ public:
+  /// Not from a listener.
+  explicit DiscoveredEndpoints(dds_entity_t participant);
+
+  Endpoints& all() noexcept { return all_; }
+
+ private:
+  struct Source {
+    Side side;
+    Endpoints& all;
+    std::mutex taking{};
+    std::atomic<dds_entity_t> handle{0};  // 0 for a listener that comes before it is known
+    Entity reader{};                      // goes first: its listener uses the rest
+  };
+
+  static void open(Source& source, dds_entity_t participant, dds_entity_t topic);
+  static void take(Source& source);
+
+  Endpoints all_;
+  Source writers_{Side::Writer, all_};
+  Source readers_{Side::Reader, all_};
+};
+
+}  // namespace skein::dds::cyclonedds
