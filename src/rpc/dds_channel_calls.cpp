@@ -106,8 +106,8 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
 }
 
 // A caller that waits for the answer also waits for room, as long as it has time; others are told.
-// The writer itself waits before it throws: tries are counted, for a clock that may stand still. The
-// last one is over before the deadline is: what was not sent does not end as TimedOut.
+// The writer itself waits before it throws: tries are counted, for a clock that may stand still.
+// The last one is over before the deadline is: what was not sent does not end as TimedOut.
 void DdsChannel::State::write_in_time(dds::Writer& writer, const Bytes& message,
                                       const PendingCall& call) const {
   const Duration a_try = dds::Qos().max_blocking;
