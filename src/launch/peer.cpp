@@ -40,6 +40,12 @@ using profile::PeerProfile;
 
 constexpr std::size_t kLongestError = 4096;
 
+/// In this thread, and in those that it starts from now on.
+void block_ending_signals() {
+  const sigset_t signals = ending_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
 [[noreturn]] void refuse_process(const MissionProfile& mission, const std::string& process) {
   std::vector<std::string> names;
   for (const PeerProfile& peer : mission.peers) {
@@ -291,6 +297,8 @@ void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry,
              std::chrono::steady_clock::time_point begun) {
   load_plugins(registry, peer);
+  // An activity is told, also one that runs the mission.
+  if (registry.find_activity(peer.component->name)) block_ending_signals();
   Entity* self = nullptr;
   EntityOptions options = entity_options(mission, peer);
   options.head.strategies = registry.strategies();
@@ -360,10 +368,7 @@ int run_process(const MissionProfile& mission, const std::string& process,
 
   if (csp ? csp->threads.lock_memory : peer->threads.lock_memory) lock_memory();
   // A mission has no place at which it could notice a signal: it dies of it, as programs do.
-  if (!peer->runs_mission) {
-    const sigset_t signals = ending_signals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  }
+  if (!peer->runs_mission) block_ending_signals();
   return csp ? run_csp(mission, *peer, *csp, registry) : run_peer(mission, *peer, registry, begun);
 }
 

@@ -293,7 +293,9 @@ TEST_CASE("a peer for which no code would run is refused, and nothing is started
 TEST_CASE("a peer that provides nothing does its own until it is told to end") {
   if (!installed("fastdds")) return;
   const Errand errand;
-  const std::string profile = errand.profile("", "<peer name='h' component='herald.xml'/>");
+  const std::string role = GENERATE("", " role='mission'");
+  const std::string profile =
+      errand.profile("", "<peer name='h' component='herald.xml'" + role + "/>");
   CommandRun check({"check", profile});
   CHECK(check.wait() == 0);
   CommandRun run({"launch", profile, "--verbose"});
