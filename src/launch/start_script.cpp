@@ -122,6 +122,7 @@ judge() {
   elif [ "$role" = mission ]; then
     finish "$2" "$name, which runs the mission, ended with exit code $2"
   elif [ "$2" -ne 0 ] && [ "$role" = required ]; then
+    if [ "$2" -eq 78 ]; then finish 78 "$why"; fi
     if [ -e "$folder/$1/ready" ]; then finish 70 "$why"; else finish 71 "$why"; fi
   elif [ "$2" -eq 0 ]; then
     return 0

@@ -110,6 +110,8 @@ TEST_CASE("A start script ends with the code that the launcher would end with") 
       {kWait, "kill -SEGV $$", 128 + SIGSEGV},
       {"ready; exit 4", kWait, kPeerLost},
       {"exit 4", kWait, kStartFailed},
+      {"exit 78", kWait, kConfigurationError},
+      {"ready; exit 78", kWait, kConfigurationError},
   }));
   CAPTURE(other, script);
   ScriptRun run({shell_child("a", other), mission_child(script)});
