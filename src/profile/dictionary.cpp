@@ -104,10 +104,11 @@ std::optional<double> conversion(std::string_view from, std::string_view to) {
   return of->factor / wanted->factor;
 }
 
-/// What to write in place of a bare number; empty for any other text.
+/// What to write in place of a number without a unit; empty for any other text.
 std::string missing_unit(std::string_view text) {
   const std::string number(trimmed(text));
-  if (!maybe_finite(number)) return "";
+  const auto value = maybe_finite(number);
+  if (!value || std::signbit(*value)) return "";
   return "has no unit of time; write " + in_quotes(number + " ms") + " or " +
          in_quotes(number + " s") + ", whichever it is (ns, us, ms, s, min, h)";
 }

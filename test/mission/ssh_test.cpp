@@ -150,16 +150,19 @@ TEST_CASE("peers of the other host that fail are told by name, and end the missi
   const TwoHosts hosts;
   const Errand errand;
   const SshHost there(hosts.beta, kThere);
-  // Nobody serves the client: the office is a program that does not.
+  // Nobody serves the page: the office is a program that does not.
+  errand.write("page.xml",
+               "<component name='page'><dependencies><depends>IDL:crew/Desk</depends>"
+               "</dependencies></component>");
   Flight flight(
       hosts, there,
       {errand.profile("interface='skein0'",
                       "<peer name='office' component='office.xml' program='sleep' host='10.78.0.1'>"
                       "<argument value='1000'/></peer>" +
-                          peer("client", kThere, "role='mission' ready_timeout='5 s'"))});
+                          peer("page", kThere, "ready_timeout='5 s'"))});
   CHECK(flight.run().wait() == 71);
   CHECK_THAT(flight.run().output(),
-             Contains("10.78.0.2 | * client: ended with exit code 71") &&
+             Contains("10.78.0.2 | * page: ended with exit code 71") &&
                  Contains("waits for its dependency: no provider of 'crew/Desk'"));
 }
 
@@ -175,17 +178,18 @@ TEST_CASE("what keeps the other host from flying is said, with what to do") {
   struct Lack {
     std::string prepare;
     std::string part;
+    int code;
   };
   const std::vector<Lack> lacks{
-      {of_nothing + folder_of(profile), "errand.xml"},
-      {of_nothing + folder_of(built_program("skein")), "there is no Skein on 10.78.0.2"},
+      {of_nothing + folder_of(profile), "errand.xml", 78},
+      {of_nothing + folder_of(built_program("skein")), "there is no Skein on 10.78.0.2", 71},
       {"(cat " + profile + " && echo) > /run/other.xml && mount --bind /run/other.xml " + profile,
-       "copy the profile with all that it names"}};
-  const auto& [prepare, part] = lacks[GENERATE(0, 1, 2)];
+       "copy the profile with all that it names", 78}};
+  const auto& [prepare, part, code] = lacks[GENERATE(0, 1, 2)];
   CAPTURE(prepare);
   const SshHost there(hosts.beta, kThere, prepare);
   Flight flight(hosts, there, {profile});
-  CHECK(flight.run().wait() == 71);
+  CHECK(flight.run().wait() == code);
   CHECK_THAT(flight.run().output(), Contains(part));
   CHECK(there.programs().empty());
 }

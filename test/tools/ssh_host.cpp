@@ -24,7 +24,7 @@ namespace {
 }
 
 std::string server() {
-  for (const std::string root : {std::string(), project_file("build/ssh-server")}) {
+  for (const std::string& root : {std::string(), project_file("build/ssh-server")}) {
     if (access((root + "/usr/sbin/sshd").c_str(), X_OK) == 0) return root;
   }
   skip("there is no OpenSSH server (./dev test unpacks one)");
