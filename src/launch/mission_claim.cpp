@@ -59,14 +59,17 @@ std::optional<ucred> connect(const FileDescriptor& client, const sockaddr_un& ad
   return holder;
 }
 
-/// The inode of the socket of that name, as a process's descriptor shows it.
+constexpr std::string_view kUnconnected = "01";  // SS_UNCONNECTED of <linux/net.h>
+
+/// The inode of the socket that is bound to that name, as a process's descriptor shows it.
 std::optional<std::string> link_to(const std::string& name) {
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {
     std::istringstream columns(line);
-    std::string word, inode, shown;
-    for (int i = 0; i < 6; ++i) columns >> word;
-    columns >> inode >> shown;
+    std::string word, state, inode, shown;
+    for (int i = 0; i < 5; ++i) columns >> word;
+    columns >> state >> inode >> shown;
+    if (state != kUnconnected) continue;  // what is connected to it bears its name, too
     // Each zero shows as '@', and the name is filled up with them.
     shown.erase(shown.find_last_not_of('@') + 1);
     if (shown == "@" + name) return "socket:[" + inode + "]";

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <future>
 
 #include "../tools/eventually.hpp"
@@ -139,6 +140,22 @@ TEST_CASE("Clients that say nothing, too much, or go away do not keep others fro
   CHECK_THAT(mission.ask("status"), Contains("\"a\""));
   char answer = 0;
   CHECK(::read(talkative.get(), &answer, 1) <= 0);  // it was sent away
+}
+
+TEST_CASE("A launcher that has no room for further clients is known all the same") {
+  profile::MissionProfile mission;
+  mission.name = "asked too much of process " + std::to_string(::getpid());
+  const MissionClaim claim(mission, "");
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  std::vector<FileDescriptor> waiting;
+  do {
+    waiting.emplace_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  } while (::connect(waiting.back().get(), reinterpret_cast<const sockaddr*>(&address), size) == 0);
+  REQUIRE(errno == EAGAIN);
+  CHECK_THROWS_WITH(MissionClaim(mission, ""),
+                    Contains("by process " + std::to_string(::getpid())));
 }
 
 TEST_CASE("Another user's process that takes a launcher's name keeps no mission from flying") {
