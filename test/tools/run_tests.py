@@ -264,8 +264,9 @@ def main():
         begin = time.monotonic()
         code, failures, _ = runner.run(chosen)
         suspects, final = judge(runner, failures)
-        for name, found in cores.by_test().items() if final else ():
-            if name in final or name == "":
+        crashed = runner.crashed()
+        for name, found in cores.by_test().items():
+            if name in final or name in crashed or name == "":
                 for core in found:
                     print(stacks(core))
     took = time.monotonic() - begin
