@@ -152,7 +152,7 @@ void ReceiveQueue::note_expired_on_arrival(const Arrival& arrival, SourceTime li
   };
   log(LogLevel::Warning, "dds",
       "topic '" + topic_ + "': what participant " + arrival.writer.participant().hex() +
-          " writes is " + to_text(source_time_() - *arrival.written) +
+          " writes is " + to_text(source_time_() - arrival.written.value_or(source_time_())) +
           " old when it comes, by the two hosts' clocks, and its lifespan is " + to_text(lifespan) +
           ": all of it is dropped. If the clocks differ, set them by NTP or PTP; otherwise publish "
           "with a longer lifespan");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "common.hpp"
@@ -111,12 +112,13 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
 void DdsChannel::State::write_in_time(dds::Writer& writer, const Bytes& message,
                                       const PendingCall& call) const {
   const Duration a_try = dds::Qos().max_blocking;
-  for (Duration left = call.deadline() - clock.now();; left -= a_try) {
+  for (std::optional<Duration> left;; *left -= a_try) {
     try {
       return writer.write(message);
     } catch (const Overloaded&) {
-      const bool may_wait = call.blocking() && left > 2 * a_try;
-      if (!may_wait || !is_open()) throw;
+      if (!call.blocking()) throw;
+      if (!left) left = call.deadline() - clock.now();  // asked for where there is need alone
+      if (*left <= a_try || !is_open()) throw;
     }
   }
 }

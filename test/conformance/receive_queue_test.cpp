@@ -195,6 +195,17 @@ TEST_CASE("a writer of whom all has expired when it comes is told of once, with 
   CHECK(log.count("lifespan is 500 ms") == 1);
 }
 
+TEST_CASE("samples that do not say when they were written expire by when they came") {
+  Stage stage;
+  test::Log log;
+  for (int i = 0; i < 20; ++i) {
+    CHECK_FALSE(stage.queue.store(
+        {payload(number(1)), InstanceState::Alive, KeyHash{}, guid(1), std::nullopt},
+        WriterOffer{0, 0ms}));
+  }
+  CHECK(log.count("is 0 ms old") == 1);
+}
+
 TEST_CASE("an instance is its strongest writer's, of equals the one with the lesser GUID") {
   Qos qos;
   qos.exclusive = true;
