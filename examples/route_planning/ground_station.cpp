@@ -88,7 +88,9 @@ GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& value
       terrain_title_(std::filesystem::path(terrain_->name()).filename().string()),
       ground_(ground_of(*terrain_)),
       navigator_(entity),
-      limits_(ask_flight_limits()) {}
+      limits_(ask_flight_limits()) {
+  skein::navigation::try_route_picture(picture_);
+}
 
 bool GroundStation::fly() {
   introduce();

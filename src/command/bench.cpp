@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "commands.hpp"
-#include "skein/error.hpp"
+#include "core/whole_file.hpp"
 
 namespace skein::command {
 namespace {
@@ -55,10 +54,7 @@ void print(const Rows& rows) {
 }
 
 void save(const Rows& rows, const std::string& path) {
-  std::ofstream file(path);
-  file << rows.dump(2) << '\n';
-  if (!file.flush())
-    throw InvalidArgument(path + " cannot be written; is its folder there and writable?");
+  write_whole_file("the report", path, rows.dump(2) + '\n');
 }
 
 int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&)) {
@@ -66,6 +62,7 @@ int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&))
     bench::serve(arguments);
     return 0;
   }
+  if (!arguments.output.empty()) try_whole_file("the report", arguments.output);
   bench::vendors_of(arguments);  // throws, where it must, before there is another process
   std::unique_ptr<Server> server;
   if (!arguments.remote) server = std::make_unique<Server>(arguments);

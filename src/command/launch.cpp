@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,10 +43,7 @@ class Journal {
   std::string place() const { return log_ ? "; the logs are in " + log_->folder().string() : ""; }
 
  private:
-  void complain() const {
-    narrator_->tell_error("* mission: the logs in " + log_->folder().string() +
-                          " cannot be written: " + std::strerror(errno));
-  }
+  void complain() const { narrator_->tell_error("* mission: the log " + log_->failure()); }
 
   std::optional<launch::MissionLog> log_;
   std::shared_ptr<Narrator> narrator_;

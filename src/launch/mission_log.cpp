@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -81,7 +82,9 @@ RotatingFile& MissionLog::file_of(std::string_view process) {
 
 bool MissionLog::write(RotatingFile& file, std::string_view text) {
   if (file.write(both_clocks(launched_) + " " + printable(text, text.size()))) return true;
-  return std::exchange(failed_, true);
+  if (!failure_.empty()) return true;
+  failure_ = file.path().string() + " cannot be written: " + std::generic_category().message(errno);
+  return false;
 }
 
 bool MissionLog::add_line(std::string_view process, std::string_view line) {

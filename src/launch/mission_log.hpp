@@ -32,6 +32,9 @@ class MissionLog {
   bool add_event(const ChildEvent& event);
   bool add_event(std::string_view text);
 
+  /// `FILE cannot be written: REASON`, of the first line that was not; empty before.
+  const std::string& failure() const noexcept { return failure_; }
+
   const std::filesystem::path& folder() const noexcept { return folder_; }
 
  private:
@@ -43,7 +46,7 @@ class MissionLog {
   const Time launched_ = std::chrono::steady_clock::now();
   RotatingFile events_;
   std::map<std::string, RotatingFile, std::less<>> files_;
-  bool failed_ = false;
+  std::string failure_;
 };
 
 }  // namespace skein::launch

@@ -24,6 +24,8 @@ class RotatingFile {
   /// Adds a line whole; a line break follows it. False, with errno, where that fails.
   bool write(std::string_view line);
 
+  const std::filesystem::path& path() const noexcept { return file_; }
+
  private:
   std::filesystem::path numbered(std::size_t number) const;
   bool rotate();

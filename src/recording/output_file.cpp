@@ -46,6 +46,11 @@ void OutputFile::append(std::span<const std::byte> piece) {
   size_ += piece.size();
 }
 
+/// What is no regular file has no disk.
+void OutputFile::sync() {
+  if (::fsync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
+}
+
 void OutputFile::fail(int error) {
   const std::string space = free_space(file_.get());
   std::string text = "the recording '" + path_ + "' ends at " + std::to_string(size_) +

@@ -18,6 +18,9 @@ class OutputFile {
   /// Throws Unavailable, with the reason and the remedy.
   void append(std::span<const std::byte> piece);
 
+  /// Brings all of it to the disk. Throws as append() does.
+  void sync();
+
   const std::string& path() const noexcept { return path_; }
   std::uint64_t size() const noexcept { return size_; }
 

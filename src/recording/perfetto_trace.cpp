@@ -1,9 +1,8 @@
 #include "recording/perfetto_trace.hpp"
 
 #include <algorithm>
-#include <fstream>
 
-#include "core/printable.hpp"
+#include "core/whole_file.hpp"
 #include "recording/protobuf_writer.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
@@ -223,6 +222,7 @@ PerfettoExport export_to_perfetto(const Reader& recording, const std::string& pa
     throw InvalidArgument(std::string("the recording has neither ") + kCallsTopic + " nor " +
                           kDecisionsTopic + "; record these topics to have a trace");
   }
+  try_whole_file("the trace", path);
   PerfettoTrace trace;
   PerfettoExport done;
   auto messages = recording.messages(selection);
@@ -240,13 +240,7 @@ PerfettoExport export_to_perfetto(const Reader& recording, const std::string& pa
       ++done.malformed;
     }
   }
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << trace.finish();
-  file.close();
-  if (!file) {
-    throw Unavailable("the trace '" + printable(path) +
-                      "' cannot be written; name a file in a folder that may be written to");
-  }
+  write_whole_file("the trace", path, trace.finish());
   return done;
 }
 

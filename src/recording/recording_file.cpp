@@ -237,6 +237,7 @@ void RecordingFile::finish() {
   writer.set_number(crc, crc32(bytes_of(piece_, summary).first(crc - summary)));
   piece_.append(kMagic);
   end();
+  file_.sync();
 }
 
 }  // namespace skein::recording

@@ -86,6 +86,8 @@ TEST_CASE("A log that cannot be written says so once, and later lines are tried 
   MissionLog log(folder.path() / "logs", {});
   std::filesystem::remove(folder.path() / "logs" / "processes");
   CHECK_FALSE(log.add_line("a", "lost"));
+  CHECK_THAT(log.failure(),
+             Catch::Contains("/processes/a.log cannot be written: No such file or directory"));
   CHECK(log.add_line("a", "lost"));
   std::filesystem::create_directory(folder.path() / "logs" / "processes");
   CHECK(log.add_line("a", "kept"));

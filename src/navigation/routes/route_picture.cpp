@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "core/whole_file.hpp"
 #include "navigation/routes/route_lines.hpp"
 #include "navigation/routes/route_profiles.hpp"
 #include "navigation/routes/terrain_shading.hpp"
 #include "navigation/terrain/plane_geometry.hpp"
-#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -309,10 +308,9 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
 void write_route_picture(const std::filesystem::path& file, const Terrain& terrain,
                          const AE_navigator::Problem& problem,
                          std::span<const PicturedRoute> routes, const std::string& title) {
-  std::ofstream out(file, std::ios::binary);
-  out << route_picture(terrain, problem, routes, title);
-  out.close();
-  if (!out) throw InvalidArgument(fmt::format("{}: the picture cannot be written", file.string()));
+  write_whole_file("the picture", file, route_picture(terrain, problem, routes, title));
 }
+
+void try_route_picture(const std::filesystem::path& file) { try_whole_file("the picture", file); }
 
 }  // namespace skein::navigation

@@ -22,9 +22,13 @@ struct PicturedRoute {
 std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& problem,
                           std::span<const PicturedRoute> routes, const std::string& title);
 
-/// Writes such a picture. Throws InvalidArgument where the file cannot be written.
+/// Writes such a picture. Throws InvalidArgument where the file cannot be made, Unavailable where
+/// it cannot be written.
 void write_route_picture(const std::filesystem::path& file, const Terrain& terrain,
                          const AE_navigator::Problem& problem,
                          std::span<const PicturedRoute> routes, const std::string& title);
+
+/// Throws InvalidArgument where such a file cannot be made; for those who will write it later.
+void try_route_picture(const std::filesystem::path& file);
 
 }  // namespace skein::navigation
