@@ -70,7 +70,6 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   options.spin = owner.threads.settings.spin;
   options.network = network_of(mission, peer);
   options.network.shared_memory = owner.shared_memory;
-  options.network.allowed_sources = peer.allowed_sources;
   if (!peer.topics.empty()) {
     options.adjust_topic = [rules = peer.topics](const std::string& topic, TopicQos& qos) {
       if (const auto* found = profile::find_topic(rules, topic)) found->change(qos);
@@ -334,6 +333,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
 
 dds::Network network_of(const MissionProfile& mission, const PeerProfile& peer) {
   dds::Network network;
+  network.allowed_sources = peer.allowed_sources;
   if (peer.interface.empty()) return network;
   network.interfaces = {peer.interface};
   network.multicast_discovery = peer.multicast;

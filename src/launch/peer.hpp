@@ -8,8 +8,8 @@
 
 namespace skein::launch {
 
-/// Where a peer speaks. One with an interface, but neither peers= nor multicast, asks the hosts
-/// that other peers of the mission name.
+/// Where a peer speaks, and whom it listens to. One with an interface, but neither peers= nor
+/// multicast, asks the hosts that other peers of the mission name.
 dds::Network network_of(const profile::MissionProfile& mission, const profile::PeerProfile& peer);
 
 /// How a peer joins its mission: vendor, domain, system, interface, shared memory, how long its

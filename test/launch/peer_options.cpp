@@ -78,6 +78,12 @@ TEST_CASE("Where a peer speaks and whom it asks follows from the profile") {
     CHECK(network.peers == Hosts{"10.0.0.2"});
     CHECK_FALSE(network.multicast_discovery);
   }
+  SECTION("with allowed sources: to those alone it listens, on whatever interface") {
+    CHECK(network_of("allowed_sources='10.0.0.7 10.1.0.0/16'").allowed_sources ==
+          Hosts{"10.0.0.7", "10.1.0.0/16"});
+    CHECK(network_of("interface='eth0' allowed_sources='10.0.0.7'").allowed_sources ==
+          Hosts{"10.0.0.7"});
+  }
   SECTION("with peers: those") {
     CHECK(network_of("interface='eth0' peers='10.0.0.7, far'").peers == Hosts{"10.0.0.7", "far"});
   }
