@@ -123,7 +123,8 @@ class Reader {
 
  private:
   void read_declaration(Line& line) {
-    const std::string keyword = lower(line.word());
+    std::string keyword = lower(line.word());
+    if (keyword.ends_with(',')) keyword.pop_back();  // in CPMP-2015
     if (keyword == "@relation") return;
     if (keyword == "@attribute") return read_attribute(line);
     if (keyword != "@data") {

@@ -17,7 +17,7 @@ class Reader {
     std::ifstream stream(file);
     if (!stream) throw InvalidArgument(file.string() + " cannot be read; name an ASlib folder");
     try {
-      root_ = YAML::Load(stream);
+      root_ = YAML::Load(with_quoted_marks(stream));
     } catch (const YAML::Exception& error) {
       refuse(error.mark, "it is no YAML: " + error.msg, "correct it");
     }
@@ -34,6 +34,7 @@ class Reader {
     found.algorithms = algorithms();
     read_steps(found);
     found.default_steps = list("default_steps");
+    leave_out_algorithm_steps(found);
     check_steps(found);
     return found;
   }
@@ -43,6 +44,18 @@ class Reader {
                            const std::string& remedy) const {
     const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
     throw InvalidArgument(file_.string() + line + ": " + cause + "; " + remedy);
+  }
+
+  /// Published scenarios write `key: ?` for what is not known, which in YAML begins a key.
+  static std::string with_quoted_marks(std::istream& stream) {
+    std::string text;
+    for (std::string line; std::getline(stream, line);) {
+      const std::string bare = trimmed(line);
+      const bool unknown = bare.ends_with(": ?") || bare == "- ?";
+      text += unknown ? line.substr(0, line.rfind('?')) + "'?'" : line;
+      text += '\n';
+    }
+    return text;
   }
 
   YAML::Node node(const std::string& key) const {
@@ -130,6 +143,15 @@ class Reader {
              "write `provides:` and a list of features below it");
     }
     found.steps[trimmed(name.Scalar())] = {list(step["provides"]), list(step["requires"])};
+  }
+
+  /// Steps of features of algorithms stand among the default ones.
+  void leave_out_algorithm_steps(Description& found) const {
+    found.algorithm_steps = list("algorithm_feature_steps");
+    std::erase_if(found.default_steps, [&](const std::string& name) {
+      return !found.steps.contains(name) &&
+             std::ranges::find(found.algorithm_steps, name) != found.algorithm_steps.end();
+    });
   }
 
   void check_steps(const Description& found) const {

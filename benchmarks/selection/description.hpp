@@ -21,6 +21,8 @@ struct Description {
   std::vector<std::string> algorithms;  ///< Sorted; empty if it lists none.
   std::map<std::string, FeatureStep> steps;  ///< Empty if it names none.
   std::vector<std::string> default_steps;    ///< Empty if it names none.
+  /// Of features of algorithms, which are not read: of an algorithm its runs tell more.
+  std::vector<std::string> algorithm_steps;
 
   /// The default steps, or else all, and those that they require, each once.
   std::vector<std::string> used_steps() const;

@@ -43,6 +43,8 @@ class Reader {
   }
 
   Scenario read() {
+    for (const std::string& step : description_.algorithm_steps)
+      note("the features of algorithms are left out: step '" + step + "'");
     read_runs();
     read_folds();
     read_features();

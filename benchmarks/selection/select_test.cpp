@@ -242,6 +242,26 @@ TEST_CASE("A scenario may list its algorithms elsewhere, and have no steps, cost
   CHECK(scenario.instances[1].features_cost_s == 0);
 }
 
+TEST_CASE(
+    "A scenario is read as it was published: unknown limits, a comma, features of algorithms") {
+  const Folder folder;
+  write_tiny(folder);
+  std::string text = kDescription;
+  text.replace(text.find("[more]"), 6, "\n- more\n- software");
+  folder.write("description.txt",
+               "algorithm_cutoff_memory: ?\n" + text +
+                   "algorithm_feature_steps:\n  software:\n    provides:\n    - Lines..Total. \n"
+                   "features_cutoff_time:   ? \nfeatures_stochastic:\n- ?\n");
+  std::string runs = kRuns;
+  runs.replace(runs.find("@DATA"), 5, "@data,");
+  folder.write("algorithm_runs.arff", runs);
+  const Scenario scenario = read_scenario(folder.path());
+  CHECK(scenario.instances.size() == 4);
+  CHECK(scenario.instances[1].features.size() == 2);
+  CHECK_THAT(scenario.notes.front(),
+             Contains("the features of algorithms are left out: step 'software'"));
+}
+
 TEST_CASE("A scenario that cannot be replayed is refused with the place and the cause") {
   const Folder folder;
   write_tiny(folder);
