@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "demo.hpp"
@@ -123,6 +124,30 @@ TEST_CASE(
     CHECK(violations(demo.problem, route, demo.ground) == "");
     CHECK(route.planner == name);
     CHECK(cost_m(demo.problem, route) < 1.2 * best);
+  }
+}
+
+TEST_CASE("No planner has a thread of its library's, on which an exception would end the process") {
+  const Demo demo;
+  const auto threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const auto before = threads();
+  for (const std::string name : {"RRTConnect", "RRTstar", "InformedRRTstar", "PRMstar"}) {
+    INFO(name);
+    PlannerOptions options;
+    int left = 200;
+    auto most = before;
+    options.now = [&] {
+      most = std::max(most, threads());
+      return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1));
+    };
+    try {
+      make_planner(name, demo.terrains, options)->plan(demo.problem);
+    } catch (const NoRoute&) {  // in so few looks at the clock
+    }
+    CHECK(most == before);
   }
 }
 

@@ -8,9 +8,7 @@
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/util/Console.h>
 
-#include <atomic>
 #include <mutex>
-#include <thread>
 
 namespace skein::navigation {
 namespace {
@@ -114,18 +112,12 @@ Sampling::Sampling(const PlanningScene& scene, std::uint32_t seed, Berth berth) 
 
 void Sampling::count_exposure() const {
   problem_->setOptimizationObjective(std::make_shared<RiskObjective>(space_, scene_));
-  // The scene makes its map of risks at first use, which a planner's second thread must not be.
-  scene_.cost(on_map(scene_.problem().start), on_map(scene_.problem().goal));
 }
 
 std::optional<GroundPath> Sampling::solve(ob::Planner& planner,
                                           const std::function<bool()>& ends) const {
-  std::atomic<bool> ended = false;
-  const ob::PlannerTerminationCondition condition([&, caller = std::this_thread::get_id()] {
-    if (std::this_thread::get_id() == caller && ends()) ended = true;
-    return ended.load();
-  });
-  if (planner.solve(condition) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
+  if (planner.solve(ob::PlannerTerminationCondition(ends)) != ob::PlannerStatus::EXACT_SOLUTION)
+    return std::nullopt;
   GroundPath path;
   auto& solution = *problem_->getSolutionPath()->as<ompl::geometric::PathGeometric>();
   for (const ob::State* state : solution.getStates()) path.push_back(point_of(state));

@@ -33,8 +33,7 @@ class Sampling {
   void count_exposure() const;
 
   /// Runs the planner until it has a path or `ends` holds, asked at every step: the library's own
-  /// time limits are polled late. Only a path that reaches the goal counts. `ends` is asked on this
-  /// thread alone, though some planners have two.
+  /// time limits are polled late. Only a path that reaches the goal counts.
   std::optional<GroundPath> solve(ompl::base::Planner& planner,
                                   const std::function<bool()>& ends) const;
 

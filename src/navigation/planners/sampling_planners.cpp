@@ -3,6 +3,7 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "navigation/planners/planners.hpp"
@@ -69,9 +70,52 @@ ob::PlannerPtr make_tree(const Sampling& sampling, std::uint32_t seed) {
   return planner;
 }
 
-template <class Planner>
+/// The library's own looks for a path on a second thread, where whatever is thrown ends the
+/// process: for want of memory, or because two ends are joined by roads whose cost is no number.
+/// Here the caller's thread looks, each time that the map has grown by a quarter.
+class Roadmap final : public og::PRMstar {
+ public:
+  Roadmap(const ob::SpaceInformationPtr& space, std::uint32_t seed) : PRMstar(space) {
+    rng_.setLocalSeed(seed);
+  }
+
+  ob::PlannerStatus solve(const ob::PlannerTerminationCondition& ends) override {
+    checkValidity();
+    while (const ob::State* start = pis_.nextStart()) {
+      startM_.push_back(addMilestone(si_->cloneState(start)));
+    }
+    while (const ob::State* goal = pis_.nextGoal()) {
+      goalM_.push_back(addMilestone(si_->cloneState(goal)));
+    }
+    if (startM_.empty()) return ob::PlannerStatus::INVALID_START;
+    if (goalM_.empty()) return ob::PlannerStatus::INVALID_GOAL;
+    ob::PathPtr best;
+    while (!ends) {
+      grow(ends);
+      keep_better(best);
+    }
+    if (!best) return ob::PlannerStatus::TIMEOUT;
+    pdef_->addSolutionPath(best, false, 0, getName());
+    return ob::PlannerStatus::EXACT_SOLUTION;
+  }
+
+ private:
+  void grow(const ob::PlannerTerminationCondition& ends) {
+    constexpr unsigned long kLeast = 20;
+    unsigned long left = std::max(kLeast, milestoneCount() / 4);
+    constructRoadmap(ob::PlannerTerminationCondition([&] { return ends() || left-- == 0; }));
+  }
+
+  void keep_better(ob::PathPtr& best) {
+    ob::PathPtr found;
+    maybeConstructSolution(startM_, goalM_, found);
+    if (!found) return;
+    if (!best || opt_->isCostBetterThan(found->cost(opt_), best->cost(opt_))) best = found;
+  }
+};
+
 ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
-  return std::make_shared<Seeded<Planner>>(sampling.space(), seed);
+  return std::make_shared<Roadmap>(sampling.space(), seed);
 }
 
 class ImprovingPlanner final : public AE_navigator::IPlanner {
@@ -161,8 +205,8 @@ std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
 
 std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
                                                       PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"PRMstar", make_roadmap<og::PRMstar>},
-                                            std::move(terrains), std::move(options));
+  return std::make_unique<ImprovingPlanner>(Improver{"PRMstar", make_roadmap}, std::move(terrains),
+                                            std::move(options));
 }
 
 }  // namespace skein::navigation
