@@ -125,6 +125,12 @@ TEST_CASE(
       {[](Problem& p) { p.minimum_height_above_ground_m = -1; },
        "minimum height above ground is -1"},
       {[](Problem& p) { p.exposure_weight = -0.5; }, "exposure weight is -0.5"},
+      {[](Problem& p) { p.exposure_weight = 1e38; },
+       "exposure weight is 1e+38; it must lie between 0 and 1e+12"},
+      {[=](Problem& p) { p.exposure_weight = nan; }, "exposure weight is nan"},
+      {[](Problem& p) { p.kill_weight_m = 2e12; }, "weight of an expected kill is 2e+12 m"},
+      {[](Problem& p) { p.radar_sites[1].strength = 1e38; },
+       "the strength of radar site 'Bravo' is 1e+38; it must be 1e+12 or less"},
   };
   for (const std::string& name : planner_names()) {
     const auto planner = make_planner(name, demo.terrains);

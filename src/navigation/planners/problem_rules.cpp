@@ -14,6 +14,9 @@ namespace {
 constexpr std::size_t kMaxZones = 1000;
 constexpr std::size_t kMaxCorners = 1000;
 constexpr std::size_t kMaxSites = 1000;
+/// Of weights and of what sites do to whom they see. All sites together then stay within what a
+/// float holds, in which the maps of risks count: 1e12 * 1e12 * 1000, times 256 near a radar.
+constexpr double kLargestWeight = 1e12;
 constexpr double kDegree = std::numbers::pi / 180;
 
 template <class... Arguments>
@@ -47,10 +50,12 @@ void require_valid_limits(const AE_navigator::Problem& problem) {
               problem.minimum_height_above_ground_m >= 0,
           "the minimum height above ground is {} m; it must be 0 or more",
           problem.minimum_height_above_ground_m);
-  require(std::isfinite(problem.exposure_weight) && problem.exposure_weight >= 0,
-          "the exposure weight is {}; it must be 0 or more", problem.exposure_weight);
-  require(std::isfinite(problem.kill_weight_m) && problem.kill_weight_m >= 0,
-          "the weight of an expected kill is {} m; it must be 0 or more", problem.kill_weight_m);
+  require(problem.exposure_weight >= 0 && problem.exposure_weight <= kLargestWeight,
+          "the exposure weight is {}; it must lie between 0 and {}", problem.exposure_weight,
+          kLargestWeight);
+  require(problem.kill_weight_m >= 0 && problem.kill_weight_m <= kLargestWeight,
+          "the weight of an expected kill is {} m; it must lie between 0 and {}",
+          problem.kill_weight_m, kLargestWeight);
   require(std::isfinite(problem.exposure_cap_m) && problem.exposure_cap_m >= 0,
           "the exposure cap is {} m; it must be 0 (no cap) or more", problem.exposure_cap_m);
 }
@@ -87,6 +92,8 @@ void require_valid_site(const char* kind, const Site& site, double rate, const c
   require(site.mast_height_m > 0 && site.range_m > 0 && rate >= 0,
           "{} site '{}' needs a mast and a range greater than 0 and a {} of 0 or more", kind,
           site.name, rate_name);
+  require(rate <= kLargestWeight, "the {} of {} site '{}' is {}; it must be {} or less", rate_name,
+          kind, site.name, rate, kLargestWeight);
 }
 
 void require_valid_end(const char* which, const AE_navigator::Position& end,
