@@ -47,7 +47,7 @@ std::string difference(const introspection::Decision& record,
   for (std::size_t i = 0; i < attempts.size(); ++i) {
     const introspection::Attempt& was = record.attempts[i];
     const introspection::Attempt& is = attempts[i];
-    if (is == was) continue;
+    if (same_choice(is, was)) continue;
     return "choice " + std::to_string(i + 1) + " was " + was.csp + " (" + was.reason +
            "), and is now " + is.csp + " (" + is.reason + ")";
   }

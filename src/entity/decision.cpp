@@ -1,5 +1,7 @@
 #include "skein/decision.hpp"
 
+#include <tuple>
+
 #include "decision_record.hpp"
 #include "skein/error.hpp"
 #include "wire_values.hpp"
@@ -140,6 +142,14 @@ const char* in_words(Outcome outcome) noexcept {
       break;
   }
   return "failed";
+}
+
+bool same_choice(const Attempt& one, const Attempt& other) {
+  const auto choice = [](const Attempt& attempt) {
+    return std::tie(attempt.csp, attempt.reason, attempt.explores, attempt.remaining, attempt.slice,
+                    attempt.expected, attempt.round);
+  };
+  return choice(one) == choice(other);
 }
 
 std::vector<Attempt> replay(const Decision& record, const StrategyFactory& strategies) {

@@ -1,5 +1,6 @@
 #include "skein/entity.hpp"
 
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -75,10 +76,13 @@ void check_owner(const std::string& owner, const std::string& csp) {
 void check_attributes(const ServiceOptions& options, const std::string& who) {
   using Kind = brokerless_discovery::Quantity::Kind;
   for (const auto& [name, value] : options.attributes) {
-    const Kind kind = brokerless_discovery::quantity_of(value).kind;
+    const auto quantity = brokerless_discovery::quantity_of(value);
     const bool latency = name == "latency";
     if (!latency && name != "quality") continue;
-    if (kind == Kind::Number || (latency && kind == Kind::Time)) continue;
+    const bool finite = std::isfinite(quantity.value);
+    if (finite && (quantity.kind == Kind::Number || (latency && quantity.kind == Kind::Time))) {
+      continue;
+    }
     throw InvalidArgument("the attribute " + name + " of '" + who + "' is '" + value +
                           "'; write a number" +
                           (latency ? " of milliseconds, or a duration: 0.3 s" : ""));

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -50,6 +51,7 @@ Head::State::Known Head::State::known(const InterfaceInfo& interface,
   candidate.in_process = service != nullptr;
   candidate.pid = description.pid;
   candidate.quality = number_attribute(description, "quality").value_or(0);
+  if (!std::isfinite(candidate.quality)) candidate.quality = 0;  // as if it were not declared
   candidate.latency = declared_latency(description);
   known.breaker = &breaker(interface.name, candidate.name);
   return known;

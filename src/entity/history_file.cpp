@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -27,12 +28,18 @@ introspection::PastRun run_of(const History::Sample& sample) {
           sample.after};
 }
 
+/// Files from before a quality had to be a number may have others.
+std::optional<double> quality_of(const introspection::PastRun& run) {
+  const auto quality = wire_values::maybe(run.quality);
+  return quality && std::isfinite(*quality) ? quality : std::nullopt;
+}
+
 History::Sample sample_of(const introspection::PastRun& run) {
   return {std::make_shared<const Features>(wire_values::features(run.features)),
           wire_values::duration(run.took),
           run.accepted,
           run.late,
-          wire_values::maybe(run.quality),
+          quality_of(run),
           run.request,
           run.after};
 }

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "../tools/describe.hpp"
 #include "office.hpp"
@@ -105,6 +106,37 @@ TEST_CASE("a decision's record holds candidates, choice, reason, outcome and tim
   CHECK_THAT(record.attempts[0].reason, Catch::Contains("best declared quality"));
   CHECK(record.attempts[0].slice <= record.available - 10'000'000);
   CHECK(record.took >= record.attempts[0].took);
+}
+
+TEST_CASE("a result whose quality is no number is rejected, told, and nothing of it is learned") {
+  Office office;
+  office.add("dazed", Place::Inside, answer_as("dazed"), declared("10", "0.9"));
+  office.add("clear", Place::Inside, answer_as("clear"), declared("10", "0.5"));
+  WorkTask task = Office::task("a");
+  task.quality = [](const std::string& result) {
+    return result.starts_with("dazed") ? std::numeric_limits<double>::quiet_NaN() : 0.5;
+  };
+  CHECK(office.perform(task, 10s) == "clear did a");
+  CHECK(office.attempts() == std::vector<std::string>{"dazed rejected", "clear accepted"});
+  CHECK(office.attempt_of("dazed").check == "quality");
+  CHECK(office.attempt_of("dazed").text == "its quality is no finite number");
+  CHECK(office.attempt_of("dazed").quality.empty());
+}
+
+TEST_CASE("a declared quality or latency that is no finite number is refused") {
+  Office office;
+  for (const std::string quality : {"nan", "inf", "-inf", "much"}) {
+    CHECK_THROWS_WITH(
+        office.owner->provide_csp<crew::Worker>(
+            "dazed", office.owner->id(), std::make_shared<ScriptedWorker>(answer_as("dazed")),
+            declared("10", quality)),
+        Catch::Contains("the attribute quality of 'dazed' is '" + quality + "'; write a number"));
+  }
+  CHECK_THROWS_WITH(
+      office.owner->provide_csp<crew::Worker>("dazed", office.owner->id(),
+                                              std::make_shared<ScriptedWorker>(answer_as("dazed")),
+                                              declared("inf s", "0.5")),
+      Catch::Contains("the attribute latency of 'dazed' is 'inf s'"));
 }
 
 TEST_CASE("a declared latency is a number of milliseconds, or has any unit of time") {

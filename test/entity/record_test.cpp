@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <mutex>
 
 #include "../tools/places.hpp"
@@ -72,6 +73,19 @@ TEST_CASE("each decision's choices come out of its record again, bit for bit") {
     for (const auto& attempt : record.attempts) explored = explored || attempt.explores;
   }
   CHECK(explored == (strategy == "learned"));
+}
+
+TEST_CASE("a record with a quality that is no number comes out again") {
+  Mixed mixed({.strategy = "learned"});
+  mixed.perform(3);
+  Decision record = mixed.office.owner->head().decisions().back();
+  record.attempts.back().quality = {std::numeric_limits<double>::quiet_NaN()};
+  const auto carried = idl::from_json<Decision>(idl::to_json(record));
+  const auto again = replay(carried);
+  REQUIRE(again.size() == record.attempts.size());
+  for (std::size_t i = 0; i < again.size(); ++i) CHECK(same_choice(again[i], record.attempts[i]));
+  record.attempts.front().reason = "another";
+  CHECK_FALSE(same_choice(again.front(), record.attempts.front()));
 }
 
 TEST_CASE("a record that was changed does not come out again") {

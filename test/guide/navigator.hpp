@@ -44,8 +44,8 @@ class Navigator : public survey::INavigator {
       return planner.plan(area);
     };
     task.evaluate.check("covers the area", [&](const survey::Track& track) {
-      return track.covered_m2 < area_m2 ? std::optional<std::string>("it leaves out a part")
-                                        : std::nullopt;
+      return track.covered_m2 >= area_m2 ? std::nullopt
+                                         : std::optional<std::string>("it leaves out a part");
     });
     task.quality = [&](const survey::Track& track) { return area_m2 / 10 / track.length_m; };
     try {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -129,6 +130,7 @@ class TypedRun final : public TaskRun {
     verdict.outcome = introspection::Outcome::Accepted;
     verdict.fault = false;
     if (task_.quality) verdict.quality = task_.quality(result);
+    if (!std::isfinite(verdict.quality.value_or(0))) return without_quality();
     const double quality = verdict.quality.value_or(0);
     if (opinions_.empty() || quality > best_quality_) {
       best_ = opinions_.size();
@@ -141,6 +143,15 @@ class TypedRun final : public TaskRun {
   const Task<Interface, Result>& task_;
   std::vector<Opinion<Result>> opinions_;
   std::size_t best_ = 0;
+  /// Nothing compares with it: neither this result nor the CSP's next ones could be judged.
+  static Verdict without_quality() {
+    Verdict verdict;
+    verdict.outcome = introspection::Outcome::Rejected;
+    verdict.check = "quality";
+    verdict.text = "its quality is no finite number";
+    return verdict;
+  }
+
   double best_quality_ = 0;
   std::optional<Result> result_;
 };
