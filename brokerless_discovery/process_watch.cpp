@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "abstract_socket.hpp"
+#include "core/start_thread.hpp"
 #include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {
@@ -76,7 +77,7 @@ struct ProcessWatch::State {
     if (!epoll || !wake || !timer) throw_unavailable();
     control(EPOLL_CTL_ADD, wake, kWake, EPOLLIN);
     control(EPOLL_CTL_ADD, timer, kTimer, EPOLLIN);
-    thread = std::thread([this] { run(); });
+    thread = start_thread("skein-watch", [this] { run(); });
   }
 
   ~State() {

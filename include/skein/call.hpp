@@ -1,5 +1,9 @@
 #pragma once
 
+#if __cplusplus < 202002L
+#include "skein/detail/version.hpp"  // which says so: <coroutine> would say less
+#endif
+
 #include <coroutine>
 #include <functional>
 #include <memory>

@@ -98,8 +98,9 @@ class ComponentRegistry {
   /// Loads a plugin (it is never unloaded) and calls its `skein_register_components`. `name` is a
   /// path, or a name such as `skein_navigation_components` for `libskein_navigation_components.so`,
   /// which is searched in the folders of SKEIN_MODULE_PATH and beside libskein. Throws Unavailable
-  /// with these folders if it cannot be loaded; InvalidArgument if it is no plugin, was built for
-  /// another version, or lies where every user may write: it is not loaded then.
+  /// with these folders if it cannot be loaded, and with its own reason if it throws while it
+  /// registers its components; InvalidArgument if it is no plugin, was built for another version,
+  /// registers what is there already, or lies where every user may write: it is not loaded then.
   void load_plugin(const std::string& name);
 
  private:

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "skein/detail/version.hpp"
+
 namespace skein::discovery {
 struct ServiceDescription;
 }

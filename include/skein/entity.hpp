@@ -59,7 +59,7 @@ struct ServiceOptions {
   /// Where blocking calls from the same process run; all others run on the service's own threads.
   /// With CallThread::Caller, calls run one at a time, and `threads` must be 1.
   CallThread thread = CallThread::Own;
-  /// Number of own threads that run this service's calls.
+  /// Number of own threads that run this service's calls; 1 or more.
   std::size_t threads = 1;
   /// Scheduling of these threads.
   ThreadSettings scheduling{};

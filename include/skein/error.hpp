@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// Classes of failure, by what the caller can do next. The numbers are sent on the wire.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// Judges a CSP's result by named checks, in order; the first that returns a reason rejects it.

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 // Makes one estimate from several of the same quantities. Which function fits depends on what is
 // known about the correlation of their errors: errors with a common cause that are taken for
 // independent are counted twice, and the result is overconfident. All functions throw

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// A 16-byte identity: of a DDS entity (RTPS GUID), an instance (key hash) or a peer.

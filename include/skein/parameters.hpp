@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// The value of a parameter. The mission's dictionary says which of these it is: an `integer`, a

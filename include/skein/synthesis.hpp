@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// An accepted result, and the CSP that gave it.

@@ -33,6 +33,8 @@ class Awaited {
 
   /// Whether get() would return at once.
   bool ready();
+  /// Whether it is a result that was waited for before.
+  bool waited() const { return std::holds_alternative<Result>(source_); }
 
   /// Runs `action` when ready() should be asked again, as Call::notify() does. Call it once for
   /// each false ready().
@@ -75,7 +77,8 @@ struct TaskOptions {
 template <class Interface, class Result>
 struct Task : TaskOptions {
   /// Required. Calls the CSP by its proxy, whose calls time out after `budget`. With several CSPs
-  /// at a time it must not wait, but return what an `async_` function returned.
+  /// at a time it must not wait, but return what an `async_` function returned: else they work one
+  /// after the other, which is logged.
   std::function<Awaited<Result>(typename Interface::Proxy& csp, Duration budget)> run{};
   Evaluation<Result> evaluate{};
   /// Whether an exception that the interface declares is final, so that no other CSP is asked.

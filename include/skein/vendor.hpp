@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 namespace skein::dds {
 
 class Participant;

@@ -6,6 +6,7 @@
 #include <thread>
 #include <unordered_map>
 
+#include "core/start_thread.hpp"
 #include "skein/detail/call_memory.hpp"
 
 namespace skein {
@@ -51,7 +52,7 @@ struct SystemClock::State {
 };
 
 SystemClock::SystemClock() : state_(std::make_shared<State>()) {
-  state_->thread = std::thread([state = state_] { state->run(); });
+  state_->thread = start_thread("skein-clock", [state = state_] { state->run(); });
 }
 
 SystemClock::~SystemClock() {

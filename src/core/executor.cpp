@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/leave_behind.hpp"
+#include "core/start_thread.hpp"
 #include "core/thread_settings.hpp"
 #include "skein/detail/call_memory.hpp"
 
@@ -87,7 +88,7 @@ ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_
   try {
     std::lock_guard lock(state_->mutex);
     for (std::size_t i = 0; i < std::max<std::size_t>(threads, 1); ++i) {
-      state_->threads.emplace_back([state = state_] { state->work(); });
+      state_->threads.push_back(start_thread(state_->name, [state = state_] { state->work(); }));
       ++state_->alive;
     }
   } catch (...) {  // the system gives no other thread

@@ -83,8 +83,17 @@ SharedObject::SharedObject(const std::string& name, const std::string& remedy, M
                                 remedy + ", or name its directory in SKEIN_MODULE_PATH");
 }
 
-void* SharedObject::find(const char* symbol) const {
+void* SharedObject::find(const char* symbol, const std::string& function) const {
   if (void* found = dlsym(handle_, symbol)) return found;
+  // Itanium's ABI: a function type is `F`, its result, its parameters, `E`; a result of a basic
+  // type is one letter, and a function's name has none.
+  const std::string name = symbol;
+  const std::string parameters = function.substr(2, function.size() - 3);
+  const std::string mangled = "_Z" + std::to_string(name.size()) + name + parameters;
+  if (dlsym(handle_, mangled.c_str()) != nullptr) {
+    throw InvalidArgument(file_ + " exports " + name +
+                          " as C++; write `extern \"C\"` before its definition");
+  }
   throw InvalidArgument(file_ + " exports no " + symbol +
                         ": it was not made for Skein, or for another version");
 }

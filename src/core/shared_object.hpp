@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <typeinfo>
 
 namespace skein {
 
@@ -16,17 +17,20 @@ class SharedObject {
   enum class Maker { Skein, User };
   SharedObject(const std::string& name, const std::string& remedy, Maker maker = Maker::Skein);
 
-  /// Throws InvalidArgument where the object exports no such symbol.
+  /// Throws InvalidArgument where the object exports no such symbol, and says so where it does as
+  /// C++, without `extern "C"`.
   template <class Function>
   Function* function(const char* symbol) const {
-    return reinterpret_cast<Function*>(find(symbol));
+    return reinterpret_cast<Function*>(find(symbol, typeid(Function).name()));
   }
+
+  const std::string& file() const noexcept { return file_; }
 
   /// Throws InvalidArgument unless the object's `symbol()` gives this library's SKEIN_ABI.
   void check_abi(const char* symbol) const;
 
  private:
-  void* find(const char* symbol) const;
+  void* find(const char* symbol, const std::string& function) const;
 
   std::string file_;
   void* handle_ = nullptr;

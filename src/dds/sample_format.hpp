@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "largest_sample.hpp"
 #include "skein/detail/qos.hpp"
 #include "skein/error.hpp"
 
@@ -45,8 +46,18 @@ inline std::span<const std::byte> without_padding(std::byte* message, std::size_
   return {message, size - padding};
 }
 
-/// Refuses what has no room for a header; a header of another kind is the reader's affair.
-inline void require_header(std::span<const std::byte> cdr, const std::string& topic) {
+/// `what` begins the text.
+inline void check_size(std::size_t size, const std::string& what) {
+  if (size <= kLargestSample) return;
+  throw InvalidArgument(what + " takes " + std::to_string(size) + " bytes; readers take " +
+                        std::to_string(kLargestSample) +
+                        " (256 MiB) at most: send it in parts, as a stream for example");
+}
+
+/// Refuses what has no room for a header, and what no reader takes; a header of another kind is the
+/// reader's affair.
+inline void check_sample(std::span<const std::byte> cdr, const std::string& topic) {
+  if (cdr.size() > kLargestSample) check_size(cdr.size(), "a sample for topic '" + topic + "'");
   if (cdr.size() < kHeaderSize) {
     throw InvalidArgument("a sample for topic '" + topic + "' has " + std::to_string(cdr.size()) +
                           " bytes; it must begin with the 4-byte encapsulation header");

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "largest_sample.hpp"
 #include "rtps_message.hpp"
 #include "skein/guid.hpp"
 
@@ -27,7 +28,7 @@ class WriterLedger {
   static constexpr std::size_t kMaxWriters = 16384;
 
   /// Of one sample that comes in fragments, of all such that are not complete, and how many.
-  static constexpr std::uint32_t kLargestSample = 256u << 20;
+  static constexpr std::uint32_t kLargestSample = dds::kLargestSample;
   static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
   static constexpr std::size_t kMaxSamples = 4096;
   /// RTPS asks for 1024. Fast DDS keeps a list in the fragments that are missing, which smaller

@@ -94,7 +94,18 @@ void ComponentRegistry::load_plugin(const std::string& name) {
   const SharedObject plugin(name, "build or install the plugin '" + name + "'",
                             SharedObject::Maker::User);
   plugin.check_abi("skein_plugin_abi");
-  plugin.function<void(ComponentRegistry&)>("skein_register_components")(*this);
+  const auto register_components =
+      plugin.function<void(ComponentRegistry&)>("skein_register_components");
+  const std::string place = plugin.file() + ", while it registered its components: ";
+  try {
+    register_components(*this);
+  } catch (const InvalidArgument& error) {
+    throw InvalidArgument(place + error.what());
+  } catch (const std::exception& error) {
+    throw Unavailable(place + error.what());
+  } catch (...) {
+    throw Unavailable(place + "it threw something that is no std::exception");
+  }
 }
 
 void ComponentRegistry::refuse_duplicate(const std::string& component) const {

@@ -20,8 +20,10 @@ std::string shown(const std::string& text) {
 }
 
 std::string learned_text(const introspection::LearnedFigures& learned) {
-  std::string text = "over " + std::to_string(learned.similar) +
-                     (learned.similar == 1 ? " similar request:" : " similar requests:");
+  std::string text = learned.similar == 0 ? "over requests of which none was similar:"
+                     : learned.similar == 1
+                         ? "over 1 similar request:"
+                         : "over " + std::to_string(learned.similar) + " similar requests:";
   if (!learned.median.empty()) text += " median " + in_ms(learned.median[0]) + ",";
   if (!learned.p95.empty()) text += " p95 " + in_ms(learned.p95[0]) + ",";
   if (!learned.quality.empty()) text += " quality " + number(learned.quality[0]) + ",";

@@ -349,6 +349,9 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
                  const std::string& name, const std::string& owner) {
   check_servant(servant, name);
   check_attributes(options, name);
+  if (options.threads == 0) {
+    throw InvalidArgument("the service of '" + name + "' has 0 threads; give it 1 or more");
+  }
   const InterfaceInfo& interface = servant->interface_info();
   if (!owner.empty()) refuse_second_csp(interface, name, owner);
   auto executor =

@@ -1,6 +1,8 @@
 #include "head_run.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 #include "decision_record.hpp"
 #include "rpc/local_directory.hpp"
@@ -95,9 +97,23 @@ void Head::Run::run_all() {
   if (!done_ && !settled_) {
     if (auto how = task_.synthesise()) {
       record_.synthesis = std::move(*how);
+      note_too_few();
       done_ = true;
     }
   }
+}
+
+bool Head::Run::too_few() const {
+  const std::size_t enough = task_.options().enough;
+  return enough != TaskOptions::kAll && task_.accepted() < enough;
+}
+
+// The result is made of what there was.
+void Head::Run::note_too_few() {
+  if (!too_few()) return;
+  record_.synthesis += (record_.synthesis.empty() ? "of " : "; of ") +
+                       std::to_string(task_.accepted()) + " results, where " +
+                       std::to_string(task_.options().enough) + " were to be waited for";
 }
 
 // Whether it was stopped at the end of its slice, while more time than that is left.
@@ -166,6 +182,7 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
                                      std::min(end - began, Duration(kOpeningPatience)), reached);
     live.work =
         task_.begin(std::move(channel), std::max(Duration::zero(), end - reached), live.candidate);
+    if (live.work->waited()) state_.tell_waiting(interface_, task_.options());
     live_.push_back(std::move(live));
   } catch (...) {
     Verdict verdict = task_run::verdict_of_current_exception();
@@ -256,6 +273,14 @@ void Head::Run::cancel_rest() {
 }
 
 void Head::Run::fail() const {
+  if (task_.accepted() > 0 && !settled_ && too_few()) {
+    std::set<std::string_view> csps;
+    for (const auto& candidate : record_.candidates) csps.insert(candidate.csp);
+    throw NoneAccepted(std::to_string(task_.options().enough) +
+                       " accepted results are needed, and " + std::to_string(task_.accepted()) +
+                       " came of " + std::to_string(csps.size()) +
+                       " CSPs; lower `enough`, or provide further CSPs");
+  }
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }

@@ -52,6 +52,9 @@ class Head::Run {
   void judge_ready();
   void note(Live& live, task_run::Verdict verdict);
   void conclude_if_enough();
+  /// Fewer results are accepted than the task asks for.
+  bool too_few() const;
+  void note_too_few();
   void cancel_rest();
   bool waits_for_late_ones() const;
 

@@ -127,6 +127,19 @@ void Head::State::begin_learning(const std::string& service) {
   });
 }
 
+void Head::State::tell_waiting(const InterfaceInfo& interface, const TaskOptions& task) {
+  if (task.execution == Execution::One) return;
+  {
+    std::lock_guard lock(mutex);
+    if (!told_waiting.insert(&interface).second) return;
+  }
+  log(LogLevel::Warning, parts.entity,
+      "the CSPs of " + std::string(interface.name) + " are to work at a time (execution '" +
+          to_string(task.execution) +
+          "'), but the task's `run` waits for each: they work one after the other; return what an "
+          "`async_` function returns");
+}
+
 std::size_t Head::State::count_stuck() {
   std::lock_guard lock(mutex);
   return stuck();

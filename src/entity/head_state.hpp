@@ -55,6 +55,8 @@ struct Head::State {
               Decide decide);
   /// Numbers the decision, keeps it and tells of it; a copy to whom `wanted` belongs, if anybody.
   void conclude(introspection::Decision&& record, introspection::Decision* wanted = nullptr);
+  /// Logs, once for each interface, that CSPs do not work at a time since `run` waits for each.
+  void tell_waiting(const InterfaceInfo& interface, const TaskOptions& task);
   std::size_t count_stuck();
 
   /// A CSP as its description tells of it.
@@ -91,6 +93,7 @@ struct Head::State {
   std::map<Guid, std::shared_ptr<Channel>> channels;
   std::vector<Running> running;
   std::set<Guid> hung;  // in this process, and perhaps back since
+  std::set<const InterfaceInfo*> told_waiting;
   bool was_degraded = false;
   std::uint64_t last_run = 0;
   std::uint64_t last_decision = 0;

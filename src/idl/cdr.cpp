@@ -10,6 +10,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "encode_value.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/detail/wide_text.hpp"
 
@@ -140,8 +141,7 @@ void CdrWriter::write_length(std::size_t length) {
 
 void CdrWriter::write_string(std::string_view text) {
   if (text.find('\0') != std::string_view::npos) {
-    throw InvalidArgument(
-        "text with a zero byte cannot travel as an IDL string; use sequence<octet>");
+    throw ZeroByte();
   }
   write_length(text.size() + 1);
   write_array(text.data(), text.size());

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/log.hpp"
+#include "core/start_thread.hpp"
 #include "recording/chunk_queue.hpp"
 #include "recording/drop_report.hpp"
 #include "recording/recording_file.hpp"
@@ -56,7 +57,7 @@ struct Writer::State {
         options(its_options),
         queue({options.chunk_size, options.chunk_age, options.queue_size, options.wait_for_room}) {
     begin_file();
-    thread = std::thread([this] { run(); });
+    thread = start_thread("skein-record", [this] { run(); });
     pthread_setname_np(thread.native_handle(), "skein-record");
   }
 

@@ -6,6 +6,7 @@
 
 #include "dds/port.hpp"
 #include "skein/call_context.hpp"
+#include "skein/detail/operation.hpp"
 #include "skein/detail/representation.hpp"
 
 /// What both ends of a transport share.
@@ -22,6 +23,11 @@ inline dds::Qos call_qos(Representation representation, std::vector<std::string>
   if (is_xcdr2(representation)) qos.representation = dds::DataRepresentation::Xcdr2;
   qos.partitions = std::move(partitions);
   return qos;
+}
+
+/// An operation's name as it stands in a text.
+inline std::string quoted(const OperationInfo& operation) {
+  return "'" + std::string(operation.name) + "'";
 }
 
 /// The services that wait for a call which this thread is about to make, and to wait for.

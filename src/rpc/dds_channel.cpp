@@ -134,7 +134,7 @@ void DdsChannel::State::lose(const std::string& how) {
   }
   fail_all([&](const OperationInfo& operation) {
     return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how + "); whether " +
-                                                std::string(operation.name) + " ran is unknown"));
+                                                quoted(operation) + " ran is unknown"));
   });
 }
 
@@ -156,8 +156,8 @@ void DdsChannel::State::close() {
   }
   clock.cancel(outdated);
   fail_all([&](const OperationInfo& operation) {
-    return std::make_exception_ptr(Cancelled("the connection to " + options.peer +
-                                             " was closed during " + std::string(operation.name)));
+    return std::make_exception_ptr(
+        Cancelled("the connection to " + options.peer + " was closed during " + quoted(operation)));
   });
   writer.reset();
   writers.await_end();

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "common.hpp"
+#include "dds/sample_format.hpp"
 #include "dds_channel_state.hpp"
+#include "idl/encode_value.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -89,7 +91,11 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
                              const void* in) {
   thread_local Bytes message;
   wire::begin_request(message, {client, number}, call.operation().hash, address.representation);
-  call.operation().in->encode(in, message);
+  idl::encode_value(*call.operation().in, in, message);
+  if (message.size() > dds::kLargestSample) {
+    const std::size_t size = std::exchange(message, Bytes()).size();
+    dds::check_size(size, "the request of " + quoted(call.operation()));
+  }
   const Instant now = clock.now();
   wire::append_trailer(
       message, wire::RequestTrailer{call.deadline() - now,

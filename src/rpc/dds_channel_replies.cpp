@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "common.hpp"
 #include "core/log.hpp"
 #include "dds_channel_state.hpp"
 #include "reply_reading.hpp"
@@ -130,7 +131,7 @@ std::exception_ptr DdsChannel::State::unreadable(const OperationInfo& operation,
                                                  const std::exception& malformed) {
   note_malformed(malformed.what());
   return std::make_exception_ptr(
-      Internal(options.peer + " answered " + std::string(operation.name) +
+      Internal(options.peer + " answered " + quoted(operation) +
                " with what cannot be read: " + malformed.what() +
                "; the network damaged it, or the two sides were built from different IDL"));
 }

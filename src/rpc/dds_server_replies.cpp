@@ -81,7 +81,7 @@ void DdsServer::State::send_item(const std::shared_ptr<Client>& client, const Re
   encode_item(message, address.representation, id, operation, out, position);
   const bool sent = write(client, message, deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
-  if (!sent) throw Overloaded("the caller of " + std::string(operation.name) + " takes no replies");
+  if (!sent) throw Overloaded("the caller of " + quoted(operation) + " takes no replies");
 }
 
 void DdsServer::State::forget(const RequestId& id) {

@@ -63,8 +63,8 @@ struct QueuedCall final : Invocation {
 namespace {
 
 std::exception_ptr too_late(const std::string& peer, const OperationInfo& operation) {
-  return std::make_exception_ptr(TimedOut(peer + " did not answer " + std::string(operation.name) +
-                                          " before its deadline" + kMoreTime));
+  return std::make_exception_ptr(
+      TimedOut(peer + " did not answer " + quoted(operation) + " before its deadline" + kMoreTime));
 }
 
 void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call,
@@ -88,7 +88,7 @@ const OperationInfo& served_operation(const Service& service, const OperationInf
   const OperationInfo* served = service.interface_info().find_operation(called.hash);
   if (!served) {
     throw Unimplemented(std::string(service.interface_info().name) + " has no operation " +
-                        std::string(called.name));
+                        quoted(called));
   }
   return served->in == called.in && served->out == called.out ? called : *served;
 }

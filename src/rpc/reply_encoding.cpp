@@ -2,6 +2,9 @@
 
 #include <memory>
 
+#include "common.hpp"
+#include "dds/sample_format.hpp"
+#include "idl/encode_value.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
@@ -13,7 +16,8 @@ void encode_result(Bytes& message, Representation representation, const RequestI
                    const OperationInfo& operation, const void* out) {
   wire::begin_reply(message, id, wire::RemoteException::Ok, operation.hash, representation);
   wire::append_discriminator(message, 0);
-  operation.out->encode(out, message);
+  idl::encode_value(*operation.out, out, message);
+  dds::check_size(message.size(), "it");
 }
 
 // Declared: see call_servant().
@@ -37,7 +41,7 @@ void encode_failure(Bytes& message, Representation representation, const Request
 
 std::string cannot_be_sent(const std::string& what, const OperationInfo& operation,
                            const std::exception& reason) {
-  return what + " of " + std::string(operation.name) + " cannot be sent: " + reason.what();
+  return what + " of " + quoted(operation) + " cannot be sent: " + reason.what();
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 
+#include "common.hpp"
+#include "idl/encode_value.hpp"
 #include "skein/detail/bytes.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/error.hpp"
@@ -20,17 +22,17 @@ bool declares(const OperationInfo& operation, const ExceptionInfo& exception) {
 
 void check_declared(const OperationInfo& operation, const UserException& exception) {
   if (declares(operation, exception.info())) return;
-  throw Internal(std::string(operation.name) + " threw " + std::string(exception.info().name) +
+  throw Internal(quoted(operation) + " threw " + std::string(exception.info().name) +
                  ", which its interface does not declare");
 }
 
 void check_sendable(const OperationInfo& operation, const UserException& exception) {
   Bytes message{std::span<const std::byte>(encapsulation(exception.info().type->representation))};
   try {
-    exception.info().type->encode(exception.value(), message);
+    idl::encode_value(*exception.info().type, exception.value(), message);
   } catch (const std::exception& reason) {
     throw Internal("the exception " + std::string(exception.info().name) + " of " +
-                   std::string(operation.name) + " cannot be sent: " + reason.what());
+                   quoted(operation) + " cannot be sent: " + reason.what());
   }
 }
 
@@ -46,9 +48,9 @@ void call_servant(Servant& servant, const OperationInfo& operation, const void* 
   } catch (const Error&) {
     throw;
   } catch (const std::exception& failure) {
-    throw Internal(std::string(operation.name) + " failed: " + failure.what());
+    throw Internal(quoted(operation) + " failed: " + failure.what());
   } catch (...) {
-    throw Internal(std::string(operation.name) + " threw something that is no std::exception");
+    throw Internal(quoted(operation) + " threw something that is no std::exception");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common.hpp"
 #include "core/clock_wait.hpp"
 #include "servant_call.hpp"
 #include "skein/error.hpp"
@@ -188,7 +189,7 @@ void Service::refuse_turn(OperationMeter& meter, const OperationInfo& operation)
   }
   OperationMeter::count(meter.expired);
   throw TimedOut("the deadline passed while other calls of " + std::string(interface_info().name) +
-                 " ran; " + std::string(operation.name) + " was not executed");
+                 " ran; " + quoted(operation) + " was not executed");
 }
 
 void Service::refuse_self_wait(const Invocation& invocation) const {
@@ -207,7 +208,7 @@ void Service::refuse_self_wait(const Invocation& invocation) const {
 // What an implementation returns, or gives up, because it saw its deadline pass is no result.
 void Service::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
   if (frame.ended < frame.deadline) return;
-  throw TimedOut(std::string(interface_info().name) + " finished " + std::string(operation.name) +
+  throw TimedOut(std::string(interface_info().name) + " finished " + quoted(operation) +
                  " too late");
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/log.hpp"
 #include "dds/port.hpp"
+#include "idl/encode_value.hpp"
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/publisher.hpp"
@@ -59,7 +60,7 @@ void TopicWriter::publish(const void* value) {
   Bytes message = state_->spare_buffer();
   message.clear();
   message.append(encapsulation(state_->type.support->representation));
-  state_->type.support->encode(value, message);
+  idl::encode_value(*state_->type.support, value, message);
   const auto key_of = state_->type.key_of;
   state_->writer->write(message, key_of != nullptr ? key_of(value) : Guid{});
   ++state_->published;

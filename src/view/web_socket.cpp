@@ -16,6 +16,7 @@
 
 #include "core/log.hpp"
 #include "core/printable.hpp"
+#include "core/start_thread.hpp"
 #include "skein/error.hpp"
 
 // No other unit includes Boost.Beast, which takes long to compile.
@@ -263,7 +264,7 @@ struct WebSocketListener::State {
 WebSocketListener::WebSocketListener(const WebSocketOptions& options, Gate gate, Open open)
     : state_(std::make_unique<State>(options, std::move(gate), std::move(open))) {
   state_->accept();
-  state_->thread = std::thread([state = state_.get()] { state->run(); });
+  state_->thread = start_thread("skein-view", [state = state_.get()] { state->run(); });
 }
 
 WebSocketListener::~WebSocketListener() {

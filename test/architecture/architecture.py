@@ -36,6 +36,7 @@ def main():
         "sleeps": lambda: text_rules.sleeps(tree),
         "quotes": lambda: text_rules.quotes(tree),
         "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
+        "older_standard": lambda: compile_rules.older_standard(tree, compiler),
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),
         "generated_includes": lambda: compile_rules.generated_includes(arguments.header),
         "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library[0]),

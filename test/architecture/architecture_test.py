@@ -269,6 +269,12 @@ class Compiled(TreeTest):
         self.write("include/skein/x.hpp", "struct X {};\n")
         self.assertFinds(compile_rules.lone_headers(self.tree, self.compiler), "redefinition")
 
+    def test_a_header_that_compiles_as_an_older_standard_is_found(self):
+        self.write("include/skein/x.hpp", "#pragma once\nstruct X {};\n")
+        self.assertFinds(compile_rules.older_standard(self.tree, self.compiler), "include/skein/x.hpp", "C++20 is needed")
+        self.write("include/skein/x.hpp", '#pragma once\n#error "Skein needs C++20"\n')
+        self.assertFindsNothing(compile_rules.older_standard(self.tree, self.compiler))
+
     def test_a_program_whose_search_path_has_an_empty_entry_is_found(self):
         source = self.write("main.cpp", "int main() {}\n")
         for places, found in (("$ORIGIN/../lib", 0), ("$ORIGIN/../lib:", 1), (":/usr/lib", 1)):

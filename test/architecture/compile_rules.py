@@ -18,6 +18,11 @@ class Compiler:
         ran = subprocess.run([*self._command, "-x", "c++", "-"], input=code, text=True, capture_output=True, check=False)
         return ran.stderr if ran.returncode else ""
 
+    def older_refusal(self, code):
+        """What the preprocessor says against the code where it is C++17."""
+        command = [*self._command, "-std=c++17", "-E", "-x", "c++", "-"]
+        return subprocess.run(command, input=code, text=True, capture_output=True, check=False).stderr
+
 
 # The header that needs more than Skein; asio_test includes it first, and is skipped where Asio is missing.
 WITH_ASIO = "skein/asio.hpp"
@@ -32,6 +37,16 @@ def lone_headers(tree, compiler):
         for header, refusal in zip(headers, refusals):
             if refusal:
                 yield f"include/{header}: does not compile alone:\n{_first_error(refusal)}"
+
+
+def older_standard(tree, compiler):
+    """A public header that does not say at first, to who compiles it as C++17, that it needs C++20."""
+    for path in tree.files((".hpp",), "include"):
+        if path == "include/" + WITH_ASIO or "/detail/" in path:
+            continue
+        first = _first_error(compiler.older_refusal(f'#include "{path.removeprefix("include/")}"\n'))
+        if "Skein needs C++20" not in first:
+            yield f"{path}: as C++17 it does not say at first that C++20 is needed: {first}"
 
 
 def generated_version(header, compiler):

@@ -50,9 +50,9 @@ MAX_USERS_HEADERS = 32
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
-    "core": "abi action box bytes call_memory channel operation representation",
+    "core": "abi action box bytes call_memory channel operation representation version",
     "idl": "argument cdr codec declared_exception filled json json_codec key_hash make_type_support malformed_sample plain_layout print"
-           " service_reference type_support union_access unknown_operation version wide_text",
+           " service_reference type_support union_access unknown_operation wide_text",
     "dds": "qos",
     "topics": "topic_type",
     "entity": "circuit_breaker history task_run",

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <map>
 #include <thread>
 
@@ -282,4 +283,16 @@ TEST_CASE("a sample that is kept outlives the call, its reader's next samples an
     const auto& cdr = kept[i].second;
     CHECK((std::vector(cdr.begin(), cdr.end()) == make_sample(10'001, i)));
   }
+}
+
+TEST_CASE("a sample that no reader would take is refused where it is written, with the limit") {
+  Wire wire;
+  Outbox outbox(*wire.writing, keyless(), keep_all());
+  const std::size_t size = (std::size_t{256} << 20) + 1;
+  const std::unique_ptr<std::byte, void (*)(void*)> memory(
+      static_cast<std::byte*>(std::calloc(size, 1)), std::free);  // none of which is touched
+  CHECK_THROWS_AS(outbox.writer().write({memory.get(), size}), InvalidArgument);
+  CHECK_THROWS_WITH(outbox.writer().write({memory.get(), size}),
+                    Catch::Contains("takes 268435457 bytes; readers take 268435456 (256 MiB) at "
+                                    "most: send it in parts"));
 }

@@ -86,9 +86,9 @@ TEST_CASE(
   CHECK_THROWS_AS(echo.fail("overloaded"), Overloaded);
   CHECK_THROWS_WITH(echo.fail("overloaded"), Catch::EndsWith("no room for this one"));
   const std::vector<std::pair<std::string, std::string>> texts{
-      {"standard", "fail failed: something broke"},
-      {"undeclared", "fail threw test::DivisionByZero, which its interface does not declare"},
-      {"number", "fail threw something that is no std::exception"}};
+      {"standard", "'fail' failed: something broke"},
+      {"undeclared", "'fail' threw test::DivisionByZero, which its interface does not declare"},
+      {"number", "'fail' threw something that is no std::exception"}};
   for (const auto& [how, text] : texts) {
     CAPTURE(how);
     CHECK_THROWS_AS(echo.fail(how), Internal);
@@ -105,7 +105,7 @@ TEST_CASE(
   Pair pair;
   auto echo = pair.connect(GENERATE(false, true));
   const std::string how = GENERATE(as<std::string>(), "zero", "long");
-  const auto text = Catch::Contains("the exception test::Garbled of garble cannot be sent: ");
+  const auto text = Catch::Contains("the exception test::Garbled of 'garble' cannot be sent: ");
   CHECK_THROWS_AS(echo.garble(how), Internal);
   CHECK_THROWS_WITH(echo.garble(how), text);
   CHECK_THROWS_AS(echo.async_garble(how).get(), Internal);
@@ -113,14 +113,25 @@ TEST_CASE(
   CHECK(echo.echo("still alive") == "still alive");
 }
 
+TEST_CASE("an argument that CDR cannot carry is named with its member") {
+  Pair pair;
+  const std::string text("a\0b", 3);
+  CHECK_THROWS_AS(pair.echo->echo(text), InvalidArgument);
+  CHECK_THROWS_WITH(pair.echo->echo(text),
+                    "text with a zero byte cannot travel as an IDL string; use sequence<octet> "
+                    "(in 'text')");
+}
+
 TEST_CASE("a result that CDR cannot carry is answered as Internal where it would have to be sent") {
   Pair pair;
   CHECK_THROWS_AS(pair.echo->garble("result"), Internal);
-  CHECK_THROWS_WITH(pair.echo->garble("result"),
-                    Catch::Contains("the result of garble cannot be sent: text with a zero byte"));
+  CHECK_THROWS_WITH(
+      pair.echo->garble("result"),
+      Catch::Contains("the result of 'garble' cannot be sent: text with a zero byte "
+                      "cannot travel as an IDL string; use sequence<octet> (in 'return_')"));
   auto stream = pair.echo->mumble();
   CHECK(stream.next() == "clear");
-  CHECK_THROWS_WITH(stream.next(), Catch::Contains("a result of mumble cannot be sent: "));
+  CHECK_THROWS_WITH(stream.next(), Catch::Contains("a result of 'mumble' cannot be sent: "));
   CHECK_THROWS_AS(
       [&] {
         auto again = pair.echo->mumble();

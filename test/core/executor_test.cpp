@@ -1,5 +1,7 @@
 #include "skein/executor.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -7,6 +9,7 @@
 #include <thread>
 
 #include "../tools/eventually.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -33,6 +36,26 @@ class Gate {
 };
 
 }  // namespace
+
+TEST_CASE("a thread that the system does not give is named, with the reason and the remedy") {
+  pthread_attr_t usual, beyond;
+  pthread_getattr_default_np(&usual);
+  pthread_attr_init(&beyond);
+  pthread_attr_setstacksize(&beyond, std::size_t{1} << 50);  // more than there are addresses
+  pthread_setattr_default_np(&beyond);
+  std::string text;
+  try {
+    ThreadExecutor executor("navigator");
+  } catch (const Unavailable& error) {
+    text = error.what();
+  } catch (const std::exception& error) {
+    text = std::string("another error: ") + error.what();
+  }
+  pthread_setattr_default_np(&usual);
+  CHECK_THAT(text, Catch::StartsWith("the thread 'navigator' cannot be started: ") &&
+                       Catch::Contains("Resource temporarily unavailable") &&
+                       Catch::Contains("use fewer threads, or raise the limit"));
+}
 
 TEST_CASE("one thread runs tasks one after the other in order") {
   std::vector<int> seen;

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "../tools/log.hpp"
 #include "office.hpp"
 
 using namespace skein;
@@ -97,6 +98,35 @@ TEST_CASE("where no majority agrees the task fails and says so") {
   vote.synthesis = majority_vote<std::string>(2);
   CHECK_THROWS_AS(office.perform(vote, 60s), NoneAccepted);
   CHECK_THAT(office.record.failure, Catch::Contains("do not agree"));
+}
+
+TEST_CASE("that fewer CSPs answered than were to be waited for is told") {
+  Office office;
+  office.add("a", Place::Inside, say("yes"), declared("10", "0.5"));
+  office.add("b", Place::Inside, say("yes"), declared("10", "0.5"));
+  CHECK(office.perform(task(Execution::All, 3), 60s) == "yes");
+  CHECK_THAT(office.record.synthesis,
+             Catch::EndsWith("; of 2 results, where 3 were to be waited for"));
+  WorkTask vote = task(Execution::All, 3);
+  vote.synthesis = majority_vote<std::string>(3);
+  CHECK_THROWS_AS(office.perform(vote, 60s), NoneAccepted);
+  CHECK_THAT(office.record.failure,
+             Catch::StartsWith("3 accepted results are needed, and 2 came of 2 CSPs"));
+}
+
+TEST_CASE("a task that waits for each CSP, though all are to work at a time, is told so once") {
+  const Log log;
+  Office office;
+  office.add("a", Place::Inside, say("yes"), declared("10", "0.5"));
+  office.add("b", Place::Inside, say("yes"), declared("10", "0.5"));
+  WorkTask waiting = Office::task();
+  office.perform(waiting, 60s);
+  CHECK(log.count("one after the other") == 0);
+  waiting.execution = Execution::All;
+  office.perform(waiting, 60s);
+  office.perform(waiting, 60s);
+  CHECK(log.count("the CSPs of crew/Worker are to work at a time (execution 'all'), but the "
+                  "task's `run` waits for each: they work one after the other") == 1);
 }
 
 TEST_CASE("the best of all results is taken when all have answered, or the time is up") {

@@ -139,6 +139,13 @@ TEST_CASE("a declared quality or latency that is no finite number is refused") {
       Catch::Contains("the attribute latency of 'dazed' is 'inf s'"));
 }
 
+TEST_CASE("a service without a thread is refused") {
+  Office office;
+  CHECK_THROWS_WITH(office.owner->provide<crew::Desk>(
+                        std::make_shared<OfficeBody>(office.owner->head()), {.threads = 0}),
+                    "the service of 'office' has 0 threads; give it 1 or more");
+}
+
 TEST_CASE("a declared latency is a number of milliseconds, or has any unit of time") {
   const std::vector<std::pair<std::string, Duration>> latencies{
       {"300", 300ms},           {"300 ms", 300ms},       {"300ms", 300ms}, {"0.3 s", 300ms},

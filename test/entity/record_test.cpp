@@ -251,3 +251,14 @@ TEST_CASE("who reads the topic of decisions gets each as it is made", "[wire]") 
   REQUIRE(told != decisions.end());
   CHECK(*told == seen.front());
 }
+
+TEST_CASE("figures of requests of which none was similar say so") {
+  Decision record;
+  record.candidates.emplace_back().csp = "sound";
+  introspection::LearnedFigures figures;
+  figures.median = {80'000'000};
+  figures.reliability = 1;
+  record.candidates.front().learned = {figures};
+  CHECK_THAT(explain(record),
+             Catch::Contains("over requests of which none was similar: median 80 ms"));
+}

@@ -171,3 +171,12 @@ TEST_CASE("many large answers to one client all arrive") {
   const std::vector<std::uint8_t> content(1 << 20, 7);
   expect_answers(64, content, [&] { return stage.large.within(60s).async_echo_octets(content); });
 }
+
+TEST_CASE("a call that carries more than any provider takes is refused, with the limit") {
+  Stage stage;
+  const std::vector<std::uint8_t> content(std::size_t{256} << 20);
+  CHECK_THROWS_AS(stage.large.within(kDeadline).echo_octets(content), InvalidArgument);
+  CHECK_THROWS_WITH(stage.large.within(kDeadline).echo_octets(content),
+                    Catch::StartsWith("the request of 'echo_octets' takes 2684355") &&
+                        Catch::Contains(" bytes; readers take 268435456 (256 MiB) at most"));
+}

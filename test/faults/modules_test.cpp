@@ -96,3 +96,19 @@ TEST_CASE(
                     Contains("exports no skein_plugin_abi") && Contains("not made for Skein"));
   CHECK(registry.names().empty());
 }
+
+TEST_CASE("a plugin that throws while it registers is named with what it says") {
+  ComponentRegistry registry;
+  const std::string plugin = std::string(SKEIN_WRONG_MODULES) + "/libskein_throwing_plugin.so";
+  CHECK_THROWS_AS(registry.load_plugin(plugin), Unavailable);
+  CHECK_THROWS_WITH(registry.load_plugin(plugin),
+                    plugin + ", while it registered its components: " + "licence missing");
+}
+
+TEST_CASE("a plugin whose function is C++'s is told what is forgotten") {
+  ComponentRegistry registry;
+  const std::string plugin = std::string(SKEIN_WRONG_MODULES) + "/libskein_mangled_plugin.so";
+  CHECK_THROWS_AS(registry.load_plugin(plugin), InvalidArgument);
+  CHECK_THROWS_WITH(registry.load_plugin(plugin),
+                    Contains("exports skein_register_components as C++; write `extern \"C\"`"));
+}

@@ -45,6 +45,38 @@ TEST_CASE("a version is carried by discovery and compared on the other side") {
   CHECK(why->requested == "A::S.m in version 00000065");
 }
 
+TEST_CASE("two types of one name are told apart by the first member that differs") {
+  const auto told = [](const std::string& offered, const std::string& requested) {
+    Qos one, other;
+    one.type = {1, {}, offered};
+    other.type = {2, {}, requested};
+    const auto why = find_incompatibility("t", {}, one, carried(other));
+    REQUIRE(why);
+    return why->offered + " | " + why->requested;
+  };
+  const std::string head = "module sea {\n@final struct Fix {\ndouble x_m;\n";
+  const std::string end = "};\n};\n";
+  CHECK(told(head + "double y_m;\n" + end, head + "float y_m;\n" + end) ==
+        "sea::Fix with 'double y_m' | sea::Fix with 'float y_m'");
+  CHECK(told(head + "double y_m;\n" + end, head + end) ==
+        "sea::Fix with 'double y_m' | sea::Fix without a further member");
+  CHECK(told("@final struct Fix {\n};\n", "@final union Fix switch (long) {\n};\n") ==
+        "@final struct Fix { | @final union Fix switch (long) {");
+  CHECK(told("", head + end) == "version 0000000000000001 | version 0000000000000002");
+  CHECK(told(head, "module sea {\n@final struct Fix {\n\x1b[31m;\n") ==
+        "sea::Fix with 'double x_m' | sea::Fix with '\\x1b[31m'");
+}
+
+TEST_CASE("of a long text discovery carries whole lines, and what lies behind is not told") {
+  Qos qos = version_of(10);
+  for (int i = 0; i < 500; ++i) qos.type.text += "member " + std::to_string(i) + "\n";
+  CHECK(to_user_data(qos.type).size() <= 2000);
+  const std::string text = carried(qos).type.text;
+  CHECK(text.size() > 1500);
+  CHECK(text.ends_with('\n'));
+  CHECK(qos.type.text.starts_with(text));
+}
+
 TEST_CASE("members that discovery does not carry are not compared") {
   CHECK(to_user_data(version_of(500).type).size() < 2048);
   CHECK(match(version_of(130), carried(version_of(130))));

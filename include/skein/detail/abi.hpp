@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "skein/detail/version.hpp"
+
 /// Number of libskein's binary interface. It grows whenever a class or function that modules and
 /// plugins use changes its layout or meaning. A module that was built for another number is
 /// refused.

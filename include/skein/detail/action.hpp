@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// A move-only std::function<void()>. Callables of up to 48 bytes that move without throwing are

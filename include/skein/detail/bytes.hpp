@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// A growable byte buffer that is never zero-filled: messages are written once and read once, and

@@ -4,6 +4,8 @@
 #include <memory_resource>
 #include <utility>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// Memory for objects that are made for each call. Freed blocks are kept and reused, so that a

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 /// How values of a type travel, little-endian: the second byte of a message's encapsulation header

@@ -34,6 +34,8 @@ class Work {
  public:
   virtual ~Work() = default;
   virtual bool ready() = 0;
+  /// Whether the task's `run` itself waited for the result.
+  virtual bool waited() const = 0;
   virtual void notify(std::function<void()> action) = 0;
   /// Waits for the answer and judges it; an accepted result is kept.
   virtual Verdict judge() = 0;
@@ -96,6 +98,7 @@ class TypedRun final : public TaskRun {
     }
 
     bool ready() override { return error_ || answer_->ready(); }
+    bool waited() const override { return answer_ && answer_->waited(); }
     void notify(std::function<void()> action) override { answer_->notify(std::move(action)); }
 
     Verdict judge() override {
@@ -127,10 +130,10 @@ class TypedRun final : public TaskRun {
       verdict.fault = rejection->fault;
       return verdict;
     }
-    verdict.outcome = introspection::Outcome::Accepted;
-    verdict.fault = false;
     if (task_.quality) verdict.quality = task_.quality(result);
     if (!std::isfinite(verdict.quality.value_or(0))) return without_quality();
+    verdict.outcome = introspection::Outcome::Accepted;
+    verdict.fault = false;
     const double quality = verdict.quality.value_or(0);
     if (opinions_.empty() || quality > best_quality_) {
       best_ = opinions_.size();
@@ -140,9 +143,6 @@ class TypedRun final : public TaskRun {
     return verdict;
   }
 
-  const Task<Interface, Result>& task_;
-  std::vector<Opinion<Result>> opinions_;
-  std::size_t best_ = 0;
   /// Nothing compares with it: neither this result nor the CSP's next ones could be judged.
   static Verdict without_quality() {
     Verdict verdict;
@@ -152,6 +152,9 @@ class TypedRun final : public TaskRun {
     return verdict;
   }
 
+  const Task<Interface, Result>& task_;
+  std::vector<Opinion<Result>> opinions_;
+  std::size_t best_ = 0;
   double best_quality_ = 0;
   std::optional<Result> result_;
 };

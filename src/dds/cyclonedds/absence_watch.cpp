@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/start_thread.hpp"
 #include "identity.hpp"
 #include "proxy_leases.h"
 
@@ -31,7 +32,8 @@ ddsi_guid_t participant_guid(const Guid& participant) {
 
 }  // namespace
 
-AbsenceWatch::AbsenceWatch(ddsi_domaingv& domain) : domain_(domain), thread_([this] { run(); }) {
+AbsenceWatch::AbsenceWatch(ddsi_domaingv& domain)
+    : domain_(domain), thread_(start_thread("skein-dds-lease", [this] { run(); })) {
   pthread_setname_np(thread_.native_handle(), "skein-dds-lease");
 }
 

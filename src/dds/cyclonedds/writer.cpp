@@ -61,7 +61,7 @@ Entity CycloneWriter::make() {
 }
 
 void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
-  require_header(cdr, topic_.name);
+  check_sample(cdr, topic_.name);
   wait_for_room();
   Blob* blob = Blob::make_outgoing(handle_.type, cdr, topic_.keyed ? key : KeyHash{});
   check_written(dds_writecdr(writer_.handle(), blob));

@@ -2,10 +2,12 @@
 
 #include <pthread.h>
 
+#include "core/start_thread.hpp"
+
 namespace skein::dds::fastdds {
 
 EventThread::EventThread(std::function<void()> tick)
-    : tick_(std::move(tick)), thread_([this] { run(); }) {
+    : tick_(std::move(tick)), thread_(start_thread("skein-dds-event", [this] { run(); })) {
   pthread_setname_np(thread_.native_handle(), "skein-dds-event");
 }
 

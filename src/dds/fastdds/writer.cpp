@@ -76,7 +76,7 @@ FastWriter::~FastWriter() {
 }
 
 void FastWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
-  require_header(cdr, topic_.name);
+  check_sample(cdr, topic_.name);
   Lock lock(writer_->getMutex());
   wait_for_room(lock);
   auto* change = make_change(padded(cdr.size()), rtps::ALIVE, key);

@@ -18,7 +18,7 @@ class LoopbackWriter final : public Writer {
   }
 
   void write(std::span<const std::byte> cdr, const KeyHash& key) override {
-    require_header(cdr, core_->topic.name);
+    check_sample(cdr, core_->topic.name);
     hub_->write(*core_, cdr, core_->topic.keyed ? key : KeyHash{}, InstanceState::Alive);
   }
   void dispose(const KeyHash& key) override {
