@@ -26,7 +26,8 @@ std::mutex& sink_mutex() {
 }
 
 Sink& current_sink() {
-  static Sink sink = write_to_standard_error;
+  // Never destroyed: static objects may log when they end.
+  static auto& sink = *new Sink(write_to_standard_error);
   return sink;
 }
 

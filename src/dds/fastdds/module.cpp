@@ -5,8 +5,30 @@
 #include "log.hpp"
 #include "participant.hpp"
 
+// Fast DDS's own, exported but in no header.
+namespace eprosima::fastrtps::rtps {
+class RTPSDomainImpl {
+ public:
+  static std::shared_ptr<RTPSDomainImpl> get_instance();
+};
+}  // namespace eprosima::fastrtps::rtps
+namespace eprosima::fastdds::dds::detail {
+struct LogResources;
+std::shared_ptr<LogResources> get_log_resources();
+}  // namespace eprosima::fastdds::dds::detail
+
 namespace skein::dds::fastdds {
 namespace {
+
+/// At exit the static objects go in the opposite order, and what Fast DDS holds in such came last.
+/// Entities in objects of that kind would end without it, so it stays. `used`: a check for leaks
+/// looks for these pointers, which nobody reads.
+void outlive_static_objects() {
+  [[gnu::used]] static const auto* const domain =
+      new auto(eprosima::fastrtps::rtps::RTPSDomainImpl::get_instance());
+  [[gnu::used]] static const auto* const log =
+      new auto(eprosima::fastdds::dds::detail::get_log_resources());
+}
 
 /// Within a process Fast DDS would call a reader's listener inside write(), past the transport and
 /// with both endpoints' locks held. Participants of one process are to be as independent as others.
@@ -19,6 +41,7 @@ void deliver_by_transport_only() {
 class FastVendor final : public Vendor {
  public:
   FastVendor() {
+    outlive_static_objects();
     route_log();
     deliver_by_transport_only();
   }
