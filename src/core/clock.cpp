@@ -52,7 +52,7 @@ struct SystemClock::State {
 };
 
 SystemClock::SystemClock() : state_(std::make_shared<State>()) {
-  state_->thread = start_thread("skein-clock", [state = state_] { state->run(); });
+  state_->thread = start_thread("skein-timer", [state = state_] { state->run(); });
 }
 
 SystemClock::~SystemClock() {

@@ -18,6 +18,7 @@
 #include <system_error>
 
 #include "core/log.hpp"
+#include "core/start_thread.hpp"
 #include "options_check.hpp"
 
 namespace skein::dds {
@@ -84,7 +85,7 @@ MulticastMembership::MulticastMembership(const ParticipantOptions& options)
       changes_(open_changes()),
       end_(::eventfd(0, EFD_CLOEXEC)) {
   if (!changes_ || !end_) return;
-  thread_ = std::thread([this] { run(); });
+  thread_ = start_thread("skein-dds-group", [this] { run(); });
   ::pthread_setname_np(thread_.native_handle(), "skein-dds-group");
 }
 

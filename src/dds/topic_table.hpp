@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "dds/port.hpp"
 #include "skein/error.hpp"
@@ -70,6 +71,24 @@ class TopicTable {
 
   std::mutex mutex_;
   std::map<std::string, Entry> entries_;
+};
+
+/// One use of a topic of a participant that has a TopicTable, for as long as it lives.
+template <class Participant>
+class TopicUse {
+ public:
+  TopicUse(Participant& participant, const Topic& topic)
+      : participant_(participant), name_(topic.name), handle_(participant.acquire_topic(topic)) {}
+  ~TopicUse() { participant_.release_topic(name_); }
+  TopicUse(const TopicUse&) = delete;
+  TopicUse& operator=(const TopicUse&) = delete;
+
+  const auto& handle() const noexcept { return handle_; }
+
+ private:
+  Participant& participant_;
+  const std::string name_;
+  const decltype(std::declval<Participant&>().acquire_topic(std::declval<const Topic&>())) handle_;
 };
 
 }  // namespace skein::dds

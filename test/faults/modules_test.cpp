@@ -99,7 +99,7 @@ TEST_CASE(
 
 TEST_CASE("a plugin that throws while it registers is named with what it says") {
   ComponentRegistry registry;
-  const std::string plugin = std::string(SKEIN_WRONG_MODULES) + "/libskein_throwing_plugin.so";
+  const std::string plugin = built_file("test/faults/wrong_modules/libskein_throwing_plugin.so");
   CHECK_THROWS_AS(registry.load_plugin(plugin), Unavailable);
   CHECK_THROWS_WITH(registry.load_plugin(plugin),
                     plugin + ", while it registered its components: " + "licence missing");
@@ -107,7 +107,7 @@ TEST_CASE("a plugin that throws while it registers is named with what it says") 
 
 TEST_CASE("a plugin whose function is C++'s is told what is forgotten") {
   ComponentRegistry registry;
-  const std::string plugin = std::string(SKEIN_WRONG_MODULES) + "/libskein_mangled_plugin.so";
+  const std::string plugin = built_file("test/faults/wrong_modules/libskein_mangled_plugin.so");
   CHECK_THROWS_AS(registry.load_plugin(plugin), InvalidArgument);
   CHECK_THROWS_WITH(registry.load_plugin(plugin),
                     Contains("exports skein_register_components as C++; write `extern \"C\"`"));

@@ -1,6 +1,7 @@
 #include "participant.hpp"
 
 #include "../options_check.hpp"
+#include "../room_for_participant.hpp"
 #include "blob.hpp"
 #include "configuration.hpp"
 #include "heartbeats.h"
@@ -33,6 +34,7 @@ Entity make_domain(const ParticipantOptions& options, dds_domainid_t id) {
 CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : options_(options) {
   check_options(options);
   refuse_shared_memory(options, "Cyclone DDS");
+  require_room_for_participant(options);
   const dds_domainid_t id = next_internal_domain();
   domain_ = make_domain(options, id);
   const QosSet qos;

@@ -8,7 +8,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
                              ReaderListener listener)
     : participant_(participant),
       topic_(topic),
-      handle_(participant.acquire_topic(topic)),
+      use_(participant, topic),
       listener_(std::move(listener)),
       queue_(topic.name, qos, listener_.find_key, listener_.on_deadline_missed),
       cache_(queue_, peers_),
@@ -24,17 +24,12 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
             return peers_ && peers_->refuses(guid) ? Guid{} : guid;
           },
           listener_.on_matched, listener_.on_liveliness) {
-  try {
-    if (EndpointWatch::is_needed(qos, listener_.on_incompatible != nullptr)) {
-      peers_.emplace(participant_.endpoints(),
-                     Endpoint{Side::Reader, topic.name, topic.type_name, qos},
-                     listener_.on_incompatible);
-    }
-    reader_ = make(topic, qos);
-  } catch (...) {
-    participant_.release_topic(topic_.name);
-    throw;
+  if (EndpointWatch::is_needed(qos, listener_.on_incompatible != nullptr)) {
+    peers_.emplace(participant_.endpoints(),
+                   Endpoint{Side::Reader, topic.name, topic.type_name, qos},
+                   listener_.on_incompatible);
   }
+  reader_ = make(topic, qos);
   reader_handle_ = reader_.handle();
   guid_ = reader_.guid();
   made_ = true;
@@ -43,10 +38,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
   if (!queue_.empty()) data_available();
 }
 
-CycloneReader::~CycloneReader() {
-  reader_.reset();
-  participant_.release_topic(topic_.name);
-}
+CycloneReader::~CycloneReader() { reader_.reset(); }
 
 Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
   const QosSet qos(wanted);
@@ -62,8 +54,8 @@ Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
                               [](dds_entity_t, dds_liveliness_changed_status_t status, void* self) {
                                 static_cast<CycloneReader*>(self)->liveliness_changed(status);
                               });
-  const dds_entity_t reader =
-      dds_create_reader_rhc(participant_.handle(), handle_.entity, qos.get(), listener, &cache_);
+  const dds_entity_t reader = dds_create_reader_rhc(participant_.handle(), use_.handle().entity,
+                                                    qos.get(), listener, &cache_);
   dds_delete_listener(listener);
   return Entity(check(reader, "topic '" + topic.name + "': a reader cannot be created"));
 }

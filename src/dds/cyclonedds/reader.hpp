@@ -29,7 +29,7 @@ class CycloneReader final : public Reader {
 
   CycloneParticipant& participant_;
   const Topic topic_;
-  const TopicHandle handle_;
+  const TopicUse<CycloneParticipant> use_;
   const ReaderListener listener_;
   std::optional<EndpointWatch> peers_;
   ReceiveQueue queue_;

@@ -12,7 +12,7 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
     : participant_(participant),
       topic_(topic),
       qos_(qos),
-      handle_(participant.acquire_topic(topic)),
+      use_(participant, topic),
       matches_(
           [this](dds_instance_handle_t* handles, std::size_t room) {
             return dds_get_matched_subscriptions(writer_handle_, handles, room);
@@ -26,26 +26,18 @@ CycloneWriter::CycloneWriter(CycloneParticipant& participant, const Topic& topic
           },
           std::move(listener.on_matched)),
       deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
-  try {
-    if (EndpointWatch::is_needed(qos, listener.on_incompatible != nullptr)) {
-      peers_.emplace(participant_.endpoints(),
-                     Endpoint{Side::Writer, topic.name, topic.type_name, qos},
-                     std::move(listener.on_incompatible));
-    }
-    writer_ = make();
-  } catch (...) {
-    participant_.release_topic(topic_.name);
-    throw;
+  if (EndpointWatch::is_needed(qos, listener.on_incompatible != nullptr)) {
+    peers_.emplace(participant_.endpoints(),
+                   Endpoint{Side::Writer, topic.name, topic.type_name, qos},
+                   std::move(listener.on_incompatible));
   }
+  writer_ = make();
   writer_handle_ = writer_.handle();
   guid_ = writer_.guid();
   matches_.update();
 }
 
-CycloneWriter::~CycloneWriter() {
-  writer_.reset();
-  participant_.release_topic(topic_.name);
-}
+CycloneWriter::~CycloneWriter() { writer_.reset(); }
 
 Entity CycloneWriter::make() {
   const QosSet qos(qos_);
@@ -55,7 +47,7 @@ Entity CycloneWriter::make() {
                                  static_cast<CycloneWriter*>(self)->matches_.update();
                                });
   const dds_entity_t writer =
-      dds_create_writer(participant_.handle(), handle_.entity, qos.get(), listener);
+      dds_create_writer(participant_.handle(), use_.handle().entity, qos.get(), listener);
   dds_delete_listener(listener);
   return Entity(check(writer, "topic '" + topic_.name + "': a writer cannot be created"));
 }
@@ -63,7 +55,7 @@ Entity CycloneWriter::make() {
 void CycloneWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {
   check_sample(cdr, topic_.name);
   wait_for_room();
-  Blob* blob = Blob::make_outgoing(handle_.type, cdr, topic_.keyed ? key : KeyHash{});
+  Blob* blob = Blob::make_outgoing(use_.handle().type, cdr, topic_.keyed ? key : KeyHash{});
   check_written(dds_writecdr(writer_.handle(), blob));
   if (deadline_) deadline_->heard(topic_.keyed ? key : KeyHash{});
 }
@@ -72,7 +64,7 @@ void CycloneWriter::dispose(const KeyHash& key) {
   require_keyed(topic_);
   // The payload is the key, for peers that look there: a short key's hash is its big-endian CDR,
   // and travels beside it too.
-  Blob* blob = Blob::make(handle_.type, SDK_KEY, kHeaderSize + key.bytes.size());
+  Blob* blob = Blob::make(use_.handle().type, SDK_KEY, kHeaderSize + key.bytes.size());
   const std::byte header[kHeaderSize] = {std::byte{0}, std::byte{0}, std::byte{0}, std::byte{0}};
   std::memcpy(blob->bytes(), header, kHeaderSize);
   std::memcpy(blob->bytes() + kHeaderSize, key.bytes.data(), key.bytes.size());

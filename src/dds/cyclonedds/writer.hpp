@@ -28,7 +28,7 @@ class CycloneWriter final : public Writer {
   CycloneParticipant& participant_;
   const Topic topic_;
   const Qos qos_;
-  const TopicHandle handle_;
+  const TopicUse<CycloneParticipant> use_;
   Matches matches_;
   std::optional<EndpointWatch> peers_;
   const std::unique_ptr<DeadlineTimer> deadline_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "../options_check.hpp"
+#include "../room_for_participant.hpp"
 #include "attributes.hpp"
 #include "core/log.hpp"
 #include "identity.hpp"
@@ -51,6 +52,7 @@ FastParticipant::FastParticipant(const ParticipantOptions& options, const Segmen
       events_([this] { tick(); }) {
   transport_->state->watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
   const auto attributes = participant_attributes(options_, transport_);
+  require_room_for_participant(options_);
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.
@@ -200,8 +202,8 @@ void FastParticipant::check_liveliness() {
   }
 }
 
-void FastParticipant::acquire_topic(const Topic& topic) {
-  topics_.acquire(topic, [] { return 0; });
+int FastParticipant::acquire_topic(const Topic& topic) {
+  return topics_.acquire(topic, [] { return 0; });
 }
 
 void FastParticipant::release_topic(const std::string& name) {

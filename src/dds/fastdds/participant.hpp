@@ -50,7 +50,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void assert_liveliness_for(std::chrono::nanoseconds lease);
   LivelinessTracker& signs() noexcept { return transport_->state->signs; }
   Endpoints& endpoints() noexcept { return endpoints_; }
-  void acquire_topic(const Topic& topic);
+  int acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
  private:

@@ -14,18 +14,17 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
                        dds::ReaderListener listener)
     : participant_(participant),
       topic_(topic),
+      use_(participant, topic),
       on_data_(std::move(listener.on_data)),
       events_(std::make_shared<EndpointEvents>(participant.events(), endpoint_listener(listener))),
       history_(history_attributes(0)),
       queue_(topic.name, qos, std::move(listener.find_key),
              std::move(listener.on_deadline_missed)) {
-  participant_.acquire_topic(topic);
   auto attributes = reader_attributes(topic, qos);
   std::lock_guard lock(participant.readers());
   reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes,
                                                payloads_, &history_, this);
   if (reader_ == nullptr) {
-    participant_.release_topic(topic_.name);
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
   }
   guid_ = to_guid(reader_->getGuid());
@@ -47,7 +46,6 @@ FastReader::~FastReader() {
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
   events_->close();
-  participant_.release_topic(topic_.name);
 }
 
 void FastReader::onReaderMatched(rtps::RTPSReader*,

@@ -43,6 +43,7 @@ class FastReader final : public Reader, private rtps::ReaderListener {
 
   FastParticipant& participant_;
   const Topic topic_;
+  const TopicUse<FastParticipant> use_;
   const std::function<void(Reader&)> on_data_;
   const std::shared_ptr<EndpointEvents> events_;
   std::optional<EndpointWatch> peers_;

@@ -32,6 +32,7 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
                        dds::WriterListener listener)
     : participant_(participant),
       topic_(topic),
+      use_(participant, topic),
       qos_(qos),
       events_(std::make_shared<EndpointEvents>(
           participant.events(),
@@ -39,21 +40,19 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
               std::move(listener.on_matched), {}, std::move(listener.on_incompatible)})),
       history_(history_attributes(bounded() ? qos.max_samples : 0)),
       deadline_(make_deadline_timer(qos, std::move(listener.on_deadline_missed))) {
-  participant_.acquire_topic(topic);
-  auto attributes = writer_attributes(topic, qos);
-  writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes,
-                                               &history_, this);
-  if (writer_ == nullptr) {
-    participant_.release_topic(topic_.name);
-    throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a writer");
-  }
-  guid_ = to_guid(writer_->getGuid());
   if (qos.lifespan && qos.transient_local) {
     Qos every_lifespan;
     every_lifespan.deadline = qos.lifespan;
     lifespan_ =
         make_deadline_timer(every_lifespan, [this](const KeyHash& key) { drop_expired(key); });
   }
+  auto attributes = writer_attributes(topic, qos);
+  writer_ = rtps::RTPSDomain::createRTPSWriter(participant_.rtps_participant(), attributes,
+                                               &history_, this);
+  if (writer_ == nullptr) {
+    throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a writer");
+  }
+  guid_ = to_guid(writer_->getGuid());
   if (EndpointWatch::is_needed(qos, events_->tells_incompatible())) {
     peers_.emplace(participant_.endpoints(),
                    Endpoint{Side::Writer, topic.name, topic.type_name, qos},
@@ -72,7 +71,6 @@ FastWriter::~FastWriter() {
   history_.remove_all_changes();
   rtps::RTPSDomain::removeRTPSWriter(writer_);
   events_->close();
-  participant_.release_topic(topic_.name);
 }
 
 void FastWriter::write(std::span<const std::byte> cdr, const KeyHash& key) {

@@ -55,6 +55,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
 
   FastParticipant& participant_;
   const Topic topic_;
+  const TopicUse<FastParticipant> use_;
   const Qos qos_;
   const std::shared_ptr<EndpointEvents> events_;
   std::optional<EndpointWatch> peers_;
