@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "../connector/echo_service.hpp"
+#include "dds/port.hpp"
 #include "processes.hpp"
 
 using namespace skein;
@@ -85,6 +86,16 @@ TEST_CASE("in the last domain, which has ports for fewer participants, peers fin
   }
   entities[0]->provide<LouderEcho>(std::make_shared<EchoService>());
   CHECK(entities[1]->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
+}
+
+TEST_CASE("an entity of the last domain comes to be however many there were before") {
+  for (const auto& vendor : {Pairing::get().server, Pairing::get().client}) {
+    for (int i = 0; i < 70; ++i) {
+      dds::ParticipantOptions options;
+      options.domain = 232;
+      REQUIRE_NOTHROW(vendor->create_participant(options));
+    }
+  }
 }
 
 TEST_CASE("an interface that the host does not have is refused with those that it has") {

@@ -157,6 +157,11 @@ rtps::RTPSParticipantAttributes participant_attributes(
   builtin.avoid_builtin_multicast = true;
   builtin.mutation_tries = max_participants(options) - 1;
 
+  // From these and a participant's number in the process's life Fast DDS works out ports that are
+  // not used, as every locator states its own, and ends the process where there are none so high.
+  attributes.port.portBase = 0;
+  attributes.port.domainIDGain = 0;
+
   // Ports are taken from the domain's first on: left to itself, Fast DDS counts participants over
   // all domains of the process and soon listens where no peer looks.
   const std::uint32_t base = domain_port(options.domain);

@@ -5,6 +5,7 @@
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "../options_check.hpp"
 #include "../room_for_participant.hpp"
@@ -41,6 +42,18 @@ ParticipantOptions feasible(ParticipantOptions options) {
   return options;
 }
 
+/// Fast DDS numbers all participants of a process's life, and ends the process beyond what it can
+/// (participant_attributes).
+void count_participant() {
+  static std::atomic<std::uint32_t> made{0};
+  constexpr std::uint32_t kMost = (65535 - kUserOffset) / 2;
+  if (made.load() >= kMost || made.fetch_add(1) >= kMost) {
+    throw Unavailable("this process has had " + std::to_string(kMost) +
+                      " participants of Fast DDS, which numbers no more; start it anew, or keep "
+                      "entities instead of making new ones");
+  }
+}
+
 }  // namespace
 
 FastParticipant::FastParticipant(const ParticipantOptions& options)
@@ -53,6 +66,7 @@ FastParticipant::FastParticipant(const ParticipantOptions& options, const Segmen
   transport_->state->watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
   const auto attributes = participant_attributes(options_, transport_);
   require_room_for_participant(options_);
+  count_participant();
   participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.

@@ -25,6 +25,13 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return &descriptor_;
   }
 
+  // By RTPS's ports, whatever the participant counts its own by (participant_attributes).
+  bool configureInitialPeerLocator(rtps::Locator_t& locator, const rtps::PortParameters&,
+                                   std::uint32_t domain,
+                                   rtps::LocatorList_t& peers) const override {
+    return ChainingTransport::configureInitialPeerLocator(locator, {}, domain, peers);
+  }
+
   bool OpenInputChannel(const rtps::Locator_t& locator,
                         eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_size) override {
