@@ -82,5 +82,11 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     std::fprintf(stderr, "skein-grid: %s\n", error.what());
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr,
+                 "skein-grid: there is not enough memory for %s and what the planner prepares; "
+                 "raise the limit (ulimit -v), or take a smaller map or --planner astar\n",
+                 arguments.map.c_str());
+    return 2;
   }
 }
