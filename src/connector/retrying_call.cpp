@@ -116,8 +116,8 @@ void RetryingCall::move(const std::exception_ptr& why) {
         const auto late = call.lock();
         if (!late) return;
         late->fail(std::make_exception_ptr(
-            TimedOut("no provider answered " + std::string(late->operation().name) +
-                     " before its deadline; whether it ran is unknown")));
+            TimedOut("no provider answered '" + std::string(late->operation().name) +
+                     "' before its deadline; whether it ran is unknown")));
       });
     }
   }

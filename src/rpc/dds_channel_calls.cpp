@@ -154,7 +154,7 @@ void DdsChannel::State::expire(std::uint64_t number) {
     hint = what_came_malformed();
   }
   auto error = std::make_exception_ptr(
-      TimedOut(options.peer + " did not answer " + std::string(call->operation().name) +
+      TimedOut(options.peer + " did not answer " + quoted(call->operation()) +
                " before its deadline; whether it ran is unknown" + hint + kMoreTime));
   note_end(number, call->operation(), error);
   call->finish(std::move(error));

@@ -188,7 +188,7 @@ void LocalChannel::lose(const std::string& how) {
   for (const auto& queued : close()) {
     queued->give_up(std::make_exception_ptr(
         Disconnected("the connection to " + *peer_ + " is gone (" + how + "); whether " +
-                     std::string(queued->call->operation().name) + " ran is unknown")));
+                     quoted(queued->call->operation()) + " ran is unknown")));
   }
 }
 
