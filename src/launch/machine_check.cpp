@@ -228,13 +228,8 @@ class PluginCheck {
     try {
       if (!plugin.empty()) registry.load_plugin(plugin);
       return true;
-    } catch (const Error& error) {
-      add(where, "the plugin '" + plugin + "': " + error.what(), "");
     } catch (const std::exception& error) {
-      add(where,
-          "the plugin '" + plugin +
-              "': it threw an exception while it registered its components: " + error.what(),
-          "");
+      add(where, "the plugin '" + plugin + "': " + error.what(), "");
     }
     return false;
   }

@@ -51,10 +51,10 @@ void require_valid_limits(const AE_navigator::Problem& problem) {
           "the minimum height above ground is {} m; it must be 0 or more",
           problem.minimum_height_above_ground_m);
   require(problem.exposure_weight >= 0 && problem.exposure_weight <= kLargestWeight,
-          "the exposure weight is {}; it must lie between 0 and {}", problem.exposure_weight,
+          "the exposure weight is {:g}; it must lie between 0 and {:g}", problem.exposure_weight,
           kLargestWeight);
   require(problem.kill_weight_m >= 0 && problem.kill_weight_m <= kLargestWeight,
-          "the weight of an expected kill is {} m; it must lie between 0 and {}",
+          "the weight of an expected kill is {:g} m; it must lie between 0 and {:g}",
           problem.kill_weight_m, kLargestWeight);
   require(std::isfinite(problem.exposure_cap_m) && problem.exposure_cap_m >= 0,
           "the exposure cap is {} m; it must be 0 (no cap) or more", problem.exposure_cap_m);
@@ -92,8 +92,8 @@ void require_valid_site(const char* kind, const Site& site, double rate, const c
   require(site.mast_height_m > 0 && site.range_m > 0 && rate >= 0,
           "{} site '{}' needs a mast and a range greater than 0 and a {} of 0 or more", kind,
           site.name, rate_name);
-  require(rate <= kLargestWeight, "the {} of {} site '{}' is {}; it must be {} or less", rate_name,
-          kind, site.name, rate, kLargestWeight);
+  require(rate <= kLargestWeight, "the {} of {} site '{}' is {:g}; it must be {:g} or less",
+          rate_name, kind, site.name, rate, kLargestWeight);
 }
 
 void require_valid_end(const char* which, const AE_navigator::Position& end,
