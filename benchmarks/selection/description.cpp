@@ -50,8 +50,10 @@ class Reader {
   static std::string with_quoted_marks(std::istream& stream) {
     std::string text;
     for (std::string line; std::getline(stream, line);) {
-      const std::string bare = trimmed(line);
-      const bool unknown = bare.ends_with(": ?") || bare == "- ?";
+      std::string before = trimmed(line);
+      bool unknown = before.ends_with('?');
+      if (unknown) before = trimmed(before.substr(0, before.size() - 1));
+      unknown = unknown && (before.ends_with(':') || before == "-");
       text += unknown ? line.substr(0, line.rfind('?')) + "'?'" : line;
       text += '\n';
     }
