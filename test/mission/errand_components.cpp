@@ -12,6 +12,7 @@
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "worker.idl.hpp"
 
@@ -63,7 +64,11 @@ int vex(Entity& entity, const ParameterValues&) {
   return 0;
 }
 
+/// By which others know that the herald is at work.
+constexpr char kHerald[] = "herald";
+
 int call_out(Entity& entity, const ParameterValues&, const std::stop_token& told_to_end) {
+  const auto sign = entity.publisher<introspection::Attempt>(kHerald);
   do {
     std::puts("hear, hear");
     std::fflush(stdout);
@@ -74,6 +79,8 @@ int call_out(Entity& entity, const ParameterValues&, const std::stop_token& told
 }
 
 int call_thrice(Entity& entity, const ParameterValues&, const std::stop_token& told_to_end) {
+  const auto herald = entity.subscription<introspection::Attempt>(kHerald);
+  test::eventually([&] { return herald.publishers() > 0 || told_to_end.stop_requested(); });
   for (int i = 0; i < 3 && !await_end(entity, told_to_end, 1ms); ++i) std::puts("a word");
   std::fflush(stdout);
   return 3;

@@ -84,14 +84,15 @@ std::string write_route_mission(const std::filesystem::path& folder) {
   return file.string();
 }
 
-/// Calls until the answer comes, whatever the connection goes through meanwhile.
+/// Calls until the answer comes, whatever becomes of the connection, and of a planner's time on a
+/// busy machine, meanwhile.
 template <class Call>
 bool answers(const Call& call) {
   return eventually([&] {
     try {
       call();
       return true;
-    } catch (const Error&) {
+    } catch (const std::exception&) {
       return false;
     }
   });

