@@ -50,12 +50,13 @@ class Cores:
         return sorted(self._folder.glob("core.*"))
 
     def by_test(self):
-        """{name of a ctest test: its processes' cores}; those of processes without the variable by the name ""."""
+        """{name of a ctest test: its processes' cores}; those of processes without the variable by the name "". A process's environment
+        is the last in its core: before it may be what the process has read of others."""
         found = {}
         for core in self.all():
-            result = subprocess.run(["grep", "-a", "-o", "-m", "1", r"SKEIN_TEST_NAME=[A-Za-z0-9_.-]*", core],
+            result = subprocess.run(["grep", "-a", "-o", r"SKEIN_TEST_NAME=[A-Za-z0-9_.-]*", core],
                                     capture_output=True, text=True, check=False)
-            name = result.stdout.split("\n")[0].partition("=")[2]
+            name = result.stdout.rstrip("\n").rpartition("\n")[2].partition("=")[2]
             found.setdefault(name, []).append(core)
         return found
 

@@ -12,6 +12,7 @@ TOOLS = pathlib.Path(__file__).parent
 sys.path[:0] = [str(TOOLS), str(TOOLS.parent / "architecture")]
 
 from affected_tests import Affected, changed_files  # noqa: E402
+from cores import Cores  # noqa: E402
 from source_tree import SourceTree  # noqa: E402
 
 CMAKE = sys.argv.pop() if len(sys.argv) > 1 else "cmake"
@@ -29,6 +30,22 @@ def cores_are_kept():
     """Whether a process that dies leaves its core where the gate looks."""
     pattern = pathlib.Path("/proc/sys/kernel/core_pattern")
     return "SKEIN_CORES" in os.environ or (pattern.read_text().strip() == "core" and os.access(pattern, os.W_OK))
+
+
+class CoresTest(unittest.TestCase):
+    def test_a_core_belongs_to_the_test_in_its_own_environment_whatever_its_process_has_read_of_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ["SKEIN_CORES"], before = folder, os.environ.get("SKEIN_CORES")
+            try:
+                (pathlib.Path(folder) / "core.1").write_bytes(b"\0SKEIN_TEST_NAME=other\0\x01SKEIN_TEST_NAME=own\0HOME=/\0")
+                (pathlib.Path(folder) / "core.2").write_bytes(b"\0HOME=/\0")
+                with Cores() as cores:
+                    found = {name: [core.name for core in of_it] for name, of_it in cores.by_test().items()}
+            finally:
+                os.environ.pop("SKEIN_CORES")
+                if before is not None:
+                    os.environ["SKEIN_CORES"] = before
+        self.assertEqual(found, {"own": ["core.1"], "": ["core.2"]})
 
 
 class Gate(unittest.TestCase):
