@@ -4,21 +4,13 @@
 #include <optional>
 
 #include "../connector/echo_service.hpp"
-#include "skein/entity.hpp"
+#include "lone_entity.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
 using ::test::LouderEcho;
 
 namespace {
-
-std::unique_ptr<Entity> make(const std::shared_ptr<dds::Vendor>& vendor, const char* name) {
-  EntityOptions options;
-  options.name = name;
-  options.vendor = vendor;
-  options.domain = 17;
-  return std::make_unique<Entity>(std::move(options));
-}
 
 /// Ends last of all: it came first.
 struct Peers {
@@ -39,9 +31,9 @@ struct Peers {
 int main(int, char** arguments) {
   try {
     const auto vendor = dds::load_vendor(arguments[1]);
-    peers.server = make(vendor, "server");
+    peers.server = skein::test::make_lone_entity(vendor, "server");
     peers.server->provide<LouderEcho>(std::make_shared<skein::test::EchoService>());
-    peers.client = make(vendor, "client");
+    peers.client = skein::test::make_lone_entity(vendor, "client");
     peers.proxy.emplace(peers.client->connect<LouderEcho>());
     std::printf("%s\n", peers.proxy->echo("called").c_str());
   } catch (const Error& error) {

@@ -15,7 +15,7 @@
 
 #include "../connector/echo_service.hpp"
 #include "dds/port.hpp"
-#include "skein/entity.hpp"
+#include "lone_entity.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -66,18 +66,10 @@ void limit_descriptors(int count) {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-std::unique_ptr<Entity> make(const std::shared_ptr<dds::Vendor>& vendor, const char* name) {
-  EntityOptions options;
-  options.name = name;
-  options.vendor = vendor;
-  options.domain = 17;
-  return std::make_unique<Entity>(std::move(options));
-}
-
 void call(const std::shared_ptr<dds::Vendor>& vendor) {
-  const auto server = make(vendor, "server");
+  const auto server = skein::test::make_lone_entity(vendor, "server");
   server->provide<LouderEcho>(std::make_shared<skein::test::EchoService>());
-  const auto client = make(vendor, "client");
+  const auto client = skein::test::make_lone_entity(vendor, "client");
   dds::Qos watched;
   watched.deadline = std::chrono::seconds(10);
   const auto writer = client->participant().create_writer({"octets", "octets", false}, watched);
