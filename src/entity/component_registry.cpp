@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/clock_wait.hpp"
+#include "core/run_user_code.hpp"
 #include "core/shared_object.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -96,16 +97,8 @@ void ComponentRegistry::load_plugin(const std::string& name) {
   plugin.check_abi("skein_plugin_abi");
   const auto register_components =
       plugin.function<void(ComponentRegistry&)>("skein_register_components");
-  const std::string place = plugin.file() + ", while it registered its components: ";
-  try {
-    register_components(*this);
-  } catch (const InvalidArgument& error) {
-    throw InvalidArgument(place + error.what());
-  } catch (const std::exception& error) {
-    throw Unavailable(place + error.what());
-  } catch (...) {
-    throw Unavailable(place + "it threw something that is no std::exception");
-  }
+  run_user_code(plugin.file() + ", while it registered its components: ",
+                [&] { register_components(*this); });
 }
 
 void ComponentRegistry::refuse_duplicate(const std::string& component) const {

@@ -18,6 +18,7 @@
 #include "core/interface_name.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
+#include "core/run_user_code.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
 #include "hung_csp.hpp"
@@ -120,6 +121,11 @@ ServiceOptions service_options(const profile::ComponentDescription& component,
   return options;
 }
 
+const std::shared_ptr<Servant>& servant_of(const std::shared_ptr<Servant>& csp) { return csp; }
+const std::shared_ptr<Servant>& servant_of(const ComponentRegistry::Body& body) {
+  return body.servant;
+}
+
 /// Throws InvalidArgument where no code would run for a peer or a CSP.
 template <class Profile>
 void demand_code(const Profile& profile, const ComponentRegistry& registry) {
@@ -129,11 +135,24 @@ void demand_code(const Profile& profile, const ComponentRegistry& registry) {
                         lack->remedy);
 }
 
+/// What the factory of a peer's or a CSP's component makes. Throws InvalidArgument where that is
+/// nothing, and what the factory throws, with the place in the profile and the component's name.
+template <class Profile, class Factory, class... Arguments>
+auto make_component(const Profile& profile, const Factory& factory, Arguments&&... arguments) {
+  const std::string place = profile::to_text(profile.where) + ": ";
+  const std::string& name = profile.component->name;
+  auto made = run_user_code(place + "while making '" + name + "': ",
+                            [&] { return factory(std::forward<Arguments>(arguments)...); });
+  if (servant_of(made)) return made;
+  throw InvalidArgument(place + "the factory of '" + name +
+                        "' returned no servant; return one, or throw what keeps it from that");
+}
+
 void provide_csp(Entity& entity, const std::string& owner, const MissionProfile& mission,
                  const CspProfile& csp, const ComponentRegistry& registry) {
   demand_code(csp, registry);
-  auto servant =
-      (*registry.find_csp(csp.component->name))(values_of(csp.parameters, mission.dictionary));
+  auto servant = make_component(csp, *registry.find_csp(csp.component->name),
+                                values_of(csp.parameters, mission.dictionary));
   ServiceOptions options = service_options(*csp.component, mission.dictionary, *servant);
   options.thread = csp.threads.thread;
   options.scheduling = csp.threads.settings;
@@ -160,8 +179,8 @@ using SelfTest = std::function<void()>;
 
 SelfTest provide_body(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
                       const ComponentRegistry& registry) {
-  const auto& factory = *registry.find_body(peer.component->name);
-  ComponentRegistry::Body body = factory(entity, values_of(peer.parameters, mission.dictionary));
+  auto body = make_component(peer, *registry.find_body(peer.component->name), entity,
+                             values_of(peer.parameters, mission.dictionary));
   ServiceOptions options = service_options(*peer.component, mission.dictionary, *body.servant);
   options.thread = peer.threads.thread;
   options.threads = threads_of(peer, body);
@@ -174,7 +193,7 @@ void pass(const SelfTest& self_test, const Entity& entity) {
   if (!self_test) return;
   report_waiting("tests itself");
   try {
-    self_test();
+    run_user_code("", self_test);
   } catch (const std::exception& error) {
     const std::string reason = std::string("its self-test has failed: ") + error.what();
     report_waiting(reason);
@@ -320,7 +339,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   const ProgressReport progress(entity, peer.rules.progress_timeout);
   if (!peer.component->interfaces.empty()) return await_end();
   try {
-    return run_own_code(entity, mission, peer, registry);
+    return run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); });
   } catch (const std::exception& error) {
     const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
                              " ended by an exception: " + error.what();

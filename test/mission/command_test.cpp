@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "command_run.hpp"
 #include "errand.hpp"
@@ -208,6 +209,41 @@ TEST_CASE("a mission that ends by an exception has an exit code of its own, and 
        errand.profile("", "<peer name='clumsy' component='clumsy.xml' role='mission'/>")});
   CHECK(run.wait() == 76);
   CHECK_THAT(run.output(), Contains("ended by an exception: the client stumbled"));
+}
+
+TEST_CASE("an activity that throws what is no std::exception ends as one that throws") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"peer", errand.profile("", "<peer name='t' component='thrower.xml'/>"), "t"});
+  CHECK(run.wait() == 76);
+  CHECK_THAT(run.output(),
+             Contains("t ended by an exception: it threw something that is no std::exception"));
+}
+
+TEST_CASE("a component that could not be made is named, with its place in the profile") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const bool csp = GENERATE(false, true);
+  const auto [how, text, code] = GENERATE(table<std::string, std::string, int>({
+      {"nothing", "the factory of 'NAME' returned no servant", 78},
+      {"an int", "while making 'NAME': it threw something that is no std::exception", 71},
+      {"an error", "while making 'NAME': no gauge at /dev/gauge", 71},
+  }));
+  const std::string profile =
+      csp ? errand.profile("",
+                           "<peer name='boss' component='boss.xml'><csp name='c' "
+                           "component='bad_clerk.xml' process='own'/></peer>")
+          : errand.profile("", "<peer name='b' component='bad.xml'/>");
+  errand.write("boss.xml",
+               "<component name='office'><interfaces><implements>IDL:crew/Desk</implements>"
+               "</interfaces><subcomponents><subcomponent>IDL:crew/Desk</subcomponent>"
+               "</subcomponents></component>");
+  CAPTURE(csp, how);
+  CommandRun run({"peer", profile, csp ? "boss/c" : "b", "--", how});
+  CHECK(run.wait() == code);
+  const std::string wanted =
+      std::regex_replace(text, std::regex("NAME"), csp ? "bad_clerk" : "bad");
+  CHECK_THAT(run.output(), Contains("errand.xml:1:") && Contains(": " + wanted));
 }
 
 TEST_CASE("a second launcher of a mission is refused and names the first") {

@@ -11,16 +11,17 @@
 namespace skein::test {
 
 /// A folder with the small mission's components, for profiles around them; it goes with this
-/// object. `office` answers, `sick` would but fails its self-test, `client` asks and ends, `vexer`
-/// makes the office spin first, `clumsy` ends by an exception, `herald` calls out until it is told
-/// to end, `page` does so three times.
+/// object. `office` answers, `sick` would but fails its self-test, `bad` and the CSP `bad_clerk`
+/// are not made: their argument says what their factory returns or throws. `client` asks and ends,
+/// `vexer` makes the office spin first, `clumsy` ends by an exception and `thrower` by what is
+/// none, `herald` calls out until it is told to end, `page` does so three times.
 class Errand {
  public:
   Errand() {
     std::string pattern = (std::filesystem::temp_directory_path() / "skein-errand-XXXXXX").string();
     if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for a profile");
     folder_ = pattern;
-    for (const std::string desk : {"office", "sick"}) {
+    for (const std::string desk : {"office", "sick", "bad", "bad_clerk"}) {
       write(desk + ".xml", "<component name='" + desk +
                                "'><interfaces><implements>IDL:crew/Desk</implements>"
                                "</interfaces></component>");
@@ -30,7 +31,7 @@ class Errand {
                                 "'><dependencies><depends>IDL:crew/Desk</depends>"
                                 "</dependencies></component>");
     }
-    for (const std::string lone : {"clumsy", "herald", "page"})
+    for (const std::string lone : {"clumsy", "herald", "page", "thrower"})
       write(lone + ".xml", "<component name='" + lone + "'/>");
   }
   ~Errand() {

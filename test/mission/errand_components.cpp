@@ -88,6 +88,13 @@ int call_thrice(Entity& entity, const ParameterValues&, const std::stop_token& t
 
 int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the client stumbled"); }
 
+/// What becomes of a component whose process was given `how` as its argument.
+std::shared_ptr<Servant> make_badly(const std::string& how) {
+  if (how == "nothing") return nullptr;
+  if (how == "an int") throw 7;
+  throw std::runtime_error("no gauge at /dev/gauge");
+}
+
 }  // namespace
 
 extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
@@ -107,6 +114,17 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
         std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>()), 1,
         [] { throw std::runtime_error("no compass"); }};
   });
+  const auto arguments = registry.arguments();
+  const std::string how = arguments.empty() ? "" : arguments.front();
+  registry.add_body<crew::Desk>("bad", [how](skein::Entity&, const skein::ParameterValues&) {
+    return skein::ComponentRegistry::Body{make_badly(how)};
+  });
+  registry.add_csp<crew::Desk>("bad_clerk",
+                               [how](const skein::ParameterValues&) { return make_badly(how); });
+  registry.add_activity(
+      "thrower", [](skein::Entity&, const skein::ParameterValues&, const std::stop_token&) -> int {
+        throw 7;
+      });
   registry.add_mission("vexer", vex);
   registry.add_mission("clumsy", stumble);
   registry.add_activity("herald", call_out);
