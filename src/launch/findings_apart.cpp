@@ -26,22 +26,27 @@ using profile::Severity;
 
 constexpr std::chrono::seconds kPatience{30};
 constexpr char kEndOfField = '\0';
-constexpr std::string_view kEnd = "end";  // in place of another finding
+// In place of another finding's severity:
+constexpr std::string_view kEnd = "end";
+constexpr std::string_view kStep = "step";  // what follows is no finding, but what begins
+
+std::string to_fields(std::string_view severity, const Finding& finding) {
+  std::string text;
+  for (const std::string& field :
+       {std::string(severity), finding.where.file, std::to_string(finding.where.line),
+        std::to_string(finding.where.column), finding.problem, finding.remedy})
+    text.append(field) += kEndOfField;
+  return text;
+}
 
 std::string to_fields(const std::vector<Finding>& findings) {
   std::string text;
-  for (const Finding& finding : findings) {
-    for (const std::string& field :
-         {std::string(to_string(finding.severity)), finding.where.file,
-          std::to_string(finding.where.line), std::to_string(finding.where.column), finding.problem,
-          finding.remedy})
-      text.append(field) += kEndOfField;
-  }
+  for (const Finding& finding : findings) text += to_fields(to_string(finding.severity), finding);
   return text.append(kEnd) += kEndOfField;
 }
 
-/// False where the end is missing.
-bool read_fields(const std::string& text, std::vector<Finding>& findings) {
+/// False where the end is missing; `step` is then what had begun.
+bool read_fields(const std::string& text, std::vector<Finding>& findings, Finding& step) {
   std::istringstream stream(text);
   const auto next = [&] {
     std::string field;
@@ -59,26 +64,34 @@ bool read_fields(const std::string& text, std::vector<Finding>& findings) {
     finding.where.column = std::atoi(next().c_str());
     finding.problem = next();
     finding.remedy = next();
-    findings.push_back(std::move(finding));
+    if (severity == kStep) {
+      step = std::move(finding);
+    } else {
+      findings.push_back(std::move(finding));
+    }
   }
   return false;
 }
 
-[[noreturn]] void look_and_tell(const std::function<std::vector<Finding>()>& look, int teller,
-                                const std::string& file, pid_t parent) {
+void write_all(int descriptor, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const auto size = ::write(descriptor, text.data() + at, text.size() - at);
+    if (size < 0 && errno != EINTR) ::_exit(1);
+    if (size > 0) at += static_cast<std::size_t>(size);
+  }
+}
+
+[[noreturn]] void look_and_tell(const Look& look, int teller, const std::string& file,
+                                pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);
   std::string text;
   try {
-    text = to_fields(look());
+    text = to_fields(look([&](const Finding& step) { write_all(teller, to_fields(kStep, step)); }));
   } catch (const std::exception& error) {
     text = to_fields({{Severity::Error, {file}, error.what(), ""}});
   }
-  for (std::size_t at = 0; at < text.size();) {
-    const auto size = ::write(teller, text.data() + at, text.size() - at);
-    if (size < 0 && errno != EINTR) ::_exit(1);
-    if (size > 0) at += static_cast<std::size_t>(size);
-  }
+  write_all(teller, text);
   ::_exit(0);  // no destructor of what was loaded runs
 }
 
@@ -99,8 +112,7 @@ bool read_all(int descriptor, std::string& text) {
 
 }  // namespace
 
-std::vector<Finding> findings_apart(const std::function<std::vector<Finding>()>& look,
-                                    const std::string& file) {
+std::vector<Finding> findings_apart(const Look& look, const std::string& file) {
   Pipe pipe = make_pipe();
   const pid_t parent = ::getpid();
   const pid_t id = ::fork();
@@ -114,14 +126,13 @@ std::vector<Finding> findings_apart(const std::function<std::vector<Finding>()>&
   while (::waitid(P_PID, static_cast<id_t>(id), &end, WEXITED) < 0 && errno == EINTR) {
   }
   std::vector<Finding> findings;
-  if (in_time && read_fields(text, findings)) return findings;
+  Finding step{Severity::Error, {file}, "what was to be checked", ""};
+  if (read_fields(text, findings, step) && in_time) return findings;
   const std::string how =
       in_time ? "ends its process " + to_text(ExitStatus{end.si_code != CLD_EXITED, end.si_status})
               : "takes longer than " + std::to_string(kPatience.count()) + " s";
-  findings.push_back({Severity::Error,
-                      {file},
-                      "loading the plugins of its peers " + how,
-                      "'skein peer' starts one peer alone, and shows which it is"});
+  step.problem += " " + how;
+  findings.push_back(std::move(step));
   return findings;
 }
 

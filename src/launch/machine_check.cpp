@@ -180,6 +180,8 @@ bool looks_elsewhere(const profile::ProcessStart& start) {
 
 class PluginCheck {
  public:
+  explicit PluginCheck(const TellStep& tell_step) : tell_step_(tell_step) {}
+
   std::vector<Finding> run(const MissionProfile& mission, const std::string& host) {
     for (const PeerProfile& peer : mission.peers) {
       if (!is_here(peer.host, host) || !peer.start.program.empty()) continue;
@@ -214,6 +216,8 @@ class PluginCheck {
     }
     const auto& vendors = dds::vendor_names();
     if (std::ranges::count(vendors, profile.vendor) == 0) return true;  // an error of the reader
+    tell_step_({Severity::Error, profile.where, "loading the vendor '" + profile.vendor + "'",
+                "install its module anew, from the same build as this skein"});
     try {
       dds::load_vendor(profile.vendor);
     } catch (const Error& error) {
@@ -225,8 +229,12 @@ class PluginCheck {
   /// False, with a finding, where it cannot be loaded.
   bool load(ComponentRegistry& registry, const std::string& plugin,
             const profile::SourcePosition& where) {
+    if (plugin.empty()) return true;
+    tell_step_({Severity::Error, where, "loading the plugin '" + plugin + "'",
+                "look at what runs then: its skein_register_components, and the constructors of "
+                "its global objects"});
     try {
-      if (!plugin.empty()) registry.load_plugin(plugin);
+      registry.load_plugin(plugin);
       return true;
     } catch (const std::exception& error) {
       add(where, "the plugin '" + plugin + "': " + error.what(), "");
@@ -307,6 +315,7 @@ class PluginCheck {
     }
   }
 
+  const TellStep& tell_step_;
   std::vector<Finding> findings_;
 };
 
@@ -339,7 +348,9 @@ std::vector<Finding> check_hosts(const MissionProfile& mission, const std::strin
 }
 
 std::vector<Finding> check_plugins(const MissionProfile& mission, const std::string& host) {
-  return findings_apart([&] { return PluginCheck().run(mission, host); }, mission.file);
+  return findings_apart(
+      [&](const TellStep& tell_step) { return PluginCheck(tell_step).run(mission, host); },
+      mission.file);
 }
 
 }  // namespace skein::launch

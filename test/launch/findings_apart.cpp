@@ -13,7 +13,13 @@ using skein::profile::Severity;
 namespace {
 
 std::vector<Finding> apart(const std::function<std::vector<Finding>()>& look) {
-  return findings_apart(look, "m.xml");
+  return findings_apart(
+      [&](const TellStep& tell_step) {
+        tell_step({Severity::Error, {"m.xml", 2, 3}, "loading 'one'", "look at one"});
+        tell_step({Severity::Error, {"m.xml", 4, 5}, "loading 'two'", "look at two"});
+        return look();
+      },
+      "m.xml");
 }
 
 }  // namespace
@@ -42,21 +48,27 @@ TEST_CASE("What is done apart leaves nothing here") {
   CHECK(value == 0);
 }
 
-TEST_CASE("Who crashes, ends or throws while he looks apart is a finding himself") {
-  const auto [look, problem] = GENERATE(table<std::function<std::vector<Finding>()>, std::string>({
+TEST_CASE("Who crashes or ends while he looks apart is a finding himself, with what he did last") {
+  const auto [look, how] = GENERATE(table<std::function<std::vector<Finding>()>, std::string>({
       {[]() -> std::vector<Finding> {
          std::signal(SIGSEGV, SIG_DFL);
          std::raise(SIGSEGV);
          return {};
        },
-       "loading the plugins of its peers ends its process by signal 11 (Segmentation fault)"},
-      {[]() -> std::vector<Finding> { ::_exit(3); },
-       "loading the plugins of its peers ends its process with exit code 3"},
-      {[]() -> std::vector<Finding> { throw std::runtime_error("a reason"); }, "a reason"},
+       "ends its process by signal 11 (Segmentation fault)"},
+      {[]() -> std::vector<Finding> { ::_exit(3); }, "ends its process with exit code 3"},
   }));
   const auto found = apart(look);
   REQUIRE(found.size() == 1);
   CHECK(found[0].severity == Severity::Error);
+  CHECK(to_text(found[0].where) == "m.xml:4:5");
+  CHECK(found[0].problem == "loading 'two' " + how);
+  CHECK(found[0].remedy == "look at two");
+}
+
+TEST_CASE("What is thrown while somebody looks apart is a finding") {
+  const auto found = apart([]() -> std::vector<Finding> { throw std::runtime_error("a reason"); });
+  REQUIRE(found.size() == 1);
   CHECK(found[0].where.file == "m.xml");
-  CHECK(found[0].problem == problem);
+  CHECK(found[0].problem == "a reason");
 }
