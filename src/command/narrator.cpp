@@ -18,7 +18,10 @@ void Narrator::tell_line(std::string_view child, std::string_view line) {
 }
 
 void Narrator::tell(const launch::ChildEvent& event) {
-  if (event.state == launch::ChildState::Waiting) restarted_.insert(event.child);
+  using launch::ChildState;
+  if (event.state == ChildState::Waiting) restarted_.insert(event.child);
+  if (event.state == ChildState::Starting) told_to_end_.erase(event.child);
+  if (event.state == ChildState::Interrupted) told_to_end_.insert(event.child);
   if (verbose_ || !in_order(event)) {
     tell_error("* " + (event.child.empty() ? "mission" : event.child) + ": " + event.text);
   }
@@ -32,9 +35,10 @@ bool Narrator::in_order(const launch::ChildEvent& event) const {
     case ChildState::Starting:
     case ChildState::Ready:
       return !restarted_.contains(event.child);
-    case ChildState::Ended:
     case ChildState::Interrupted:
       return true;
+    case ChildState::Ended:
+      return event.child == mission_ || told_to_end_.contains(event.child);
     default:
       return false;
   }

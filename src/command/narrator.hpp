@@ -30,6 +30,7 @@ class Narrator {
   const bool verbose_;
   std::string mission_;
   std::set<std::string> restarted_;
+  std::set<std::string> told_to_end_;
   OutputQueue output_;
 };
 

@@ -146,9 +146,16 @@ std::optional<Time> MissionState::next_tick() const {
   return due;
 }
 
-bool MissionState::all_ready() const {
-  return std::all_of(machines_.begin(), machines_.end(),
-                     [](const auto& machine) { return machine.state() == ChildState::Ready; });
+bool MissionState::all_settled() const {
+  return std::all_of(machines_.begin(), machines_.end(), [](const auto& machine) {
+    return machine.state() == ChildState::Ready || machine.is_final();
+  });
+}
+
+std::size_t MissionState::ready_count() const {
+  return static_cast<std::size_t>(
+      std::count_if(machines_.begin(), machines_.end(),
+                    [](const auto& machine) { return machine.state() == ChildState::Ready; }));
 }
 
 bool MissionState::all_final() const {

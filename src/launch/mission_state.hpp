@@ -58,7 +58,9 @@ class MissionState {
   std::size_t size() const noexcept { return machines_.size(); }
   /// The first cause of the mission's end; nothing as long as it goes on.
   const std::optional<Verdict>& verdict() const noexcept { return verdict_; }
-  bool all_ready() const;
+  /// Whether no child is awaited any more: each is ready, or has ended for good.
+  bool all_settled() const;
+  std::size_t ready_count() const;
   bool all_final() const;
   /// Whether a child was lost without which the mission is degraded.
   bool is_degraded() const noexcept { return degraded_; }

@@ -128,6 +128,7 @@ class MissionRun {
     if (fault) note_fault(i, child.plan().name + " " + child.end_text() + child.last_reason());
     tell_loss(i);
     apply(steps);
+    tell_settled();
   }
 
   const ChildStateMachine& child_of(std::size_t i) const { return state_.child(i); }
@@ -139,17 +140,21 @@ class MissionRun {
       const Time when = now();
       const auto steps = state_.ready(i, when);
       children_[i].tell_ready(when);
-      tell_all_ready();
+      tell_settled();
       apply(steps);
     }
     if (signs.progress) apply(state_.progress(i, now()));
   }
 
-  void tell_all_ready() {
-    if (all_ready_ || state_.verdict() || !state_.all_ready()) return;
-    all_ready_ = true;
-    report("all " + std::to_string(children_.size()) + " processes are ready after " +
-           seconds_text(now() - start_) + (plan_.mission_elsewhere.empty() ? "" : kOpenEnd));
+  void tell_settled() {
+    if (told_settled_ || state_.verdict() || !state_.all_settled()) return;
+    told_settled_ = true;
+    const std::size_t ready = state_.ready_count();
+    const bool all = ready == children_.size();
+    report((all ? "all " : std::to_string(ready) + " of ") + std::to_string(children_.size()) +
+           " processes are ready after " + seconds_text(now() - start_) +
+           (all ? "" : "; the others have ended") +
+           (plan_.mission_elsewhere.empty() ? "" : kOpenEnd));
   }
 
   void tell_loss(std::size_t i) const {
@@ -188,6 +193,7 @@ class MissionRun {
       note_fault(i, children_[i].spawn_fault());
       tell_loss(i);
       note_verdict();
+      tell_settled();
     }
   }
 
@@ -328,7 +334,7 @@ class MissionRun {
   std::string stop_reason_;
   int signal_ = 0;
   Time signalled_{};
-  bool all_ready_ = false;
+  bool told_settled_ = false;
 };
 
 }  // namespace

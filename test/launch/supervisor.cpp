@@ -184,6 +184,28 @@ TEST_CASE("Readiness is reported for each process, and for all of them together"
   CHECK(mission.saw("mission: ready after"));
 }
 
+TEST_CASE("Who has ended by himself is not waited for before it is told who is ready") {
+  TemporaryFolder folder;
+  const std::string go = (folder.path() / "go").string();
+  const std::string end = GENERATE("exit 0", "exit 1");
+  auto brief = shell_child("brief", end);
+  brief.rules.on_loss = LossPolicy::Continue;
+  // Ready before the other has ended, or after.
+  const std::string ended = (folder.path() / "ended").string();
+  const std::string begin = GENERATE_COPY(
+      std::string("ready; "), "while [ ! -e " + ended + " ]; do sleep 0.01; done; ready; ");
+  RecordedMission mission(
+      {brief, mission_child(begin + "while [ ! -e " + go + " ]; do sleep 0.01; done")});
+  mission.on_event = [&](const ChildEvent& event) {
+    if (event.text.starts_with("ended with exit code")) folder.write("ended", "");
+    if (event.text.starts_with("1 of 2 processes are ready after ") &&
+        event.text.ends_with("; the others have ended"))
+      folder.write("go", "");
+  };
+  CHECK(mission.run().exit_code == 0);
+  CHECK_FALSE(mission.saw("all 2 processes are ready"));
+}
+
 TEST_CASE("A failing process is restarted by its rules and then given up") {
   TemporaryFolder folder;
   const std::string starts = (folder.path() / "starts").string();

@@ -353,6 +353,21 @@ TEST_CASE("a peer that provides nothing may end by itself, and with it the missi
   CHECK_THAT(run.output(), Contains("a word") && Contains("the herald goes home"));
 }
 
+TEST_CASE(
+    "who ends by himself is told, though nothing failed, and those who were told to are not") {
+  const Errand errand;
+  CommandRun run(
+      {"launch", errand.profile("",
+                                "<peer name='brief' component='herald.xml' program='true'/>"
+                                "<peer name='long' component='herald.xml' program='sleep'>"
+                                "<argument value='1000'/></peer>")});
+  CHECK(run.writes("* brief: ended with exit code 0\n"));
+  CHECK(run.writes("1 of 2 processes are ready"));
+  run.signal(SIGINT);
+  CHECK(run.wait() == 128 + SIGINT);
+  CHECK_THAT(run.output(), !Contains("long: "));
+}
+
 TEST_CASE("of a mission that is launched in part, only that part's plugins must be there") {
   const Errand errand;
   const std::string profile = errand.profile(
