@@ -23,6 +23,7 @@
 #include "core/thread_settings.hpp"
 #include "hung_csp.hpp"
 #include "launch/address_space.hpp"
+#include "launch/child_state.hpp"
 #include "launch/exit_codes.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/progress_report.hpp"
@@ -135,12 +136,63 @@ void demand_code(const Profile& profile, const ComponentRegistry& registry) {
                         lack->remedy);
 }
 
+/// While it lives, does something once the process is told to end, in a thread of its own. Does not
+/// take the signal.
+class EndWatch {
+ public:
+  /// `told` gets a descriptor that becomes readable when this object goes.
+  explicit EndWatch(std::function<void(int over)> told)
+      : told_(std::move(told)), thread_([this] { watch(); }) {}
+  EndWatch(const EndWatch&) = delete;
+  EndWatch& operator=(const EndWatch&) = delete;
+  ~EndWatch() {
+    over_.raise();
+    thread_.join();
+  }
+
+ private:
+  void watch() {
+    std::array<pollfd, 2> watched{
+        {{signals_.descriptor(), POLLIN, 0}, {over_.descriptor(), POLLIN, 0}}};
+    while (::poll(watched.data(), watched.size(), -1) < 0) {
+    }
+    if (watched[0].revents != 0) told_(over_.descriptor());
+  }
+
+  const std::function<void(int)> told_;
+  StopRequest over_;
+  SignalReader signals_{true};
+  std::thread thread_;
+};
+
+/// Ends the process when it is told to while a component's code runs that cannot be told, unless
+/// that returns soon: before the launcher sends SIGTERM after SIGINT.
+class MakingWatch {
+ public:
+  template <class Profile>
+  explicit MakingWatch(const Profile& profile)
+      : watch_([name = profile.component->name,
+                limit = time_to_terminate(profile.rules.stop_timeout) / 2](int over) {
+          const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit);
+          pollfd watched{over, POLLIN, 0};
+          if (::poll(&watched, 1, static_cast<int>(left.count())) != 0) return;
+          log(LogLevel::Warning, "launch",
+              "told to end while '" + name + "' is made or tests itself, which does not return");
+          const sigset_t signals = ending_signals();
+          pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // which ends the process
+        }) {}
+
+ private:
+  EndWatch watch_;
+};
+
 /// What the factory of a peer's or a CSP's component makes. Throws InvalidArgument where that is
 /// nothing, and what the factory throws, with the place in the profile and the component's name.
 template <class Profile, class Factory, class... Arguments>
 auto make_component(const Profile& profile, const Factory& factory, Arguments&&... arguments) {
   const std::string place = profile::to_text(profile.where) + ": ";
   const std::string& name = profile.component->name;
+  const MakingWatch watch(profile);
   auto made = run_user_code(place + "while making '" + name + "': ",
                             [&] { return factory(std::forward<Arguments>(arguments)...); });
   if (servant_of(made)) return made;
@@ -189,9 +241,10 @@ SelfTest provide_body(Entity& entity, const MissionProfile& mission, const PeerP
   return body.self_test;
 }
 
-void pass(const SelfTest& self_test, const Entity& entity) {
+void pass(const SelfTest& self_test, const Entity& entity, const PeerProfile& peer) {
   if (!self_test) return;
   report_waiting("tests itself");
+  const MakingWatch watch(peer);
   try {
     run_user_code("", self_test);
   } catch (const std::exception& error) {
@@ -249,42 +302,15 @@ int await_end() {
   return 0;
 }
 
-/// Tells an activity to end, when the process is told to.
-class EndWatch {
- public:
-  EndWatch() : thread_([this] { watch(); }) {}
-  EndWatch(const EndWatch&) = delete;
-  EndWatch& operator=(const EndWatch&) = delete;
-  ~EndWatch() {
-    over_.raise();
-    thread_.join();
-  }
-
-  std::stop_token token() const noexcept { return told_.get_token(); }
-
- private:
-  void watch() {
-    std::array<pollfd, 2> watched{
-        {{signals_.descriptor(), POLLIN, 0}, {over_.descriptor(), POLLIN, 0}}};
-    while (::poll(watched.data(), watched.size(), -1) < 0) {
-    }
-    if (signals_.take() != 0) told_.request_stop();
-  }
-
-  std::stop_source told_;
-  StopRequest over_;
-  SignalReader signals_{true};
-  std::thread thread_;
-};
-
 /// What a peer does that provides nothing.
 int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
                  const ComponentRegistry& registry) {
   const auto values = values_of(peer.parameters, mission.dictionary);
   const auto* activity = registry.find_activity(peer.component->name);
   if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
-  const EndWatch watch;
-  return (*activity)(entity, values, watch.token());
+  std::stop_source told_to_end;
+  const EndWatch watch([&](int) { told_to_end.request_stop(); });
+  return (*activity)(entity, values, told_to_end.get_token());
 }
 
 void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
@@ -334,7 +360,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   if (!peer.component->interfaces.empty())
     self_test = provide_body(entity, mission, peer, registry);
   if (!await_dependencies(entity, peer, begun)) return 0;
-  pass(self_test, entity);
+  pass(self_test, entity, peer);
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
   if (!peer.component->interfaces.empty()) return await_end();

@@ -246,6 +246,18 @@ TEST_CASE("a component that could not be made is named, with its place in the pr
   CHECK_THAT(run.output(), Contains("errand.xml:1:") && Contains(": " + wanted));
 }
 
+TEST_CASE("a peer whose component is being made, and never is, obeys the signals that end it") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  CommandRun run(
+      {"peer", errand.profile("", "<peer name='b' component='bad.xml'/>"), "b", "--", "never"});
+  REQUIRE(run.writes("is being made"));
+  run.signal(signal);
+  CHECK(run.wait() == 128 + signal);
+  CHECK_THAT(run.output(), Contains("told to end while 'bad' is made"));
+}
+
 TEST_CASE("a second launcher of a mission is refused and names the first") {
   if (!installed("fastdds")) return;
   const Errand errand;

@@ -1,6 +1,7 @@
 // A small mission, for tests of how missions are started: a desk that answers, one that fails its
 // self-test, and those who ask; and a strategy of selection.
 #include <cstdio>
+#include <future>
 #include <memory>
 #include <stdexcept>
 #include <stop_token>
@@ -92,6 +93,11 @@ int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the cli
 std::shared_ptr<Servant> make_badly(const std::string& how) {
   if (how == "nothing") return nullptr;
   if (how == "an int") throw 7;
+  if (how == "never") {
+    std::puts("is being made");
+    std::fflush(stdout);
+    std::promise<void>().get_future().wait();
+  }
   throw std::runtime_error("no gauge at /dev/gauge");
 }
 
