@@ -1,6 +1,9 @@
 #include "skein/parameters.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
 
 #include "core/suggestion.hpp"
 #include "skein/error.hpp"
@@ -8,15 +11,26 @@
 namespace skein {
 namespace {
 
+std::string short_text(double number) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  return {text.data(), end};
+}
+
+/// The type by its name in the dictionary, and the value.
 std::string text_of(const ParameterValue& value) {
   struct Words {
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(double number) const { return std::to_string(number); }
-    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
-    std::string operator()(std::chrono::nanoseconds time) const {
-      return std::to_string(std::chrono::duration<double>(time).count()) + " s";
+    std::string operator()(std::int64_t number) const {
+      return "an integer, " + std::to_string(number);
     }
-    std::string operator()(const std::string& text) const { return "'" + text + "'"; }
+    std::string operator()(double number) const { return "a real, " + short_text(number); }
+    std::string operator()(bool flag) const {
+      return std::string("a boolean, ") + (flag ? "true" : "false");
+    }
+    std::string operator()(std::chrono::nanoseconds time) const {
+      return "a duration, " + short_text(std::chrono::duration<double>(time).count()) + " s";
+    }
+    std::string operator()(const std::string& text) const { return "a text, '" + text + "'"; }
   };
   return std::visit(Words{}, value);
 }
@@ -29,15 +43,22 @@ const ParameterValue* ParameterValues::find_value(const std::string& name) const
 }
 
 void ParameterValues::throw_missing(const std::string& name) {
-  throw InvalidArgument("the parameter '" + name +
-                        "' has no value; set it in the mission profile, and declare it as "
+  throw InvalidArgument("the code asks for the parameter '" + name +
+                        "', which has no value; set it in the mission profile, and declare it as "
                         "<required>, so that this is found before the start");
 }
 
 void ParameterValues::throw_other_type(const std::string& name, const ParameterValue& value,
                                        const char* wanted) {
-  throw InvalidArgument("the parameter '" + name + "' is " + text_of(value) + ", which is not " +
-                        wanted + "; the dictionary says its type");
+  if (std::holds_alternative<std::int64_t>(value) &&
+      std::string_view(wanted).starts_with("an integer")) {
+    throw InvalidArgument("the parameter '" + name + "' is " + text_of(value) +
+                          ", which does not fit into the integer type that the code asks for; ask "
+                          "for a larger one, or bound the parameter in the dictionary (max=)");
+  }
+  throw InvalidArgument("the code asks for the parameter '" + name + "' as " + wanted +
+                        ", and by the dictionary it is " + text_of(value) +
+                        "; change the one or the other");
 }
 
 ParameterValues ParameterResolver::resolve(const std::vector<ParameterValues>& sources) const {

@@ -58,14 +58,28 @@ TEST_CASE("a value is read by its type, and converted where nothing is lost") {
 }
 
 TEST_CASE("a value of another type, of another size, or none, is refused by the parameter's name") {
-  const ParameterValues values{{"Speed", 62.5}, {"Seed", 70'000}, {"Picture", "route.svg"}};
+  const ParameterValues values{{"Speed", 62.5},
+                               {"Seed", 70'000},
+                               {"Picture", "route.svg"},
+                               {"Patience", 1500ms},
+                               {"Loud", true}};
   CHECK_THROWS_WITH(values.get<std::uint32_t>("Speed"),
-                    Catch::Contains("'Speed' is 62.5") && Catch::Contains("not an integer"));
+                    Catch::StartsWith("the code asks for the parameter 'Speed' as an integer, and "
+                                      "by the dictionary it is a real, 62.5; "));
   CHECK_THROWS_WITH(values.find<std::uint16_t>("Seed"),
-                    Catch::Contains("'Seed' is 70000") && Catch::Contains("of that size"));
-  CHECK_THROWS_WITH(values.find<double>("Picture"), Catch::Contains("not a number"));
+                    Catch::StartsWith("the parameter 'Seed' is an integer, 70000, which does not "
+                                      "fit into the integer type that the code asks for"));
+  CHECK_THROWS_WITH(
+      values.find<double>("Picture"),
+      Catch::Contains("as a number, and by the dictionary it is a text, 'route.svg'"));
   CHECK_THROWS_WITH(values.find<std::chrono::milliseconds>("Seed"),
-                    Catch::Contains("not a duration"));
-  CHECK_THROWS_WITH(values.get<double>("Climb"),
-                    Catch::Contains("'Climb' has no value") && Catch::Contains("<required>"));
+                    Catch::Contains("as a duration, and by the dictionary it is an integer"));
+  CHECK_THROWS_WITH(values.find<std::string>("Patience"),
+                    Catch::Contains("as a text, and by the dictionary it is a duration, 1.5 s"));
+  CHECK_THROWS_WITH(values.find<std::string>("Loud"),
+                    Catch::Contains("as a text, and by the dictionary it is a boolean, true"));
+  CHECK_THROWS_WITH(
+      values.get<double>("Climb"),
+      Catch::Contains("the code asks for the parameter 'Climb', which has no value") &&
+          Catch::Contains("<required>"));
 }
