@@ -20,6 +20,20 @@ using task_run::Verdict;
 // found.
 constexpr std::chrono::seconds kOpeningPatience{2};
 
+/// Of Skein's errors those that say nothing of CSPs get the name before their text.
+[[noreturn]] void rethrow_naming(const std::string& csp, const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const NoCandidate&) {
+    throw;
+  } catch (const NoneAccepted&) {
+    throw;
+  } catch (const Error& named) {
+    if (csp.empty()) throw;
+    throw_error(named.code(), "CSP '" + csp + "': " + named.what());
+  }
+}
+
 }  // namespace
 
 Verdict task_run::verdict_of_current_exception() {
@@ -187,11 +201,14 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   } catch (...) {
     Verdict verdict = task_run::verdict_of_current_exception();
     // It was not reached, and only for want of time: that says nothing of whether it is there.
-    if (now() >= deadline_) {
+    const bool too_late = now() >= deadline_;
+    if (too_late) {
       verdict.error = std::make_exception_ptr(
-          TimedOut("the time ran out before a CSP could be asked; the last one: " + verdict.text));
+          TimedOut("the time ran out before a CSP could be asked; the last one, '" +
+                   live.candidate.name + "': " + verdict.text));
     }
     note(live, std::move(verdict));
+    if (too_late) last_csp_.clear();
   }
 }
 
@@ -246,6 +263,7 @@ void Head::Run::note(Live& live, Verdict verdict) {
               verdict.settled, record_.decided + 1, static_cast<std::uint32_t>(live.attempt)});
   settled_ = verdict.settled;
   last_ = std::move(verdict);
+  last_csp_ = live.candidate.name;
 }
 
 void Head::Run::conclude_if_enough() {
@@ -266,8 +284,10 @@ void Head::Run::cancel_rest() {
     verdict.fault = false;
     verdict.text = done_ ? "others were enough" : "another CSP's word settled the matter";
     const Verdict last = std::exchange(last_, {});
+    const std::string last_csp = last_csp_;
     note(live, std::move(verdict));
     last_ = last;
+    last_csp_ = last_csp;
   }
   live_.clear();
 }
@@ -284,9 +304,10 @@ void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }
-  if (last_.error) std::rethrow_exception(last_.error);
+  if (last_.error) rethrow_naming(last_csp_, last_.error);
   if (record_.attempts.empty()) throw TimedOut("no time was left to run a CSP");
-  throw NoneAccepted("no result was good enough; the last one: " + last_.text);
+  throw NoneAccepted("no result was good enough; the last one, of CSP '" + last_csp_ +
+                     "': " + last_.text);
 }
 
 }  // namespace skein

@@ -72,6 +72,7 @@ class Head::Run {
   std::optional<Instant> late_at_;
   std::shared_ptr<Bell> bell_;  // once several work at a time
   task_run::Verdict last_;
+  std::string last_csp_;  // whose that was; empty where none could be asked
   bool done_ = false;
   bool settled_ = false;
 };

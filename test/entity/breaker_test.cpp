@@ -55,7 +55,7 @@ TEST_CASE("where every CSP is quarantined the one whose quarantine ends first is
   const auto sick = std::make_shared<std::atomic<bool>>(true);
   office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
   for (int i = 0; i < 3; ++i)
-    CHECK_THROWS_WITH(office.perform(Office::task(), 10s), "'work' failed: a bug");
+    CHECK_THROWS_WITH(office.perform(Office::task(), 10s), "CSP 'patient': 'work' failed: a bug");
   *sick = false;
   CHECK(office.perform(Office::task(), 10s) == "patient did it");
   CHECK(office.record.candidates[0].breaker == introspection::BreakerState::Open);

@@ -84,6 +84,29 @@ TEST_CASE("where the only CSP has not returned, the next request says which") {
   hang.release();
 }
 
+TEST_CASE("the error of a CSP that fails or hangs names it, and is of the same class") {
+  const Place place = GENERATE(Place::Inside, Place::Outside);
+  SECTION("fails") {
+    Office office;
+    office.add("worker", place, crash(), declared("1", "0.9"));
+    CHECK_THROWS_AS(office.perform(Office::task(), 10s), Internal);
+    CHECK_THROWS_WITH(office.perform(Office::task(), 10s),
+                      Catch::StartsWith("CSP 'worker': ") && Catch::EndsWith("failed: a bug"));
+  }
+  SECTION("hangs") {
+    Hang hang;
+    Office office;
+    office.add("worker", place, hang.script(), declared("1", "0.9"));
+    try {
+      office.perform(Office::task(), 100ms);
+      FAIL("it returned");
+    } catch (const TimedOut& error) {
+      CHECK_THAT(error.what(), Catch::StartsWith("CSP 'worker': "));
+    }
+    hang.release();
+  }
+}
+
 TEST_CASE("an instance in the process that is stuck is not entered again before it has come back") {
   Hang hang;
   FirstFails team(Place::Inside, hang.script());
@@ -122,7 +145,7 @@ TEST_CASE("where every result is rejected the task fails with what was wrong wit
   office.add("second", Place::Inside, answer_as("wrong second"), declared("10", "0.5"));
   CHECK_THROWS_AS(office.perform(Office::task(), 10s), Internal);
   CHECK_THROWS_WITH(office.perform(Office::task(), 10s),
-                    Catch::Contains("it is wrong second did it"));
+                    Catch::Contains("the last one, of CSP 'second': it is wrong second did it"));
   CHECK(office.attempts() == Lines{"first rejected", "second rejected"});
 }
 
