@@ -126,6 +126,22 @@ TEST_CASE("packets that a socket of the domain had no room for are told with who
   CHECK_THAT(symptom.evidence, Contains("1234 dropped at UDP port 8161"));
 }
 
+TEST_CASE("a program of the domain that is stopped is told once, with how it goes on") {
+  Facts facts = sound_machine();
+  facts.sockets = {socket_of(7411, 12, "skein", 0), socket_of(7412, 12, "skein", 0),
+                   socket_of(7413, 13, "skein", 0), socket_of(9999, 14, "other", 0)};
+  for (UdpSocket& socket : facts.sockets) {
+    socket.owner.stopped = socket.owner.pid != 13;
+    socket.owner.command = "skein peer mission.xml tide";
+  }
+  const Symptom symptom = only(diagnose_network({}, facts), "stopped");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK_THAT(symptom.cause, Contains("skein (pid 12) is stopped"));
+  CHECK_THAT(symptom.evidence,
+             Contains("UDP port 7411") && Contains("`skein peer mission.xml tide`"));
+  CHECK_THAT(symptom.remedy, Contains("kill -CONT 12"));
+}
+
 TEST_CASE("others on the domain of a mission that is to fly are a warning, else a note") {
   Facts facts = sound_machine();
   facts.sockets = {socket_of(7400, 7, "talker"), socket_of(7411, 7, "talker"),

@@ -1,9 +1,13 @@
 // How the doctor reads this machine.
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -83,6 +87,29 @@ TEST_CASE("a launcher is seen by its claim, with the domain of its mission") {
     CHECK(on_48() == 1);
   }
   CHECK(on_48() == 0);
+}
+
+TEST_CASE("of a process that is stopped it is seen that it is, and how it was started") {
+  const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM, 0));
+  struct stat status {};
+  REQUIRE(fstat(socket.get(), &status) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    raise(SIGSTOP);
+    _exit(0);
+  }
+  int state = 0;
+  REQUIRE(waitpid(child, &state, WUNTRACED) == child);
+  REQUIRE(WIFSTOPPED(state));
+  const auto owners = owners_of_sockets();
+  kill(child, SIGKILL);
+  waitpid(child, &state, 0);
+  const auto owner = owners.find(status.st_ino);  // this process is not among the owners
+  REQUIRE(owner != owners.end());
+  CHECK(owner->second.pid == child);
+  CHECK(owner->second.stopped);
+  CHECK_THAT(owner->second.command, Catch::Contains("command_line_test"));
+  for (const auto& [inode, program] : owners) CHECK(program.stopped == !program.command.empty());
 }
 
 TEST_CASE("other sockets are no launchers") {

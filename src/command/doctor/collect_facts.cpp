@@ -1,6 +1,7 @@
 #include <sys/timex.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -36,6 +37,26 @@ std::optional<std::pair<std::uint16_t, std::uint16_t>> read_any_ports() {
   return ports;
 }
 
+bool is_stopped(const fs::path& process) {
+  const std::string text = read_file(process / "stat").value_or("");
+  // The state follows the name, which stands in parentheses and may contain some.
+  const std::size_t at = text.rfind(") ");
+  return at != std::string::npos && at + 2 < text.size() &&
+         (text[at + 2] == 'T' || text[at + 2] == 't');
+}
+
+/// `process`: its folder in /proc.
+Program read_program(int pid, const fs::path& process) {
+  Program program{pid, read_file(process / "comm").value_or("?")};
+  program.name.resize(std::min(program.name.size(), program.name.find('\n')));
+  program.stopped = is_stopped(process);
+  if (!program.stopped) return program;
+  program.command = read_file(process / "cmdline").value_or("");
+  while (program.command.ends_with('\0')) program.command.pop_back();
+  std::ranges::replace(program.command, '\0', ' ');
+  return program;
+}
+
 }  // namespace
 
 std::optional<std::string> read_file(const std::string& path) {
@@ -59,13 +80,12 @@ std::map<std::uint64_t, Program> owners_of_sockets() {
   for (const auto& process : fs::directory_iterator("/proc", failed)) {
     const int pid = std::atoi(process.path().filename().c_str());
     if (pid == 0 || pid == getpid()) continue;
-    std::string name = read_file(process.path() / "comm").value_or("?");
-    name.resize(std::min(name.size(), name.find('\n')));
+    const Program program = read_program(pid, process.path());
     std::error_code hidden;
     for (const auto& file : fs::directory_iterator(process.path() / "fd", hidden)) {
       const std::string target = fs::read_symlink(file.path(), hidden).string();
       if (target.starts_with("socket:["))
-        owners.emplace(std::strtoull(target.c_str() + 8, nullptr, 10), Program{pid, name});
+        owners.emplace(std::strtoull(target.c_str() + 8, nullptr, 10), program);
     }
   }
   return owners;

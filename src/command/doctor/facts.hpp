@@ -26,6 +26,8 @@ struct Purpose {
 struct Program {
   int pid = 0;  ///< 0: another user's, which is not shown.
   std::string name;
+  bool stopped = false;   ///< By a signal or a debugger: it runs no code until it is continued.
+  std::string command{};  ///< Its words, where it is stopped.
 };
 
 struct Interface {

@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 
+#include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "dds/options_check.hpp"
 #include "diagnosis.hpp"
@@ -131,6 +132,20 @@ void lost_packets(const Facts& facts, const PortRange& ports, Symptoms& symptoms
   }
 }
 
+void stopped_programs(const Facts& facts, const PortRange& ports, Symptoms& symptoms) {
+  std::set<int> told;
+  for (const UdpSocket& socket : facts.sockets) {
+    const Program& owner = socket.owner;
+    if (!within(ports, socket.port) || !owner.stopped || !told.insert(owner.pid).second) continue;
+    const std::string pid = std::to_string(owner.pid);
+    symptoms.push_back({Severity::Warning, "stopped",
+                        to_text(owner) + " is stopped, and answers nobody",
+                        "it has UDP port " + std::to_string(socket.port) +
+                            ", and was started as `" + printable(owner.command) + "`",
+                        "let it go on: kill -CONT " + pid + "; or end it: kill -KILL " + pid});
+  }
+}
+
 Symptom free_ports(const Purpose& purpose, const Facts& facts) {
   const PortRange ports = ports_of(purpose.domain);
   const std::string domain = "domain " + std::to_string(purpose.domain);
@@ -235,6 +250,7 @@ Symptoms diagnose_network(const Purpose& purpose, const Facts& facts) {
     symptoms.push_back(interface(wanted, purpose.multicast, facts));
   symptoms.push_back(buffers(facts));
   lost_packets(facts, ports_of(purpose.domain), symptoms);
+  stopped_programs(facts, ports_of(purpose.domain), symptoms);
   symptoms.push_back(free_ports(purpose, facts));
   two_missions(purpose, facts, symptoms);
   lent_ports(purpose, facts, symptoms);
