@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <pthread.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "brokerless_discovery/process_watch.hpp"
 #include "component_code.hpp"
 #include "core/ending_signals.hpp"
 #include "core/interface_name.hpp"
@@ -28,6 +30,7 @@
 #include "launch/launch_plan.hpp"
 #include "launch/progress_report.hpp"
 #include "launch/ready.hpp"
+#include "namesakes.hpp"
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -351,6 +354,13 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   self = &entity;
   const auto watch_csps = entity.broker().observe(
       [&](const brokerless_discovery::Change& change) { end_stopped_csp(entity, peer, change); });
+  Namesakes namesakes(peer.system, peer.name, brokerless_discovery::ProcessWatch::host(),
+                      static_cast<std::uint32_t>(::getpid()));
+  const auto watch_namesakes =
+      entity.broker().observe([&](const brokerless_discovery::Change& change) {
+        const std::string text = namesakes.look_at(change);
+        if (!text.empty()) log(LogLevel::Warning, entity.id(), text);
+      });
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
       provide_csp(entity, entity.id(), mission, csp, registry);

@@ -147,6 +147,20 @@ TEST_CASE("names cannot break out of a notation") {
   CHECK_THAT(to_mermaid(graph), Contains(R"(["#quot;];\x0a#lt;b#gt;#amp;\#96;"])"));
 }
 
+TEST_CASE("the doctor tells of peers that answer to one name, once") {
+  using namespace command::doctor;
+  DomainPicture picture = mission();
+  for (PeerPicture& each : picture) each.process->version = SKEIN_VERSION;
+  picture.push_back(picture[0]);
+  picture.back().process->pid = 4711;
+  const auto symptoms = diagnose_peers(picture);
+  REQUIRE(symptoms.size() == 1);
+  CHECK_THAT(symptoms[0].cause, Contains("2 peers are called gs/client"));
+  CHECK_THAT(symptoms[0].evidence, Contains("4711 on "));
+  picture.back().process.reset();  // that one is told as one that does not answer
+  CHECK_THAT(diagnose_peers(picture).at(0).cause, Contains("does not answer"));
+}
+
 TEST_CASE("the doctor tells of peers that do not answer, do not work, or are of another version") {
   using namespace command::doctor;
   DomainPicture picture = mission();

@@ -258,6 +258,19 @@ TEST_CASE("a peer whose component is being made, and never is, obeys the signals
   CHECK_THAT(run.output(), Contains("told to end while 'bad' is made"));
 }
 
+TEST_CASE("two peers of one name each warn of the other, and the doctor of both") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string profile = errand.profile("", kOffice);
+  CommandRun first({"peer", profile, "office"});
+  CommandRun second({"peer", profile, "office"});
+  CHECK(first.writes("process " + std::to_string(second.pid()) + " runs a peer of the same name"));
+  CHECK(second.writes("process " + std::to_string(first.pid()) + " runs a peer of the same name"));
+  CommandRun doctor({"doctor", profile});
+  CHECK(doctor.wait() >= 1);
+  CHECK_THAT(doctor.output(), Contains("2 peers are called uav-1/office"));
+}
+
 TEST_CASE("a second launcher of a mission is refused and names the first") {
   if (!installed("fastdds")) return;
   const Errand errand;

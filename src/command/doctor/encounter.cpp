@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -128,6 +129,27 @@ Symptoms of_mission(const DomainPicture& picture, const profile::MissionProfile&
   return symptoms;
 }
 
+/// Peers that answer to one name.
+Symptoms namesakes_in(const DomainPicture& picture) {
+  std::map<std::string, std::vector<std::string>> processes;
+  for (const PeerPicture& peer : picture) {
+    if (peer.process)
+      processes[peer.name].push_back(std::to_string(peer.process->pid) + " on " +
+                                     peer.process->host);
+  }
+  Symptoms symptoms;
+  for (const auto& [name, all] : processes) {
+    if (all.size() < 2) continue;
+    std::string text;
+    for (const std::string& process : all) text += (text.empty() ? "process " : ", ") + process;
+    symptoms.push_back({Severity::Warning, "peers",
+                        std::to_string(all.size()) + " peers are called " + name +
+                            ": callers are served by any of them",
+                        text, "end all but one, or give them other names or systems"});
+  }
+  return symptoms;
+}
+
 }  // namespace
 
 Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
@@ -159,7 +181,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
 }
 
 Symptoms diagnose_peers(const DomainPicture& picture) {
-  Symptoms symptoms;
+  Symptoms symptoms = namesakes_in(picture);
   for (const PeerPicture& peer : picture) {
     if (!peer.process) {
       symptoms.push_back({Severity::Warning, "peers",
