@@ -18,6 +18,7 @@
 #include "launch/peer.hpp"
 #include "launch/supervisor.hpp"
 #include "mission_plan.hpp"
+#include "missions_elsewhere.hpp"
 #include "narrator.hpp"
 #include "skein/error.hpp"
 
@@ -127,11 +128,13 @@ int launch(const LaunchArguments& arguments) {
   }
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
   launch::demand_address_space();
+  const std::string beside = missions_beside(static_cast<std::uint32_t>(mission.domain));
   const launch::MissionClaim claim(mission, arguments.host);
   // Who reads what it says may go; the mission goes on. Its processes get the default back.
   std::signal(SIGPIPE, SIG_IGN);
   if (arguments.attended) return run_for_another(plan, claim, mission);
   const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
+  if (!beside.empty()) narrator->tell_error("* mission: " + beside);
   for (const std::string& name : plan.elsewhere)
     narrator->tell_error("* mission: " + name + " is not started here");
   const auto journal = std::make_shared<Journal>(make_log(arguments, mission, *narrator), narrator);

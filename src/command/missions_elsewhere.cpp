@@ -22,4 +22,22 @@ std::string missions_elsewhere(std::uint32_t domain) {
   return missions_elsewhere(domain, flying);
 }
 
+std::string missions_beside(std::uint32_t domain, const std::vector<doctor::Launcher>& launchers) {
+  std::string list;
+  for (const doctor::Launcher& launcher : launchers) {
+    if (launcher.domain != domain) continue;
+    const int pid = launcher.program.pid;
+    list += (list.empty() ? "" : ", ") +
+            (pid == 0 ? "another user's launcher" : "process " + std::to_string(pid));
+  }
+  if (list.empty()) return {};
+  return "another mission flies on domain " + std::to_string(domain) + " (" + list +
+         "), and the peers of both meet; if they are not meant to, give one of them another domain";
+}
+
+std::string missions_beside(std::uint32_t domain) {
+  const bool alone = missions_beside(domain, doctor::read_launchers({})).empty();
+  return alone ? "" : missions_beside(domain, doctor::read_launchers(doctor::owners_of_sockets()));
+}
+
 }  // namespace skein::command

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "doctor/facts.hpp"
+
 namespace skein::command {
 
 /// For who finds nothing on a domain: `missions fly here on domain 42`. Empty where one flies on
@@ -12,5 +14,12 @@ std::string missions_elsewhere(std::uint32_t domain, const std::vector<std::uint
 
 /// The same, of the missions that fly on this host now.
 std::string missions_elsewhere(std::uint32_t domain);
+
+/// For who launches a mission on a domain where others fly, by their launchers. Empty where none
+/// does.
+std::string missions_beside(std::uint32_t domain, const std::vector<doctor::Launcher>& launchers);
+
+/// The same, of the launchers of this host.
+std::string missions_beside(std::uint32_t domain);
 
 }  // namespace skein::command

@@ -7,6 +7,7 @@
 
 using namespace skein;
 using namespace skein::command;
+using Catch::Contains;
 
 TEST_CASE("a service is meant by its interface, the last part of that, and its entity") {
   discovery::ServiceDescription service;
@@ -50,4 +51,12 @@ TEST_CASE("missions on other domains are told where none flies on this one") {
   CHECK(missions_elsewhere(0, {42, 7, 42}) == "missions fly here on domain 7, 42");
   CHECK(missions_elsewhere(42, {42, 7}).empty());
   CHECK(missions_elsewhere(0, {}).empty());
+}
+
+TEST_CASE("who launches a mission where others fly is told by which processes") {
+  CHECK(missions_beside(48, std::vector<doctor::Launcher>{}).empty());
+  CHECK(missions_beside(48, {{47, {12, "skein"}}}).empty());
+  CHECK_THAT(missions_beside(48, {{47, {12, "skein"}}, {48, {13, "skein"}}, {48, {}}}),
+             Contains("flies on domain 48 (process 13, another user's launcher), and the peers of "
+                      "both meet"));
 }

@@ -287,6 +287,23 @@ TEST_CASE("a second launcher of a mission is refused and names the first") {
   CHECK(third.writes("all 1 processes are ready"));
 }
 
+TEST_CASE("a launcher says that another mission flies on its domain, and flies all the same") {
+  const Errand errand;
+  const std::string sleeper =
+      "<peer name='p' component='herald.xml' program='sleep'><argument value='1000'/></peer>";
+  const std::string other =
+      errand.write("other.xml", "<mission name='other' domain='48' dictionary='" +
+                                    project_file("mission_profiles/dictionary.xml") + "'>" +
+                                    sleeper + "</mission>");
+  CommandRun first({"launch", errand.profile("", sleeper)});
+  REQUIRE(first.writes("all 1 processes are ready"));
+  CommandRun second({"launch", other});
+  CHECK(second.writes("another mission flies on domain 48 (process " + std::to_string(first.pid()) +
+                      ")"));
+  CHECK(second.writes("all 1 processes are ready"));
+  CHECK_THAT(first.output(), !Contains("another mission"));
+}
+
 TEST_CASE("what a profile names and this machine does not have is a finding with its place") {
   const Errand errand;
   const auto [attributes, peer, part] = GENERATE(table<std::string, std::string, std::string>({
