@@ -1,6 +1,7 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "core/log.hpp"
@@ -46,6 +47,7 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   bool decode(const dds::Sample& sample, void* into);
   void report_malformed(const std::string& reason);
   SubscriptionCounters counters() const;
+  bool runs_here() const { return runner.load() == std::this_thread::get_id(); }
 
   Executor& executor;
   const std::string name;
@@ -57,9 +59,10 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   std::atomic<std::uint64_t> received{0};
   std::atomic<std::uint64_t> malformed{0};
   std::atomic<std::uint64_t> missed_deadlines{0};
-  std::mutex running;   // one callback at a time
-  bool closed = false;  // under running
-  bool threw = false;   // under running
+  std::mutex running;                     // one callback at a time
+  std::atomic<std::thread::id> runner{};  // whose thread has it
+  bool closed = false;                    // under running
+  bool threw = false;                     // under running
   std::unique_ptr<dds::Reader> reader;
   std::optional<Register::Entry> entry;  // until it is closed
 };
@@ -91,6 +94,14 @@ TopicReader::TopicReader(dds::Participant& participant, Executor& executor, cons
 
 TopicReader::~TopicReader() {
   state_->entry.reset();
+  if (state_->runs_here()) {
+    log(LogLevel::Error, "topics",
+        "topic '" + state_->name +
+            "': a callback destroys its own subscription, which ends when the callback returns; "
+            "destroy it elsewhere");
+    state_->closed = true;
+    return;
+  }
   std::unique_ptr<dds::Reader> reader;
   {
     std::lock_guard lock(state_->running);
@@ -157,9 +168,13 @@ void TopicReader::State::post(std::function<void(State&)> tell) {
   const bool posted = executor.post([weak = weak_from_this(), tell = std::move(tell)] {
     const auto state = weak.lock();
     if (!state) return;
+    std::unique_ptr<dds::Reader> ended;  // goes without the lock
     std::lock_guard lock(state->running);
     if (state->closed) return;
+    state->runner = std::this_thread::get_id();
     state->guarded([&] { tell(*state); });
+    state->runner = std::thread::id();
+    if (state->closed) ended = std::move(state->reader);
   });
   if (!posted) {
     scheduled = false;
@@ -176,7 +191,9 @@ void TopicReader::State::schedule() {
 void TopicReader::State::hand_over() {
   scheduled = false;  // before taking: what comes from now on asks for another turn
   if (!reader) return;
-  const auto hand = [this](const dds::Sample& sample) { guarded([&] { hand_over(sample); }); };
+  const auto hand = [this](const dds::Sample& sample) {
+    if (!closed) guarded([&] { hand_over(sample); });
+  };
   if (reader->take(hand, kTurn) == kTurn) schedule();
 }
 

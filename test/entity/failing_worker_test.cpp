@@ -98,7 +98,7 @@ TEST_CASE("the error of a CSP that fails or hangs names it, and is of the same c
     Office office;
     office.add("worker", place, hang.script(), declared("1", "0.9"));
     try {
-      office.perform(Office::task(), 100ms);
+      office.perform(Office::task(), 1s);
       FAIL("it returned");
     } catch (const TimedOut& error) {
       CHECK_THAT(error.what(), Catch::StartsWith("CSP 'worker': "));

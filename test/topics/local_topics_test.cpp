@@ -1,5 +1,6 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "../tools/eventually.hpp"
@@ -278,6 +279,23 @@ TEST_CASE("no callback runs once the subscription has gone") {
   sea.executor.run_all();
   CHECK(sea.angles.empty());
   CHECK(rudder.subscribers() == 0);
+}
+
+TEST_CASE("a callback may not destroy its own subscription: that is told, and it is the last") {
+  Sea sea;
+  const Log log;
+  auto rudder = sea.rudder();
+  int calls = 0;
+  std::optional<Subscription<Rudder>> watch;
+  watch.emplace(*sea.shore, sea.executor, "rudder", TopicQos{}, [&](const Rudder&) {
+    ++calls;
+    watch.reset();
+  });
+  for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
+  sea.executor.run_all();
+  CHECK(calls == 1);
+  CHECK(rudder.subscribers() == 0);
+  CHECK(log.count("topic 'rudder': a callback destroys its own subscription") == 1);
 }
 
 TEST_CASE("profiles that do not fit are named in the log of both sides") {
