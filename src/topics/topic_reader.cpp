@@ -1,4 +1,5 @@
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -17,6 +18,11 @@ namespace {
 
 /// So many values are handed over before other subscriptions on the executor have their turn.
 constexpr std::size_t kTurn = 32;
+
+using Clock = std::chrono::steady_clock;
+
+/// A callback that takes so long holds up all others of its executor.
+constexpr std::chrono::seconds kTooLong{1};
 
 }  // namespace
 
@@ -37,6 +43,8 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   template <class Call>
   void guarded(const Call& call);
   void report_thrown(const std::string& what);
+  /// Tells, the first time, of a callback that does not return.
+  void tell_if_stuck();
   std::optional<Guid> find_key(std::span<const std::byte> cdr) const;
   /// Runs `tell` on the executor, unless the subscription has gone by then.
   void post(std::function<void(State&)> tell);
@@ -55,6 +63,8 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   const Consumer consumer;
   const SubscriptionOptions options;
   const std::unique_ptr<void, void (*)(void*) noexcept> value;  // the callback's; under running
+  std::atomic<Clock::time_point> began{};  // the callback that runs; nothing while none does
+  std::atomic<bool> told_stuck{false};
   std::atomic<bool> scheduled{false};
   std::atomic<std::uint64_t> received{0};
   std::atomic<std::uint64_t> malformed{0};
@@ -114,7 +124,10 @@ dds::ReaderListener TopicReader::State::listener() {
   dds::ReaderListener listener;
   const std::weak_ptr<State> weak = weak_from_this();
   listener.on_data = [weak](dds::Reader&) {
-    if (const auto state = weak.lock()) state->schedule();
+    const auto state = weak.lock();
+    if (!state) return;
+    state->tell_if_stuck();
+    state->schedule();
   };
   if (type.key_of != nullptr) {
     listener.find_key = [weak](std::span<const std::byte> cdr) -> std::optional<Guid> {
@@ -198,7 +211,22 @@ void TopicReader::State::hand_over() {
 }
 
 void TopicReader::State::hand_over(const dds::Sample& sample) {
-  if (decode(sample, value.get())) consumer(value.get());
+  if (!decode(sample, value.get())) return;
+  began = Clock::now();
+  const std::unique_ptr<State, void (*)(State*)> ends(
+      this, [](State* self) { self->began = Clock::time_point(); });
+  consumer(value.get());
+}
+
+void TopicReader::State::tell_if_stuck() {
+  const Clock::time_point since = began;
+  if (since == Clock::time_point() || Clock::now() - since < kTooLong || told_stuck.exchange(true))
+    return;
+  log(LogLevel::Warning, "topics",
+      "topic '" + name +
+          "': a callback has not returned for a second; the values that come meanwhile wait, and "
+          "the oldest are dropped, as are those of other subscriptions on its thread; let it "
+          "return, or give it an executor of its own (SubscriptionOptions)");
 }
 
 bool TopicReader::State::decode(const dds::Sample& sample, void* into) {

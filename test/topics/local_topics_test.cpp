@@ -281,6 +281,31 @@ TEST_CASE("no callback runs once the subscription has gone") {
   CHECK(rudder.subscribers() == 0);
 }
 
+TEST_CASE("a callback that does not return is told once, when a further value has come") {
+  Sea sea;
+  const Log log;
+  auto rudder = sea.rudder();
+  ThreadExecutor executor("topics");
+  std::atomic<bool> inside = false;
+  std::atomic<bool> may_return = false;
+  const Subscription<Rudder> watch(*sea.shore, executor, "rudder", {}, [&](const Rudder&) {
+    inside = true;
+    eventually([&] { return may_return.load(); });
+  });
+  rudder.publish({"helm", 1});
+  REQUIRE(eventually([&] { return inside.load(); }));
+  const auto told = [&] { return log.count("a callback has not returned"); };
+  rudder.publish({"helm", 2});
+  CHECK(told() == 0);
+  CHECK(eventually([&] {
+    rudder.publish({"helm", 3});
+    return told() == 1;
+  }));
+  rudder.publish({"helm", 4});
+  CHECK(told() == 1);
+  may_return = true;
+}
+
 TEST_CASE("a callback may not destroy its own subscription: that is told, and it is the last") {
   Sea sea;
   const Log log;
