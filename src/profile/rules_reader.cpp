@@ -45,6 +45,20 @@ void demand_reachable_cap(const XmlElement& element, const RestartRules& rules) 
                            "make restart_window longer or max_restarts fewer");
 }
 
+/// What says how to restart a process that never is.
+void warn_of_rules_without_restart(const XmlElement& element) {
+  if (element.maybe_attribute("restart")) return;
+  for (const char* name :
+       {"restart_delay", "max_restart_delay", "max_restarts", "restart_window"}) {
+    const auto attribute = element.maybe_attribute(name);
+    if (!attribute || attribute->inherited) continue;
+    element.findings().warning(
+        attribute->where,
+        std::string(name) + " has no effect, since the process is never restarted",
+        "write restart=\"on-failure\" or \"always\", or remove it");
+  }
+}
+
 }  // namespace
 
 ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
@@ -60,6 +74,7 @@ ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
   rules.stop_timeout = read_time(element, "stop_timeout", rules.stop_timeout);
   rules.on_loss = read_loss_policy(element, on_loss);
   if (restart.policy != RestartPolicy::Never) demand_reachable_cap(element, restart);
+  warn_of_rules_without_restart(element);
   return rules;
 }
 

@@ -286,6 +286,9 @@ TEST_CASE("A profile's words that are unknown are answered with the nearest know
        "stop_timeout: \"3000\" has no unit of time; write \"3000 ms\" or \"3000 s\""},
       {R"(stop_timeout="long")", "\"long\" is no length of time"},
       {R"(max_restarts="0")", "\"max_restarts\" is 0, less than 1"},
+      {R"(max_restarts="3")",
+       "max_restarts has no effect, since the process is never restarted; write restart="},
+      {R"(restart_window="9 s")", "restart_window has no effect"},
       {R"(restart="always" restart_window="1 s")", "do not fit into restart_window"},
   }));
   const std::string peer = R"(<peer name="f" component="f.xml" )" + attributes + "/>";
