@@ -69,10 +69,10 @@ int check(const CheckArguments& arguments) {
   }
   std::fputs(profile::to_text(findings).c_str(), stderr);
   if (result == 0) {
-    const auto unchecked =
+    const auto notes =
         std::ranges::count(findings, profile::Severity::Note, &profile::Finding::severity);
     std::printf("%s: complete: every dependency is resolved%s\n", arguments.profile.c_str(),
-                unchecked > 0 ? "; what was not checked, the notes say" : "");
+                notes > 0 ? "; see the notes" : "");
   }
   return result;
 }

@@ -161,7 +161,10 @@ class Checker {
     const auto& peer = mission_.peers[number];
     for (const auto& need : composition_.needs(number)) {
       if (findings_.full()) return;
-      if (!composition_.providers(need.interface).empty()) continue;
+      if (!composition_.providers(need.interface).empty()) {
+        note_other_systems(peer, need);
+        continue;
+      }
       const std::string who =
           need.csp.empty() ? in_quotes(peer.name) : in_quotes(peer.name + "/" + need.csp);
       const std::string csp = composition_.csp_with(need.interface);
@@ -178,6 +181,22 @@ class Checker {
                         "a CSP serves its own peer alone; depend on that peer's interface");
       }
     }
+  }
+
+  /// Code that connects without naming a system looks in its own.
+  void note_other_systems(const PeerProfile& peer, const Need& need) {
+    const auto& providers = composition_.providers(need.interface);
+    const bool near = std::any_of(providers.begin(), providers.end(), [&](std::size_t provider) {
+      return mission_.peers[provider].system == peer.system;
+    });
+    if (near) return;
+    const PeerProfile& first = mission_.peers[providers.front()];
+    findings_.add({Severity::Note, need.where,
+                   in_quotes(peer.name) + " of system " + in_quotes(peer.system) + " depends on " +
+                       need.interface + ", which is provided in other systems only, as by " +
+                       in_quotes(first.name) + " of " + in_quotes(first.system),
+                   "its code finds that if it names the system or kAnySystem; otherwise give both "
+                   "peers one system"});
   }
 
   std::string unless_unread() const {

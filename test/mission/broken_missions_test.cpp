@@ -342,8 +342,7 @@ TEST_CASE("What could not be checked is said, and is no error") {
   CHECK_THAT(quiet.output(),
              Contains("quiet.xml:1:1: note: whether the code of 'quiet' implements what its "
                       "description says was not checked") &&
-                 Contains("complete: every dependency is resolved; what was not checked, the "
-                          "notes say"));
+                 Contains("complete: every dependency is resolved; see the notes"));
   CommandRun elsewhere({"check", town.profile(R"(<peer name="h" component="herald.xml">
 <environment name="SKEIN_MODULE_PATH" value="/elsewhere"/></peer>)")});
   CHECK(elsewhere.wait() == 0);

@@ -35,6 +35,18 @@ TEST_CASE("A dependency that nobody provides is named where it is written") {
         "that does; did you mean 'M/IN'?\n");
 }
 
+TEST_CASE(
+    "A dependency that only other systems provide is a note, where one provides it here none") {
+  ProfileFolder folder;
+  const std::string elsewhere = R"(<peer name="f" component="f.xml" system="port"/>)";
+  const std::string text = folder.check(elsewhere + kN + kG);
+  CHECK_THAT(text, Catch::Contains("n.xml:5:17: note: \"n\" of system ") &&
+                       Catch::Contains("depends on M/IF, which is provided in other systems only, "
+                                       "as by \"f\" of \"port\"; its code finds that if"));
+  CHECK_THAT(text, !Catch::Contains("error"));
+  CHECK(folder.check(elsewhere + R"(<peer name="f2" component="f.xml"/>)" + kN + kG) == "");
+}
+
 TEST_CASE("A CSP's dependency is as good as its entity's") {
   ProfileFolder folder;
   folder.write("q.xml", component("Q", "M/IP", {"M/IMap"}));
