@@ -34,6 +34,7 @@
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "used_topics.hpp"
 #include "wake_up.hpp"
 
 namespace skein::launch {
@@ -332,6 +333,16 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   return await_end();
 }
 
+/// At the end: code may use a topic at any time.
+void tell_unneeded_rules(const Entity& entity, const PeerProfile& peer, const UsedTopics& topics) {
+  // The rules are those of CSPs, too.
+  const bool complete = std::ranges::none_of(
+      peer.csps, [](const CspProfile& csp) { return csp.process == profile::CspProcess::Own; });
+  if (!complete) return;
+  for (const std::string& text : topics.unneeded(peer.topics))
+    log(LogLevel::Warning, entity.id(), text);
+}
+
 // The peer's plugin and those of its CSPs in this process, each once.
 void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
   std::set<std::string> plugins{peer.plugin};
@@ -347,7 +358,13 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   // An activity is told, also one that runs the mission.
   if (registry.find_activity(peer.component->name)) block_ending_signals();
   Entity* self = nullptr;
+  UsedTopics topics;
   EntityOptions options = entity_options(mission, peer);
+  options.adjust_topic = [&topics, adjust = options.adjust_topic](const std::string& topic,
+                                                                  TopicQos& qos) {
+    topics.add(topic);
+    if (adjust) adjust(topic, qos);
+  };
   options.head.strategies = registry.strategies();
   options.head.on_hang = [&](const Candidate& hung) { end_hung_csp(*self, peer, hung); };
   Entity entity(std::move(options));
@@ -373,9 +390,13 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   pass(self_test, entity, peer);
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
-  if (!peer.component->interfaces.empty()) return await_end();
   try {
-    return run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); });
+    const int code =
+        peer.component->interfaces.empty()
+            ? run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); })
+            : await_end();
+    tell_unneeded_rules(entity, peer, topics);
+    return code;
   } catch (const std::exception& error) {
     const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
                              " ended by an exception: " + error.what();

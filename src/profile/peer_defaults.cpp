@@ -118,7 +118,9 @@ class Completion {
       if (program && item.name == "topic") continue;
       const bool own = std::ranges::any_of(
           peer.children, [&](const XmlNode& child) { return key_of(child) == key_of(item); });
-      if (!own) peer.children.push_back(item);
+      if (own) continue;
+      peer.children.push_back(item);
+      for (XmlAttribute& attribute : peer.children.back().attributes) attribute.inherited = true;
     }
   }
 

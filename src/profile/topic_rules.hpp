@@ -23,6 +23,8 @@ struct TopicRules {
   using Period = Limit<std::chrono::milliseconds>;
 
   std::string name;
+  /// Stands at an element around the peer, for peers that may not all have the topic.
+  bool inherited = false;
   std::optional<bool> reliable{};
   std::optional<bool> transient_local{};
   std::optional<bool> exclusive{};

@@ -384,6 +384,21 @@ TEST_CASE("a peer that provides nothing does its own until it is told to end") {
              Contains("the herald goes home") && Contains("h: ended with exit code 0"));
 }
 
+TEST_CASE("a rule for a topic that the peer never used is told at its end") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"peer",
+                  errand.profile("",
+                                 "<peer name='h' component='herald.xml'>"
+                                 "<topic name='heralt' reliability='reliable'/></peer>"),
+                  "h"});
+  REQUIRE(run.writes("hear, hear"));
+  run.signal(SIGINT);
+  CHECK(run.wait() == 0);
+  CHECK_THAT(run.output(), Contains("<topic name=\"heralt\">, and it used no such topic (did you "
+                                    "mean 'herald'?)"));
+}
+
 TEST_CASE("a peer that provides nothing may end by itself, and with it the mission") {
   if (!installed("fastdds")) return;
   const Errand errand;

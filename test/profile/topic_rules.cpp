@@ -46,6 +46,10 @@ TEST_CASE("A peer has the topics that it does not name from its group, then from
   CHECK(depth("b") == Depth{2});
   CHECK(depth("c") == Depth{20});
   CHECK_FALSE(find_topic(mission.peers[1].topics, "c")->lifespan);
+  for (const TopicRules& rules : mission.peers[1].topics) {
+    CAPTURE(rules.name);
+    CHECK(rules.inherited == (rules.name != "c"));
+  }
 }
 
 TEST_CASE("A program of one's own has none of the mission's topics, and may name none") {
