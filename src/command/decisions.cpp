@@ -1,6 +1,9 @@
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <functional>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -23,6 +26,7 @@ namespace skein::command {
 namespace {
 
 constexpr std::size_t kLongestDifference = 4096;
+constexpr std::size_t kLongestPlace = 4096;
 
 void print(const introspection::Decision& record) {
   std::fputs(folded(explain(record), terminal_width()).c_str(), stdout);
@@ -68,18 +72,38 @@ introspection::Decision parse(const std::string& line, const std::string& place)
   try {
     return idl::from_json<introspection::Decision>(line);
   } catch (const InvalidArgument& error) {
-    throw InvalidArgument(place + ": " + error.what());
+    throw InvalidArgument(place + ": " + (line.starts_with('{') ? "" : "no log of decisions: ") +
+                          error.what());
   }
+}
+
+/// Whoever wrote the line was killed, or the disk was full, before the line was whole.
+bool is_cut(const std::string& line, bool last) {
+  return line.starts_with('{') && (last || !line.ends_with('}'));
 }
 
 using Visit = std::function<void(const introspection::Decision& record, const std::string& place)>;
 
 void for_each_in_log(const std::string& log, const Visit& visit) {
+  const auto refuse = [&](int reason) {
+    throw InvalidArgument("the log of decisions '" + log +
+                          "' cannot be read: " + std::generic_category().message(reason));
+  };
   std::ifstream file(log);
-  if (!file) throw InvalidArgument("the log of decisions '" + log + "' cannot be read");
+  if (!file) refuse(errno);
+  if (std::filesystem::is_directory(log)) refuse(EISDIR);
   std::size_t count = 0;
   for (std::string line; std::getline(file, line);) {
     const std::string place = log + ":" + std::to_string(++count);
+    if (line.empty()) continue;
+    const bool last = file.eof();  // no newline ends it
+    if (is_cut(line, last)) {
+      std::fprintf(stderr,
+                   "skein: %s: the %sline is cut off, and left out: who wrote it ended, or the "
+                   "disk was full, before it was whole\n",
+                   printable(place, kLongestPlace).c_str(), last ? "last " : "");
+      continue;
+    }
     visit(parse(line, place), place);
   }
 }

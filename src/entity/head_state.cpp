@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "core/log.hpp"
@@ -21,6 +23,14 @@ using introspection::Decision;
 using introspection::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
+
+/// Who wrote it before was killed, say.
+bool ends_in_mid_line(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  return file && file.tellg() > 0 && file.seekg(-1, std::ios::end).get() != '\n';
+}
 
 }  // namespace
 
@@ -42,6 +52,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
                           options.log + "': " + std::generic_category().message(errno) +
                           "; name a file in a folder that may be written to");
   }
+  if (ends_in_mid_line(options.log)) log_file << std::endl;
 }
 
 std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
@@ -189,12 +200,24 @@ void Head::State::conclude(Decision&& record, Decision* wanted) {
 void Head::State::write_log(const Decision& record) {
   const std::string line = idl::to_json(record);
   std::lock_guard lock(log_mutex);
-  log_file << line << std::endl;
-  if (log_file) return;
+  errno = 0;
+  // Of a decision that was lost, a part may stand there.
+  log_file << (log_lost > 0 ? "\n" : "") << line << std::endl;
+  if (log_file) {
+    if (log_lost > 0) {
+      log(LogLevel::Warning, parts.entity,
+          "decisions are written to '" + options.log + "' again; " + std::to_string(log_lost) +
+              " are not in it");
+    }
+    log_lost = 0;
+    return;
+  }
   log_file.clear();
+  if (++log_lost > 1) return;
   log(LogLevel::Warning, parts.entity,
       "a decision could not be written to '" + options.log +
-          "': " + std::generic_category().message(errno));
+          "': " + std::generic_category().message(errno) +
+          "; it is lost, and so is each further one until this is mended");
 }
 
 }  // namespace skein

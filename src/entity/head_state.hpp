@@ -100,6 +100,7 @@ struct Head::State {
   std::deque<introspection::Decision> decisions;
   std::mutex log_mutex;
   std::ofstream log_file;
+  std::uint64_t log_lost = 0;  // since one was written last
   introspection::Publisher<introspection::Decision> publisher;
   bool learns = false;
   std::unique_ptr<ThreadExecutor> learner;  // once there is something to learn; ends first

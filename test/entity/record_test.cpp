@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 
+#include "../tools/log.hpp"
 #include "../tools/places.hpp"
 #include "office.hpp"
 #include "rpc/introspection_topic.hpp"
@@ -182,6 +183,23 @@ TEST_CASE("each decision is a line of the log that the entity names") {
   const auto last = idl::from_json<Decision>(lines.back());
   CHECK(last.number == 5);
   CHECK(last == mixed.office.owner->head().decisions().back());
+}
+
+TEST_CASE("a log that ends in the middle of a line is continued on a line of its own") {
+  const File log("log");
+  std::ofstream(log.path) << R"({"number": 1, "ent)";
+  Mixed mixed({.log = log.path});
+  mixed.perform(1);
+  const Lines lines = log.lines();
+  REQUIRE(lines.size() == 2);
+  CHECK(idl::from_json<Decision>(lines[1]) == mixed.office.owner->head().decisions().back());
+}
+
+TEST_CASE("that a log is not written any more is told once, not for each decision") {
+  const Log captured;
+  Mixed mixed({.log = "/dev/full"});
+  mixed.perform(5);
+  CHECK(captured.count("a decision could not be written to '/dev/full': No space left") == 1);
 }
 
 TEST_CASE("a line of a log with an outcome that nobody knows is refused, with its place and word") {

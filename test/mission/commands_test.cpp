@@ -15,6 +15,10 @@
 #include "command_run.hpp"
 #include "core/file_descriptor.hpp"
 #include "installed.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/dynamic.hpp"
+#include "skein/entity.hpp"
+#include "skein/introspection.idl.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -646,6 +650,45 @@ TEST_CASE("decisions that are made again are counted") {
   Command json(with_json);
   CHECK(json.code() == 0);
   CHECK(json.json() == Json{{"decisions", 0}, {"different", 0}});
+}
+
+TEST_CASE("a line of a log that was cut off is told, and the whole ones are read all the same") {
+  const Shelf shelf;
+  const std::string log = shelf / "decisions.jsonl";
+  introspection::Decision record;
+  record.entity = "whole";
+  record.strategy = "declared";
+  record.execution = "one";
+  record.failure = "nobody is there";
+  const std::string line = idl::to_json(record);
+  const std::string half = line.substr(0, line.size() / 2);
+  const auto [text, place, whole] = GENERATE_COPY(table<std::string, std::string, int>({
+      {line + '\n' + line + '\n' + half, ":3: the last line is cut off", 2},
+      {line + '\n' + half + '\n' + line + '\n', ":2: the line is cut off", 2},
+      {half, ":1: the last line is cut off", 0},
+  }));
+  std::ofstream(log) << text;
+  Command read({"decisions", "--log", log, "--json"});
+  CHECK(read.code() == 0);
+  CHECK(read.json_lines().size() == static_cast<std::size_t>(whole));
+  CHECK_THAT(read.said(), Contains(log + place));
+  Command again({"decisions", "--log", log, "--replay", "--json"});
+  CHECK(again.code() == 0);
+  CHECK(again.json() == Json{{"decisions", whole}, {"different", 0}});
+  CHECK_THAT(again.said(), Contains(log + place));
+}
+
+TEST_CASE("what is no log of decisions is refused, and why it cannot be read") {
+  const Shelf shelf;
+  std::ofstream(shelf / "mission.xml") << "<mission name=\"m\"/>\n";
+  const auto [name, why] = GENERATE(table<std::string, std::string>({
+      {"nowhere.jsonl", "nowhere.jsonl' cannot be read: No such file or directory"},
+      {"", "cannot be read: Is a directory"},
+      {"mission.xml", "mission.xml:1: no log of decisions: "},
+  }));
+  Command read({"decisions", "--log", shelf / name});
+  CHECK(read.code() == 78);
+  CHECK_THAT(read.said(), Contains(why));
 }
 
 TEST_CASE("a recording that is not there is named") {
