@@ -83,7 +83,7 @@ int publish(const PublishArguments& arguments) {
   Entity entity(arguments.entity_options("publish"));
   Inspector inspector(entity);
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
-  DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic),
+  DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic, false),
                              topic.writing_qos());
   await_subscribers(publisher, subscribers_of(topic), arguments.wait, interruption);
   const Outcome outcome = arguments.value == "-"

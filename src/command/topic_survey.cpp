@@ -1,15 +1,19 @@
 #include "topic_survey.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "entity/topic_witness.hpp"
 #include "skein/error.hpp"
+#include "type_conflicts.hpp"
 
 namespace skein::command {
 namespace {
 
 constexpr double kLookAgain = 0.1;
+constexpr std::size_t kLongestConflict = 1024;
 /// Of one round of questions.
 constexpr std::chrono::milliseconds kShortest{100};
 constexpr std::chrono::milliseconds kLongest{1000};
@@ -56,8 +60,13 @@ KnownTopic await_topic(Inspector& inspector, const std::string& name, double sec
                     list_of(names_of(topics)));
 }
 
-types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic) {
-  return inspector.types(topic.type, {}, kAnswerPatience);
+types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers) {
+  return inspector.types(topic.type, witness_of(topic, publishers), kAnswerPatience);
+}
+
+void tell_type_conflicts(const KnownTopic& topic) {
+  for (const std::string& conflict : type_conflicts(topic.endpoints))
+    std::fprintf(stderr, "skein: %s\n", printable(conflict, kLongestConflict).c_str());
 }
 
 }  // namespace skein::command

@@ -17,7 +17,11 @@ inline constexpr std::chrono::seconds kAnswerPatience{2};
 KnownTopic await_topic(Inspector& inspector, const std::string& name, double seconds,
                        const Interruption& interruption);
 
-/// The types that a topic's type names, as its publishers and subscriptions tell them.
-types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic);
+/// The types that a topic's type names, as its publishers tell them where there are any, or its
+/// subscriptions; the other way round where not `publishers`.
+types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers = true);
+
+/// On stderr: who does not hear whom there, because their types differ.
+void tell_type_conflicts(const KnownTopic& topic);
 
 }  // namespace skein::command

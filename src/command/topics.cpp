@@ -8,9 +8,12 @@
 #include "json_output.hpp"
 #include "skein/entity.hpp"
 #include "topic_survey.hpp"
+#include "type_conflicts.hpp"
 
 namespace skein::command {
 namespace {
+
+constexpr std::size_t kLongestConflict = 1024;
 
 std::string qos_of(const inspection::TopicEndpoint& endpoint) {
   std::string text = endpoint.reliable ? "reliable" : "best effort";
@@ -65,7 +68,13 @@ int list_topics(const TopicsArguments& arguments) {
     print_json(all, true);
     return 0;
   }
-  for (const KnownTopic& topic : topics) print(topic);
+  std::vector<KnownTopic::Endpoint> endpoints;
+  for (const KnownTopic& topic : topics) {
+    print(topic);
+    endpoints.insert(endpoints.end(), topic.endpoints.begin(), topic.endpoints.end());
+  }
+  for (const std::string& conflict : type_conflicts(endpoints))
+    std::printf("%s\n", printable(conflict, kLongestConflict).c_str());
   std::printf("%zu %s in %s\n", topics.size(), topics.size() == 1 ? "topic" : "topics",
               entity.broker().options().place.c_str());
   if (topics.empty()) tell_missions_elsewhere(arguments);

@@ -9,6 +9,7 @@
 
 #include "core/log.hpp"
 #include "core/wall_clock.hpp"
+#include "entity/topic_witness.hpp"
 #include "recording/recorded_calls.hpp"
 #include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
@@ -119,7 +120,7 @@ struct Recorder::State {
     ++known.questions;
     try {
       known.channel = types.add_channel(
-          topic.name, topic.type, inspector.types(topic.type, {}, patience), metadata_of(topic));
+          topic.name, topic.type, inspector.types(topic.type, witness_of(topic), patience), metadata_of(topic));
       known.has_schema = true;
       return "";
     } catch (const Error& error) {

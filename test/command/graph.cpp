@@ -175,3 +175,37 @@ TEST_CASE("the doctor tells of peers that do not answer, do not work, or are of 
   picture[0].process.reset();
   CHECK_THAT(diagnose_peers(picture).at(0).cause, Contains("does not answer"));
 }
+
+TEST_CASE("publishers and subscriptions whose types differ, and that have not met, are told") {
+  using namespace command::doctor;
+  DomainPicture picture = mission();
+  for (PeerPicture& each : picture) each.process->version = SKEIN_VERSION;
+  publish(picture[0], "pose", false);
+  auto& subscription = picture[0].topics.back();
+  auto& publisher = picture[1].topics.back();
+  subscription.systems = publisher.systems = {"uav-1"};
+  subscription.signature = publisher.signature = 7;
+  CHECK(diagnose_peers(picture).empty());
+  subscription.signature = 8;
+  CHECK_THAT(diagnose_peers(picture).at(0).cause,
+             Contains("topic 'pose': uav-1/navigator, which publishes, and gs/client, which "
+                      "subscribes, have different versions of geo::Pose"));
+  SECTION("in another system they are not meant to meet") {
+    subscription.systems = {"gs"};
+    CHECK(diagnose_peers(picture).empty());
+  }
+  SECTION("versions that have met are of a type that grows") {
+    subscription.matched = publisher.matched = 1;
+    CHECK(diagnose_peers(picture).empty());
+  }
+  SECTION("a version that is not told is no other one") {
+    subscription.signature = 0;
+    CHECK(diagnose_peers(picture).empty());
+  }
+  SECTION("types of two names") {
+    subscription.type = "geo::Fix";
+    CHECK_THAT(diagnose_peers(picture).at(0).cause,
+               Contains("uav-1/navigator publishes geo::Pose, and gs/client subscribes to "
+                        "geo::Fix: they do not hear each other"));
+  }
+}

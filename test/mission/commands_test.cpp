@@ -79,6 +79,7 @@ class Field {
   }
 
   ChildProcess& station() { return station_; }
+  std::uint32_t domain() const { return static_cast<std::uint32_t>(std::stoul(place_[1])); }
 
   Command start(const Words& words, CommandOptions options = {}) const {
     Words all = words;
@@ -149,6 +150,21 @@ Command printed_with(const Field& field, const Words& words, const std::string& 
     return last.find(part) != std::string::npos;
   }));
   return field.start(words);
+}
+
+/// survey::Corner as it is in another version of its IDL.
+types::TypeSystem other_corner() {
+  const auto member = [](const std::string& name, types::Kind kind) {
+    types::Member made;
+    made.name = name;
+    made.type.kind = kind;
+    return made;
+  };
+  types::Declaration corner;
+  corner.name = "survey::Corner";
+  corner.modules = 1;
+  corner.members = {member("x", types::Kind::Long), member("y", types::Kind::Long)};
+  return {{corner}, {}};
 }
 
 std::string any_vendor() { return GENERATE(as<std::string>(), "fastdds", "cyclonedds"); }
@@ -288,6 +304,33 @@ TEST_CASE("topics lists who publishes and subscribes to what") {
   CHECK(json.json()[0]["endpoints"][0]["entity"] == "field/station");
   CHECK(json.json()[0]["endpoints"][0]["publishes"] == true);
   CHECK(json.json()[1]["endpoints"][0]["publishes"] == false);
+}
+
+TEST_CASE(
+    "where a subscription has another version of a type, that is told, and the publisher's is "
+    "shown") {
+  const std::string vendor = any_vendor();
+  if (!installed(vendor)) return;
+  const Field field(vendor);
+  Entity stranger({.name = "a-stranger",  // answers before the station
+                   .system = "field",
+                   .vendor = dds::load_vendor(vendor),
+                   .domain = field.domain()});
+  const DynamicSubscription subscription(stranger, "corner", "survey::Corner", other_corner(),
+                                         TopicQos(), [](const std::string&) {});
+  const std::string conflict =
+      "topic 'corner': field/station, which publishes, and field/a-stranger, which subscribes, "
+      "have different versions of survey::Corner";
+  Command topics = printed_with(field, {"topics"}, "a-stranger");
+  CHECK_THAT(topics.printed(), Contains(conflict));
+  Command echo = field.start({"echo", "corner", "--count", "3", "--json"});
+  CHECK(echo.code() == 0);
+  CHECK(echo.json_lines().at(0)["y"] == 0.5);
+  CHECK_THAT(echo.said(), Contains(conflict) && !Contains("were no survey::Corner"));
+  Command describe = field.start({"describe", "corner"});
+  CHECK(describe.code() == 0);
+  CHECK_THAT(describe.printed(), Contains("double y;") && !Contains("long"));
+  CHECK_THAT(describe.said(), Contains(conflict));
 }
 
 TEST_CASE("what listens before it prints is cut short when it is interrupted") {

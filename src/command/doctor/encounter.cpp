@@ -8,6 +8,7 @@
 
 #include "bench.idl.hpp"
 #include "brokerless_discovery/broker.hpp"
+#include "command/type_conflicts.hpp"
 #include "dds/vendor_names.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
@@ -150,6 +151,14 @@ Symptoms namesakes_in(const DomainPicture& picture) {
   return symptoms;
 }
 
+std::vector<KnownTopic::Endpoint> endpoints_of(const DomainPicture& picture) {
+  std::vector<KnownTopic::Endpoint> endpoints;
+  for (const PeerPicture& peer : picture) {
+    for (const auto& topic : peer.topics) endpoints.push_back({peer.participant, peer.name, topic});
+  }
+  return endpoints;
+}
+
 }  // namespace
 
 Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
@@ -172,6 +181,8 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
     return mission && absent_peers(picture, *mission).empty();
   };
   await(complete, std::chrono::milliseconds(1500), interruption);
+  picture = look.take(true);
+  std::erase_if(picture, is_tool);
   const auto add = [&](const Symptoms& more) {
     symptoms.insert(symptoms.end(), more.begin(), more.end());
   };
@@ -198,6 +209,10 @@ Symptoms diagnose_peers(const DomainPicture& picture) {
                           "CSPs of the peer " + peer.name + " do not return", "skein peers",
                           "restart it; run such CSPs in processes of their own"});
     }
+  }
+  for (const std::string& conflict : type_conflicts(endpoints_of(picture))) {
+    symptoms.push_back({Severity::Warning, "topics", conflict, "skein topics",
+                        "build both sides from the same IDL, and end those that are old"});
   }
   return symptoms;
 }

@@ -17,7 +17,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
                    const profile::MissionProfile* mission, const Interruption& interruption);
 
 /// What is odd about peers that are there: those that do not answer, or do not work, or are of
-/// another version of Skein. A pure function.
+/// another version of Skein, or do not hear each other since their types differ. A pure function.
 Symptoms diagnose_peers(const DomainPicture& picture);
 
 }  // namespace skein::command::doctor
