@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "core/host.hpp"
+#include "core/network_interface.hpp"
 #include "core/suggestion.hpp"
 #include "skein/error.hpp"
 #include "vendor_names.hpp"
@@ -24,6 +25,8 @@ std::string address_of(const std::string& wanted, const std::vector<HostInterfac
   if (inet_pton(AF_INET, wanted.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127) {
     return wanted;
   }
+  if (const std::string down = obstacle_of_this_host({wanted}); !down.empty())
+    throw InvalidArgument(down);
   std::vector<std::string> known;
   for (const HostInterface& interface : host) known.push_back(interface.name);
   throw InvalidArgument("this host has no interface '" + wanted + "' with an IPv4 address" +

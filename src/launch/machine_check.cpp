@@ -11,6 +11,7 @@
 
 #include "component_code.hpp"
 #include "core/host.hpp"
+#include "core/network_interface.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
 #include "dds/vendor_names.hpp"
@@ -94,6 +95,12 @@ class MachineCheck {
 
   void check_interface(const PeerProfile& peer) {
     const std::string& wanted = peer.interface;
+    const auto down = find_obstacle(network_interfaces_, wanted);
+    if (down && peer.vendor != dds::kLoopback) {
+      if (!told_down_.insert(down->problem).second) return;
+      return add(Severity::Error, peer.where, "'" + peer.name + "' cannot speak: " + down->problem,
+                 down->remedy);
+    }
     const bool known = wanted.empty() || wanted.starts_with("127.") ||
                        std::ranges::any_of(interfaces_, [&](const HostInterface& interface) {
                          return wanted == interface.name || wanted == interface.address;
@@ -166,6 +173,8 @@ class MachineCheck {
 
   const MissionProfile& mission_;
   const std::vector<HostInterface> interfaces_;
+  const std::vector<NetworkInterface> network_interfaces_ = network_interfaces();
+  std::set<std::string> told_down_;
   std::map<std::string, bool> here_;  // each host that the profile names
   std::set<std::string> asked_;       // those of them that have no address, and are an error
   std::vector<Finding> findings_;

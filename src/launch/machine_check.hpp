@@ -10,7 +10,7 @@ namespace skein::launch {
 
 /// Everything that a profile names and this machine does not have, as far as it concerns the peers
 /// of `host` (see is_here()):
-/// - network interfaces, CPUs, and programs of peers
+/// - network interfaces, which must be up, too; CPUs, and programs of peers
 /// - hosts without an address that a peer would have to ask
 /// - a peer without an interface in a mission of several hosts, where others could not meet it; a
 ///   peer that names no host there, which each launcher would start

@@ -44,6 +44,34 @@ TEST_CASE("where loopback is down, that is the cause, and the exit code says so"
              Contains("the loopback interface is down") && Contains("sudo ip link set lo up"));
 }
 
+TEST_CASE("an interface that is down is told by all that would speak on it, with the remedy") {
+  const Errand errand;
+  const NetworkSpace space;
+  space.run("ip link add near type veth peer name far && ip address add 10.1.1.1/24 dev near");
+  const auto [interface, problem, remedy] = GENERATE(table<std::string, std::string, std::string>({
+      {"lo", "the loopback interface is down", "sudo ip link set lo up"},
+      {"near", "the interface near is down", "sudo ip link set near up"},
+  }));
+  if (interface == "lo") space.run("ip link set lo down");
+  const std::string attributes = interface == "lo" ? "" : "interface='" + interface + "'";
+  const std::string profile = errand.profile(attributes, kOffice);
+  for (const std::string command : {"check", "launch"}) {
+    CAPTURE(command, interface);
+    CommandRun run({command, profile}, {.network = space.descriptor()});
+    CHECK(run.wait() == 78);
+    CHECK_THAT(run.output(), Contains("errand.xml:1:") && Contains("'office' cannot speak: ") &&
+                                 Contains(problem) && Contains(remedy));
+  }
+  for (const std::string vendor : {"fastdds", "cyclonedds"}) {
+    if (!installed(vendor)) continue;
+    CAPTURE(vendor, interface);
+    CommandRun run({"peers", "--interface", interface, "--vendor", vendor},
+                   {.network = space.descriptor()});
+    CHECK(run.wait() != 0);
+    CHECK_THAT(run.output(), Contains(problem) && Contains(remedy) && !Contains("port"));
+  }
+}
+
 TEST_CASE("an interface without an address is an error with its remedy") {
   const NetworkSpace space;
   space.run("ip link add near type veth peer name far && ip link set near up");

@@ -95,7 +95,7 @@ Facts collect_facts() {
   const auto lead = lead_of_clock();
   const auto owners = owners_of_sockets();
   Facts facts;
-  facts.interfaces = read_interfaces();
+  facts.interfaces = network_interfaces();
   facts.sockets = read_udp_sockets(owners);
   facts.launchers = read_launchers(owners);
   facts.receive_buffer = read_number("/proc/sys/net/core/rmem_max");

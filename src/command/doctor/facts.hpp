@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/network_interface.hpp"
+
 /// What `skein doctor` knows of a machine: plain values, so that each conclusion can be tested with
 /// a machine that does not exist. What could not be read is nullopt.
 namespace skein::command::doctor {
@@ -30,12 +32,7 @@ struct Program {
   std::string command{};  ///< Its words, where it is stopped.
 };
 
-struct Interface {
-  std::string name;
-  std::vector<std::string> addresses;  ///< IPv4, in dotted form.
-  bool up = false;
-  bool multicast = false;
-};
+using Interface = NetworkInterface;
 
 struct UdpSocket {
   std::uint16_t port = 0;

@@ -42,12 +42,9 @@ Symptom loopback(const Facts& facts) {
   if (found && found->up) {
     return {Severity::Fine, "loopback", found->name + " is up, with 127.0.0.1", "", ""};
   }
+  if (const auto down = find_obstacle(facts.interfaces, ""))
+    return {Severity::Error, "loopback", down->problem, "lo is not up", down->remedy};
   const Interface* named = find_interface(facts, "lo");
-  if (named && !named->up) {
-    return {Severity::Error, "loopback",
-            "the loopback interface is down: the peers of this host cannot speak to each other",
-            "lo is not up", "sudo ip link set lo up"};
-  }
   return {Severity::Error, "loopback",
           "no interface has 127.0.0.1: the peers of this host cannot speak to each other",
           named ? "lo has no such address" : "there is no interface lo",
@@ -72,10 +69,8 @@ Symptom interface(const std::string& wanted, bool by_multicast, const Facts& fac
   const Interface* found = find_interface(facts, wanted);
   if (!found) return missing_interface(facts, wanted);
   const std::string& name = found->name;
-  if (!found->up) {
-    return {Severity::Error, "interface", "the interface " + name + " is down", "its flags lack UP",
-            "sudo ip link set " + name + " up"};
-  }
+  if (const auto down = find_obstacle(facts.interfaces, wanted))
+    return {Severity::Error, "interface", down->problem, "its flags lack UP", down->remedy};
   if (found->addresses.empty()) {
     return {Severity::Error, "interface",
             "the interface " + name + " has no IPv4 address, and Skein speaks IPv4",

@@ -1,8 +1,3 @@
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <memory>
@@ -10,23 +5,9 @@
 
 #include "launch/mission_claim.hpp"
 #include "reading.hpp"
-#include "skein/error.hpp"
 
 namespace skein::command::doctor {
 namespace {
-
-std::string dotted(const sockaddr& address) {
-  char text[INET_ADDRSTRLEN] = "";
-  inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(address).sin_addr, text, sizeof text);
-  return text;
-}
-
-Interface& of_name(std::vector<Interface>& interfaces, const std::string& name) {
-  const auto found = std::ranges::find(interfaces, name, &Interface::name);
-  if (found != interfaces.end()) return *found;
-  interfaces.push_back({.name = name, .addresses = {}});
-  return interfaces.back();
-}
 
 /// What a command writes to stdout; nothing where it is not there or fails.
 std::optional<std::string> output_of(const char* command) {
@@ -41,21 +22,6 @@ std::optional<std::string> output_of(const char* command) {
 }
 
 }  // namespace
-
-std::vector<Interface> read_interfaces() {
-  ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) throw Internal("the system does not tell its network interfaces");
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> all(first, freeifaddrs);
-  std::vector<Interface> interfaces;
-  for (const ifaddrs* one = first; one; one = one->ifa_next) {
-    Interface& interface = of_name(interfaces, one->ifa_name);
-    interface.up = (one->ifa_flags & IFF_UP) != 0;
-    interface.multicast = (one->ifa_flags & IFF_MULTICAST) != 0;
-    if (one->ifa_addr && one->ifa_addr->sa_family == AF_INET)
-      interface.addresses.push_back(dotted(*one->ifa_addr));
-  }
-  return interfaces;
-}
 
 std::vector<SocketLine> parse_udp(const std::string& text) {
   std::vector<SocketLine> sockets;

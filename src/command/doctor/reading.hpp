@@ -18,7 +18,6 @@ std::optional<std::uint64_t> read_number(const std::string& path);
 /// By the number of an open socket, the program that has it; of processes that may be looked into.
 std::map<std::uint64_t, Program> owners_of_sockets();
 
-std::vector<Interface> read_interfaces();
 std::vector<UdpSocket> read_udp_sockets(const std::map<std::uint64_t, Program>& owners);
 std::vector<Launcher> read_launchers(const std::map<std::uint64_t, Program>& owners);
 std::optional<std::string> read_firewall();

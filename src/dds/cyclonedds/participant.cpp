@@ -4,6 +4,7 @@
 #include "../room_for_participant.hpp"
 #include "blob.hpp"
 #include "configuration.hpp"
+#include "core/network_interface.hpp"
 #include "heartbeats.h"
 #include "identity.hpp"
 #include "log.hpp"
@@ -24,9 +25,13 @@ Entity make_domain(const ParticipantOptions& options, dds_domainid_t id) {
   const ErrorCapture errors;
   const dds_entity_t domain = dds_create_domain(id, configuration(options).c_str());
   if (domain > 0) return Entity(domain);
-  throw Unavailable("no participant in domain " + std::to_string(options.domain) +
-                    ": Cyclone DDS says '" + errors.text() +
-                    "'; if all ports are taken, end other participants or raise max_participants");
+  const std::string down = obstacle_of_this_host(options.network.interfaces);
+  throw Unavailable("no participant in domain " + std::to_string(options.domain) + ": " +
+                    (down.empty()
+                         ? "Cyclone DDS says '" + errors.text() +
+                               "'; if all ports are taken, end other participants or raise "
+                               "max_participants"
+                         : down));
 }
 
 }  // namespace

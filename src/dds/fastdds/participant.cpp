@@ -11,6 +11,7 @@
 #include "../room_for_participant.hpp"
 #include "attributes.hpp"
 #include "core/log.hpp"
+#include "core/network_interface.hpp"
 #include "identity.hpp"
 #include "liveliness.hpp"
 #include "participant_leases.hpp"
@@ -24,8 +25,11 @@ namespace {
 constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
 
 [[noreturn]] void throw_no_participant(const ParticipantOptions& options) {
-  throw Unavailable("no participant in domain " + std::to_string(options.domain) +
-                    ": Fast DDS found no free port; end other participants or use another domain");
+  const std::string down = obstacle_of_this_host(options.network.interfaces);
+  throw Unavailable("no participant in domain " + std::to_string(options.domain) + ": " +
+                    (down.empty() ? "Fast DDS found no free port; end other participants or use "
+                                    "another domain"
+                                  : down));
 }
 
 /// Without shared memory where there is no room.
