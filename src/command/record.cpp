@@ -103,9 +103,10 @@ int record(const RecordArguments& arguments) {
   const auto print_counts = arguments.json ? print_as_json : print;
   try {
     recorder.close();
-  } catch (const Error&) {  // a full disk: what is in the file counts all the same
+  } catch (const Unavailable& error) {  // a full disk: what is in the file counts all the same
     print_counts(recorder.statistics());
-    throw;
+    std::fprintf(stderr, "skein: %s\n", printable(error.what(), kLongestProblem).c_str());
+    return launch::kOutputLost;
   }
   print_counts(recorder.statistics());
   tell_missing(arguments.topics, recorder.statistics().channels, inspector);
