@@ -11,6 +11,7 @@
 #include "core/printable.hpp"
 #include "idl/flags.hpp"
 #include "json_text.hpp"
+#include "rpc/common.hpp"
 #include "service_names.hpp"
 #include "skein/detail/json.hpp"
 #include "skein/discovery.idl.hpp"
@@ -140,6 +141,15 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   return options;
 }
 
+/// The remedy that is a function in C++ is an option here.
+std::string at_command_line(std::string text) {
+  const std::string_view remedy = rpc::kMoreTime;
+  const std::size_t place = text.find(remedy);
+  if (place != std::string::npos)
+    text.replace(place, remedy.size(), "; --within DURATION sets a longer limit");
+  return text;
+}
+
 void print(const std::string& result, bool json) {
   if (result != "{}" || json) std::printf("%s\n", shown(result, json).c_str());
   std::fflush(stdout);
@@ -174,6 +184,8 @@ int call(const CallArguments& arguments) {
                  arguments.operation.c_str(),
                  printable(exception.what(), kLongestException).c_str());
     return 1;
+  } catch (const TimedOut& error) {
+    throw TimedOut(at_command_line(error.what()));
   }
   return 0;
 }

@@ -26,8 +26,8 @@ std::string managed_by(const discovery::ServiceDescription& service, const std::
     if (is_interface_name(name) &&
         (part == canonical_interface_name(name) || short_interface_name(part) == name)) {
       return "'" + name + "' is a managed interface of " + entity_name_of(service) +
-             ": its CSPs run in that entity's process, which does not tell its types; `skein "
-             "describe " +
+             ": it is between that entity and its CSPs, and its types are told to nobody else; "
+             "`skein describe " +
              entity_name_of(service) + "` prints what the entity provides";
     }
   }

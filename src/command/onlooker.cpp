@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/printable.hpp"
+#include "dds/options_check.hpp"
 #include "launch/address_space.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/peer.hpp"
@@ -39,9 +40,9 @@ std::uint32_t domain_of_environment() {
   std::uint32_t domain = 0;
   const char* const end = text + std::strlen(text);
   const auto [stop, error] = std::from_chars(text, end, domain);
-  if (error == std::errc() && stop == end) return domain;
+  if (error == std::errc() && stop == end && domain <= dds::kMaxDomain) return domain;
   throw InvalidArgument(std::string(kDomainVariable) + " is '" + text +
-                        "', which is no number of a domain");
+                        "', which is no number from 0 to " + std::to_string(dds::kMaxDomain));
 }
 
 int fail(const Onlooker& onlooker, const Error& error, int code) {

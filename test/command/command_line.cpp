@@ -59,6 +59,17 @@ std::vector<std::string> examples_of(const CLI::App& command) {
   return examples;
 }
 
+/// Why the command line is wrong. Nothing of it is run.
+std::string refusal(const char* text) {
+  Line line;
+  try {
+    line.app.parse(text);
+  } catch (const CLI::ParseError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   std::istringstream stream(text);
@@ -147,15 +158,6 @@ TEST_CASE("a manual page has the sections that people look for") {
 }
 
 TEST_CASE("numbers that make no sense are refused with the option and the range") {
-  const auto refusal = [](const char* text) -> std::string {
-    Line line;
-    try {
-      line.app.parse(text);
-    } catch (const CLI::ParseError& error) {
-      return error.what();
-    }
-    return "taken";
-  };
   for (const char* wrong : {"echo pose --count 0", "echo pose --count -1", "echo pose --for 0",
                             "publish pose 1 --rate 0", "publish pose 1 --rate nan",
                             "publish pose 1 --rate inf", "top --every 0", "record --split 0",
@@ -168,6 +170,21 @@ TEST_CASE("numbers that make no sense are refused with the option and the range"
     CAPTURE(wrong);
     CHECK_THAT(refusal(wrong), Contains("is no length of time"));
   }
+}
+
+TEST_CASE("a domain, vendor or interface that cannot be is refused with those that can") {
+  for (const char* domain : {"6a", "233", "-1", "1.5", "99999999999"}) {
+    CAPTURE(domain);
+    for (const char* command : {"echo pose", "doctor", "bench latency"}) {
+      const std::string line = std::string(command) + " --domain=" + domain;
+      CHECK_THAT(refusal(line.c_str()),
+                 Contains("--domain: '" + std::string(domain) + "' is no number from 0 to 232"));
+    }
+  }
+  CHECK_THAT(refusal("services --vendor cyclone"),
+             Contains("--vendor: 'cyclone' is none of ") && Contains("cyclonedds"));
+  CHECK_THAT(refusal("services --interface eth99"),
+             Contains("--interface: this host has no interface 'eth99'") && Contains("it has lo"));
 }
 
 TEST_CASE("help says once what a length of time is, where an option takes one") {

@@ -263,7 +263,8 @@ TEST_CASE("call ends with whom it waits for, at its timeout, and when it is inte
   SECTION("there is no answer in time") {
     Command call = call_forever("300ms");
     CHECK(call.code() == 124);
-    CHECK_THAT(call.said(), Contains("did not answer 'greet' before its deadline"));
+    CHECK_THAT(call.said(), Contains("did not answer 'greet' before its deadline") &&
+                                Contains("; --within DURATION sets a longer limit"));
   }
 }
 

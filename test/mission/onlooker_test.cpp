@@ -302,7 +302,8 @@ TEST_CASE("a managed interface is told with the entity that it belongs to") {
   entity.provide<crew::Desk>(std::make_shared<Desk>(), {.subcomponents = {"crew/Worker"}});
   const Ended described = ended({"describe", "Worker", "--domain", "77"});
   CHECK(described.code == 69);
-  CHECK_THAT(described.output, Contains("'Worker' is a managed interface of hq/desk"));
+  CHECK_THAT(described.output, Contains("'Worker' is a managed interface of hq/desk: it is between "
+                                        "that entity and its CSPs"));
 }
 
 TEST_CASE("an example of an operation's arguments is taken as it stands") {

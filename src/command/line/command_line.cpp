@@ -1,10 +1,14 @@
 #include "command_line.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "command/wrapped.hpp"
+#include "core/printable.hpp"
+#include "core/suggestion.hpp"
+#include "dds/options_check.hpp"
 #include "dds/vendor_names.hpp"
 #include "help.hpp"
 #include "profile/dictionary.hpp"
@@ -95,15 +99,18 @@ std::string one_of(const std::vector<std::string>& words) { return CLI::detail::
 void add_onlooker(CLI::App& command, Onlooker& onlooker) {
   command.add_option("--vendor", onlooker.vendor, "DDS vendor by which it joins the domain")
       ->type_name(one_of(dds::networked_vendors()))
+      ->check(known_vendor())
       ->capture_default_str();
   auto* domain = command
                      .add_option("--domain", onlooker.domain,
                                  "DDS domain of the mission; default: SKEIN_DOMAIN of the "
                                  "environment, or 0")
-                     ->type_name("NUMBER");
+                     ->type_name("NUMBER")
+                     ->check(domain_number());
   auto* interface =
       command.add_option("--interface", onlooker.interface, "Network interface; default: loopback")
-          ->type_name(kInterface);
+          ->type_name(kInterface)
+          ->check(interface_of_this_host());
   command
       .add_option("--peers", onlooker.peers,
                   "Hosts to ask for peers, with commas between them; default: this one")
@@ -173,6 +180,44 @@ CLI::Validator above_zero() {
         double number = 0;
         if (!CLI::detail::lexical_cast(text, number)) return "is no number: " + text;
         return number > 0 && std::isfinite(number) ? "" : "must be more than 0";
+      },
+      "");
+}
+
+CLI::Validator known_vendor() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const auto& vendors = dds::networked_vendors();
+        if (std::ranges::count(vendors, text) > 0) return {};
+        return "'" + printable(text) + "' is none of " + CLI::detail::join(vendors, ", ") +
+               suggestion(text, vendors);
+      },
+      "");
+}
+
+CLI::Validator interface_of_this_host() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        try {
+          dds::Network network;
+          network.interfaces = {text};
+          dds::interface_addresses(network);
+          return {};
+        } catch (const Error& error) {
+          return error.what();
+        }
+      },
+      "");
+}
+
+CLI::Validator domain_number() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        std::uint32_t number = 0;
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, number);
+        if (error == std::errc() && stop == end && number <= dds::kMaxDomain) return {};
+        return "'" + text + "' is no number from 0 to " + std::to_string(dds::kMaxDomain);
       },
       "");
 }

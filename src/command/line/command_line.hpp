@@ -82,6 +82,12 @@ std::string default_duration(double seconds);
 /// For an option whose value must be a number above 0.
 CLI::Validator above_zero();
 
+/// For options whose value must be the number of a DDS domain, a vendor that reaches other
+/// processes, or a network interface that this host has, by name or address.
+CLI::Validator domain_number();
+CLI::Validator known_vendor();
+CLI::Validator interface_of_this_host();
+
 /// The options of a command that joins a domain to look at it.
 void add_onlooker(CLI::App& command, Onlooker& onlooker);
 

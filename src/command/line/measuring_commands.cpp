@@ -11,8 +11,10 @@ BenchArguments& add_measurement(CLI::App& command, int (*function)(const BenchAr
   auto& arguments = arguments_of(command, function, result);
   auto* vendor = command.add_option("--vendor", arguments.vendor, "DDS vendor of both sides")
                      ->type_name(one_of(dds::networked_vendors()))
+                     ->check(known_vendor())
                      ->capture_default_str();
   command.add_option("--domain", arguments.domain, "DDS domain")
+      ->check(domain_number())
       ->type_name("NUMBER")
       ->capture_default_str();
   auto* interface =

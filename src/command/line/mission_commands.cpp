@@ -70,7 +70,8 @@ void add_doctor(CLI::App& app, int& result) {
   command
       .add_option("--domain", arguments.domain,
                   "DDS domain; default: the profile's; without one SKEIN_DOMAIN, or 0")
-      ->type_name("NUMBER");
+      ->type_name("NUMBER")
+      ->check(domain_number());
   command
       .add_option("--interface", arguments.interface,
                   "Network interface; default: the profile's, or loopback")
