@@ -32,7 +32,7 @@ void check_attribute(const Attribute& attribute, const Dictionary& dictionary,
   if (attribute.name.empty() || attribute.value.empty()) return;  // a finding of the reader
   if (const auto* entry = dictionary.find(EntryKind::Attribute, attribute.name)) {
     check_value(*entry, attribute.value, attribute.where, findings);
-  } else {
+  } else if (dictionary.is_read()) {
     findings.error(attribute.where, "the attribute " + in_quotes(attribute.name) + " is unknown",
                    dictionary.suggestion(EntryKind::Attribute, attribute.name));
   }
@@ -40,6 +40,7 @@ void check_attribute(const Attribute& attribute, const Dictionary& dictionary,
 
 void refuse_unknown_parameter(const std::string& name, const SourcePosition& where,
                               const Dictionary& dictionary, FindingList& findings) {
+  if (!dictionary.is_read()) return;
   findings.error(where, "the parameter " + in_quotes(name) + " is unknown",
                  dictionary.suggestion(EntryKind::Parameter, name));
 }

@@ -4,9 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "dds/vendor_names.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -130,11 +132,53 @@ std::string with_unit(double number, const std::string& unit) {
   return number_text(number) + (unit.empty() ? "" : " " + unit);
 }
 
+/// The names of units: those of a quantity, or all.
+std::string unit_list(std::optional<Unit::Quantity> quantity) {
+  std::vector<std::string> names;
+  for (const Unit& unit : kUnits)
+    if (!quantity || unit.quantity == *quantity) names.emplace_back(unit.name);
+  return dds::alternatives(names);
+}
+
+/// What to write instead of a number with a unit that does not fit.
+std::string remedy_for_unit(const DictionaryEntry& entry) {
+  if (entry.unit.empty()) return ": the dictionary gives it no unit; write the number alone";
+  if (entry.type == ValueType::Integer) return ": write the number alone, or in " + entry.unit;
+  const auto* unit = std::ranges::find(kUnits, std::string_view(entry.unit), &Unit::name);
+  if (unit != kUnits.end()) return ": write a number in " + unit_list(unit->quantity);
+  return ": nothing is converted into " + entry.unit + ", the dictionary's unit, which is not " +
+         unit_list(std::nullopt);
+}
+
+/// What to write instead; empty where that is not to be seen.
+std::string remedy_for_number(const DictionaryEntry& entry, std::string_view text) {
+  if (entry.type != ValueType::Real && entry.type != ValueType::Integer) return {};
+  std::string with_point(text);
+  const auto comma = with_point.find(',');
+  if (entry.type == ValueType::Real && comma != std::string::npos) {
+    with_point[comma] = '.';
+    if (split(with_point).number) return ": write " + in_quotes(with_point) + ", with a point";
+  }
+  const auto [number, unit] = split(text);
+  return number && !unit.empty() ? remedy_for_unit(entry) : "";
+}
+
 [[noreturn]] void refuse_type(const DictionaryEntry& entry, std::string_view text) {
   std::string problem = in_quotes(entry.name) + " is " + in_quotes(text) + ", which is no " +
                         std::string(to_string(entry.type));
   if (!entry.unit.empty()) problem += " in " + entry.unit;
-  throw InvalidArgument(problem);
+  throw InvalidArgument(problem + remedy_for_number(entry, text));
+}
+
+/// An integer that no number of this program can hold.
+[[noreturn]] void refuse_size(const DictionaryEntry& entry, std::string_view text) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  const bool low = text.starts_with('-');
+  const auto& limit = low ? entry.minimum : entry.maximum;
+  throw InvalidArgument(in_quotes(entry.name) + " is " + shortened(text) +
+                        (low ? ", less than " : ", more than ") +
+                        (limit ? with_unit(*limit, entry.unit)
+                               : std::to_string(low ? Limits::min() : Limits::max())));
 }
 
 void demand_range(const DictionaryEntry& entry, double number) {
@@ -165,10 +209,15 @@ double parse_real(const DictionaryEntry& entry, std::string_view text) {
 }
 
 std::int64_t parse_integer(const DictionaryEntry& entry, std::string_view text) {
-  const auto number = maybe_number<std::int64_t>(without_unit(entry, text));
-  if (!number) refuse_type(entry, text);
-  demand_range(entry, static_cast<double>(*number));
-  return *number;
+  const std::string_view digits = without_unit(entry, text);
+  std::int64_t number = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, number);
+  if (digits.empty() || stop != end || error == std::errc::invalid_argument)
+    refuse_type(entry, text);
+  if (error != std::errc()) refuse_size(entry, text);
+  demand_range(entry, static_cast<double>(number));
+  return number;
 }
 
 std::chrono::nanoseconds parse_time(const DictionaryEntry& entry, std::string_view text) {
@@ -247,12 +296,25 @@ Dictionary::Dictionary(std::vector<DictionaryEntry> entries) : entries_(std::mov
   }
 }
 
+Dictionary Dictionary::unread() {
+  Dictionary dictionary;
+  dictionary.read_ = false;
+  return dictionary;
+}
+
 const DictionaryEntry* Dictionary::find(EntryKind kind, std::string_view name) const {
   const auto found = index_.find(std::pair(kind, std::string(name)));
   return found == index_.end() ? nullptr : &entries_[found->second];
 }
 
 std::string Dictionary::suggestion(EntryKind kind, std::string_view unknown_name) const {
+  const bool attribute = kind == EntryKind::Attribute;
+  const auto* other = find(attribute ? EntryKind::Parameter : EntryKind::Attribute, unknown_name);
+  if (other != nullptr) {
+    return "the dictionary has it as " + std::string(attribute ? "a parameter" : "an attribute") +
+           " (" + to_text(other->where) + "); define it as <" +
+           (attribute ? "attribute" : "parameter") + "> there";
+  }
   std::vector<std::string_view> names;
   for (const auto& entry : entries_) {
     if (entry.kind == kind) names.push_back(entry.name);

@@ -64,15 +64,21 @@ class Dictionary {
   /// Of two entries of the same kind and name, the first stays.
   explicit Dictionary(std::vector<DictionaryEntry> entries);
 
+  /// For a file that could not be read, which is told: nothing is known of any name.
+  static Dictionary unread();
+  bool is_read() const noexcept { return read_; }
+
   /// The entry, or null; the pointer lives as long as the dictionary.
   const DictionaryEntry* find(EntryKind kind, std::string_view name) const;
-  /// Remedy for an unknown name: the nearest known one, or where to add it.
+  /// Remedy for an unknown name: that it is one of the other kind, the nearest known one, or where
+  /// to add it.
   std::string suggestion(EntryKind kind, std::string_view unknown_name) const;
 
   const std::vector<DictionaryEntry>& entries() const noexcept { return entries_; }
   bool empty() const noexcept { return entries_.empty(); }
 
  private:
+  bool read_ = true;
   std::vector<DictionaryEntry> entries_;
   std::map<std::pair<EntryKind, std::string>, std::size_t, std::less<>> index_;
 };

@@ -33,15 +33,20 @@ std::optional<double> read_limit(const XmlElement& element, const char* name) {
   }
 }
 
-void read_type(const XmlElement& element, DictionaryEntry& entry) {
+/// False, with a finding, where it has none.
+bool read_type(const XmlElement& element, DictionaryEntry& entry) {
   const auto word = element.attribute("type");
-  if (word.value.empty()) return;
-  if (const auto type = maybe_value_type(word.value)) {
+  if (word.value.empty()) return false;
+  const auto type = maybe_value_type(word.value);
+  if (type) {
     entry.type = *type;
-  } else {
-    element.findings().error(word.where, in_quotes(word.value) + " is no type",
-                             remedy_for(word.value, kTypeWords));
+    return true;
   }
+  const std::string remedy = remedy_for(word.value, kTypeWords);
+  const bool of_cpp = word.value == "double" || word.value == "float";
+  element.findings().error(word.where, in_quotes(word.value) + " is no type",
+                           of_cpp ? "write \"real\"" : remedy);
+  return false;
 }
 
 void read_unit_and_range(const XmlElement& element, DictionaryEntry& entry) {
@@ -92,9 +97,10 @@ DictionaryEntry read_entry(const XmlElement& element) {
   entry.name = element.attribute("name").value;
   entry.where = element.where();
   entry.documentation = element.text();
-  read_type(element, entry);
-  read_unit_and_range(element, entry);
-  read_interface(element, entry);
+  if (read_type(element, entry)) {
+    read_unit_and_range(element, entry);
+    read_interface(element, entry);
+  }
   if (entry.documentation.empty()) {
     element.findings().error(element.where(), in_quotes(entry.name) + " is not documented",
                              "say in the element's text what it means");

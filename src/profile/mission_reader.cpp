@@ -74,7 +74,7 @@ class MissionReader {
       findings_.error(named ? named->where : root.where(), "the dictionary cannot be read",
                       "name its file, relative to the profile: dictionary=\"...\"");
       findings_.add_all(error.findings());
-      return {};
+      return Dictionary::unread();
     }
   }
 

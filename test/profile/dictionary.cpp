@@ -76,8 +76,12 @@ TEST_CASE("A number may name its unit, or another of the same quantity") {
   CHECK(real("m", "5") == 5);
   CHECK(real("m/s2", "5 m/s2") == 5);
   CHECK(std::get<std::int64_t>(parse_value(entry_of(ValueType::Integer, "px"), "5 px")) == 5);
-  CHECK_THROWS_WITH(real("m", "5 s"), "\"x\" is \"5 s\", which is no real in m");
-  CHECK_THROWS_WITH(real("", "5 m"), "\"x\" is \"5 m\", which is no real");
+  CHECK_THROWS_WITH(
+      real("m", "5 s"),
+      "\"x\" is \"5 s\", which is no real in m: write a number in mm, cm, m, km or ft");
+  CHECK_THROWS_WITH(real("", "5 m"),
+                    "\"x\" is \"5 m\", which is no real: the dictionary gives it no unit; write "
+                    "the number alone");
   CHECK_THROWS_WITH(parse_value(entry_of(ValueType::Real, "m", 0, 1000), "26.5 km"),
                     "\"x\" is 26500 m, more than 1000 m");
   CHECK_THROWS_AS(parse_value(entry_of(ValueType::Integer, "m"), "5 km"), skein::InvalidArgument);
@@ -124,6 +128,48 @@ TEST_CASE("A value of another type is refused") {
   }));
   CAPTURE(text);
   CHECK_THROWS_AS(parse_value(entry_of(type, "ms"), text), skein::InvalidArgument);
+}
+
+TEST_CASE("What is refused is told with what to write instead") {
+  const auto refusal = [](const DictionaryEntry& entry, const std::string& text) -> std::string {
+    try {
+      parse_value(entry, text);
+    } catch (const skein::InvalidArgument& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  CHECK(refusal(entry_of(ValueType::Real), "0,6") ==
+        "\"x\" is \"0,6\", which is no real: write \"0.6\", with a point");
+  CHECK(refusal(entry_of(ValueType::Real, "m"), "26,5 km") ==
+        "\"x\" is \"26,5 km\", which is no real in m: write \"26.5 km\", with a point");
+  CHECK(refusal(entry_of(ValueType::Real, "m/s"), "18 mph") ==
+        "\"x\" is \"18 mph\", which is no real in m/s: write a number in m/s, km/h or kn");
+  CHECK(refusal(entry_of(ValueType::Real, "mps"), "18 km/h") ==
+        "\"x\" is \"18 km/h\", which is no real in mps: nothing is converted into mps, the "
+        "dictionary's unit, which is not mm, cm, m, km, ft, m/s, km/h, kn, deg, rad, g, kg, t, Hz, "
+        "kHz, MHz or GHz");
+  CHECK(refusal(entry_of(ValueType::Integer, "m"), "5 km") ==
+        "\"x\" is \"5 km\", which is no integer in m: write the number alone, or in m");
+  CHECK(refusal(entry_of(ValueType::Integer, "", 0, 50), "99999999999999999999") ==
+        "\"x\" is 99999999999999999999, more than 50");
+  CHECK(refusal(entry_of(ValueType::Integer), "-99999999999999999999") ==
+        "\"x\" is -99999999999999999999, less than -9223372036854775808");
+}
+
+TEST_CASE("A name that is of the other kind is told as such") {
+  const auto dictionary = parse_dictionary(
+      R"(<dictionary><attribute name="Speed" type="real">How fast.</attribute></dictionary>)",
+      "d.xml");
+  CHECK(dictionary.suggestion(EntryKind::Parameter, "Speed") ==
+        "the dictionary has it as an attribute (d.xml:1:13); define it as <parameter> there");
+}
+
+TEST_CASE("Of a type that is none, nothing else is said") {
+  const std::string findings =
+      findings_of(R"(<parameter name="Speed" type="double" unit="m/s" min="1">Fast.</parameter>)");
+  CHECK_THAT(findings, Catch::Contains("\"double\" is no type; write \"real\""));
+  CHECK_THAT(findings, !Catch::Contains("has a unit"));
 }
 
 TEST_CASE("A range holds its ends, and durations are compared in the unit of their entry") {
