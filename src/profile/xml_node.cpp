@@ -5,6 +5,7 @@
 
 #include "text_positions.hpp"
 #include "words.hpp"
+#include "xml_markup.hpp"
 #include "xml_text.hpp"
 
 namespace skein::profile {
@@ -37,6 +38,7 @@ class Document {
     const auto result = tree_.load_buffer_inplace(buffer_.data(), buffer_.size(),
                                                   pugi::parse_default, pugi::encoding_utf8);
     if (!result) {
+      if (auto mistake = find_markup_error(original_, file_)) throw DescriptionError({*mistake});
       throw DescriptionError({Finding{Severity::Error,
                                       position_of(buffer_.data() + result.offset),
                                       std::string("malformed XML: ") + result.description(),

@@ -256,12 +256,14 @@ system="${system}"/>)")),
       {"a tag is not closed",
        "<mission name=\"city\">\n  <peer name=\"archive\" component=\"parts/archive.xml\">\n"
        "</mission>",
-       {"city.xml:3:3: error: malformed XML: Start-end tags mismatch"},
+       {"city.xml:2:3: error: malformed XML: <peer> is not closed: </mission> comes first, at 3:1; "
+        "write </peer> behind what it holds, or end the tag with />"},
        {},
        ""},
       {"a quote is missing",
        "<mission name=\"city>\n<peer name=\"archive\"/>\n</mission>",
-       {"city.xml:2:13: error: malformed XML: Error parsing element attribute"},
+       {"city.xml:1:10: error: malformed XML: the value of \"name\" has no closing quote; end it "
+        "with the quote that it begins with"},
        {},
        ""},
       {"an ampersand stands alone",

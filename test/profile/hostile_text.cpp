@@ -108,6 +108,30 @@ TEST_CASE("A truncated description is refused wherever it ends") {
   CHECK(refusal_of(whole) == "");
 }
 
+TEST_CASE("A mistake in the markup is told where it was made") {
+  const auto [text, finding] = GENERATE(table<std::string, std::string>({
+      {"<a>\n<b>\n</a>",
+       "h.xml:2:1: error: malformed XML: <b> is not closed: </a> comes first, at 3:1"},
+      {"<a>\n<b/>\n</c></a>",
+       "h.xml:3:1: error: malformed XML: </c> closes nothing: what is open is <a>, at 1:1; write "
+       "</a>"},
+      {"<a/></a>", "h.xml:1:5: error: malformed XML: </a> closes nothing; remove it"},
+      {"<a>\n<b x=\"1>\n<c y=\"2\"/></b></a>",
+       "h.xml:2:4: error: malformed XML: the value of \"x\" has no closing quote"},
+      {"<a x=\"1 y=\"2\"></a>",
+       "h.xml:1:4: error: malformed XML: the value of \"x\" has no closing quote"},
+      {"<a x=\"1\"y=\"2\"></a>",
+       "h.xml:1:9: error: malformed XML: a blank is missing behind the value of \"x\""},
+      {"<a x=1></a>",
+       "h.xml:1:4: error: malformed XML: the value of \"x\" has no quotes; write x=\"...\""},
+      {"<a\n x></a>", "h.xml:2:2: error: malformed XML: \"x\" has no value; write x=\"...\""},
+      {"<a><!-- <b> --><![CDATA[</c>]]><b>\n</a>",
+       "h.xml:1:32: error: malformed XML: <b> is not closed"},
+  }));
+  CAPTURE(text);
+  CHECK_THAT(refusal_of(text), Catch::StartsWith(finding));
+}
+
 TEST_CASE("More than one element at the top is refused") {
   CHECK_THAT(refusal_of(kPlain + "\n" + kPlain), Catch::StartsWith("h.xml:2:1: error: a second"));
 }
