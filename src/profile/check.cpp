@@ -4,6 +4,7 @@
 
 #include "check_component.hpp"
 #include "composition.hpp"
+#include "core/suggestion.hpp"
 #include "dds/vendor_names.hpp"
 #include "finding_list.hpp"
 #include "repeated.hpp"
@@ -212,8 +213,30 @@ class Checker {
                        [&](const ImplementedInterface& item) { return item.type == interface; });
   }
 
+  /// Whether a subcomponent that no CSP implements has almost the name of an interface that one
+  /// does: a finding of its own, in place of one for each CSP.
+  bool misspelt_subcomponents(const PeerProfile& peer) {
+    std::vector<std::string> offered;
+    for (const auto& csp : peer.csps) {
+      if (!csp.component) continue;
+      for (const auto& item : csp.component->interfaces) offered.push_back(item.type);
+    }
+    bool any = false;
+    for (const auto& item : peer.component->subcomponents) {
+      const std::string near = suggestion(item.type, offered);
+      if (near.empty() || std::ranges::count(offered, item.type) > 0) continue;
+      any = true;
+      findings_.error(item.where,
+                      in_quotes(peer.component->name) + " has the subcomponent " + item.type +
+                          ", which no CSP of " + in_quotes(peer.name) + " implements",
+                      remedy_for(item.type, {offered.begin(), offered.end()}));
+    }
+    return any;
+  }
+
   void check_subcomponents(const PeerProfile& peer) {
     const auto& wanted = peer.component->subcomponents;
+    if (misspelt_subcomponents(peer)) return;
     const bool all_read = std::all_of(peer.csps.begin(), peer.csps.end(),
                                       [](const CspProfile& csp) { return bool(csp.component); });
     for (const auto& item : wanted) {

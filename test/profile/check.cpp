@@ -74,12 +74,28 @@ TEST_CASE("A CSP may depend on what another CSP of the same peer implements") {
 
 TEST_CASE("A subcomponent without a CSP and a CSP without a subcomponent are both named") {
   ProfileFolder folder;
+  folder.write("far.xml", component("F", "Elsewhere/Fetcher", {}));
   const auto text = folder.check(
-      kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="f.xml"/></peer>)");
+      kF + "\n" + R"(<peer name="n" component="n.xml"><csp component="far.xml"/></peer>)");
   CHECK_THAT(text, Catch::Contains("m.xml:3:1: error: \"n\" has no CSP for its subcomponent M/IP "
                                    "(n.xml:6:18)"));
   CHECK_THAT(text, Catch::Contains("m.xml:3:34: error: the CSP \"F\" implements no subcomponent of "
                                    "\"n\"; it must implement one of them"));
+}
+
+TEST_CASE(
+    "A subcomponent whose name is almost what CSPs implement is one finding, not one for each") {
+  ProfileFolder folder;
+  folder.write("q.xml", component("Q", "Harbor/IPlan", {}));
+  folder.write("r.xml", component("R", "Harbor/IPlan", {}));
+  folder.write("pilot.xml",
+               "<component name=\"Pilot\"><interfaces><implements>Harbor/IPilot"
+               "</implements></interfaces><subcomponents>\n<subcomponent>"
+               "IDL:Harbour/IPlan</subcomponent></subcomponents></component>");
+  CHECK(folder.check(R"(<peer name="p" component="pilot.xml"><csp component="q.xml"/>
+<csp component="r.xml"/></peer>)") ==
+        "pilot.xml:2:1: error: \"Pilot\" has the subcomponent Harbour/IPlan, which no CSP of \"p\" "
+        "implements; did you mean 'Harbor/IPlan'?\n");
 }
 
 TEST_CASE("Names that are given twice are named with the place of the first") {
