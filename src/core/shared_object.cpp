@@ -1,7 +1,9 @@
 #include "core/shared_object.hpp"
 
 #include <dlfcn.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -51,6 +53,23 @@ std::string open_to_all(const Path& file) {
   return {};
 }
 
+/// What was built in place of a shared object that is not there, or no such object; empty for
+/// nothing.
+Path static_library(const Path& wanted) {
+  std::vector<Path> places;
+  if (wanted.has_parent_path()) {
+    places.push_back(wanted.parent_path());
+  } else {
+    places = module_directories();
+  }
+  for (const Path& place : places) {
+    const Path archive = place / wanted.filename().replace_extension(".a");
+    std::error_code ignored;
+    if (std::filesystem::exists(archive, ignored)) return archive;
+  }
+  return {};
+}
+
 }  // namespace
 
 SharedObject::SharedObject(const std::string& name, const std::string& remedy, Maker maker)
@@ -77,6 +96,15 @@ SharedObject::SharedObject(const std::string& name, const std::string& remedy, M
   if (handle_) return;
   const char* reason = dlerror();
   const bool found = file_.find('/') != std::string::npos;
+  const Path archive = static_library(file_);
+  if (maker == Maker::User && !archive.empty()) {
+    throw InvalidArgument(archive.string() +
+                          " is a static library; make the plugin a module: add_library(NAME "
+                          "MODULE ...)");
+  }
+  if (::access(file_.c_str(), R_OK) != 0 && errno == EACCES) {
+    throw Unavailable(file_ + " may not be read; check its rights, and those of its folders");
+  }
   throw Unavailable(found ? file_ + " cannot be loaded: " + (reason ? reason : "no reason given") +
                                 "; " + remedy
                           : "no " + file_ + " in " + looked_in + "nor where the loader looks; " +
@@ -94,8 +122,12 @@ void* SharedObject::find(const char* symbol, const std::string& function) const 
     throw InvalidArgument(file_ + " exports " + name +
                           " as C++; write `extern \"C\"` before its definition");
   }
+  const std::string line = name.ends_with("_abi")
+                               ? "; a plugin needs the line extern \"C\" std::uint32_t " + name +
+                                     "() { return SKEIN_ABI; }"
+                               : "";
   throw InvalidArgument(file_ + " exports no " + symbol +
-                        ": it was not made for Skein, or for another version");
+                        ": it was not made for Skein, or for another version" + line);
 }
 
 void SharedObject::check_abi(const char* symbol) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <set>
 
@@ -19,6 +20,15 @@ template <class Value>
 const Value* find_in(const std::map<std::string, Value>& map, const std::string& name) {
   const auto found = map.find(name);
   return found == map.end() ? nullptr : &found->second;
+}
+
+/// What was registered before the plugin that this thread is loading; null where it loads none.
+thread_local const std::vector<std::string>* names_before = nullptr;
+
+std::string remedy_for_duplicate(const std::string& name) {
+  return names_before && std::ranges::count(*names_before, name) == 0
+             ? "; this plugin registers it twice: keep one, or give it another name"
+             : "; load only one of the plugins that hold it";
 }
 
 }  // namespace
@@ -51,8 +61,8 @@ void ComponentRegistry::add_strategy(std::shared_ptr<const SelectionStrategy> st
   }
   for (const auto& known : strategies_) {
     if (known->name() != name) continue;
-    throw InvalidArgument("two selection strategies '" + name +
-                          "' are registered; load only one of the plugins that hold it");
+    throw InvalidArgument("two selection strategies '" + name + "' are registered" +
+                          remedy_for_duplicate(name));
   }
   strategies_.push_back(std::move(strategy));
 }
@@ -97,6 +107,11 @@ void ComponentRegistry::load_plugin(const std::string& name) {
   plugin.check_abi("skein_plugin_abi");
   const auto register_components =
       plugin.function<void(ComponentRegistry&)>("skein_register_components");
+  std::vector<std::string> before = names();
+  for (const auto& strategy : strategies_) before.push_back(strategy->name());
+  names_before = &before;
+  const auto forget = [](const auto*) { names_before = nullptr; };
+  const std::unique_ptr<const std::vector<std::string>, decltype(forget)> loading(&before, forget);
   run_user_code(plugin.file() + ", while it registered its components: ",
                 [&] { register_components(*this); });
 }
@@ -104,8 +119,8 @@ void ComponentRegistry::load_plugin(const std::string& name) {
 void ComponentRegistry::refuse_duplicate(const std::string& component) const {
   if (find_body(component) || find_csp(component) || find_mission(component) ||
       find_activity(component)) {
-    throw InvalidArgument("two implementations of component '" + component +
-                          "' are registered; load only one of the plugins that hold it");
+    throw InvalidArgument("two implementations of component '" + component + "' are registered" +
+                          remedy_for_duplicate(component));
   }
 }
 

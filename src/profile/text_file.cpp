@@ -51,9 +51,11 @@ FileDescriptor open_file(const std::filesystem::path& file) {
 std::string read_text_file(const std::filesystem::path& file) {
   const FileDescriptor input = open_file(file);
   if (!input) {
-    const bool missing = errno == ENOENT;
-    const std::string problem = "cannot be opened: " + reason();
-    refuse(file, problem, missing ? remedy_for_missing(file) : "check the path");
+    const int error = errno;
+    refuse(file, "cannot be opened: " + reason(),
+           error == ENOENT   ? remedy_for_missing(file)
+           : error == EACCES ? "check its rights, and those of its folders"
+                             : "check the path");
   }
   struct stat status {};
   if (::fstat(input.get(), &status) != 0) refuse(file, "cannot be examined: " + reason());

@@ -1,4 +1,5 @@
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -27,6 +28,19 @@ TEST_CASE("A missing file, a directory and a special file are told apart") {
   CHECK_THAT(refusal_of(folder.path()), Catch::Contains("is a directory"));
   CHECK_THAT(refusal_of("/dev/zero"), Catch::Contains("is no regular file"));
   CHECK_THAT(refusal_of(""), Catch::Contains("cannot be opened"));
+}
+
+TEST_CASE("Of a file that may not be read, the rights are to be checked") {
+  TemporaryFolder folder;
+  const auto file = folder.write("secret.xml", "<mission/>");
+  REQUIRE(::chmod(file.c_str(), 0) == 0);
+  const uid_t self = ::geteuid();
+  constexpr uid_t kNobody = 65534;
+  if (self == 0) REQUIRE(::seteuid(kNobody) == 0);  // root may read everything
+  const std::string refusal = refusal_of(file);
+  if (self == 0) REQUIRE(::seteuid(self) == 0);
+  CHECK_THAT(refusal, Catch::Contains("Permission denied; check its rights, and those of its "
+                                      "folders"));
 }
 
 TEST_CASE("A named pipe that nobody writes does not hang the reader") {
