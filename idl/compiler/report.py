@@ -46,6 +46,28 @@ class Report:
         return True
 
 
+# Types of other languages that people write, and what IDL has for them.
+_FOREIGN = {
+    "int": "'long' or 'int32'",
+    "uint": "'unsigned long' or 'uint32'",
+    "unsigned": "'unsigned long' or 'uint32'",
+    "bool": "'boolean'",
+    "byte": "'octet'",
+    "float32": "'float'",
+    "float64": "'double'",
+    "vector": "'sequence<TYPE>'",
+    "list": "'sequence<TYPE>'",
+    "wchar_t": "'wchar'",
+    "u16string": "'wstring'",
+}
+_FOREIGN |= {f"{sign}int{bits}_t": f"'{sign}int{bits}'" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+
+
+def native(name):
+    """What to write in place of a type of another language; empty for other names."""
+    return _FOREIGN.get(str(name), "")
+
+
 def suggestion(name, known):
     near = difflib.get_close_matches(name, known, 1)
     return f" (did you mean '{near[0]}'?)" if near else ""

@@ -169,7 +169,7 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_finding("interface I; interface J : I {};", "the base of J must be an interface that is defined before it")
         self.assert_finding("struct S { long x; }; interface I { void f() raises (S); };", "'S' is no exception")
         self.assert_finding("struct S { long octet; };", "'octet' is a keyword of IDL and no name; write '_octet', which is the name 'octet'")
-        self.assert_finding("struct S { int32_t x; };", "there is no 'int32_t' here (did you mean 'int32'?)")
+        self.assert_finding("struct S { int32_t x; };", "there is no 'int32_t' here; write 'int32'")
         self.assert_finding("struct S { Sequence<long> x; };",
                             "'<' stands behind 'Sequence' (did you mean 'sequence'?) where a declaration or a type is expected")  # fmt: skip
 
@@ -250,7 +250,23 @@ class WhatMakesNoSense(CompilerTest):
                             "x.idl:1: error: the attribute 'v' cannot be an array; give the array a name by typedef, and use that")  # fmt: skip
 
     def test_words_of_other_languages(self):
-        self.assert_refused("struct S { unsigned int x; };\n", "x.idl:1: error: IDL has no 'int'; write 'long'")
+        self.assert_refused("struct S { unsigned int x; };\n", "x.idl:1: error: IDL has no 'int'; write 'long' or 'int32'")
+        for member, finding in (
+            ("std::string x", "'string' is a keyword of IDL and no name; write 'string' without 'std::'"),
+            ("void x", "'void' is a keyword of IDL and no type of a member or a parameter: an operation alone may return nothing; write the type"),
+            ("long void", "'void' is a keyword of IDL and no name; write '_void', which is the name 'void'"),
+            ("int x", "there is no 'int' here; write 'long' or 'int32'"),
+            ("bool x", "there is no 'bool' here; write 'boolean'"),
+            ("float64 x", "there is no 'float64' here; write 'double'"),
+            ("vector<double> x", "IDL has no 'vector<'; write 'sequence<double>'"),
+            ("std::vector<long> x", "IDL has no 'vector<'; write 'sequence<long>'"),
+            ("std::optional<double> x", "IDL has no 'optional<'; write '@optional double'"),
+            ("std::array<double, 3> x", "IDL has no 'array<'; write 'double NAME[3]'"),
+        ):
+            with self.subTest(member):
+                self.assert_finding(f"struct S {{ {member}; }};", finding)
+        self.assert_finding("float64 x\nfloat64 y\n",
+                            "IDL has no 'float64'; write 'double'; this file has no struct: IDL declares members as struct NAME { double x; };")
         self.assert_refused("const char A = 'abc';\n", "x.idl:1: error: a character in quotes is one character; text stands in double quotes")
         self.assert_refused('const string A = "abc;\n', "x.idl:1: error: this text does not end on its line; add the '\"' (texts that follow each "
                             "other are joined)")  # fmt: skip

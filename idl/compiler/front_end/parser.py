@@ -7,7 +7,7 @@ import sys
 
 import lark
 
-from report import suggestion
+from report import native, suggestion
 
 _GRAMMAR = os.path.join(os.path.dirname(os.path.abspath(__file__)), "grammar.lark")
 _MOST_ERRORS = 20
@@ -16,8 +16,6 @@ _KEYWORDS = frozenset(
     """any boolean case char const default double enum FALSE float long module native octet sequence short string struct switch TRUE typedef
     union unsigned void wchar wstring""".split()
 )
-# Words of other languages that people write.
-_MISTAKEN = {"int": "long", "bool": "boolean", "vector": "sequence", "list": "sequence", "uint32_t": "uint32", "int32_t": "int32"}
 _TEMPLATES = ["sequence", "string", "wstring", "map", "bitfield"]
 _NAMES = {"IDENTIFIER": "a name", "INTEGER": "a number", "STRING": "text", "SEMICOLON": "';'", "LBRACE": "'{'", "RBRACE": "'}'",
           "LPAR": "'('", "RPAR": "')'", "LESSTHAN": "'<'", "MORETHAN": "'>'", "COMMA": "','", "COLON": "':'", "EQUAL": "'='",
@@ -48,8 +46,17 @@ def _check_names(tree, source, report):
     for around in tree.iter_subtrees():
         for token in around.children if around.data != "argument" else ():
             if getattr(token, "type", "") == "IDENTIFIER" and token in _KEYWORDS:
-                reason = f"'{token}' is a keyword of IDL and no name; write '_{token}', which is the name '{token}'"
-                report.error(source.place(token.start_pos), reason)
+                report.error(source.place(token.start_pos), _misused(token, around))
+
+
+def _misused(keyword, around):
+    """Why a keyword cannot stand there."""
+    words = [str(child) for child in around.children]
+    if around.data in ("relative_name", "absolute_name") and words[0] == "std":
+        return f"'{keyword}' is a keyword of IDL and no name; write '{keyword}' without 'std::'"
+    if keyword == "void" and around.data in ("relative_name", "absolute_name"):
+        return "'void' is a keyword of IDL and no type of a member or a parameter: an operation alone may return nothing; write the type"
+    return f"'{keyword}' is a keyword of IDL and no name; write '_{keyword}', which is the name '{keyword}'"
 
 
 def _offset(error, text):
@@ -72,10 +79,13 @@ def _reason(error, source, text, offset):
         return f"the character '{text[offset]}' has no meaning here"
     if error.token.type == "$END" and (opened := _opening(text, len(text))) < len(text):
         return f"the file ends, but the '{{' of line {source.place(opened).line} is open; add the '}};'"
-    if error.token in _MISTAKEN:
-        return f"IDL has no '{error.token}'; write '{_MISTAKEN[error.token]}'"
+    if own := native(error.token):
+        members = "; this file has no struct: IDL declares members as struct NAME { double x; };" if "{" not in text else ""
+        return f"IDL has no '{error.token}'; write {own}{members}"
     found = "the file ends" if error.token.type == "$END" else f"'{error.token}' stands"
     before = re.search(r"(\w+)\s*$", text[:offset])
+    if error.token == "<" and before and (own := _template(before[1], text[offset:])):
+        return f"IDL has no '{before[1]}<'; write {own}"
     if error.token == "<" and before:
         found += f" behind '{before[1]}'{suggestion(before[1], _TEMPLATES)}"
     accepted = set(error.accepts or error.expected) - {"ANNOTATION", "AT_ANNOTATION"}
@@ -83,6 +93,15 @@ def _reason(error, source, text, offset):
     if expected and len(expected) == len(accepted):
         return f"{found} where {' or '.join(expected)} is expected"
     return f"{found} where a declaration or a type is expected" if "IDENTIFIER" in accepted else f"{found} where it cannot"
+
+
+def _template(name, text):
+    """What to write in place of a template of C++ whose '<' begins `text`; empty for other names."""
+    inner = (re.match(r"<\s*([\w:, ]*?)\s*>", text) or ["", "TYPE"])[1]
+    element, _, size = inner.partition(",")
+    templates = {"vector": f"'sequence<{inner}>'", "list": f"'sequence<{inner}>'", "optional": f"'@optional {inner}'",
+                 "array": f"'{element} NAME[{size.strip() or 'SIZE'}]'", "shared_ptr": f"'@external {inner}'"}  # fmt: skip
+    return templates.get(name, "")
 
 
 def _declaration(text, offset):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from report import suggestion
+from report import native, suggestion
 
 
 def plain(name):
@@ -88,7 +88,7 @@ class Scope:
             scope = scope.outer
         found = scope.own(parts[0])
         if found is None:
-            return None, f"there is no '{parts[0]}' here{suggestion(parts[0], self._known() + _TYPES)}"
+            return None, self._unknown(parts)
         if len(several := scope._inherited(parts[0])) > 1:
             places = " and ".join(str(symbol.place) for symbol in several)
             return None, f"'{parts[0]}' is inherited from several bases, see {places}; write which, as in Base::{parts[0]}"
@@ -103,6 +103,12 @@ class Scope:
                 return None, f"there is no '{part}' in {outer}{suggestion(part, found.scope.names)}"
             found = inner
         return found, ""
+
+    def _unknown(self, parts):
+        name = "::".join(parts)
+        if own := native(parts[0] if len(parts) == 1 else parts[-1] if parts[0] == "std" else ""):
+            return f"there is no '{name}' here; write {own}"
+        return f"there is no '{parts[0]}' here{suggestion(parts[0], self._known() + _TYPES)}"
 
     def _known(self):
         scope, known = self, []
