@@ -77,6 +77,14 @@ class BuildTest(unittest.TestCase):
             stream.write("# changed\n")
         self.assertIn("IDL main.idl", self.generate())
 
+    def test_a_second_call_for_one_target_is_told_what_to_write(self):
+        self.write("CMakeLists.txt", PROJECT.format(idl=f"{ROOT}/idl") + "skein_add_idl(TARGET types FILES idl/main.idl)\n")
+        done = subprocess.run([CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)  # fmt: skip
+        said = " ".join(done.stdout.split())
+        self.assertNotEqual(done.returncode, 0, said)
+        self.assertIn("the target 'types' has its IDL from an earlier call; name all of its files in one call, behind FILES", said)
+
     def test_a_refused_file_stops_the_build_with_its_place(self):
         self.configure(f"{ROOT}/idl")
         self.write("idl/main.idl", "struct S {\n  any x;\n};\n")
