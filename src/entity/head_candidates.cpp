@@ -136,7 +136,8 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
   }
   auto query = parts.broker.query(task);
   query.client = &interface;
-  throw NoCandidate(parts.broker.explain(query));
+  throw NoCandidate(parts.broker.explain(query) + "; give " + parts.entity +
+                    " a CSP for it, by provide_csp() or by <csp> in the mission profile");
 }
 
 History::Decisions Head::State::count_request(const InterfaceInfo& interface) {

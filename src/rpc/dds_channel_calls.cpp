@@ -32,7 +32,8 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
   std::unique_lock lock(mutex);
   if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
-    throw Unavailable("no connection to " + options.peer + ": disconnected");
+    throw Unavailable("no connection to " + options.peer +
+                      ": it was disconnected, or the entity that had connected has ended");
   if (entries.size() >= options.calls_in_flight) {
     throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
                      " already wait for their answers; the call was not sent");

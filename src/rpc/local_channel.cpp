@@ -62,6 +62,11 @@ struct QueuedCall final : Invocation {
 
 namespace {
 
+[[noreturn]] void refuse_closed(const std::string& peer) {
+  throw Unavailable("no connection to " + peer +
+                    ": it was disconnected, or the entity that had connected has ended");
+}
+
 std::exception_ptr too_late(const std::string& peer, const OperationInfo& operation) {
   return std::make_exception_ptr(
       TimedOut(peer + " did not answer " + quoted(operation) + " before its deadline" + kMoreTime));
@@ -121,8 +126,8 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock
 std::shared_ptr<Service> LocalChannel::service() const {
   auto service = service_.lock();
   if (service && !closed_) return service;
-  throw Unavailable("no connection to " + *peer_ + ": it was " +
-                    (service ? "disconnected" : "withdrawn"));
+  if (service) refuse_closed(*peer_);
+  throw Unavailable("no connection to " + *peer_ + ": it was withdrawn");
 }
 
 std::optional<ConnectionInfo> LocalChannel::info() const {
@@ -210,7 +215,7 @@ std::vector<std::shared_ptr<QueuedCall>> LocalChannel::close() {
 // Until disconnect() may have to end it.
 void LocalChannel::remember(const std::shared_ptr<QueuedCall>& call) {
   std::lock_guard lock(mutex_);
-  if (closed_) throw Unavailable("no connection to " + *peer_ + ": it was disconnected");
+  if (closed_) refuse_closed(*peer_);
   if (queued_.size() >= look_at_) {
     std::erase_if(queued_, [](const std::weak_ptr<QueuedCall>& weak) {
       const auto queued = weak.lock();

@@ -489,6 +489,14 @@ TEST_CASE("a disconnected proxy refuses calls") {
   CHECK_THROWS_AS(pair.echo->echo("x"), Unavailable);
 }
 
+TEST_CASE("a proxy that outlives its entity says so") {
+  Pair pair;
+  pair.client.reset();
+  CHECK_THROWS_WITH(
+      pair.echo->echo("x"),
+      Catch::Contains("it was disconnected, or the entity that had connected has ended"));
+}
+
 TEST_CASE("a managed service is closed to strangers", "[wire]") {
   Pair pair;
   pair.server->provide_csp<Echo>("hidden", "uav-1/owner", std::make_shared<EchoService>());

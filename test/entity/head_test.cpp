@@ -317,7 +317,9 @@ TEST_CASE("where nothing can be selected beforehand, that is recorded with the r
   std::optional<DistantWorker> silent;
   std::vector<std::string> attempts;
   SECTION("as there is no CSP") {
-    CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>(), NoCandidate);
+    CHECK_THROWS_WITH(office.owner->head().preselect<crew::Worker>(),
+                      Catch::Contains("crew/Worker") &&
+                          Catch::Contains("a CSP for it, by provide_csp() or by <csp>"));
   }
   SECTION("as the CSP does not answer") {
     silent.emplace(office, "silent");
