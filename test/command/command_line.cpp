@@ -207,6 +207,22 @@ TEST_CASE("commands that look list their exit codes") {
   }
 }
 
+TEST_CASE(
+    "what asks a launcher lists its exit codes, and the whole what each means for both kinds") {
+  const Line line;
+  for (const char* command : {"status", "restart"}) {
+    CAPTURE(command);
+    CHECK_THAT(
+        line.command_of(std::string("skein ") + command)->get_footer(),
+        Contains("Exit codes:\n") && Contains("\n  71        the mission does not fly here"));
+  }
+  const auto words = words_of(line.app.help());
+  CHECK(std::ranges::search(words, words_of("of commands that look: it could not join the domain"))
+            .begin() != words.end());
+  const std::string decisions = line.command_of("skein decisions")->get_description();
+  CHECK_THAT(decisions, Contains("nothing until the next one"));
+}
+
 TEST_CASE("what users of other software type leads to a command that there is") {
   const Line line;
   for (const FamiliarName& name : familiar_names()) {

@@ -33,6 +33,11 @@ std::string exit_codes() {
     if (code.code == "128 + N") codes.push_back(looking_code("124"));
     codes.push_back(code);
   }
+  // Of a launch and of commands that look this means two things.
+  const auto failed = std::ranges::find(codes, "71", &launch::ExitCode::code);
+  const std::string both = std::string(failed->meaning) +
+                           "; of commands that look: " + std::string(looking_code("71").meaning);
+  failed->meaning = both;
   codes.back().meaning = "interrupted by signal N before it was done";
   return exit_codes_text(codes);
 }

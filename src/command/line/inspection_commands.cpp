@@ -22,12 +22,15 @@ void add_calls(CLI::App& app, int& result) {
 }
 
 void add_decisions(CLI::App& app, int& result) {
-  auto& command =
-      add_command(app, "decisions", "Show how the Heads on a domain decide, live or from a log",
-                  {{"skein decisions --domain 47", "Why each CSP was chosen, until Ctrl-C"},
-                   {"skein decisions --log decisions.jsonl", "The same, of a past mission"},
-                   {"skein decisions --log decisions.jsonl --replay",
-                    "Make the choices again; exit code 1 where one comes out differently"}});
+  auto& command = add_command(
+      app, "decisions",
+      "Show how the Heads on a domain decide, live or from a log\n\n"
+      "Live, it prints each decision from now on, and nothing until the next one; those "
+      "before are in a Head's log. Of a log that was cut off, whole lines are read.",
+      {{"skein decisions --domain 47", "Why each CSP was chosen, until Ctrl-C"},
+       {"skein decisions --log decisions.jsonl", "The same, of a past mission"},
+       {"skein decisions --log decisions.jsonl --replay",
+        "Make the choices again; exit code 1 where one comes out differently"}});
   auto& arguments = arguments_of(command, show_decisions, result);
   add_onlooker(command, arguments);
   add_watching(command, arguments.seconds);

@@ -1,3 +1,5 @@
+#include <array>
+
 #include "command/commands.hpp"
 #include "command_line.hpp"
 #include "launch/exit_codes.hpp"
@@ -136,9 +138,17 @@ void add_peer(CLI::App& app, int& result) {
 }
 
 void add_running(CLI::App& command, RunningArguments& arguments) {
+  constexpr std::array kCodes{
+      launch::ExitCode{"0", "done"},
+      launch::ExitCode{"64", "the command line is wrong; nothing was done"},
+      launch::ExitCode{"71",
+                       "the mission does not fly here, or its launcher refused or did not answer"},
+      launch::ExitCode{"78", "the profile is wrong"},
+  };
   add_profile(command, arguments.profile)->required();
   add_variables(command, arguments.variables);
   add_host(command, arguments.host);
+  command.footer(command.get_footer() + "\n" + exit_codes_text(kCodes));
 }
 
 void add_restart(CLI::App& app, int& result) {
