@@ -15,12 +15,31 @@ constexpr unsigned kMaximumJsonDepth = 4 * kMaximumNesting;
 
 const json& value_of(const void* node) { return *static_cast<const json*>(node); }
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
 /// `line 3, column 5`.
 std::string place_of(std::string_view text, std::size_t offset) {
   const std::string_view before = text.substr(0, offset);
   const auto line = std::ranges::count(before, '\n') + 1;
   const auto column = before.size() - (before.rfind('\n') + 1) + 1;
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// Where the word begins of which a parser may have read a part.
+std::size_t begin_of_word(std::string_view text, std::size_t offset) {
+  offset = std::min(offset, text.size());
+  while (offset > 0 && is_letter(text[offset - 1])) --offset;
+  return offset;
+}
+
+/// JSON has no such numbers, and this codec takes them as text.
+std::string remedy_for_word(std::string_view text) {
+  const auto end = std::ranges::find_if_not(text, is_letter);
+  const std::string_view word = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+  if (word == "NaN" || word == "nan") return "; write \"NaN\", with its quotes";
+  if (word == "Infinity" || word == "inf")
+    return "; write \"Infinity\" or \"-Infinity\", with its quotes";
+  return {};
 }
 
 /// The number that the library could not read, which it tells in quotes.
@@ -165,8 +184,9 @@ void parse_json(std::string_view text, const std::function<void(const JsonReader
   try {
     value = json::parse(text);
   } catch (const json::parse_error& error) {
-    throw InvalidArgument("JSON: " + place_of(text, error.byte > 0 ? error.byte - 1 : 0) +
-                          ": this is no JSON");
+    const std::size_t place = begin_of_word(text, error.byte > 0 ? error.byte - 1 : 0);
+    throw InvalidArgument("JSON: " + place_of(text, place) + ": this is no JSON" +
+                          remedy_for_word(text.substr(place)));
   } catch (const json::out_of_range& error) {
     const std::string number = quoted_number(error.what());
     throw InvalidArgument("JSON: " + place_of(text, text.find(number)) + ": " + number +

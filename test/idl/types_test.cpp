@@ -216,6 +216,11 @@ TEST_CASE("JSON that does not fit is refused with the place") {
     return error_of<skein::InvalidArgument>([&] { from_json<test_planner::Route>(json); });
   };
   CHECK(refusal("{\"points\": [") == "JSON: line 1, column 13: this is no JSON");
+  CHECK(refusal(R"({"length_m": NaN})") ==
+        "JSON: line 1, column 14: this is no JSON; write \"NaN\", with its quotes");
+  CHECK(refusal(R"({"length_m": nan})") ==
+        "JSON: line 1, column 14: this is no JSON; write \"NaN\", with its quotes");
+  CHECK_THAT(refusal(R"({"length_m": Infinity})"), Catch::Contains("write \"Infinity\""));
   CHECK(refusal("[]") == "JSON: $ is no object, as test_planner::Route must be");
   CHECK(refusal(R"({"points": [], "length_m": 1})") ==
         "JSON: $ lacks the member 'remark' of test_planner::Route");
