@@ -53,7 +53,7 @@ class ParameterValues {
 
  private:
   const ParameterValue* find_value(const std::string& name) const;
-  [[noreturn]] static void throw_missing(const std::string& name);
+  [[noreturn]] void throw_missing(const std::string& name) const;
   [[noreturn]] static void throw_other_type(const std::string& name, const ParameterValue& value,
                                             const char* wanted);
 

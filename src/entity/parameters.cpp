@@ -42,9 +42,12 @@ const ParameterValue* ParameterValues::find_value(const std::string& name) const
   return found == values_.end() ? nullptr : &found->second;
 }
 
-void ParameterValues::throw_missing(const std::string& name) {
-  throw InvalidArgument("the code asks for the parameter '" + name +
-                        "', which has no value; set it in the mission profile, and declare it as "
+void ParameterValues::throw_missing(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const auto& [known, value] : values_) names.push_back(known);
+  throw InvalidArgument("the code asks for the parameter '" + name + "', which has no value" +
+                        suggestion(name, names) +
+                        "; set it in the mission profile, and declare it as "
                         "<required>, so that this is found before the start");
 }
 
