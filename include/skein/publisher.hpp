@@ -48,7 +48,7 @@ class TopicWriter {
 /// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable.
 /// Destroy it before its entity.
 template <class T>
-class Publisher {
+class [[nodiscard]] Publisher {
  public:
   /// In the systems that `qos` names, or in the partition "". Throws InvalidArgument for an invalid
   /// name or QoS, and for a name that the entity already uses with another type. `known` lists it

@@ -72,12 +72,12 @@ class TopicReader {
 /// queue that the QoS bound (`history_depth` per key, `max_waiting` in all): a slow subscriber
 /// loses its own oldest values, which are counted, and does not delay the publisher. A sample that
 /// is no T is dropped and counted; the first is logged. The first exception from a callback is
-/// logged; the next value follows.
+/// logged; the next value follows. Keep it: its callbacks end with it.
 ///
 /// Thread-safe, movable. The destructor waits for a running callback; do not destroy it from one.
 /// Destroy it before its entity.
 template <class T>
-class Subscription {
+class [[nodiscard]] Subscription {
  public:
   using Callback = std::function<void(const T& value)>;
 
