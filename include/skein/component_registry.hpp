@@ -5,6 +5,7 @@
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,22 @@ class ComponentRegistry {
   void add_csp(const std::string& component, CspFactory factory) {
     add_csp(component, std::move(factory));
     implemented_[component] = &Interface::interface_info();
+  }
+  /// What no factory of a Body or a CSP is ends here, with what one returns.
+  template <class Interface, class Factory>
+  requires(!std::is_convertible_v<Factory, BodyFactory>) void add_body(const std::string&,
+                                                                       const Factory&) {
+    static_assert(sizeof(Factory) == 0,
+                  "the factory of a Body takes (skein::Entity&, const skein::ParameterValues&) and "
+                  "returns skein::ComponentRegistry::Body{std::make_shared<INTERFACE::Skeleton>("
+                  "std::make_shared<YOUR_CLASS>())}");
+  }
+  template <class Interface, class Factory>
+  requires(!std::is_convertible_v<Factory, CspFactory>) void add_csp(const std::string&,
+                                                                     const Factory&) {
+    static_assert(sizeof(Factory) == 0,
+                  "the factory of a CSP takes (const skein::ParameterValues&) and returns "
+                  "std::make_shared<INTERFACE::Skeleton>(std::make_shared<YOUR_CLASS>())");
   }
   void add_mission(const std::string& component, Mission mission);
   void add_activity(const std::string& component, Activity activity);

@@ -49,6 +49,10 @@ class TopicWriter {
 /// Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Publisher {
+  static_assert(topics::kIsNoInterface<T>,
+                "a topic carries values of an IDL struct or union; an interface is provided by "
+                "Entity::provide() and called by Entity::connect()");
+
  public:
   /// In the systems that `qos` names, or in the partition "". Throws InvalidArgument for an invalid
   /// name or QoS, and for a name that the entity already uses with another type. `known` lists it

@@ -78,6 +78,10 @@ class TopicReader {
 /// Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Subscription {
+  static_assert(topics::kIsNoInterface<T>,
+                "a topic carries values of an IDL struct or union; an interface is provided by "
+                "Entity::provide() and called by Entity::connect()");
+
  public:
   using Callback = std::function<void(const T& value)>;
 

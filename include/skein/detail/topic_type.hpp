@@ -13,6 +13,12 @@ concept Keyed = requires(const T& value) {
 
 namespace topics {
 
+/// For those who take an interface for a type.
+template <class T>
+inline constexpr bool kIsNoInterface = !requires {
+  T::interface_info();
+};
+
 /// A topic's type without its definition.
 struct TopicType {
   const TypeSupport* support;
