@@ -91,6 +91,19 @@ double carrot_bank_rad(double ahead_m, const Motion& motion, const Line& line) {
   return kCarrotGain * wrapped(wanted - std::atan2(motion.east_m_s, motion.north_m_s));
 }
 
+double carrot_bank_rad(double ahead_m, const Motion& motion, const Circle& circle) {
+  const double north = motion.north_m - circle.centre.north_m;
+  const double east = motion.east_m - circle.centre.east_m;
+  const double outside = std::hypot(north, east) - circle.radius_m;
+  const double side = circle.clockwise ? 1 : -1;
+  const double wanted =
+      std::atan2(east, north) + side * (std::numbers::pi / 2 + std::atan2(outside, ahead_m));
+  const double speed = speed_of(motion);
+  const double turn = std::atan(speed * speed / (kGravity_m_s2 * circle.radius_m));
+  return side * turn +
+         kCarrotGain * wrapped(wanted - std::atan2(motion.east_m_s, motion.north_m_s));
+}
+
 double climb_rad(const Line& line, const Motion& motion, double height_m, double speed_m_s,
                  double time_s) {
   const Along here = along(line, motion);

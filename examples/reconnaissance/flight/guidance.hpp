@@ -49,6 +49,9 @@ double l1_bank_rad(const L1& tuning, const Motion& motion, const Circle& circle)
 /// on the line, `ahead_m` beyond the foot of the perpendicular.
 double carrot_bank_rad(double ahead_m, const Motion& motion, const Line& line);
 
+/// The same on a circle, with the bank that a turn of its radius takes.
+double carrot_bank_rad(double ahead_m, const Motion& motion, const Circle& circle);
+
 /// How far along a line an aircraft is: 0 at its beginning, its length at its end. `right_m` is the
 /// distance from it, positive to its right.
 struct Along {

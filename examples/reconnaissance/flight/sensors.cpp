@@ -37,21 +37,27 @@ bool agrees(const VotingLimits& limits, const Measurement& one, const Measuremen
 
 }  // namespace
 
-Measurement measure(const Aircraft& aircraft, const SensorNoise& noise, Random& random) {
+Measurement SensorModel::measure(const Aircraft& aircraft, double seconds, Random& random) {
   const auto with = [&](double value, double deviation) {
     return value + deviation * random.normal();
   };
+  const double kept = settled_ ? std::exp(-seconds / noise_.wander_time_s) : 0;
+  const double fresh = std::sqrt(1 - kept * kept);
+  settled_ = true;
+  error_.north_m = with(error_.north_m * kept, fresh * noise_.level_m);
+  error_.east_m = with(error_.east_m * kept, fresh * noise_.level_m);
+  error_.height_m = with(error_.height_m * kept, fresh * noise_.height_m);
   Measurement measured;
-  measured.position.north_m = with(aircraft.position.north_m, noise.level_m);
-  measured.position.east_m = with(aircraft.position.east_m, noise.level_m);
-  measured.position.height_m = with(aircraft.position.height_m, noise.height_m);
-  measured.north_m_s = with(aircraft.north_m_s, noise.velocity_m_s);
-  measured.east_m_s = with(aircraft.east_m_s, noise.velocity_m_s);
-  measured.up_m_s = with(aircraft.up_m_s, noise.velocity_m_s);
-  measured.airspeed_m_s = with(aircraft.airspeed_m_s, noise.airspeed_m_s);
-  measured.heading_rad = course(with(aircraft.heading_rad, noise.angle_rad));
-  measured.climb_rad = with(aircraft.climb_rad, noise.angle_rad);
-  measured.bank_rad = with(aircraft.bank_rad, noise.angle_rad);
+  measured.position.north_m = aircraft.position.north_m + error_.north_m;
+  measured.position.east_m = aircraft.position.east_m + error_.east_m;
+  measured.position.height_m = aircraft.position.height_m + error_.height_m;
+  measured.north_m_s = with(aircraft.north_m_s, noise_.velocity_m_s);
+  measured.east_m_s = with(aircraft.east_m_s, noise_.velocity_m_s);
+  measured.up_m_s = with(aircraft.up_m_s, noise_.velocity_m_s);
+  measured.airspeed_m_s = with(aircraft.airspeed_m_s, noise_.airspeed_m_s);
+  measured.heading_rad = course(with(aircraft.heading_rad, noise_.angle_rad));
+  measured.climb_rad = with(aircraft.climb_rad, noise_.angle_rad);
+  measured.bank_rad = with(aircraft.bank_rad, noise_.angle_rad);
   return measured;
 }
 

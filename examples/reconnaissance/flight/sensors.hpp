@@ -20,18 +20,32 @@ struct Measurement {
   double bank_rad = 0;
 };
 
-/// Standard deviations of a set's errors, which are normal and independent. Satellite: the accuracy
-/// that the GPS performance standard (2020) promises, 8 m horizontally in 95 %, is some 3.3 m on
-/// each axis; the other figures are those of common small air data and attitude sensors.
+/// Standard deviations of a set's errors. Those of the position wander (a first-order Gauss-Markov
+/// process); the others are white. Satellite: the accuracy that the GPS performance standard (2020)
+/// promises, 8 m horizontally in 95 %, is some 3.3 m on each axis; the other figures are those of
+/// common small air data and attitude sensors.
 struct SensorNoise {
   double level_m = 3.3;
   double height_m = 5;
+  double wander_time_s = 100;
   double velocity_m_s = 0.1;
   double airspeed_m_s = 0.5;
   double angle_rad = 0.005;
 };
 
-Measurement measure(const Aircraft& aircraft, const SensorNoise& noise, Random& random);
+/// One of the sets.
+class SensorModel {
+ public:
+  explicit SensorModel(const SensorNoise& noise = {}) : noise_(noise) {}
+
+  /// What it measures, `seconds` after the measurement before.
+  Measurement measure(const Aircraft& aircraft, double seconds, Random& random);
+
+ private:
+  SensorNoise noise_;
+  Local error_{};
+  bool settled_ = false;
+};
 
 /// The mid value of what three sensors measure: one that lies, however much, does not count. Of two
 /// the mean, of one its value; nothing of none.

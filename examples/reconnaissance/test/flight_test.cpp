@@ -202,7 +202,8 @@ TEST_CASE("L1 turns round where the line goes the other way") {
   CHECK(aircraft.north_m_s < -59);
 }
 
-TEST_CASE("L1 circles in either sense, from outside and from inside, in wind") {
+TEST_CASE("L1 and the carrot circle in either sense, from outside and from inside, in wind") {
+  const bool l1 = GENERATE(true, false);
   const bool clockwise = GENERATE(true, false);
   const double begin_m = GENERATE(-4000.0, -200.0, 900.0);
   const Circle circle{{2000, 0, 1000}, 1000, clockwise};
@@ -211,8 +212,9 @@ TEST_CASE("L1 circles in either sense, from outside and from inside, in wind") {
   aircraft.position.north_m = 2000 + begin_m;
   double least = 1e9, greatest = 0;
   for (double time_s = 0; time_s < 500; time_s += kStep_s) {
-    aircraft = advance(kAirframe, aircraft, {l1_bank_rad({}, motion_of(aircraft), circle), 0, 60},
-                       wind, 0, kStep_s);
+    const double bank = l1 ? l1_bank_rad({}, motion_of(aircraft), circle)
+                           : carrot_bank_rad(400, motion_of(aircraft), circle);
+    aircraft = advance(kAirframe, aircraft, {bank, 0, 60}, wind, 0, kStep_s);
     if (time_s < 250) continue;
     const double radius = std::hypot(aircraft.position.north_m - 2000, aircraft.position.east_m);
     least = std::min(least, radius);
@@ -267,9 +269,11 @@ TEST_CASE("a set that disagrees is voted out, and is heard again when it has agr
   Random random(7);
   Voter voter;
   const Aircraft aircraft = flying();
+  std::array<SensorModel, 3> models;
   const auto vote = [&](double offset_m) {
     std::array<std::optional<Measurement>, 3> sets;
-    for (auto& set : sets) set = measure(aircraft, {}, random);
+    for (std::size_t i = 0; i < sets.size(); ++i)
+      sets[i] = models[i].measure(aircraft, 0.1, random);
     sets[1]->position.north_m += offset_m;
     return voter.vote(sets, 0.1);
   };
@@ -289,8 +293,24 @@ TEST_CASE("with all sets silent there is no measurement, and with two out the th
   Random random(1);
   Voter voter;
   CHECK_FALSE(voter.vote({}, 0.1));
-  const auto measured = measure(flying(), {}, random);
+  const auto measured = SensorModel().measure(flying(), 0.1, random);
   CHECK(voter.vote({std::nullopt, std::nullopt, measured}, 0.1));
+}
+
+TEST_CASE("the error of a position wanders: it is as wide as it says, and near to what it was") {
+  Random random(5);
+  SensorModel model({.level_m = 3, .wander_time_s = 10});
+  const Aircraft aircraft = flying();
+  double sum = 0, step = 0, last = 0;
+  constexpr int kSamples = 20'000;
+  for (int i = 0; i < kSamples; ++i) {
+    const double error = model.measure(aircraft, 1, random).position.north_m;
+    sum += error * error;
+    step += (error - last) * (error - last);
+    last = error;
+  }
+  CHECK(std::sqrt(sum / kSamples) == Approx(3).epsilon(0.1));
+  CHECK(std::sqrt(step / kSamples) < 1.5);
 }
 
 TEST_CASE("each failure of a sensor does what its name says") {

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <vector>
+
+#include "../flight/guidance.hpp"
+#include "../flight/pilot.hpp"
+#include "../flight/point_mass.hpp"
+#include "../geodesy/local_frame.hpp"
+#include "../mission/places.hpp"
+#include "flight.idl.hpp"
+
+namespace reconnaissance {
+
+inline Geodetic geodetic(const recon::Position& position) {
+  return {position.latitude_deg, position.longitude_deg, position.height_m};
+}
+
+inline recon::Position position(const Geodetic& place) {
+  return {place.latitude_deg, place.longitude_deg, place.height_m};
+}
+
+inline recon::Position position(const LocalFrame& frame, const Local& local) {
+  return position(frame.to_geodetic(local));
+}
+
+inline Local local(const LocalFrame& frame, const recon::Position& position) {
+  return frame.to_local(geodetic(position));
+}
+
+inline std::vector<Local> locals(const LocalFrame& frame,
+                                 const std::vector<recon::Position>& positions) {
+  std::vector<Local> result;
+  for (const recon::Position& each : positions) result.push_back(local(frame, each));
+  return result;
+}
+
+inline std::vector<recon::Position> positions(const LocalFrame& frame,
+                                              const std::vector<Local>& locals) {
+  std::vector<recon::Position> result;
+  for (const Local& each : locals) result.push_back(position(frame, each));
+  return result;
+}
+
+inline recon::Runway runway(const RunwayText& text) {
+  return {position(text.threshold), text.course_rad, text.length_m};
+}
+
+inline Strip strip(const LocalFrame& frame, const recon::Runway& runway) {
+  return {local(frame, runway.threshold), runway.course_rad, runway.length_m};
+}
+
+inline recon::ModelState model_state(const Aircraft& aircraft) {
+  return {aircraft.position.north_m,
+          aircraft.position.east_m,
+          aircraft.position.height_m,
+          aircraft.airspeed_m_s,
+          aircraft.heading_rad,
+          aircraft.climb_rad,
+          aircraft.bank_rad,
+          aircraft.fuel_kg,
+          aircraft.on_ground,
+          aircraft.stalled,
+          aircraft.north_m_s,
+          aircraft.east_m_s,
+          aircraft.up_m_s};
+}
+
+inline Aircraft aircraft(const recon::ModelState& state) {
+  return {{state.north_m, state.east_m, state.height_m},
+          state.airspeed_m_s,
+          state.heading_rad,
+          state.climb_rad,
+          state.bank_rad,
+          state.fuel_kg,
+          state.on_ground,
+          state.stalled,
+          state.north_m_s,
+          state.east_m_s,
+          state.up_m_s};
+}
+
+}  // namespace reconnaissance

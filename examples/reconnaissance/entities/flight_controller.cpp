@@ -1,0 +1,179 @@
+#include "flight_controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "../flight/angles.hpp"
+#include "convert.hpp"
+#include "skein/head.hpp"
+#include "topics.hpp"
+
+namespace reconnaissance {
+namespace {
+
+constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
+
+FlightRules rules_of(const skein::ParameterValues& values) {
+  FlightRules rules;
+  rules.cruise_m_s = values.find<double>("Cruising speed").value_or(rules.cruise_m_s);
+  if (const auto bank = values.find<double>("Bank angle")) rules.greatest_bank_rad = radians(*bank);
+  if (const auto climb = values.find<double>("Climb angle"))
+    rules.greatest_climb_rad = radians(*climb);
+  return rules;
+}
+
+recon::FlightMode mode_of(Pilot::Mode mode) {
+  switch (mode) {
+    case Pilot::Mode::Parked:
+      return recon::FlightMode::Parked;
+    case Pilot::Mode::TakingOff:
+      return recon::FlightMode::TakingOff;
+    case Pilot::Mode::Following:
+      return recon::FlightMode::Following;
+    case Pilot::Mode::Waiting:
+      return recon::FlightMode::Waiting;
+    case Pilot::Mode::Approaching:
+      return recon::FlightMode::Approaching;
+    case Pilot::Mode::Rolling:
+      return recon::FlightMode::Rolling;
+    case Pilot::Mode::Landed:
+      break;
+  }
+  return recon::FlightMode::Landed;
+}
+
+}  // namespace
+
+FlightController::FlightController(skein::Entity& entity, const skein::ParameterValues& values)
+    : entity_(entity),
+      rules_(rules_of(values)),
+      pilot_(rules_, {[this](const Motion& motion, const Line& leg) {
+                        return ask_guidance(motion, leg, 0);
+                      },
+                      [this](const Motion& motion, const Circle& circle) {
+                        return ask_guidance(motion, {circle.centre, circle.centre},
+                                            circle.clockwise ? circle.radius_m : -circle.radius_m);
+                      }}),
+      sensors_(entity, topic::kSensors),
+      command_(entity.publisher<recon::FlightCommand>(topic::kFlightCommand.name, stream_qos())),
+      state_(entity.publisher<recon::FlightState>(topic::kFlightState.name, stream_qos())),
+      state_50hz_(entity.publisher<recon::FlightState>(topic::kFlightState50Hz.name, stream_qos())),
+      member_(entity, values, [this](Tick tick) { fly(tick); }) {}
+
+void FlightController::start() {
+  guidance_ = entity_.head().preselect<recon::IGuidance>();
+  member_.start();
+}
+
+recon::FlightLimits FlightController::limits() {
+  return {rules_.cruise_m_s, rules_.greatest_bank_rad, rules_.greatest_climb_rad,
+          turn_radius_m(rules_.cruise_m_s, rules_.greatest_bank_rad)};
+}
+
+void FlightController::take_off(const recon::Runway& from, std::int64_t tick) {
+  accept(tick, 0, [this, from] {
+    if (!frame_) frame_.emplace(geodetic(from.threshold));
+    return pilot_.take_off(strip(*frame_, from));
+  });
+}
+
+void FlightController::follow(const recon::Route& route, std::int64_t tick) {
+  accept(tick, route.number, [this, route] {
+    if (!frame_) return std::string("the aircraft is on the ground");
+    return pilot_.follow(locals(*frame_, route.points));
+  });
+}
+
+void FlightController::land(const recon::Route& route, const recon::Runway& to, std::int64_t tick) {
+  accept(tick, route.number, [this, route, to] {
+    if (!frame_) return std::string("the aircraft is on the ground");
+    return pilot_.land(locals(*frame_, route.points), strip(*frame_, to));
+  });
+}
+
+void FlightController::accept(std::int64_t tick, std::uint32_t route,
+                              std::function<std::string()> obey) {
+  std::lock_guard lock(mutex_);
+  orders_.push_back({tick + 1, std::move(obey), route});
+}
+
+void FlightController::obey(Tick tick) {
+  std::vector<Order> due;
+  {
+    std::lock_guard lock(mutex_);
+    const auto later = std::stable_partition(
+        orders_.begin(), orders_.end(), [&](const Order& order) { return order.from <= tick; });
+    due.assign(std::make_move_iterator(orders_.begin()), std::make_move_iterator(later));
+    orders_.erase(orders_.begin(), later);
+  }
+  for (const Order& order : due) {
+    const std::string refusal = order.obey();
+    if (refusal.empty()) {
+      route_ = order.route;
+      member_.health().set(recon::Condition::Fine);
+    } else {
+      member_.health().set(recon::Condition::Degraded, "an order was refused: " + refusal);
+    }
+  }
+}
+
+void FlightController::fly(Tick tick) {
+  obey(tick);
+  const auto sensors = sensors_.at(tick);
+  if (!sensors) return;
+  if (const auto sight = look(*sensors)) last_sight_ = sight;
+  if (!last_sight_) return;
+  publish(tick, pilot_.fly(*last_sight_), *last_sight_, *sensors);
+}
+
+std::optional<Pilot::Sight> FlightController::look(const recon::Sensors& sensors) {
+  std::array<std::optional<Measurement>, 3> sets;
+  // Before the first runway is known the aircraft stands, and where does not matter.
+  const LocalFrame frame = frame_.value_or(LocalFrame(geodetic(sensors.sets[0].position)));
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const recon::SensorSet& set = sensors.sets[i];
+    if (!set.working) continue;
+    sets[i] = Measurement{local(frame, set.position), set.north_m_s,   set.east_m_s,  set.up_m_s,
+                          set.airspeed_m_s,           set.heading_rad, set.climb_rad, set.bank_rad};
+  }
+  const auto measured = voter_.vote(sets, kTick_s);
+  if (!measured) return std::nullopt;
+  return Pilot::Sight{*measured, sensors.radar_height_m, sensors.on_ground};
+}
+
+double FlightController::ask_guidance(const Motion& motion, const Line& leg,
+                                      double circle_radius_m) {
+  return guidance_->bank_rad({motion.north_m, motion.east_m, motion.north_m_s, motion.east_m_s,
+                              leg.from.north_m, leg.from.east_m, leg.to.north_m, leg.to.east_m,
+                              circle_radius_m});
+}
+
+void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sight& sight,
+                               const recon::Sensors& sensors) {
+  command_.publish({tick, demand.bank_rad, demand.climb_rad, demand.airspeed_m_s});
+  const bool often = state_50hz_.subscribers() > 0;
+  if (!often && !is_due(topic::kFlightState.period, tick)) return;
+  const Measurement& measured = sight.measured;
+  recon::FlightState state;
+  state.tick = tick;
+  state.mode = mode_of(pilot_.mode());
+  state.position = frame_ ? position(*frame_, measured.position) : sensors.sets[0].position;
+  state.north_m_s = measured.north_m_s;
+  state.east_m_s = measured.east_m_s;
+  state.up_m_s = measured.up_m_s;
+  state.airspeed_m_s = measured.airspeed_m_s;
+  state.heading_rad = measured.heading_rad;
+  state.bank_rad = measured.bank_rad;
+  state.fuel_kg = sensors.fuel_kg;
+  state.route = route_;
+  state.leg = static_cast<std::uint32_t>(pilot_.leg());
+  state.legs = static_cast<std::uint32_t>(pilot_.legs());
+  for (std::size_t i = 0; i < 3; ++i) state.sets_heard += voter_.out(i) ? 0 : 1;
+  state.lost_samples = static_cast<std::uint32_t>(sensors_.lost());
+  if (often) state_50hz_.publish(state);
+  if (is_due(topic::kFlightState.period, tick)) state_.publish(state);
+}
+
+}  // namespace reconnaissance

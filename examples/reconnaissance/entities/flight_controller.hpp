@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "../flight/pilot.hpp"
+#include "../geodesy/local_frame.hpp"
+#include "flight.idl.hpp"
+#include "member.hpp"
+#include "skein/entity.hpp"
+#include "skein/parameters.hpp"
+#include "stream.hpp"
+
+namespace reconnaissance {
+
+/// Flies the aircraft: makes one measurement of what three sets of sensors say, and commands bank,
+/// climb and speed; a guidance (a CSP) leads along the legs.
+class FlightController : public recon::IFlightController {
+ public:
+  FlightController(skein::Entity& entity, const skein::ParameterValues& values);
+  void start();
+
+  recon::FlightLimits limits() override;
+  void take_off(const recon::Runway& from, std::int64_t tick) override;
+  void follow(const recon::Route& route, std::int64_t tick) override;
+  void land(const recon::Route& route, const recon::Runway& to, std::int64_t tick) override;
+
+ private:
+  /// An order, and from which tick on it holds: that after the one in which it was given. So it
+  /// begins to hold at the same instant of the mission, however quick its call was.
+  struct Order {
+    Tick from;
+    std::function<std::string()> obey;
+    std::uint32_t route;
+  };
+
+  void accept(std::int64_t tick, std::uint32_t route, std::function<std::string()> obey);
+  void fly(Tick tick);
+  void obey(Tick tick);
+  std::optional<Pilot::Sight> look(const recon::Sensors& sensors);
+  double ask_guidance(const Motion& motion, const Line& leg, double circle_radius_m);
+  void publish(Tick tick, const Demand& demand, const Pilot::Sight& sight,
+               const recon::Sensors& sensors);
+
+  skein::Entity& entity_;
+  FlightRules rules_;
+  std::optional<LocalFrame> frame_;  // about the first runway
+  Voter voter_;
+  Pilot pilot_;
+  std::optional<recon::IGuidance::Proxy> guidance_;
+  std::optional<Pilot::Sight> last_sight_;
+  std::uint32_t route_ = 0;
+
+  std::mutex mutex_;
+  std::vector<Order> orders_;
+
+  Stream<recon::Sensors> sensors_;
+  skein::Publisher<recon::FlightCommand> command_;
+  skein::Publisher<recon::FlightState> state_;
+  skein::Publisher<recon::FlightState> state_50hz_;
+  Member member_;
+};
+
+}  // namespace reconnaissance

@@ -1,0 +1,49 @@
+#include "flight_models.hpp"
+
+#include <cmath>
+
+#include "../flight/guidance.hpp"
+#include "convert.hpp"
+
+namespace reconnaissance {
+namespace {
+
+constexpr double kCarrotAhead_m = 400;
+
+Motion motion_of(const recon::GuidanceInput& input) {
+  return {input.north_m, input.east_m, input.north_m_s, input.east_m_s};
+}
+
+Line line_of(const recon::GuidanceInput& input) {
+  return {{input.from_north_m, input.from_east_m, 0}, {input.to_north_m, input.to_east_m, 0}};
+}
+
+Circle circle_of(const recon::GuidanceInput& input) {
+  return {{input.to_north_m, input.to_east_m, 0},
+          std::abs(input.circle_radius_m),
+          input.circle_radius_m > 0};
+}
+
+}  // namespace
+
+void FlightModel::place(const recon::ModelState& state) { aircraft_ = aircraft(state); }
+
+recon::ModelState FlightModel::advance(const recon::ModelInput& input) {
+  aircraft_ = advance_(airframe_, aircraft_, {input.bank_rad, input.climb_rad, input.airspeed_m_s},
+                       {input.wind_north_m_s, input.wind_east_m_s, input.wind_up_m_s},
+                       input.ground_m, input.seconds);
+  return model_state(aircraft_);
+}
+
+double L1Guidance::bank_rad(const recon::GuidanceInput& input) {
+  if (input.circle_radius_m != 0) return l1_bank_rad({}, motion_of(input), circle_of(input));
+  return l1_bank_rad({}, motion_of(input), line_of(input));
+}
+
+double CarrotGuidance::bank_rad(const recon::GuidanceInput& input) {
+  if (input.circle_radius_m != 0)
+    return carrot_bank_rad(kCarrotAhead_m, motion_of(input), circle_of(input));
+  return carrot_bank_rad(kCarrotAhead_m, motion_of(input), line_of(input));
+}
+
+}  // namespace reconnaissance

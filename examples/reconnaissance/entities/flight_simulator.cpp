@@ -1,0 +1,149 @@
+#include "flight_simulator.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "../flight/angles.hpp"
+#include "convert.hpp"
+#include "skein/error.hpp"
+#include "skein/head.hpp"
+#include "topics.hpp"
+
+namespace reconnaissance {
+namespace {
+
+constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
+// Gusts of light turbulence change within some seconds.
+constexpr double kGustTime_s = 5;
+// Of the radar that looks downwards.
+constexpr double kRadarHeightError_m = 0.3;
+
+/// A wind blows from where it is named after.
+Wind wind_from(double from_rad, double speed_m_s) {
+  return {-speed_m_s * std::cos(from_rad), -speed_m_s * std::sin(from_rad), 0};
+}
+
+Aircraft parked(const RunwayText& runway, double fuel_kg) {
+  Aircraft aircraft;
+  aircraft.position.height_m = runway.threshold.height_m;
+  aircraft.heading_rad = runway.course_rad;
+  aircraft.fuel_kg = fuel_kg;
+  return aircraft;
+}
+
+}  // namespace
+
+FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterValues& values)
+    : entity_(entity),
+      runway_(parse_runway(values.get<std::string>("Runway"))),
+      frame_(runway_.threshold),
+      mean_wind_(wind_from(radians(values.find<double>("Wind from").value_or(0)),
+                           values.find<double>("Wind speed").value_or(0))),
+      gust_m_s_(values.find<double>("Gusts").value_or(0)),
+      random_(values.find<std::uint64_t>("Seed").value_or(1)),
+      aircraft_(parked(runway_, values.find<double>("Fuel").value_or(80))),
+      health_(entity),
+      time_(entity, values.get<std::size_t>("Participants"),
+            values.find<double>("Speed limit").value_or(0)),
+      commands_(entity, topic::kFlightCommand),
+      sensors_out_(entity.publisher<recon::Sensors>(topic::kSensors.name, stream_qos())),
+      truth_(entity.publisher<recon::Truth>(topic::kTruth.name, stream_qos())) {}
+
+void FlightSimulator::start() {
+  model_ = entity_.head().preselect<recon::IFlightModel>();
+  model_->place(model_state(aircraft_));
+  thread_ = std::jthread([this](const std::stop_token& stop) { simulate(stop); });
+}
+
+recon::SimulationStatus FlightSimulator::status() {
+  const Pace pace = time_.pace();
+  return {time_.run(),
+          time_.tick(),
+          pace.paused(),
+          static_cast<std::uint32_t>(time_.participants()),
+          time_.awaited(),
+          pace.limit(),
+          time_.ticks_per_second()};
+}
+
+void FlightSimulator::limit_speed(double times_real_time) {
+  if (!(times_real_time >= 0) || std::isinf(times_real_time))
+    throw recon::Refused("a speed is 0 (as fast as it can), or so many times real time");
+  time_.limit(times_real_time);
+}
+
+void FlightSimulator::simulate(const std::stop_token& stop) {
+  while (const auto tick = time_.await_next(stop)) {
+    try {
+      simulate(*tick);
+      health_.set(recon::Condition::Fine);
+    } catch (const skein::Error& error) {
+      health_.set(recon::Condition::Failed, error.what());
+    }
+    publish(*tick);
+    health_.tell(*tick);
+    time_.begin(*tick);
+  }
+}
+
+void FlightSimulator::simulate(Tick tick) {
+  if (tick == 0) return;
+  const auto command = commands_.at(tick - 1);
+  const Wind wind = blow();
+  recon::ModelInput input;
+  if (command) {
+    input.bank_rad = command->bank_rad;
+    input.climb_rad = command->climb_rad;
+    input.airspeed_m_s = command->airspeed_m_s;
+  }
+  input.wind_north_m_s = wind.north_m_s;
+  input.wind_east_m_s = wind.east_m_s;
+  input.wind_up_m_s = wind.up_m_s;
+  input.ground_m = runway_.threshold.height_m;
+  input.seconds = kTick_s;
+  aircraft_ = aircraft(model_->advance(input));
+}
+
+/// The mean wind, and gusts about it: a first-order Gauss-Markov process in each direction.
+Wind FlightSimulator::blow() {
+  const double kept = std::exp(-kTick_s / kGustTime_s);
+  const double fresh = gust_m_s_ * std::sqrt(1 - kept * kept);
+  gust_ = {gust_.north_m_s * kept + fresh * random_.normal(),
+           gust_.east_m_s * kept + fresh * random_.normal(),
+           gust_.up_m_s * kept + fresh / 2 * random_.normal()};
+  return {mean_wind_.north_m_s + gust_.north_m_s, mean_wind_.east_m_s + gust_.east_m_s,
+          gust_.up_m_s};
+}
+
+void FlightSimulator::publish(Tick tick) {
+  const double above_ground_m = aircraft_.position.height_m - runway_.threshold.height_m;
+  recon::Sensors sensors;
+  sensors.tick = tick;
+  for (std::size_t i = 0; i < sensors.sets.size(); ++i) sensors.sets[i] = measure(i);
+  sensors.fuel_kg = aircraft_.fuel_kg;
+  sensors.radar_height_m = above_ground_m + kRadarHeightError_m * random_.normal();
+  sensors.on_ground = aircraft_.on_ground;
+  sensors_out_.publish(sensors);
+  if (!is_due(topic::kTruth.period, tick)) return;
+  truth_.publish({tick, position(frame_, aircraft_.position), above_ground_m,
+                  aircraft_.airspeed_m_s,
+                  course(std::atan2(aircraft_.east_m_s, aircraft_.north_m_s)),
+                  std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.climb_rad,
+                  aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground, aircraft_.stalled});
+}
+
+recon::SensorSet FlightSimulator::measure(std::size_t set) {
+  const Measurement measured = sensors_[set].measure(aircraft_, kTick_s, random_);
+  return {true,
+          position(frame_, measured.position),
+          measured.north_m_s,
+          measured.east_m_s,
+          measured.up_m_s,
+          measured.airspeed_m_s,
+          measured.heading_rad,
+          measured.climb_rad,
+          measured.bank_rad};
+}
+
+}  // namespace reconnaissance

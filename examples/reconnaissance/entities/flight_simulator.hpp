@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <thread>
+
+#include "../flight/sensors.hpp"
+#include "../geodesy/local_frame.hpp"
+#include "../mission/places.hpp"
+#include "flight.idl.hpp"
+#include "member.hpp"
+#include "skein/entity.hpp"
+#include "skein/parameters.hpp"
+#include "stream.hpp"
+#include "time_keeper.hpp"
+
+namespace reconnaissance {
+
+/// Simulates the aircraft, its sensors and the wind, and makes the mission's time. In each tick it
+/// lets the flight model (a CSP) pass 20 ms with the command of the tick before, and publishes what
+/// the sensors measure.
+class FlightSimulator : public recon::IFlightSimulator {
+ public:
+  FlightSimulator(skein::Entity& entity, const skein::ParameterValues& values);
+
+  /// Begins to wait for the participants.
+  void start();
+
+  recon::SimulationStatus status() override;
+  void pause() override { time_.pause(); }
+  void resume() override { time_.resume(); }
+  void step(std::uint32_t ticks) override { time_.step(ticks); }
+  void limit_speed(double times_real_time) override;
+
+ private:
+  void simulate(const std::stop_token& stop);
+  void simulate(Tick tick);
+  Wind blow();
+  void publish(Tick tick);
+  recon::SensorSet measure(std::size_t set);
+
+  skein::Entity& entity_;
+  RunwayText runway_;
+  LocalFrame frame_;
+  Wind mean_wind_;
+  double gust_m_s_;
+  Wind gust_{};
+  Random random_;
+  std::array<SensorModel, 3> sensors_;
+  Aircraft aircraft_;
+  std::optional<recon::IFlightModel::Proxy> model_;
+
+  HealthReport health_;
+  TimeKeeper time_;
+  Stream<recon::FlightCommand> commands_;
+  skein::Publisher<recon::Sensors> sensors_out_;
+  skein::Publisher<recon::Truth> truth_;
+  std::jthread thread_;
+};
+
+}  // namespace reconnaissance

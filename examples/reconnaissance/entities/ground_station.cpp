@@ -1,0 +1,169 @@
+#include "ground_station.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "../mission/conduct.hpp"
+#include "convert.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/error.hpp"
+#include "stream.hpp"
+#include "topics.hpp"
+
+namespace reconnaissance {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 20s;
+
+recon::MissionOrder order_of(const skein::ParameterValues& values) {
+  recon::MissionOrder order;
+  order.runway = runway(parse_runway(values.get<std::string>("Runway")));
+  for (const Geodetic& point : parse_points(values.get<std::string>("Points")))
+    order.points.push_back(position(point));
+  if (order.points.empty())
+    throw skein::InvalidArgument("parameter 'Points' has no point to fly over");
+  return order;
+}
+
+PassConditions conditions_of(const skein::ParameterValues& values) {
+  PassConditions conditions;
+  if (const auto longest = values.find<std::chrono::duration<double>>("Longest flight"))
+    conditions.longest_s = longest->count();
+  const auto set = [&](double& condition, const char* name) {
+    condition = values.find<double>(name).value_or(condition);
+  };
+  set(conditions.least_clearance_m, "Least clearance");
+  set(conditions.points_within_m, "Points within");
+  set(conditions.landed_within_m, "Landed within");
+  set(conditions.least_fuel_kg, "Least fuel");
+  return conditions;
+}
+
+Judge judge_of(const LocalFrame& frame, const recon::MissionOrder& order,
+               const skein::ParameterValues& values) {
+  const Local aim = on_centre_line(strip(frame, order.runway), ApproachRules{}.aim_m, 0);
+  return Judge(conditions_of(values), locals(frame, order.points), aim);
+}
+
+/// Minutes and seconds of the mission.
+std::string clock_of(Tick tick) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time_of(tick)).count();
+  return fmt::format("{:02}:{:02}", seconds / 60, seconds % 60);
+}
+
+/// Beside the file at first, then in its place: a reader finds a whole one.
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  std::filesystem::path beside = file;
+  beside += ".new";
+  {
+    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
+    stream << text << std::flush;
+    if (!stream) throw skein::Unavailable("the result cannot be written: " + beside.string());
+  }
+  std::filesystem::rename(beside, file);
+}
+
+}  // namespace
+
+GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues& values)
+    : entity_(entity),
+      order_(order_of(values)),
+      frame_(geodetic(order_.runway.threshold)),
+      results_(values.find<std::string>("Results").value_or("mission")),
+      patience_(values.find<skein::Duration>("Patience").value_or(60s)),
+      judge_(judge_of(frame_, order_, values)),
+      truths_(entity.subscription<recon::Truth>(topic::kTruth.name, stream_qos(),
+                                                [this](const recon::Truth& truth) { see(truth); })),
+      statuses_(entity.subscription<recon::MissionStatus>(
+          topic::kStatus, skein::TopicQos::state(),
+          [this](const recon::MissionStatus& status) { show(status); })),
+      modes_(entity.subscription<recon::MissionMode>(
+          topic::kMode.name, skein::TopicQos::state(),
+          [this](const recon::MissionMode& mode) { show(mode); })),
+      member_(entity, values) {}
+
+int GroundStation::run(const std::stop_token& told_to_end) {
+  // Before it takes part, and so before time begins: the mission is the same in each run.
+  entity_.connect<recon::IMissionManager>({.timeout = kPatience}).begin(order_, -1);
+  const auto begun = entity_.clock().now();
+  member_.start();
+  const std::string ended = await_end(told_to_end);
+  const std::chrono::duration<double> took = entity_.clock().now() - begun;
+
+  std::lock_guard lock(mutex_);
+  const Verdict verdict = judge_.conclude(ended);
+  for (const Check& check : verdict.checks)
+    fmt::print("{:6} {}: {}\n", check.passed ? "ok" : "FAILED", check.name, check.text);
+  fmt::print(
+      "{} after {:.0f} s in the air and {:.1f} km; it took {:.1f} s, {:.0f} ticks a second\n",
+      verdict.passed ? "passed" : (verdict.flown ? "FAILED" : "NOT FLOWN"), verdict.duration_s,
+      verdict.distance_m / 1000, took.count(), static_cast<double>(last_tick_) / took.count());
+  write(verdict);
+  if (!verdict.flown) return kNotFlown;
+  return verdict.passed ? kPassed : kFailed;
+}
+
+std::string GroundStation::await_end(const std::stop_token& told_to_end) {
+  std::unique_lock lock(mutex_);
+  for (Tick seen = -1;;) {
+    const auto is_over = [&] {
+      return judge_.standing() || phase_ == recon::Phase::Aborted || judge_.too_long();
+    };
+    const bool moved = changed_.wait_for(lock, told_to_end, patience_,
+                                         [&] { return is_over() || last_tick_ != seen; });
+    if (judge_.standing()) return "";
+    if (told_to_end.stop_requested()) return "the ground station was told to end";
+    if (phase_ == recon::Phase::Aborted) return "the mission was aborted";
+    if (judge_.too_long()) return "the flight takes too long";
+    if (!moved)
+      return fmt::format("nothing of the aircraft was seen for {:.0f} s",
+                         std::chrono::duration<double>(patience_).count());
+    seen = last_tick_;
+  }
+}
+
+void GroundStation::see(const recon::Truth& truth) {
+  {
+    std::lock_guard lock(mutex_);
+    last_tick_ = truth.tick;
+    judge_.see({std::chrono::duration<double>(time_of(truth.tick)).count(),
+                local(frame_, truth.position), truth.height_above_ground_m, truth.ground_speed_m_s,
+                truth.fuel_kg, truth.on_ground, truth.stalled});
+  }
+  changed_.notify_all();
+}
+
+void GroundStation::show(const recon::MissionStatus& status) {
+  {
+    std::lock_guard lock(mutex_);
+    if (phase_ == status.phase) return;
+    phase_ = status.phase;
+  }
+  changed_.notify_all();
+  fmt::print("{}  {}: {}\n", clock_of(status.tick), to_string(status.phase),
+             status.reason);
+  std::fflush(stdout);
+}
+
+void GroundStation::show(const recon::MissionMode& mode) {
+  {
+    std::lock_guard lock(mutex_);
+    if (mode_ == mode.mode) return;
+    mode_ = mode.mode;
+  }
+  fmt::print("{}  mode {}{}\n", clock_of(mode.tick), to_string(mode.mode),
+             mode.reason.empty() ? "" : ": " + mode.reason);
+  std::fflush(stdout);
+}
+
+void GroundStation::write(const Verdict& verdict) const {
+  write_whole(results_.string() + ".json", to_json(verdict, "reconnaissance"));
+  write_whole(results_.string() + ".junit.xml", to_junit(verdict, "reconnaissance"));
+}
+
+}  // namespace reconnaissance

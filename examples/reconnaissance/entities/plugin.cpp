@@ -1,0 +1,93 @@
+// What a process of the mission loads to be one of the thirteen.
+#include <memory>
+
+#include "ad_manager.hpp"
+#include "collision_manager.hpp"
+#include "eo_manager.hpp"
+#include "eoi_manager.hpp"
+#include "flight_controller.hpp"
+#include "flight_models.hpp"
+#include "flight_simulator.hpp"
+#include "ground_station.hpp"
+#include "mission_manager.hpp"
+#include "navigator.hpp"
+#include "nhp.hpp"
+#include "object_tracker.hpp"
+#include "radar_warner.hpp"
+#include "skein/component_registry.hpp"
+#include "skein/entity.hpp"
+#include "threat_simulator.hpp"
+
+using skein::ComponentRegistry;
+using skein::Entity;
+using skein::ParameterValues;
+
+namespace reconnaissance {
+namespace {
+
+/// One that offers a service; it starts when what it depends on is there.
+template <class Interface, class Body>
+void add_body(ComponentRegistry& registry, const char* name) {
+  registry.add_body<Interface>(name, [](Entity& entity, const ParameterValues& values) {
+    auto body = std::make_shared<Body>(entity, values);
+    return ComponentRegistry::Body{std::make_shared<typename Interface::Skeleton>(body), 1,
+                                   [body] { body->start(); }};
+  });
+}
+
+/// One that offers none.
+template <class Own>
+void add_activity(ComponentRegistry& registry, const char* name) {
+  registry.add_activity(
+      name, [](Entity& entity, const ParameterValues& values, const std::stop_token& told_to_end) {
+        Own own(entity, values);
+        own.start();
+        skein::await_end(entity, told_to_end);
+        return 0;
+      });
+}
+
+template <class Interface, class Csp, class... Arguments>
+void add_csp(ComponentRegistry& registry, const char* name, Arguments... arguments) {
+  registry.add_csp<Interface>(name, [=](const ParameterValues&) {
+    return std::make_shared<typename Interface::Skeleton>(std::make_shared<Csp>(arguments...));
+  });
+}
+
+void add_all(ComponentRegistry& registry) {
+  add_body<recon::IFlightSimulator, FlightSimulator>(registry, "FlightSimulator");
+  add_csp<recon::IFlightModel, FlightModel>(registry, "PointMass", &advance);
+  add_csp<recon::IFlightModel, FlightModel>(registry, "Kinematic", &advance_kinematic);
+
+  add_body<recon::IFlightController, FlightController>(registry, "FlightController");
+  add_csp<recon::IGuidance, L1Guidance>(registry, "L1");
+  add_csp<recon::IGuidance, CarrotGuidance>(registry, "Carrot");
+
+  add_body<recon::INavigator, Navigator>(registry, "Navigator");
+  add_csp<recon::IRoutePlanner, FixedLegs>(registry, "FixedLegs");
+
+  add_body<recon::IMissionManager, MissionManager>(registry, "MissionManager");
+
+  add_activity<Nhp>(registry, "Nhp");
+  add_activity<EoManager>(registry, "EoManager");
+  add_activity<RadarWarner>(registry, "RadarWarner");
+  add_activity<CollisionManager>(registry, "CollisionManager");
+  add_activity<ObjectTracker>(registry, "ObjectTracker");
+  add_activity<ThreatSimulator>(registry, "ThreatSimulator");
+  add_activity<EoiManager>(registry, "EoiManager");
+  add_activity<AdManager>(registry, "AdManager");
+
+  registry.add_activity("GroundStation", [](Entity& entity, const ParameterValues& values,
+                                            const std::stop_token& told_to_end) {
+    return GroundStation(entity, values).run(told_to_end);
+  });
+}
+
+}  // namespace
+}  // namespace reconnaissance
+
+extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
+
+extern "C" void skein_register_components(ComponentRegistry& registry) {
+  reconnaissance::add_all(registry);
+}

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "../clock/ticks.hpp"
+#include "skein/entity.hpp"
+#include "topics.hpp"
+
+namespace reconnaissance {
+
+/// The QoS of streams of the simulated world: best effort, and no lifespan or deadline, which DDS
+/// counts by the system's clock, where a mission may be paused or ten times as fast. Who reads a
+/// stream looks at the ticks of its samples instead.
+inline skein::TopicQos stream_qos() {
+  skein::TopicQos qos = skein::TopicQos::sensor();
+  qos.lifespan.reset();
+  return qos;
+}
+
+/// Reads a topic whose samples bear the tick to which they belong. Thread-safe.
+template <class T>
+class Stream {
+ public:
+  /// Longer than a sample that has been sent takes on a busy machine.
+  static constexpr skein::Duration kPatience = std::chrono::milliseconds(250);
+
+  Stream(skein::Entity& entity, const StreamTopic& topic, const skein::TopicQos& qos = stream_qos())
+      : period_(topic.period),
+        subscription_(entity.subscription<T>(topic.name, qos, [this](const T& sample) {
+          {
+            std::lock_guard lock(mutex_);
+            samples_.push_back(sample);
+            if (samples_.size() > kKept) samples_.pop_front();
+          }
+          arrived_.notify_all();
+        })) {}
+
+  /// The sample of that tick, or of the last before at which there is one. Waits for it while
+  /// somebody publishes, `patience` at most; then it is counted as lost, and the newest from before
+  /// stands in for it, if there is any.
+  std::optional<T> at(Tick tick, skein::Duration patience = kPatience) {
+    std::unique_lock lock(mutex_);
+    const Tick wanted = tick - tick % period_;
+    const auto is_here = [&] { return !samples_.empty() && samples_.back().tick >= wanted; };
+    if (!is_here()) {
+      lock.unlock();
+      const bool hopeless = subscription_.publishers() == 0;
+      lock.lock();
+      if (!arrived_.wait_for(lock, hopeless ? skein::Duration{} : patience, is_here)) ++lost_;
+    }
+    for (auto sample = samples_.rbegin(); sample != samples_.rend(); ++sample)
+      if (sample->tick <= tick) return *sample;
+    return std::nullopt;
+  }
+
+  /// The newest that has arrived.
+  std::optional<T> latest() const {
+    std::lock_guard lock(mutex_);
+    return samples_.empty() ? std::nullopt : std::optional(samples_.back());
+  }
+
+  /// Samples that did not arrive when they were needed.
+  std::uint64_t lost() const {
+    std::lock_guard lock(mutex_);
+    return lost_;
+  }
+
+ private:
+  static constexpr std::size_t kKept = 8;
+
+  int period_;
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<T> samples_;
+  std::uint64_t lost_ = 0;
+  skein::Subscription<T> subscription_;
+};
+
+}  // namespace reconnaissance

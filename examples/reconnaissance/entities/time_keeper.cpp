@@ -1,0 +1,152 @@
+#include "time_keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace reconnaissance {
+namespace {
+
+using namespace std::chrono_literals;
+
+// How often one looks whether somebody is gone, and how long that one must have been silent: four
+// times as long as those who are there ever are (see Participant).
+constexpr auto kLook = 100ms;
+constexpr auto kSilence = 1s;
+
+std::uint64_t new_run() {
+  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+}
+
+}  // namespace
+
+std::string time_topic(int period) { return fmt::format("mission/time/every_{}", period); }
+
+skein::TopicQos acknowledgment_qos() {
+  skein::TopicQos qos;
+  qos.history_depth = 1;  // a later one says all that an earlier one did
+  qos.max_samples = 0;
+  return qos;
+}
+
+TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time)
+    : entity_(entity),
+      run_(new_run()),
+      lock_step_(expected),
+      pace_(times_real_time),
+      acknowledgments_(entity.subscription<recon::Acknowledgment>(
+          kAcknowledgments, acknowledgment_qos(),
+          [this](const recon::Acknowledgment& acknowledgment) { hear(acknowledgment); })) {
+  // Who is late gets the last one, without which it could not acknowledge it.
+  for (const int period : kPeriods) {
+    time_.emplace(
+        period, entity.publisher<recon::MissionTime>(time_topic(period), skein::TopicQos::state()));
+  }
+}
+
+std::optional<Tick> TimeKeeper::await_next(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    const skein::Instant now = entity_.clock().now();
+    const auto when = ready();
+    if (when && *when <= now) return lock_step_.tick() + 1;
+    const skein::Instant look = now + kLook;
+    changed_.wait_until(lock, stop, when ? std::min(*when, look) : look,
+                        [&] { return ready() != when; });
+    if (!ready()) drop_the_lost(lock);
+  }
+  return std::nullopt;
+}
+
+void TimeKeeper::begin(Tick tick) {
+  {
+    std::lock_guard lock(mutex_);
+    const skein::Instant now = entity_.clock().now();
+    lock_step_.advance();
+    pace_.begin(now);
+    if (now - rate_since_ >= 1s) {
+      ticks_per_second_ = static_cast<double>(tick - rate_from_) /
+                          std::chrono::duration<double>(now - rate_since_).count();
+      rate_since_ = now;
+      rate_from_ = tick;
+    }
+  }
+  const recon::MissionTime time{run_, tick, std::chrono::nanoseconds(time_of(tick)).count()};
+  for (auto& [period, publisher] : time_)
+    if (is_due(period, tick)) publisher.publish(time);
+}
+
+std::optional<skein::Instant> TimeKeeper::ready() const {
+  return lock_step_.may_advance() ? pace_.next() : std::nullopt;
+}
+
+void TimeKeeper::drop_the_lost(std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  const std::size_t connected = acknowledgments_.publishers();
+  lock.lock();
+  for (const std::string& name :
+       lock_step_.keep_connected(connected, entity_.clock().now(), kSilence)) {
+    fmt::print(stderr, "time: {} is lost; the mission's time goes on without it\n", name);
+  }
+}
+
+void TimeKeeper::hear(const recon::Acknowledgment& acknowledgment) {
+  {
+    std::lock_guard lock(mutex_);
+    lock_step_.hear({.participant = acknowledgment.participant,
+                     .life = acknowledgment.life,
+                     .period = acknowledgment.period_ticks,
+                     .done = acknowledgment.tick,
+                     .leaves = acknowledgment.leaves},
+                    entity_.clock().now());
+  }
+  changed_.notify_all();
+}
+
+Tick TimeKeeper::tick() const {
+  std::lock_guard lock(mutex_);
+  return lock_step_.tick();
+}
+
+std::size_t TimeKeeper::participants() const {
+  std::lock_guard lock(mutex_);
+  return lock_step_.participants();
+}
+
+std::vector<std::string> TimeKeeper::awaited() const {
+  std::lock_guard lock(mutex_);
+  return lock_step_.awaited();
+}
+
+Pace TimeKeeper::pace() const {
+  std::lock_guard lock(mutex_);
+  return pace_;
+}
+
+double TimeKeeper::ticks_per_second() const {
+  std::lock_guard lock(mutex_);
+  return ticks_per_second_;
+}
+
+void TimeKeeper::pause() {
+  change([](Pace& pace) { pace.pause(); });
+}
+void TimeKeeper::resume() {
+  change([](Pace& pace) { pace.resume(); });
+}
+void TimeKeeper::step(std::uint64_t ticks) {
+  change([&](Pace& pace) { pace.step(ticks); });
+}
+void TimeKeeper::limit(double times_real_time) {
+  change([&](Pace& pace) { pace.limit(times_real_time); });
+}
+
+void TimeKeeper::change(const std::function<void(Pace&)>& change) {
+  {
+    std::lock_guard lock(mutex_);
+    change(pace_);
+  }
+  changed_.notify_all();
+}
+
+}  // namespace reconnaissance

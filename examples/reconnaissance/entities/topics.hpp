@@ -1,0 +1,36 @@
+#pragma once
+
+namespace reconnaissance {
+
+/// A topic whose samples bear the tick to which they belong, and at every how many ticks there is
+/// one.
+struct StreamTopic {
+  const char* name;
+  int period;
+};
+
+/// The names of the mission's topics; their types and QoS stand in the IDL.
+namespace topic {
+
+inline constexpr StreamTopic kSensors{"flight/sensors", 1};
+inline constexpr StreamTopic kFlightCommand{"flight/command", 1};
+inline constexpr StreamTopic kFlightState{"flight/state", 5};
+inline constexpr StreamTopic kFlightState50Hz{"flight/state_50hz", 1};
+inline constexpr StreamTopic kTruth{"simulation/truth", 5};
+inline constexpr StreamTopic kMode{"mission/mode", 25};
+
+inline constexpr const char* kHealth = "mission/health";
+inline constexpr const char* kStatus = "mission/status";
+
+// What nobody publishes yet.
+inline constexpr const char* kEmission = "threat/emission";
+inline constexpr const char* kEmitter = "threat/emitter";
+inline constexpr const char* kThreats = "threat/picture";
+inline constexpr const char* kImage = "target/image";
+inline constexpr const char* kTrack = "target/track";
+inline constexpr const char* kElements = "target/elements";
+inline constexpr const char* kIntruder = "traffic/intruder";
+inline constexpr const char* kAdvisory = "traffic/advisory";
+
+}  // namespace topic
+}  // namespace reconnaissance

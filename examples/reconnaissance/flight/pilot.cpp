@@ -1,0 +1,155 @@
+#include "pilot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace reconnaissance {
+namespace {
+
+constexpr double kStanding_m_s = 0.5;
+// As long as a runway's centre line is followed: further than anybody flies before a route comes.
+constexpr double kCentreLine_m = 50'000;
+// In the flare the rate of descent falls with the height, to a touch-down that does no harm.
+constexpr double kFlareTime_s = 4;
+constexpr double kTouchDown_m_s = 0.6;
+
+Motion motion_of(const Measurement& measured) {
+  return {measured.position.north_m, measured.position.east_m, measured.north_m_s,
+          measured.east_m_s};
+}
+
+}  // namespace
+
+Local on_centre_line(const Strip& strip, double beyond_m, double above_m) {
+  return {strip.threshold.north_m + beyond_m * std::cos(strip.course_rad),
+          strip.threshold.east_m + beyond_m * std::sin(strip.course_rad),
+          strip.threshold.height_m + above_m};
+}
+
+std::string Pilot::take_off(const Strip& from) {
+  if (mode_ != Mode::Parked) return "the aircraft is not parked";
+  strip_ = from;
+  mode_ = Mode::TakingOff;
+  return "";
+}
+
+std::string Pilot::follow(std::vector<Local> route) {
+  return begin(std::move(route), Mode::Following);
+}
+
+std::string Pilot::land(std::vector<Local> route, const Strip& to) {
+  const std::string reason = begin(std::move(route), Mode::Approaching);
+  if (reason.empty()) strip_ = to;
+  return reason;
+}
+
+std::string Pilot::begin(std::vector<Local> route, Mode mode) {
+  if (route.size() < 2) return "a route has two points or more";
+  if (mode_ == Mode::Parked || mode_ == Mode::Rolling || mode_ == Mode::Landed)
+    return "the aircraft is on the ground";
+  route_ = std::move(route);
+  leg_ = 0;
+  mode_ = mode;
+  return "";
+}
+
+Demand Pilot::fly(const Sight& sight) {
+  switch (mode_) {
+    case Mode::TakingOff:
+      return fly_take_off(sight);
+    case Mode::Following:
+      return fly_route(sight);
+    case Mode::Waiting:
+      return fly_circle(sight);
+    case Mode::Approaching:
+    case Mode::Rolling:
+      return fly_landing(sight);
+    case Mode::Parked:
+    case Mode::Landed:
+      break;
+  }
+  return {};
+}
+
+Demand Pilot::fly_take_off(const Sight& sight) {
+  const Line ahead{strip_.threshold, on_centre_line(strip_, kCentreLine_m, 0)};
+  const Motion motion = motion_of(sight.measured);
+  if (sight.on_ground) {
+    const bool fast = sight.measured.airspeed_m_s >= rules_.rotate_m_s;
+    return {0, fast ? rules_.greatest_climb_rad : 0, rules_.cruise_m_s};
+  }
+  const double level_m = strip_.threshold.height_m + rules_.take_off_height_m;
+  const Line level{{0, 0, level_m}, {1, 0, level_m}};
+  return limited(
+      guidance_.along(motion, ahead),
+      climb_rad(level, motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
+      rules_.cruise_m_s);
+}
+
+Demand Pilot::fly_route(const Sight& sight) {
+  const Motion motion = motion_of(sight.measured);
+  if (!advance_leg(motion)) {
+    mode_ = Mode::Waiting;
+    return fly_circle(sight);
+  }
+  return limited(
+      guidance_.along(motion, line(leg_)),
+      climb_rad(line(leg_), motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
+      rules_.cruise_m_s);
+}
+
+Demand Pilot::fly_circle(const Sight& sight) {
+  const Motion motion = motion_of(sight.measured);
+  const Line level{route_.back(), route_.back()};
+  const double radius = 1.5 * turn_radius_m(rules_.cruise_m_s, rules_.greatest_bank_rad);
+  return limited(
+      guidance_.around(motion, {route_.back(), radius, true}),
+      climb_rad(level, motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
+      rules_.cruise_m_s);
+}
+
+Demand Pilot::fly_landing(const Sight& sight) {
+  if (sight.on_ground) {
+    const double speed = std::hypot(sight.measured.north_m_s, sight.measured.east_m_s);
+    mode_ = speed < kStanding_m_s ? Mode::Landed : Mode::Rolling;
+    return {};
+  }
+  const Motion motion = motion_of(sight.measured);
+  if (leg_ + 1 < legs()) advance_leg(motion);
+  const double bank = guidance_.along(motion, line(leg_));
+  const bool last = leg_ + 1 == legs();
+  if (last && sight.radar_height_m < rules_.flare_height_m) return flare(sight, bank);
+  return limited(
+      bank,
+      climb_rad(line(leg_), motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
+      last ? rules_.approach_m_s : rules_.cruise_m_s);
+}
+
+Demand Pilot::flare(const Sight& sight, double bank_rad) const {
+  const double sink_m_s = std::max(kTouchDown_m_s, sight.radar_height_m / kFlareTime_s);
+  const double airspeed = std::max(sight.measured.airspeed_m_s, 1.0);
+  return limited(bank_rad, -std::asin(std::min(1.0, sink_m_s / airspeed)), rules_.approach_m_s);
+}
+
+/// Whether there is a leg to fly.
+bool Pilot::advance_leg(const Motion& motion) {
+  for (; leg_ < legs(); ++leg_) {
+    const Along here = along(line(leg_), motion);
+    const double speed = std::hypot(motion.north_m_s, motion.east_m_s);
+    const double lead = leg_ + 1 < legs()
+                            ? turn_lead_m(turn_radius_m(speed, rules_.greatest_bank_rad),
+                                          line(leg_), line(leg_ + 1))
+                            : 0;
+    if (here.along_m < here.length_m - lead) return true;
+  }
+  return false;
+}
+
+Demand Pilot::limited(double bank_rad, double climb_rad, double airspeed_m_s) const {
+  return {std::clamp(bank_rad, -rules_.greatest_bank_rad, rules_.greatest_bank_rad),
+          std::clamp(climb_rad, -rules_.greatest_climb_rad, rules_.greatest_climb_rad),
+          airspeed_m_s};
+}
+
+}  // namespace reconnaissance

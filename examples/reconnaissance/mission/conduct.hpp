@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "../flight/pilot.hpp"
+
+namespace reconnaissance {
+
+enum class MissionPhase { BuiltInTest, TakeOff, Ingress, Legs, Egress, Landing, Complete, Aborted };
+
+/// How the last part of a mission is flown: down to the runway along its extended centre line.
+struct ApproachRules {
+  double slope_rad = 0.0698;  ///< 4 degrees.
+  double final_m = 4000;      ///< Where the slope begins, before the threshold.
+  double intercept_m = 8000;  ///< Where the centre line is joined, before the threshold.
+  double aim_m = 150;         ///< Where the slope ends, beyond the threshold.
+};
+
+/// The points that lead down to a strip, the last one the aiming point on it.
+std::vector<Local> approach(const Strip& strip, const ApproachRules& rules);
+
+/// Conducts a mission through its phases: test, take-off, to the first point, over the other ones,
+/// back, landing. A pure object: it is told what is so, and says what is to be ordered.
+class Conduct {
+ public:
+  /// What it wants done. A route begins where the aircraft is.
+  struct TakeOff {};
+  struct Follow {
+    std::vector<Local> through;
+  };
+  struct Land {
+    std::vector<Local> through;
+  };
+  using Order = std::variant<TakeOff, Follow, Land>;
+
+  /// What is so.
+  struct Situation {
+    bool all_fine = false;  ///< The built-in tests are passed.
+    Pilot::Mode mode{};
+    double height_m = 0;   ///< Above the geoid.
+    std::size_t leg = 0;   ///< Of the route that was ordered last; 0 until it is flown.
+    std::size_t legs = 0;  ///< 0 until it is flown.
+  };
+
+  Conduct(const Strip& strip, std::vector<Local> points, const ApproachRules& rules = {})
+      : strip_(strip), points_(std::move(points)), rules_(rules) {}
+
+  /// The order that is to be given now, if any. Its phase begins with it.
+  std::optional<Order> decide(const Situation& situation);
+
+  /// What was ordered cannot be done: the mission goes home, or, without a way home, is over.
+  std::optional<Order> refused(const std::string& reason);
+
+  MissionPhase phase() const { return phase_; }
+  const std::string& reason() const { return reason_; }
+  std::size_t points_reached() const { return reached_; }
+
+ private:
+  std::optional<Order> go_home(const std::string& reason);
+  void enter(MissionPhase phase, std::string reason);
+
+  Strip strip_;
+  std::vector<Local> points_;
+  ApproachRules rules_;
+  MissionPhase phase_ = MissionPhase::BuiltInTest;
+  std::string reason_ = "waits until everybody is fine";
+  std::size_t reached_ = 0;
+};
+
+}  // namespace reconnaissance

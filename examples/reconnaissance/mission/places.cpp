@@ -1,0 +1,58 @@
+#include "places.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "../flight/angles.hpp"
+#include "skein/error.hpp"
+
+namespace reconnaissance {
+namespace {
+
+/// Exactly so many numbers.
+std::vector<double> numbers_in(const std::string& text, std::size_t count, const char* what) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  if (words.eof() && numbers.size() == count) return numbers;
+  throw skein::InvalidArgument("'" + text + "' is no " + what);
+}
+
+Geodetic place(const std::vector<double>& numbers, const std::string& text) {
+  const Geodetic place{numbers[0], numbers[1], numbers[2]};
+  if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
+    throw skein::InvalidArgument("'" + text +
+                                 "' is no place: a latitude is -90 to 90, a longitude -180 to 180");
+  return place;
+}
+
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream list(text);
+  for (std::string part; std::getline(list, part, separator);) {
+    const auto begin = part.find_first_not_of(" \t\n");
+    if (begin == std::string::npos) continue;
+    parts.push_back(part.substr(begin, part.find_last_not_of(" \t\n") + 1 - begin));
+  }
+  return parts;
+}
+
+}  // namespace
+
+RunwayText parse_runway(const std::string& text) {
+  const auto numbers =
+      numbers_in(text, 5, "runway; write `latitude longitude height course length`");
+  if (numbers[4] <= 0) throw skein::InvalidArgument("'" + text + "': a runway has a length");
+  return {place(numbers, text), course(radians(numbers[3])), numbers[4]};
+}
+
+std::vector<Geodetic> parse_points(const std::string& text) {
+  std::vector<Geodetic> points;
+  for (const std::string& part : parts_of(text, ';'))
+    points.push_back(place(numbers_in(part, 3, "point; write `latitude longitude height`"), part));
+  return points;
+}
+
+std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }
+
+}  // namespace reconnaissance

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../flight/pilot.hpp"
+#include "../geodesy/local_frame.hpp"
+
+namespace reconnaissance {
+
+/// A runway as a profile names it: `latitude longitude height course length`, in degrees and
+/// metres. Throws skein::InvalidArgument with what is wrong.
+struct RunwayText {
+  Geodetic threshold{};
+  double course_rad = 0;
+  double length_m = 0;
+};
+RunwayText parse_runway(const std::string& text);
+
+/// Points as a profile names them: `latitude longitude height`, in degrees and metres above the
+/// geoid, separated by semicolons. Throws likewise.
+std::vector<Geodetic> parse_points(const std::string& text);
+
+/// Names that are separated by commas.
+std::vector<std::string> parse_names(const std::string& text);
+
+}  // namespace reconnaissance

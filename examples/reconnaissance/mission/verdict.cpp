@@ -1,0 +1,145 @@
+#include "verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace reconnaissance {
+namespace {
+
+// Nearer to the runway an aircraft may be low.
+constexpr double kAirfield_m = 5000;
+constexpr double kStanding_m_s = 0.5;
+
+double level_m(const Local& one, const Local& other) {
+  return std::hypot(one.north_m - other.north_m, one.east_m - other.east_m);
+}
+
+std::string escaped(const std::string& text, bool xml) {
+  std::string result;
+  for (const char c : text) {
+    if (xml && c == '&') {
+      result += "&amp;";
+    } else if (xml && c == '<') {
+      result += "&lt;";
+    } else if (xml && c == '"') {
+      result += "&quot;";
+    } else if (!xml && (c == '"' || c == '\\')) {
+      result += {'\\', c};
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      result += ' ';
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string json(const std::string& text) { return '"' + escaped(text, false) + '"'; }
+std::string xml(const std::string& text) { return '"' + escaped(text, true) + '"'; }
+
+}  // namespace
+
+Judge::Judge(const PassConditions& conditions, std::vector<Local> points, const Local& aim)
+    : conditions_(conditions),
+      points_(std::move(points)),
+      aim_(aim),
+      nearest_m_(points_.size(), std::numeric_limits<double>::infinity()) {}
+
+void Judge::see(const Sample& sample) {
+  if (!took_off_s_ && !sample.on_ground) took_off_s_ = sample.time_s;
+  if (took_off_s_ && !touched_) {
+    measure_points(sample);
+    measure_clearance(sample);
+    distance_m_ += sample.ground_speed_m_s * std::max(0.0, sample.time_s - last_.time_s);
+    stalled_ = stalled_ || sample.stalled;
+    if (sample.on_ground) touched_ = sample.position;
+  }
+  if (touched_ && !stood_s_ && sample.ground_speed_m_s < kStanding_m_s) stood_s_ = sample.time_s;
+  if (!stood_s_ || *stood_s_ == sample.time_s) last_ = sample;
+}
+
+void Judge::measure_points(const Sample& sample) {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    nearest_m_[i] = std::min(nearest_m_[i], level_m(sample.position, points_[i]));
+}
+
+void Judge::measure_clearance(const Sample& sample) {
+  if (level_m(sample.position, aim_) > kAirfield_m)
+    clearance_m_ = std::min(clearance_m_, sample.height_above_ground_m);
+}
+
+Verdict Judge::conclude(const std::string& ended) const {
+  Verdict verdict;
+  verdict.flown = standing();
+  verdict.duration_s = took_off_s_ ? duration_s() : 0;
+  verdict.distance_m = distance_m_;
+  const auto check = [&](const char* name, bool passed, std::string text) {
+    verdict.checks.push_back({name, passed, std::move(text)});
+  };
+  check("flown to its end", standing(),
+        standing() ? "the aircraft has landed, and stands"
+                   : (ended.empty() ? "the aircraft has not landed" : ended));
+  check("duration", took_off_s_ && !too_long(),
+        fmt::format("{:.0f} s in the air and on the runway, at most {:.0f}", verdict.duration_s,
+                    conditions_.longest_s));
+  const auto reached = std::count_if(nearest_m_.begin(), nearest_m_.end(), [&](double nearest_m) {
+    return nearest_m <= conditions_.points_within_m;
+  });
+  check("points", static_cast<std::size_t>(reached) == points_.size(),
+        fmt::format("{} of {} points passed within {:.0f} m", reached, points_.size(),
+                    conditions_.points_within_m));
+  check("clearance", clearance_m_ >= conditions_.least_clearance_m,
+        fmt::format("{:.0f} m above ground at the lowest place of the way, at least {:.0f}",
+                    std::isinf(clearance_m_) ? 0 : clearance_m_, conditions_.least_clearance_m));
+  check("no stall", !stalled_, stalled_ ? "the aircraft has stalled" : "it never stalled");
+  if (touched_) {
+    const double from_aim = level_m(*touched_, aim_);
+    check("landing", from_aim <= conditions_.landed_within_m,
+          fmt::format("touched down {:.0f} m from the aiming point, at most {:.0f}", from_aim,
+                      conditions_.landed_within_m));
+  } else {
+    check("landing", false, "did not touch down");
+  }
+  check("fuel", last_.fuel_kg >= conditions_.least_fuel_kg,
+        fmt::format("{:.1f} kg left, at least {:.1f}", last_.fuel_kg, conditions_.least_fuel_kg));
+  const auto failed = std::find_if(verdict.checks.begin(), verdict.checks.end(),
+                                   [](const Check& each) { return !each.passed; });
+  verdict.passed = failed == verdict.checks.end();
+  if (!verdict.passed) verdict.reason = failed->name + ": " + failed->text;
+  return verdict;
+}
+
+std::string to_json(const Verdict& verdict, const std::string& mission) {
+  std::string text = fmt::format(
+      "{{\n  \"mission\": {},\n  \"verdict\": \"{}\",\n  \"flown\": {},\n  \"reason\": {},\n"
+      "  \"duration_s\": {:.2f},\n  \"distance_m\": {:.0f},\n  \"checks\": [",
+      json(mission), verdict.passed ? "passed" : "failed", verdict.flown, json(verdict.reason),
+      verdict.duration_s, verdict.distance_m);
+  const char* separator = "\n";
+  for (const Check& check : verdict.checks) {
+    text += fmt::format("{}    {{\"name\": {}, \"passed\": {}, \"text\": {}}}", separator,
+                        json(check.name), check.passed, json(check.text));
+    separator = ",\n";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+std::string to_junit(const Verdict& verdict, const std::string& mission) {
+  const auto failures = std::count_if(verdict.checks.begin(), verdict.checks.end(),
+                                      [](const Check& check) { return !check.passed; });
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name={} tests=\"{}\" "
+      "failures=\"{}\" time=\"{:.2f}\">\n",
+      xml(mission), verdict.checks.size(), failures, verdict.duration_s);
+  for (const Check& check : verdict.checks) {
+    text += fmt::format("  <testcase classname={} name={}", xml(mission), xml(check.name));
+    text +=
+        check.passed ? "/>\n" : fmt::format("><failure message={}/></testcase>\n", xml(check.text));
+  }
+  return text + "</testsuite>\n";
+}
+
+}  // namespace reconnaissance

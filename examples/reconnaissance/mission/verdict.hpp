@@ -1,0 +1,85 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../geodesy/local_frame.hpp"
+
+namespace reconnaissance {
+
+/// What a mission must keep to pass.
+struct PassConditions {
+  double longest_s = 3600;         ///< From take-off to standing.
+  double least_clearance_m = 100;  ///< Above ground, where it is more than 5 km from the runway.
+  double points_within_m = 400;    ///< How near each point must be passed, on the map.
+  double landed_within_m = 400;    ///< Between aiming point and touch-down.
+  double least_fuel_kg = 5;        ///< When it stands.
+};
+
+/// One condition, and whether it is kept.
+struct Check {
+  std::string name;
+  bool passed = false;
+  std::string text;  ///< What was found, and what is wanted.
+};
+
+struct Verdict {
+  bool flown = false;   ///< To its end: the aircraft stands after a landing.
+  bool passed = false;  ///< And all conditions are kept.
+  std::string reason;   ///< Of the first condition that is not kept, or why it was not flown.
+  double duration_s = 0;
+  double distance_m = 0;
+  std::vector<Check> checks;
+};
+
+/// Judges a flight by where the aircraft truly was. A pure object.
+class Judge {
+ public:
+  /// The aircraft at one instant.
+  struct Sample {
+    double time_s = 0;  ///< Of the mission.
+    Local position{};
+    double height_above_ground_m = 0;
+    double ground_speed_m_s = 0;
+    double fuel_kg = 0;
+    bool on_ground = true;
+    bool stalled = false;
+  };
+
+  Judge(const PassConditions& conditions, std::vector<Local> points, const Local& aim);
+
+  void see(const Sample& sample);
+
+  bool airborne() const { return took_off_s_ && !touched_; }
+  /// Whether it has landed, and stands.
+  bool standing() const { return stood_s_.has_value(); }
+  double duration_s() const { return last_.time_s - took_off_s_.value_or(last_.time_s); }
+  bool too_long() const { return duration_s() > conditions_.longest_s; }
+
+  /// The verdict as of now; `ended` says why it is not flown on, if it was not to the end.
+  Verdict conclude(const std::string& ended = "") const;
+
+ private:
+  void measure_points(const Sample& sample);
+  void measure_clearance(const Sample& sample);
+
+  PassConditions conditions_;
+  std::vector<Local> points_;
+  Local aim_;
+  std::vector<double> nearest_m_;
+  Sample last_{};
+  std::optional<double> took_off_s_;
+  std::optional<double> stood_s_;
+  std::optional<Local> touched_;
+  double distance_m_ = 0;
+  double clearance_m_ = std::numeric_limits<double>::infinity();
+  bool stalled_ = false;
+};
+
+/// As JSON, and as JUnit's XML for build servers: a test case for each check.
+std::string to_json(const Verdict& verdict, const std::string& mission);
+std::string to_junit(const Verdict& verdict, const std::string& mission);
+
+}  // namespace reconnaissance

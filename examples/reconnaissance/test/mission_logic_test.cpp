@@ -1,0 +1,164 @@
+// The course of a mission, its verdict, and how a profile names places.
+#include <catch2/catch.hpp>
+
+#include "../flight/angles.hpp"
+#include "../mission/conduct.hpp"
+#include "../mission/places.hpp"
+#include "../mission/verdict.hpp"
+#include "skein/error.hpp"
+
+using namespace reconnaissance;
+using Catch::Contains;
+
+namespace {
+
+const Strip kStrip{{0, 0, 180}, radians(90), 1500};
+
+Conduct::Situation flying(std::size_t leg, std::size_t legs) {
+  return {true, Pilot::Mode::Following, 900, leg, legs};
+}
+
+/// A flight over one point, 20 km north and back.
+struct Flown {
+  explicit Flown(const PassConditions& conditions = {})
+      : judge(conditions, {{20'000, 0, 900}}, {0, 150, 180}) {}
+
+  void fly(double lowest_m = 500, double nearest_m = 0, double touched_m = 200) {
+    see(0, {0, 0, 180}, 0, 0, true);
+    see(30, {0, 500, 190}, 10, 60, false);
+    for (double north = 0; north <= 20'000; north += 1000)
+      see(time_s + 10, {north, nearest_m, 0}, north > 9000 ? lowest_m : 500, 60, false);
+    for (double north = 20'000; north >= 0; north -= 1000)
+      see(time_s + 10, {north, nearest_m, 0}, 500, 60, false);
+    see(time_s + 30, {0, 150 + touched_m, 180}, 0, 40, true);
+    see(time_s + 15, {0, 700, 180}, 0, 0.1, true);
+  }
+
+  void see(double at_s, const Local& position, double height_m, double speed, bool on_ground) {
+    time_s = at_s;
+    judge.see({time_s, position, height_m, speed, 40, on_ground, false});
+  }
+
+  Judge judge;
+  double time_s = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a mission goes through its phases, each begun by what has been reached") {
+  Conduct conduct(kStrip, {{5000, 0, 900}, {9000, 0, 900}, {9000, 4000, 900}});
+  CHECK_FALSE(conduct.decide({}));
+  CHECK(conduct.phase() == MissionPhase::BuiltInTest);
+  CHECK(std::holds_alternative<Conduct::TakeOff>(*conduct.decide({.all_fine = true})));
+  CHECK(conduct.phase() == MissionPhase::TakeOff);
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::TakingOff, 200}));
+  auto order = conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Follow>(*order).through.size() == 1);
+  CHECK(conduct.phase() == MissionPhase::Ingress);
+  CHECK_FALSE(conduct.decide(flying(0, 0)));  // it is not flown yet
+  CHECK_FALSE(conduct.decide(flying(0, 1)));
+  order = conduct.decide(flying(1, 1));
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Follow>(*order).through.size() == 2);
+  CHECK(conduct.points_reached() == 1);
+  CHECK_FALSE(conduct.decide(flying(1, 2)));
+  CHECK(conduct.points_reached() == 2);
+  order = conduct.decide(flying(2, 2));
+  REQUIRE(order);
+  CHECK(conduct.points_reached() == 3);
+  CHECK(conduct.phase() == MissionPhase::Egress);
+  CHECK(std::get<Conduct::Land>(*order).through.size() == 3);
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Approaching, 400, 1, 3}));
+  CHECK(conduct.phase() == MissionPhase::Egress);
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Approaching, 400, 2, 3}));
+  CHECK(conduct.phase() == MissionPhase::Landing);
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Rolling, 180, 3, 3}));
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Landed, 180, 3, 3}));
+  CHECK(conduct.phase() == MissionPhase::Complete);
+}
+
+TEST_CASE("where a route is refused the mission goes home, and says why") {
+  Conduct conduct(kStrip, {{5000, 0, 900}});
+  conduct.decide({.all_fine = true});
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  const auto order = conduct.refused("no route to the point");
+  REQUIRE(order);
+  CHECK(std::holds_alternative<Conduct::Land>(*order));
+  CHECK(conduct.reason() == "no route to the point");
+  CHECK_FALSE(conduct.refused("no route home"));
+  CHECK(conduct.phase() == MissionPhase::Aborted);
+}
+
+TEST_CASE("the way down leads along the centre line to the aiming point") {
+  const auto way = approach(kStrip, {});
+  REQUIRE(way.size() == 3);
+  for (const Local& point : way) CHECK(point.north_m == Approx(0).margin(1e-6));
+  CHECK(way[1].east_m == Approx(-4000));
+  CHECK(way[1].height_m - 180 == Approx(4150 * std::tan(radians(4))).epsilon(1e-3));
+  CHECK(way[2].east_m == Approx(150));
+  CHECK(way[2].height_m == 180);
+}
+
+TEST_CASE("a flight that keeps all conditions passes") {
+  Flown flown;
+  flown.fly();
+  CHECK(flown.judge.standing());
+  const Verdict verdict = flown.judge.conclude();
+  INFO(to_json(verdict, "test"));
+  CHECK(verdict.flown);
+  CHECK(verdict.passed);
+  CHECK(verdict.reason.empty());
+}
+
+TEST_CASE("each condition that is not kept fails the flight, and is named") {
+  const auto reason_of = [](const auto& fly, const PassConditions& conditions = {}) {
+    Flown flown(conditions);
+    fly(flown);
+    const Verdict verdict = flown.judge.conclude();
+    CHECK(verdict.flown);
+    CHECK_FALSE(verdict.passed);
+    return verdict.reason;
+  };
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(50); }), Contains("clearance: 50 m"));
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 900); }), Contains("points: 0 of 1"));
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 0, 900); }),
+             Contains("landing: touched down 900"));
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.longest_s = 100}), Contains("duration"));
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.least_fuel_kg = 50}),
+             Contains("fuel: 40.0 kg"));
+}
+
+TEST_CASE("what was not flown to its end is told as such") {
+  Flown flown;
+  flown.see(0, {0, 0, 180}, 0, 0, true);
+  const Verdict verdict = flown.judge.conclude("the mission's time stands still");
+  CHECK_FALSE(verdict.flown);
+  CHECK_FALSE(verdict.passed);
+  CHECK_THAT(verdict.reason, Contains("the mission's time stands still"));
+}
+
+TEST_CASE("the verdict is JSON and JUnit, whatever its texts hold") {
+  Verdict verdict;
+  verdict.reason = "a \"quoted\" reason\n<";
+  verdict.checks = {{"one", true, "fine"}, {"two", false, "a < \"b\" & c"}};
+  CHECK_THAT(to_json(verdict, "m"), Contains("\"reason\": \"a \\\"quoted\\\" reason <\""));
+  const std::string junit = to_junit(verdict, "m & n");
+  CHECK_THAT(junit, Contains("tests=\"2\" failures=\"1\""));
+  CHECK_THAT(junit, Contains("name=\"m &amp; n\""));
+  CHECK_THAT(junit, Contains("<failure message=\"a &lt; &quot;b&quot; &amp; c\"/>"));
+}
+
+TEST_CASE("places are read from a profile, and what is no place is refused") {
+  const auto runway = parse_runway("53.3 27.6 180 450 1500");
+  CHECK(runway.threshold.latitude_deg == 53.3);
+  CHECK(runway.course_rad == Approx(radians(90)));
+  const auto points = parse_points(" 53.4 27.5 900; 53.5 27.7 900 ;\n 53.6 27.8 700;");
+  REQUIRE(points.size() == 3);
+  CHECK(points[2].height_m == 700);
+  CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
+  CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_points("53.4 27.5 900 1"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_points("93.4 27.5 900"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_points("53.4 east 900"), skein::InvalidArgument);
+}

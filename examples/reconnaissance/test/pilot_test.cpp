@@ -1,0 +1,125 @@
+// A whole flight, from standing to standing, with the point mass and sensors that err.
+#include "../flight/pilot.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "../flight/angles.hpp"
+
+using namespace reconnaissance;
+
+namespace {
+
+constexpr double kStep_s = 0.02;
+
+Guidance l1() {
+  return {
+      [](const Motion& motion, const Line& line) { return l1_bank_rad({}, motion, line); },
+      [](const Motion& motion, const Circle& circle) { return l1_bank_rad({}, motion, circle); }};
+}
+
+/// An aircraft and its pilot.
+struct Flight {
+  explicit Flight(const Wind& wind_ = {}) : wind(wind_) {
+    aircraft.position = strip.threshold;
+    aircraft.heading_rad = strip.course_rad;
+    aircraft.fuel_kg = 80;
+  }
+
+  void step() {
+    std::array<std::optional<Measurement>, 3> sets;
+    for (std::size_t i = 0; i < sets.size(); ++i)
+      sets[i] = models[i].measure(aircraft, kStep_s, random);
+    const Pilot::Sight sight{*voter.vote(sets, kStep_s),
+                             aircraft.position.height_m - strip.threshold.height_m,
+                             aircraft.on_ground};
+    const Demand demand = pilot.fly(sight);
+    aircraft = advance(airframe, aircraft, demand, wind, strip.threshold.height_m, kStep_s);
+    time_s += kStep_s;
+    REQUIRE_FALSE(aircraft.stalled);
+  }
+
+  template <class Until>
+  bool fly_until(const Until& until, double longest_s = 600) {
+    for (const double begin_s = time_s; time_s - begin_s < longest_s; step())
+      if (until()) return true;
+    return false;
+  }
+
+  double height_m() const { return aircraft.position.height_m - strip.threshold.height_m; }
+
+  Airframe airframe;
+  Strip strip{{0, 0, 180}, radians(80), 1500};
+  Wind wind;
+  Aircraft aircraft;
+  std::array<SensorModel, 3> models;
+  Voter voter;
+  Random random{11};
+  Pilot pilot{FlightRules{}, l1()};
+  double time_s = 0;
+};
+
+}  // namespace
+
+TEST_CASE("it takes off, flies its legs, and lands on the runway, in wind from each side") {
+  const double wind_from = radians(GENERATE(80, 170, 350));
+  Flight flight({-5 * std::cos(wind_from), -5 * std::sin(wind_from), 0});
+  REQUIRE(flight.pilot.take_off(flight.strip).empty());
+  REQUIRE(flight.fly_until([&] { return flight.height_m() > 150; }));
+  CHECK(flight.pilot.mode() == Pilot::Mode::TakingOff);
+
+  const Strip& strip = flight.strip;
+  const Local here = flight.aircraft.position;
+  REQUIRE(
+      flight.pilot.follow({here, {6000, 6000, 900}, {9000, 0, 900}, {6000, -6000, 700}}).empty());
+  double nearest_m = 1e9;
+  REQUIRE(flight.fly_until([&] {
+    nearest_m = std::min(nearest_m, std::hypot(flight.aircraft.position.north_m - 9000,
+                                               flight.aircraft.position.east_m));
+    return flight.pilot.mode() == Pilot::Mode::Waiting;
+  }));
+  CHECK(flight.pilot.leg() == 3);
+  CHECK(nearest_m < 400);
+  CHECK(flight.aircraft.position.height_m == Approx(700).margin(25));
+
+  const Local aim = on_centre_line(strip, 150, 0);
+  REQUIRE(flight.pilot
+              .land({flight.aircraft.position, on_centre_line(strip, -9000, 500),
+                     on_centre_line(strip, -4000, 4150 * std::tan(radians(4))), aim},
+                    strip)
+              .empty());
+  REQUIRE(flight.fly_until([&] { return flight.aircraft.on_ground; }));
+  const Local touched = flight.aircraft.position;
+  INFO("touched down " << touched.north_m << " m north, " << touched.east_m
+                       << " m east of the threshold");
+  const double beyond_m =
+      touched.north_m * std::cos(strip.course_rad) + touched.east_m * std::sin(strip.course_rad);
+  const double right_m =
+      touched.east_m * std::cos(strip.course_rad) - touched.north_m * std::sin(strip.course_rad);
+  CHECK(beyond_m > 0);
+  CHECK(beyond_m < 600);
+  CHECK(std::abs(right_m) < 20);
+  REQUIRE(flight.fly_until([&] { return flight.pilot.mode() == Pilot::Mode::Landed; }, 60));
+  CHECK(flight.aircraft.north_m_s < 0.5);
+}
+
+TEST_CASE("after its route it waits in a circle at its end, at its height") {
+  Flight flight;
+  flight.pilot.take_off(flight.strip);
+  flight.fly_until([&] { return flight.height_m() > 150; });
+  REQUIRE(flight.pilot.follow({flight.aircraft.position, {4000, 4000, 600}}).empty());
+  REQUIRE(flight.fly_until([&] { return flight.pilot.mode() == Pilot::Mode::Waiting; }));
+  flight.fly_until([] { return false; }, 300);
+  CHECK(std::hypot(flight.aircraft.position.north_m - 4000,
+                   flight.aircraft.position.east_m - 4000) < 1500);
+  CHECK(flight.aircraft.position.height_m == Approx(600).margin(20));
+}
+
+TEST_CASE("orders that cannot be obeyed are refused with the reason") {
+  Flight flight;
+  CHECK(flight.pilot.follow({{}, {1000, 0, 500}}) == "the aircraft is on the ground");
+  CHECK(flight.pilot.take_off(flight.strip).empty());
+  CHECK(flight.pilot.take_off(flight.strip) == "the aircraft is not parked");
+  CHECK(flight.pilot.follow({Local{}}) == "a route has two points or more");
+  CHECK(flight.pilot.mode() == Pilot::Mode::TakingOff);
+}
