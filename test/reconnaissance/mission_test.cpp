@@ -1,0 +1,60 @@
+// All thirteen fly, on both vendors; the verdict is what the conditions in the profile make it.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "../mission/mission_run.hpp"
+#include "../tools/places.hpp"
+
+using namespace skein::test;
+using Catch::Contains;
+
+namespace {
+
+const std::filesystem::path kMission = project_file("mission_profiles/reconnaissance.xml");
+
+/// A few minutes of the mission: one point, near the runway.
+const std::vector<std::string> kShort{"--variable", "points=53.3250 27.4900 600"};
+
+std::vector<std::string> with(std::vector<std::string> arguments,
+                              const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("thirteen on two vendors take off, fly over a point, and land; the verdict is written") {
+  const MissionRun run(kMission, kShort);
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  for (const char* phase : {"TakeOff", "Ingress", "Egress", "Landing", "Complete"})
+    CHECK_THAT(run.output(), Contains(phase));
+  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  CHECK(verdict["verdict"] == "passed");
+  CHECK(verdict["checks"].size() == 7);
+  CHECK_THAT(text_of(run.file("reconnaissance.junit.xml")), Contains("failures=\"0\""));
+}
+
+TEST_CASE("a flight that does not keep a condition has failed, which is not a mission that could not fly") {
+  const MissionRun run(kMission, with(kShort, {"--set", "ground_station.Least fuel=79"}));
+  INFO(run.output());
+  CHECK(run.exit_code() == 10);
+  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  CHECK(verdict["verdict"] == "failed");
+  CHECK(verdict["flown"] == true);
+  CHECK_THAT(verdict["reason"].get<std::string>(), Contains("fuel"));
+}
+
+TEST_CASE("a profile that is wrong is refused, and nothing flies") {
+  const MissionRun run(kMission, with(kShort, {"--variable", "vendor_b=nobody"}));
+  CHECK(run.exit_code() == 78);
+  CHECK_FALSE(exists(run.file("reconnaissance.json")));
+}
