@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../flight/angles.hpp"
@@ -16,6 +17,8 @@ namespace {
 constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 // Gusts of light turbulence change within some seconds.
 constexpr double kGustTime_s = 5;
+// Below this height vertical gusts fade.
+constexpr double kGustsFrom_m = 30;
 // Of the radar that looks downwards.
 constexpr double kRadarHeightError_m = 0.3;
 
@@ -112,8 +115,10 @@ Wind FlightSimulator::blow() {
   gust_ = {gust_.north_m_s * kept + fresh * random_.normal(),
            gust_.east_m_s * kept + fresh * random_.normal(),
            gust_.up_m_s * kept + fresh / 2 * random_.normal()};
+  // No wind blows into the ground or out of it.
+  const double height_m = aircraft_.position.height_m - runway_.threshold.height_m;
   return {mean_wind_.north_m_s + gust_.north_m_s, mean_wind_.east_m_s + gust_.east_m_s,
-          gust_.up_m_s};
+          gust_.up_m_s * std::min(1.0, height_m / kGustsFrom_m)};
 }
 
 void FlightSimulator::publish(Tick tick) {

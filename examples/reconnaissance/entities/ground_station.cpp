@@ -145,8 +145,7 @@ void GroundStation::show(const recon::MissionStatus& status) {
     phase_ = status.phase;
   }
   changed_.notify_all();
-  fmt::print("{}  {}: {}\n", clock_of(status.tick), to_string(status.phase),
-             status.reason);
+  fmt::print("{}  {}: {}\n", clock_of(status.tick), to_string(status.phase), status.reason);
   std::fflush(stdout);
 }
 

@@ -83,6 +83,16 @@ void move(Aircraft& aircraft, const Wind& wind, double ground_m, double seconds)
   if (!aircraft.on_ground) touch_down(aircraft, wind);
 }
 
+/// Its motion over ground goes on, and makes that through the air: it drifts no sooner than it has
+/// turned away.
+void leave_ground(Aircraft& aircraft, const Wind& wind, double ground_m_s) {
+  const double north = ground_m_s * std::cos(aircraft.heading_rad) - wind.north_m_s;
+  const double east = ground_m_s * std::sin(aircraft.heading_rad) - wind.east_m_s;
+  aircraft.heading_rad = course(std::atan2(east, north));
+  aircraft.airspeed_m_s = std::hypot(north, east);
+  aircraft.on_ground = false;
+}
+
 /// Whether it is fast enough, and told, to leave the ground.
 bool lifts_off(const Airframe& airframe, const Aircraft& aircraft, const Demand& demand) {
   return demand.climb_rad > 0 &&
@@ -90,22 +100,24 @@ bool lifts_off(const Airframe& airframe, const Aircraft& aircraft, const Demand&
              kFlyingAgain * stall_speed_m_s(airframe, mass_kg(airframe, aircraft), 0);
 }
 
+/// On its wheels, which the wind does not move: the speed over ground is what goes on.
 void roll(const Airframe& airframe, Aircraft& aircraft, const Demand& demand, const Wind& wind,
           double seconds) {
   const double mass = mass_kg(airframe, aircraft);
   const double tailwind = tailwind_m_s(aircraft, wind);
-  if (demand.airspeed_m_s > aircraft.airspeed_m_s) {
-    const double thrust =
-        thrust_n(airframe, aircraft,
-                 mass * (demand.airspeed_m_s - aircraft.airspeed_m_s) / airframe.speed_time_s);
+  double ground = std::hypot(aircraft.north_m_s, aircraft.east_m_s);
+  aircraft.airspeed_m_s = ground - tailwind;
+  const double missing = demand.airspeed_m_s - aircraft.airspeed_m_s;
+  if (demand.airspeed_m_s > 0 && missing > 0) {
+    const double thrust = thrust_n(airframe, aircraft, mass * missing / airframe.speed_time_s);
     burn(airframe, aircraft, thrust, seconds);
-    aircraft.airspeed_m_s += thrust / mass * seconds;
+    ground += thrust / mass * seconds;
   } else {
-    aircraft.airspeed_m_s =
-        std::max(demand.airspeed_m_s, aircraft.airspeed_m_s - airframe.braking_m_s2 * seconds);
+    const double wanted = demand.airspeed_m_s > 0 ? demand.airspeed_m_s + tailwind : 0;
+    ground = std::max({0.0, wanted, ground - airframe.braking_m_s2 * seconds});
   }
-  aircraft.airspeed_m_s = std::max(aircraft.airspeed_m_s, -tailwind);  // it does not roll back
-  aircraft.on_ground = !lifts_off(airframe, aircraft, demand);
+  aircraft.airspeed_m_s = ground - tailwind;
+  if (lifts_off(airframe, aircraft, demand)) leave_ground(aircraft, wind, ground);
 }
 
 double turn_rate_rad_s(const Aircraft& aircraft) {
@@ -173,12 +185,15 @@ Aircraft advance_kinematic(const Airframe& airframe, const Aircraft& aircraft, c
                            const Wind& wind, double ground_m, double seconds) {
   Aircraft next = aircraft;
   const Demand wanted = within_limits(airframe, demand);
-  const double drag = drag_n(airframe, mass_kg(airframe, aircraft),
-                             std::max(aircraft.airspeed_m_s, kSlowest_m_s), 1);
-  burn(airframe, next, drag, seconds);
-  next.airspeed_m_s =
-      limited_step(next.airspeed_m_s, wanted.airspeed_m_s, airframe.braking_m_s2, seconds);
-  if (next.on_ground) next.on_ground = !lifts_off(airframe, next, wanted);
+  if (next.on_ground) {
+    roll(airframe, next, wanted, wind, seconds);
+  } else {
+    const double drag = drag_n(airframe, mass_kg(airframe, aircraft),
+                               std::max(aircraft.airspeed_m_s, kSlowest_m_s), 1);
+    burn(airframe, next, drag, seconds);
+    next.airspeed_m_s =
+        limited_step(next.airspeed_m_s, wanted.airspeed_m_s, airframe.braking_m_s2, seconds);
+  }
   if (!next.on_ground) {
     next.bank_rad =
         limited_step(next.bank_rad, wanted.bank_rad, airframe.greatest_bank_rate_rad_s, seconds);

@@ -79,8 +79,9 @@ double turn_radius_m(double airspeed_m_s, double bank_rad);
 Aircraft advance(const Airframe& airframe, const Aircraft& aircraft, const Demand& demand,
                  const Wind& wind, double ground_m, double seconds);
 
-/// The same without forces: speed, climb and bank follow the demand at once within the limits of
-/// their rates, and fuel is that of level flight. Quick and predictable, for tests of others.
+/// The same without forces in the air: speed, climb and bank follow the demand at once within the
+/// limits of their rates, and fuel is that of level flight. Quick and predictable, for tests of
+/// others.
 Aircraft advance_kinematic(const Airframe& airframe, const Aircraft& aircraft, const Demand& demand,
                            const Wind& wind, double ground_m, double seconds);
 
