@@ -103,20 +103,20 @@ int GroundStation::run(const std::stop_token& told_to_end) {
       "{} after {:.0f} s in the air and {:.1f} km; it took {:.1f} s, {:.0f} ticks a second\n",
       verdict.passed ? "passed" : (verdict.flown ? "FAILED" : "NOT FLOWN"), verdict.duration_s,
       verdict.distance_m / 1000, took.count(), static_cast<double>(last_tick_) / took.count());
+  std::fflush(stdout);
   write(verdict);
-  if (!verdict.flown) return kNotFlown;
-  return verdict.passed ? kPassed : kFailed;
+  return exit_code(verdict);
 }
 
 std::string GroundStation::await_end(const std::stop_token& told_to_end) {
   std::unique_lock lock(mutex_);
   for (Tick seen = -1;;) {
     const auto is_over = [&] {
-      return judge_.standing() || phase_ == recon::Phase::Aborted || judge_.too_long();
+      return is_complete() || phase_ == recon::Phase::Aborted || judge_.too_long();
     };
     const bool moved = changed_.wait_for(lock, told_to_end, patience_,
                                          [&] { return is_over() || last_tick_ != seen; });
-    if (judge_.standing()) return "";
+    if (is_complete()) return "";
     if (told_to_end.stop_requested()) return "the ground station was told to end";
     if (phase_ == recon::Phase::Aborted) return "the mission was aborted";
     if (judge_.too_long()) return "the flight takes too long";
@@ -127,10 +127,18 @@ std::string GroundStation::await_end(const std::stop_token& told_to_end) {
   }
 }
 
+/// The mission manager has a moment to say so, too.
+bool GroundStation::is_complete() const {
+  constexpr Tick kMoment = 250;
+  return judge_.standing() &&
+         (phase_ == recon::Phase::Complete || last_tick_ > last_moving_tick_ + kMoment);
+}
+
 void GroundStation::see(const recon::Truth& truth) {
   {
     std::lock_guard lock(mutex_);
     last_tick_ = truth.tick;
+    if (!judge_.standing()) last_moving_tick_ = truth.tick;
     judge_.see({std::chrono::duration<double>(time_of(truth.tick)).count(),
                 local(frame_, truth.position), truth.height_above_ground_m, truth.ground_speed_m_s,
                 truth.fuel_kg, truth.on_ground, truth.stalled});

@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "skein/error.hpp"
+
 namespace reconnaissance {
 namespace {
 
@@ -72,8 +74,14 @@ void TimeKeeper::begin(Tick tick) {
     }
   }
   const recon::MissionTime time{run_, tick, std::chrono::nanoseconds(time_of(tick)).count()};
-  for (auto& [period, publisher] : time_)
-    if (is_due(period, tick)) publisher.publish(time);
+  for (auto& [period, publisher] : time_) {
+    if (!is_due(period, tick)) continue;
+    try {
+      publisher.publish(time);
+    } catch (const skein::Error& error) {  // who should have had it is awaited from now on
+      fmt::print(stderr, "time: tick {} could not be told: {}\n", tick, error.what());
+    }
+  }
 }
 
 std::optional<skein::Instant> TimeKeeper::ready() const {

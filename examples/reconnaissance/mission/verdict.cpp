@@ -112,6 +112,11 @@ Verdict Judge::conclude(const std::string& ended) const {
   return verdict;
 }
 
+int exit_code(const Verdict& verdict) {
+  if (!verdict.flown) return kNotFlown;
+  return verdict.passed ? kPassed : kFailed;
+}
+
 std::string to_json(const Verdict& verdict, const std::string& mission) {
   std::string text = fmt::format(
       "{{\n  \"mission\": {},\n  \"verdict\": \"{}\",\n  \"flown\": {},\n  \"reason\": {},\n"

@@ -78,6 +78,13 @@ class Judge {
   bool stalled_ = false;
 };
 
+/// The exit codes of a mission that began. They differ from those of the launcher, which say that a
+/// mission was refused, could not start, or lost somebody whom it needs.
+inline constexpr int kPassed = 0;
+inline constexpr int kFailed = 10;    ///< Flown to its end, and not all conditions are kept.
+inline constexpr int kNotFlown = 11;  ///< Not flown to its end.
+int exit_code(const Verdict& verdict);
+
 /// As JSON, and as JUnit's XML for build servers: a test case for each check.
 std::string to_json(const Verdict& verdict, const std::string& mission);
 std::string to_junit(const Verdict& verdict, const std::string& mission);

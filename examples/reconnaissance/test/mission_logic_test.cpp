@@ -109,6 +109,7 @@ TEST_CASE("a flight that keeps all conditions passes") {
   CHECK(verdict.flown);
   CHECK(verdict.passed);
   CHECK(verdict.reason.empty());
+  CHECK(exit_code(verdict) == 0);
 }
 
 TEST_CASE("each condition that is not kept fails the flight, and is named") {
@@ -118,6 +119,7 @@ TEST_CASE("each condition that is not kept fails the flight, and is named") {
     const Verdict verdict = flown.judge.conclude();
     CHECK(verdict.flown);
     CHECK_FALSE(verdict.passed);
+    CHECK(exit_code(verdict) == 10);
     return verdict.reason;
   };
   CHECK_THAT(reason_of([](Flown& f) { f.fly(50); }), Contains("clearance: 50 m"));
@@ -135,6 +137,7 @@ TEST_CASE("what was not flown to its end is told as such") {
   const Verdict verdict = flown.judge.conclude("the mission's time stands still");
   CHECK_FALSE(verdict.flown);
   CHECK_FALSE(verdict.passed);
+  CHECK(exit_code(verdict) == 11);
   CHECK_THAT(verdict.reason, Contains("the mission's time stands still"));
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "../entities/participant.hpp"
@@ -16,6 +17,7 @@
 #include "../entities/time_keeper.hpp"
 #include "flight.idl.hpp"
 #include "skein/error.hpp"
+#include "skein/loopback.hpp"
 
 using namespace reconnaissance;
 using namespace std::chrono_literals;
@@ -71,15 +73,18 @@ class Notes {
   std::vector<std::pair<std::string, Tick>> notes_;
 };
 
-std::unique_ptr<skein::Entity> make_entity(const std::string& name) {
+std::unique_ptr<skein::Entity> make_entity(
+    const std::string& name,
+    std::shared_ptr<skein::dds::Vendor> vendor = skein::dds::load_vendor("loopback")) {
   return std::make_unique<skein::Entity>(
-      skein::EntityOptions{.name = name, .vendor = skein::dds::load_vendor("loopback")});
+      skein::EntityOptions{.name = name, .vendor = std::move(vendor)});
 }
 
 /// One with a process of its own, as it were.
 struct Member {
-  Member(const std::string& name, int rate_hz, Participant::Work work)
-      : entity(make_entity(name)),
+  Member(const std::string& name, int rate_hz, Participant::Work work,
+         std::shared_ptr<skein::dds::Vendor> vendor = skein::dds::load_vendor("loopback"))
+      : entity(make_entity(name, std::move(vendor))),
         participant(std::make_unique<Participant>(*entity, rate_hz, std::move(work))) {
     participant->start();
   }
@@ -91,8 +96,12 @@ struct Member {
 
 /// The keeper of time, with a thread that lets it pass.
 struct Simulator {
-  explicit Simulator(std::size_t expected, Notes& notes_)
-      : entity(make_entity("simulator")), time(*entity, expected, 0), notes(notes_) {
+  explicit Simulator(
+      std::size_t expected, Notes& notes_,
+      std::shared_ptr<skein::dds::Vendor> vendor = skein::dds::load_vendor("loopback"))
+      : entity(make_entity("simulator", std::move(vendor))),
+        time(*entity, expected, 0),
+        notes(notes_) {
     truth.emplace(entity->publisher<recon::Truth>(kTruthEachTick.name, stream_qos()));
     thread = std::jthread([this](const std::stop_token& stop) {
       while (const auto tick = time.await_next(stop)) {
@@ -195,6 +204,21 @@ TEST_CASE("time waits for one that works, and goes on without one that leaves") 
   const Tick left = simulator.time.tick();
   REQUIRE(notes.await("controller", left + 50));
   CHECK(simulator.time.participants() == 1);
+}
+
+TEST_CASE("one that dies without a farewell is out, and time goes on") {
+  Notes notes;
+  skein::SystemClock clock;
+  skein::dds::LoopbackNetwork network(clock);
+  Simulator simulator(2, notes, network.vendor());
+  Member controller(
+      "controller", 50, [&](Tick tick) { notes.note("controller", tick); }, network.vendor());
+  Member navigator(
+      "navigator", 10, [&](Tick tick) { notes.note("navigator", tick); }, network.vendor());
+  REQUIRE(notes.await("navigator", 10));
+  network.kill(navigator.entity->guid());
+  REQUIRE(notes.eventually([&] { return simulator.time.participants() == 1; }));
+  REQUIRE(notes.await("controller", simulator.time.tick() + 50));
 }
 
 TEST_CASE("one that comes back joins at the present tick") {
