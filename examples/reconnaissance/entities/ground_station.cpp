@@ -52,8 +52,7 @@ Judge judge_of(const LocalFrame& frame, const recon::MissionOrder& order,
 
 /// Minutes and seconds of the mission.
 std::string clock_of(Tick tick) {
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time_of(tick)).count();
-  return fmt::format("{:02}:{:02}", seconds / 60, seconds % 60);
+  return fmt::format("{:%M:%S}", std::chrono::floor<std::chrono::seconds>(time_of(tick)));
 }
 
 /// Beside the file at first, then in its place: a reader finds a whole one.

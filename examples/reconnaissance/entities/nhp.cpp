@@ -1,5 +1,6 @@
 #include "nhp.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -70,8 +71,8 @@ std::string Nhp::trouble_of(const std::string& name, Tick wanted) const {
   if (found == health_.end()) return "has not been heard of";
   const recon::Health& health = found->second;
   if (health.tick < wanted) {
-    return fmt::format("is silent since {:.0f} s",
-                       std::chrono::duration<double>(time_of(health.tick)).count());
+    const auto last = std::chrono::floor<std::chrono::seconds>(time_of(health.tick));
+    return fmt::format("has said nothing since {:%M:%S}", last);
   }
   switch (health.condition) {
     case recon::Condition::Fine:
