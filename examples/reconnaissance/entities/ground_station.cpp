@@ -57,8 +57,7 @@ std::string clock_of(Tick tick) {
 
 /// Beside the file at first, then in its place: a reader finds a whole one.
 void write_whole(const std::filesystem::path& file, const std::string& text) {
-  std::filesystem::path beside = file;
-  beside += ".new";
+  const std::filesystem::path beside = file.string() + ".new";
   {
     std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
     stream << text << std::flush;
@@ -67,13 +66,22 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::rename(beside, file);
 }
 
+/// Not only at the end of the flight: throws where the file could not be written.
+void try_writing(const std::filesystem::path& file) {
+  const std::filesystem::path beside = file.string() + ".new";
+  if (!std::ofstream(beside, std::ios::app))
+    throw skein::InvalidArgument("parameter 'Results': " + beside.string() +
+                                 " cannot be written; name a place where it can");
+  std::filesystem::remove(beside);
+}
+
 }  // namespace
 
 GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
       order_(order_of(values)),
       frame_(geodetic(order_.runway.threshold)),
-      results_(values.find<std::string>("Results").value_or("mission")),
+      results_(values.find<std::string>("Results").value_or("reconnaissance")),
       patience_(values.find<skein::Duration>("Patience").value_or(60s)),
       judge_(judge_of(frame_, order_, values)),
       truths_(entity.subscription<recon::Truth>(topic::kTruth.name, stream_qos(),
@@ -84,9 +92,12 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       modes_(entity.subscription<recon::MissionMode>(
           topic::kMode.name, skein::TopicQos::state(),
           [this](const recon::MissionMode& mode) { show(mode); })),
-      member_(entity, values) {}
+      member_(entity, values) {
+  try_writing(results_.string() + ".json");
+}
 
 int GroundStation::run(const std::stop_token& told_to_end) {
+  simulator_ = entity_.connect<recon::IFlightSimulator>({.timeout = kPatience});
   // Before it takes part, and so before time begins: the mission is the same in each run.
   entity_.connect<recon::IMissionManager>({.timeout = kPatience}).begin(order_, -1);
   const auto begun = entity_.clock().now();
@@ -119,11 +130,28 @@ std::string GroundStation::await_end(const std::stop_token& told_to_end) {
     if (told_to_end.stop_requested()) return "the ground station was told to end";
     if (phase_ == recon::Phase::Aborted) return "the mission was aborted";
     if (judge_.too_long()) return "the flight takes too long";
-    if (!moved)
-      return fmt::format("nothing of the aircraft was seen for {:.0f} s",
-                         std::chrono::duration<double>(patience_).count());
+    if (!moved) {
+      lock.unlock();
+      const std::string reason = why_time_stands();
+      lock.lock();
+      if (!reason.empty()) return reason;
+    }
     seen = last_tick_;
   }
+}
+
+/// Empty where somebody has paused it.
+std::string GroundStation::why_time_stands() {
+  std::string reason = fmt::format("nothing of the aircraft was seen for {:.0f} s",
+                                   std::chrono::duration<double>(patience_).count());
+  try {
+    const auto status = simulator_->status();
+    if (status.paused) return "";
+    for (const std::string& name : status.awaited) reason += "; time waits for " + name;
+  } catch (const skein::Error& error) {
+    reason += fmt::format("; the flight simulator: {}", error.what());
+  }
+  return reason;
 }
 
 /// The mission manager has a moment to say so, too.

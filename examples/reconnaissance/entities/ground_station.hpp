@@ -31,11 +31,13 @@ class GroundStation {
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
+  std::string why_time_stands();
   void write(const Verdict& verdict) const;
 
   skein::Entity& entity_;
   recon::MissionOrder order_;
   LocalFrame frame_;
+  std::optional<recon::IFlightSimulator::Proxy> simulator_;
   std::filesystem::path results_;
   skein::Duration patience_;
 

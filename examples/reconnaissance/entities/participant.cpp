@@ -35,8 +35,6 @@ Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
     : entity_(entity),
       work_(std::move(work)),
       told_{entity.options().name, new_life(), period_of(rate_hz), -1, false},
-      acknowledgments_(
-          entity.publisher<recon::Acknowledgment>(kAcknowledgments, acknowledgment_qos())),
       participation_(told_.period_ticks),
       time_(entity.subscription<recon::MissionTime>(
           time_topic(told_.period_ticks), skein::TopicQos::state(),
@@ -48,14 +46,17 @@ Participant::~Participant() {
   thread_.join();
   told_.leaves = true;
   try {
-    acknowledgments_.publish(told_);
-    acknowledgments_.wait_for_acknowledgments(kTellAgain);
+    acknowledgments_->publish(told_);
+    acknowledgments_->wait_for_acknowledgments(kTellAgain);
   } catch (const skein::Error&) {
     // It is missed soon.
   }
 }
 
 void Participant::start() {
+  // Not sooner: the time's keeper counts publishers to know who is there.
+  acknowledgments_.emplace(
+      entity_.publisher<recon::Acknowledgment>(kAcknowledgments, acknowledgment_qos()));
   thread_ = std::jthread([this](const std::stop_token& stop) { take_part(stop); });
 }
 
@@ -115,7 +116,7 @@ void Participant::acknowledge(std::unique_lock<std::mutex>& lock) {
   const recon::Acknowledgment told = told_;
   lock.unlock();
   try {
-    acknowledgments_.publish(told);
+    acknowledgments_->publish(told);
   } catch (const skein::Error& error) {
     fmt::print(stderr, "{}: {}\n", told.participant, error.what());
   }

@@ -68,7 +68,7 @@ class Participant {
   skein::Entity& entity_;
   Work work_;
   recon::Acknowledgment told_;
-  skein::Publisher<recon::Acknowledgment> acknowledgments_;
+  std::optional<skein::Publisher<recon::Acknowledgment>> acknowledgments_;
   MissionClock clock_;
 
   mutable std::mutex mutex_;
