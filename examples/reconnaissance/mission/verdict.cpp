@@ -92,8 +92,10 @@ Verdict Judge::conclude(const std::string& ended) const {
         fmt::format("{} of {} points passed within {:.0f} m", reached, points_.size(),
                     conditions_.points_within_m));
   check("clearance", clearance_m_ >= conditions_.least_clearance_m,
-        fmt::format("{:.0f} m above ground at the lowest place of the way, at least {:.0f}",
-                    std::isinf(clearance_m_) ? 0 : clearance_m_, conditions_.least_clearance_m));
+        std::isinf(clearance_m_)
+            ? "it was never more than 5 km from the runway"
+            : fmt::format("{:.0f} m above ground at the lowest place of the way, at least {:.0f}",
+                          clearance_m_, conditions_.least_clearance_m));
   check("no stall", !stalled_, stalled_ ? "the aircraft has stalled" : "it never stalled");
   if (touched_) {
     const double from_aim = level_m(*touched_, aim_);
