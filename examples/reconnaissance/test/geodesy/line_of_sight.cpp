@@ -1,0 +1,45 @@
+#include "geodesy/line_of_sight.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace reconnaissance;
+
+namespace {
+
+double sea(double, double) { return 0; }
+
+}  // namespace
+
+TEST_CASE("Radio's horizon is 4.12 km times the sum of the roots of the heights in metres") {
+  // Skolnik, Introduction to Radar Systems, 2001, 8.2: d = 4.12 (sqrt h_a + sqrt h_t).
+  CHECK(horizon_m(100, 400, kRadioEarth) == Approx(4120 * 30).epsilon(1e-3));
+  // Light's is some 3.83 km times the root.
+  CHECK(horizon_m(100, 0, kOpticalEarth) == Approx(3830 * 10).epsilon(2e-3));
+  CHECK(earth_drop_m(horizon_m(100, 0, kRadioEarth), kRadioEarth) == Approx(100));
+}
+
+TEST_CASE("Over the sea two places see each other up to the horizon and not beyond") {
+  const Local mast{0, 0, 20};
+  for (const double height : {50.0, 300.0, 1500.0}) {
+    for (const double factor : {kRadioEarth, kOpticalEarth}) {
+      const double horizon = horizon_m(20, height, factor);
+      CHECK(in_sight(mast, {0.98 * horizon, 0, height}, sea, factor));
+      CHECK_FALSE(in_sight(mast, {1.02 * horizon, 0, height}, sea, factor));
+      CHECK_FALSE(in_sight({0, 1.02 * horizon, height}, mast, sea, factor));
+    }
+  }
+}
+
+TEST_CASE("A ridge hides what is behind it, and not what flies above its shadow") {
+  const auto ridge = [](double north_m, double) {
+    return std::max(0.0, 200 - std::abs(north_m - 4000));
+  };
+  const Local radar{0, 0, 10};
+  // The shadow's edge: 10 m at the radar, 200 m at 4 km; at 8 km 390 m, and less than 2 m of
+  // curvature.
+  CHECK_FALSE(in_sight(radar, {8000, 0, 380}, ridge, kRadioEarth));
+  CHECK(in_sight(radar, {8000, 0, 400}, ridge, kRadioEarth));
+  CHECK(in_sight(radar, {3000, 0, 100}, ridge, kRadioEarth));
+  CHECK(in_sight(radar, radar, ridge, kRadioEarth));
+}
