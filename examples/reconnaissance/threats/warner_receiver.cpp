@@ -1,0 +1,42 @@
+#include "threats/warner_receiver.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace reconnaissance {
+namespace {
+
+constexpr double kLight_m_s = 299792458;
+
+}  // namespace
+
+double received_power_w(double radiated_power_w, double radio_frequency_hz, double range_m) {
+  const double wavelength_m = kLight_m_s / radio_frequency_hz;
+  return radiated_power_w * std::pow(wavelength_m / (4 * std::numbers::pi * range_m), 2);
+}
+
+std::optional<Intercept> receive(const Emission& emission, const Local& aircraft,
+                                 const WarnerReceiver& receiver, const GroundHeight& ground,
+                                 Random& random) {
+  const double power_w =
+      received_power_w(emission.radiated_power_w, emission.waveform.radio_frequency_hz,
+                       slant_range_m(aircraft, emission.antenna));
+  if (power_w < receiver.sensitivity_w) return std::nullopt;
+  if (!in_sight(aircraft, emission.antenna, ground, kRadioEarth)) return std::nullopt;
+  const double bearing = std::atan2(emission.antenna.east_m - aircraft.east_m,
+                                    emission.antenna.north_m - aircraft.north_m);
+  const auto noisy = [&](double value, double sigma) { return value + sigma * random.normal(); };
+  const Waveform& sent = emission.waveform;
+  const double measured_bearing =
+      std::remainder(noisy(bearing, receiver.bearing_sigma_rad), 2 * std::numbers::pi);
+  const Waveform measured{
+      .radio_frequency_hz = noisy(sent.radio_frequency_hz, receiver.radio_frequency_sigma_hz),
+      .pulse_interval_s =
+          noisy(sent.pulse_interval_s, receiver.pulse_interval_sigma_share * sent.pulse_interval_s),
+      .scan_s = noisy(sent.scan_s, receiver.scan_sigma_s),
+  };
+  return Intercept{emission.time_s, measured_bearing, receiver.bearing_sigma_rad, measured,
+                   power_w};
+}
+
+}  // namespace reconnaissance
