@@ -93,6 +93,15 @@ bool is_one_value(std::span<const Intercept> intercepts, double Waveform::*value
 
 }  // namespace
 
+std::span<const EmitterType> emitter_types() {
+  static const std::vector<EmitterType> kTypes{
+      {"short-range site", 5e8, 18000, 8000}, {"medium-range site", 2e9, 30000, 15000},
+      {"mobile gun", 1e8, 10000, 3000},       {"coast radar", 1e9, 25000, 0},
+      {"air surveillance", 5e9, 60000, 0},
+  };
+  return kTypes;
+}
+
 std::span<const EmitterClass> emitter_library() {
   static const std::vector<EmitterClass> kLibrary{
       {"short-range site", RadarMode::Search, {2.9e9, 3.1e9}, {0.8e-3, 1.2e-3}, {3.5, 4.5}, 3},

@@ -12,14 +12,8 @@
 // pure function: the body of a CSP. identification_vote() is the Head's synthesis of their results.
 namespace reconnaissance {
 
-/// From the least to the greatest value; both are equal for one that is exactly known.
-struct Interval {
-  double least;
-  double greatest;
-};
-
 /// A type of radar in one of its modes, as a warner's library has it. Each radar of the type has
-/// one value of each interval.
+/// one value of each interval, whose ends are equal if it is exactly known.
 struct EmitterClass {
   std::string type;
   RadarMode mode;
@@ -29,8 +23,19 @@ struct EmitterClass {
   double prior;  ///< How often it is met, against the other classes; positive.
 };
 
-/// Five invented types of radars in frequency bands that such radars use (three missile sites, two
-/// surveillance radars), in 11 classes. Some cannot be told apart by one measurement.
+/// What is known of a type from elsewhere.
+struct EmitterType {
+  std::string name;
+  double radiated_power_w;  ///< Effective: with the antenna's gain.
+  double detection_m;       ///< From where on it sees a small aircraft.
+  double lethal_m;          ///< How far its weapon reaches; 0 without one.
+};
+
+/// Five invented types, in frequency bands that such radars use: two missile sites, a gun, two
+/// surveillance radars.
+std::span<const EmitterType> emitter_types();
+
+/// The modes of emitter_types() in 11 classes. Some cannot be told apart by one measurement.
 std::span<const EmitterClass> emitter_library();
 
 struct Identification {

@@ -15,6 +15,15 @@ double received_power_w(double radiated_power_w, double radio_frequency_hz, doub
   return radiated_power_w * std::pow(wavelength_m / (4 * std::numbers::pi * range_m), 2);
 }
 
+Interval distance_by_power_m(double received_power_w, double radiated_power_w,
+                             double radio_frequency_hz, double power_sigma_db) {
+  const double distance_m = std::sqrt(
+      reconnaissance::received_power_w(radiated_power_w, radio_frequency_hz, 1) / received_power_w);
+  // A uniform distribution is as wide as sqrt(12) standard deviations; 20 dB are a factor of 10.
+  const double factor = std::pow(10, std::sqrt(3) * power_sigma_db / 20);
+  return {distance_m / factor, distance_m * factor};
+}
+
 std::optional<Intercept> receive(const Emission& emission, const Local& aircraft,
                                  const WarnerReceiver& receiver, const GroundHeight& ground,
                                  Random& random) {
@@ -36,7 +45,7 @@ std::optional<Intercept> receive(const Emission& emission, const Local& aircraft
       .scan_s = noisy(sent.scan_s, receiver.scan_sigma_s),
   };
   return Intercept{emission.time_s, measured_bearing, receiver.bearing_sigma_rad, measured,
-                   power_w};
+                   power_w * std::pow(10, receiver.power_sigma_db * random.normal() / 10)};
 }
 
 }  // namespace reconnaissance

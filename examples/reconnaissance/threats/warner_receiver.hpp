@@ -15,6 +15,7 @@ struct WarnerReceiver {
   double radio_frequency_sigma_hz = 20e6;
   double pulse_interval_sigma_share = 0.02;  ///< Of the interval.
   double scan_sigma_s = 0.2;
+  double power_sigma_db = 3;    ///< With what antennas and the path do to it.
   double sensitivity_w = 1e-9;  ///< -60 dBm at an antenna without gain.
 };
 
@@ -31,6 +32,18 @@ struct Intercept {
 /// transmission formula", Proc. IRE 34, 1946). It falls with the square of the range, an echo with
 /// its fourth power: a warner hears a radar before the radar sees it.
 double received_power_w(double radiated_power_w, double radio_frequency_hz, double range_m);
+
+/// Between two values.
+struct Interval {
+  double least;
+  double greatest;
+};
+
+/// Within which distances an emitter is whose power is known and was received with a normal error
+/// of so many decibels. A distance with a uniform logarithm within them has the variance that the
+/// error gives it.
+Interval distance_by_power_m(double received_power_w, double radiated_power_w,
+                             double radio_frequency_hz, double power_sigma_db);
 
 /// What the receiver measures of an emission at a place: nullopt if the ground hides the emitter or
 /// it is too weak. All errors are normal and independent.

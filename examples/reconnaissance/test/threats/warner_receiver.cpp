@@ -68,3 +68,19 @@ TEST_CASE("A warner hears nothing from behind a ridge, and nothing too weak") {
   deaf.sensitivity_w = 1e-6;
   CHECK_FALSE(receive(kEmission, aircraft, deaf, flat, random));
 }
+
+TEST_CASE("Distances by power scatter about the true one as their interval says") {
+  Random random(4);
+  const Local aircraft{0, 10000, 800};
+  const double range_m = slant_range_m(aircraft, kEmission.antenna);
+  constexpr int kRuns = 4000;
+  double normalised = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto intercept = receive(kEmission, aircraft, WarnerReceiver(), flat, random);
+    REQUIRE(intercept);
+    const auto [least, greatest] = distance_by_power_m(intercept->power_w, 1e6, 9e9, 3);
+    const double error = std::log(std::sqrt(least * greatest) / range_m);
+    normalised += error * error / (std::pow(std::log(greatest / least), 2) / 12);
+  }
+  CHECK(normalised / kRuns == Approx(1).margin(4 * std::sqrt(2.0 / kRuns)));
+}

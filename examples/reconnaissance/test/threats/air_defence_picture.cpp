@@ -1,0 +1,212 @@
+#include "threats/air_defence_picture.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace reconnaissance;
+using skein::fusion::chi_square_quantile;
+using skein::fusion::Estimate;
+using skein::fusion::nees;
+
+namespace {
+
+constexpr int kRuns = 100;
+const WarnerReceiver kReceiver;
+
+double bound(double probability) { return chi_square_quantile(probability, 2 * kRuns) / kRuns; }
+
+double flat(double, double) { return 0; }
+
+struct Site {
+  std::string type;
+  Local antenna;
+  Waveform waveform;
+  double radiated_power_w;
+};
+
+const Site kShort{"short-range site", {6000, 8000, 10}, {3.0e9, 1e-3, 4}, 5e8};
+const Site kMedium{"medium-range site", {9000, -12000, 10}, {3.2e9, 1.4e-3, 5}, 2e9};
+
+/// Where an aircraft is that flies north at 60 m/s.
+Local on_leg(double time_s) { return {60 * time_s, 0, 1000}; }
+
+void hear(AirDefencePicture& picture, const Site& site, double time_s, Random& random,
+          const Identification& identification) {
+  const Emission emission{
+      1, time_s, site.antenna, RadarMode::Search, site.waveform, site.radiated_power_w};
+  const auto intercept = receive(emission, on_leg(time_s), kReceiver, flat, random);
+  REQUIRE(intercept);
+  picture.hear(*intercept, identification, on_leg(time_s));
+}
+
+Identification known(const Site& site) { return {site.type, RadarMode::Search, 0.9, {}}; }
+
+std::vector<double> truth(const Site& site) { return {site.antenna.north_m, site.antenna.east_m}; }
+
+/// What another aircraft makes of its own bearings, from the far side.
+Estimate from_elsewhere(const Site& site, Random& random) {
+  std::vector<Bearing> bearings;
+  for (int i = 0; i < 40; ++i) {
+    const Local from{400.0 * i, 25000, 1000};
+    const double bearing =
+        std::atan2(site.antenna.east_m - from.east_m, site.antenna.north_m - from.north_m);
+    bearings.push_back({from, bearing + 0.035 * random.normal(), 0.035});
+  }
+  const auto found = triangulate(bearings);
+  REQUIRE(found);
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("Two sites heard in flight are two threats where they are, with their types") {
+  AirDefencePicture picture(kReceiver);
+  Random random(31);
+  for (double time_s = 0; time_s < 120; time_s += 0.5) {
+    hear(picture, kShort, time_s, random, known(kShort));
+    hear(picture, kMedium, time_s, random, known(kMedium));
+  }
+  const auto threats = picture.threats();
+  REQUIRE(threats.size() == 2);
+  for (const Threat& threat : threats) {
+    const Site& site = threat.emitter == kShort.type ? kShort : kMedium;
+    CHECK(threat.emitter == site.type);
+    CHECK((threat.heard && !threat.linked));
+    CHECK(threat.last_heard_s == 119.5);
+    CHECK(nees(threat.position, truth(site)) < chi_square_quantile(0.999, 2));
+    CHECK(std::sqrt(threat.position.covariance[0]) < 300);
+  }
+}
+
+TEST_CASE("By its power a site is placed sooner than by its bearings alone") {
+  // Of a type that nobody knows the power of.
+  Site unknown = kShort;
+  unknown.type = "unknown type";
+  const auto seconds_until_placed = [](const Site& site) {
+    AirDefencePicture picture(kReceiver);
+    Random random(32);
+    double time_s = 0;
+    while (picture.threats().empty() && time_s < 300) {
+      hear(picture, site, time_s, random, known(site));
+      time_s += 0.5;
+    }
+    return time_s;
+  };
+  // 8.5 s and 17.5 s.
+  CHECK(seconds_until_placed(kShort) < 0.6 * seconds_until_placed(unknown));
+}
+
+TEST_CASE("Wrong identifications now and then make no threats") {
+  AirDefencePicture picture(kReceiver);
+  Random random(33);
+  for (double time_s = 0; time_s < 300; time_s += 0.5) {
+    const bool wrong = random.happens(0.05);
+    hear(picture, kShort, time_s, random,
+         wrong ? Identification{"mobile gun", RadarMode::Search, 0.6, {}} : known(kShort));
+    for (const Threat& threat : picture.threats()) CHECK(threat.emitter == kShort.type);
+  }
+  // Nor do emitters that no library has.
+  hear(picture, kMedium, 301, random, {"", RadarMode::Off, 1, {}});
+  CHECK(picture.threats().size() == 1);
+}
+
+TEST_CASE("A link's track that agrees is fused with ours, another is a threat of its own") {
+  AirDefencePicture picture(kReceiver);
+  Random random(34);
+  for (double time_s = 0; time_s < 120; time_s += 0.5) {
+    hear(picture, kShort, time_s, random, known(kShort));
+  }
+  const Threat alone = picture.threats().at(0);
+  const LinkTrack agreeing{5, kShort.type, from_elsewhere(kShort, random)};
+  picture.report(agreeing);
+  picture.report({6, kMedium.type, {truth(kMedium), {1e4, 0, 0, 1e4}}});
+  picture.report({7, kShort.type, {{-20000, 8000}, {1e4, 0, 0, 1e4}}});
+  const auto threats = picture.threats();
+  REQUIRE(threats.size() == 3);
+  const Estimate both[]{alone.position, agreeing.position};
+  CHECK(threats[0].position == skein::fusion::intersect(both).fused);
+  CHECK((threats[0].heard && threats[0].linked));
+  CHECK(threats[1].id == AirDefencePicture::kFirstLinkNumber + 6);
+  CHECK((!threats[1].heard && threats[1].linked));
+  CHECK(threats[2].position.mean[0] == -20000);
+  // The same report again says nothing new.
+  picture.report(agreeing);
+  CHECK(picture.threats()[0].position == threats[0].position);
+}
+
+TEST_CASE("A link's track is fused with one of ours at most") {
+  AirDefencePicture picture(kReceiver);
+  Random random(37);
+  Site second = kShort;
+  second.antenna.north_m += 6000;
+  for (double time_s = 0; time_s < 60; time_s += 0.5) {
+    hear(picture, kShort, time_s, random, known(kShort));
+    hear(picture, second, time_s, random, known(second));
+  }
+  REQUIRE(picture.threats().size() == 2);
+  picture.report({1, kShort.type, {{9000, 8000}, {9e6, 0, 0, 9e6}}});
+  const auto threats = picture.threats();
+  REQUIRE(threats.size() == 2);
+  CHECK(threats[0].linked != threats[1].linked);
+}
+
+namespace {
+
+/// The mean NEES of one site over all runs.
+struct Consistency {
+  double ours = 0;
+  double link = 0;
+  double picture = 0;  ///< Ours and the link's, by intersection.
+  double added = 0;    ///< The same, as if they were independent.
+};
+
+/// What the link reports is what another aircraft knows itself, and what it has had from us after
+/// so many seconds; the picture is that after 120 s.
+Consistency fly_with_link(double sent_after_s, std::uint64_t seed) {
+  Random random(seed);
+  Consistency mean;
+  const auto place = [](const AirDefencePicture& picture) {
+    REQUIRE(picture.threats().size() == 1);
+    return picture.threats()[0].position;
+  };
+  for (int run = 0; run < kRuns; ++run) {
+    AirDefencePicture picture(kReceiver);
+    Estimate sent;
+    for (double time_s = 0; time_s < 120; time_s += 0.5) {
+      hear(picture, kShort, time_s, random, known(kShort));
+      if (time_s + 0.5 == sent_after_s) sent = place(picture);
+    }
+    const Estimate ours = place(picture);
+    const Estimate independent[]{sent, from_elsewhere(kShort, random)};
+    const Estimate link = skein::fusion::fuse_independent(independent);
+    picture.report({1, kShort.type, link});
+    const Estimate both[]{ours, link};
+    mean.ours += nees(ours, truth(kShort)) / kRuns;
+    mean.link += nees(link, truth(kShort)) / kRuns;
+    mean.picture += nees(place(picture), truth(kShort)) / kRuns;
+    mean.added += nees(skein::fusion::fuse_independent(both), truth(kShort)) / kRuns;
+  }
+  UNSCOPED_INFO("NEES of ours " << mean.ours << ", the link " << mean.link << ", the picture "
+                                << mean.picture << ", added " << mean.added << "; bounds "
+                                << bound(0.025) << " to " << bound(0.975));
+  return mean;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "After our report has come back over the link the picture is consistent; with tracks added as "
+    "if they were independent it would be overconfident") {
+  const Consistency at_once = fly_with_link(120, 35);
+  for (const double consistent : {at_once.ours, at_once.link, at_once.picture}) {
+    CHECK(consistent > bound(0.025));
+    CHECK(consistent < bound(0.975));
+  }
+  CHECK(at_once.added > bound(0.975));
+}
+
+TEST_CASE("Nor is the picture overconfident if the link has an older report of ours") {
+  const Consistency older = fly_with_link(90, 36);
+  CHECK(older.picture < bound(0.975));
+  CHECK(older.added > bound(0.975));
+}

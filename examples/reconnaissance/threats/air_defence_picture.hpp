@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "threats/emitter_classification.hpp"
+#include "threats/emitter_location.hpp"
+
+namespace reconnaissance {
+
+/// A site that somebody else reports over the data link. How far its errors are those of our own
+/// reports is unknown.
+struct LinkTrack {
+  std::uint32_t id;  ///< Of the sender; the same for each report of a site.
+  std::string emitter;
+  skein::fusion::Estimate position;  ///< North and east.
+};
+
+/// A site of which the place is known.
+struct Threat {
+  std::uint32_t id;
+  std::string emitter;
+  RadarMode mode;
+  double confidence;  ///< That type and mode are right, as last heard; 1 if only the link has it.
+  skein::fusion::Estimate position;  ///< North and east.
+  bool heard;                        ///< By our own warner,
+  bool linked;                       ///< over the link.
+  double last_heard_s;               ///< 0 if only linked.
+};
+
+/// Which sites are where: from bearings of our own warner and tracks of the data link.
+///
+/// A bearing belongs to the track of the same type of which it is most probable, if within a gate
+/// of 99.99 %, to a confirmed one before others; if there is none, it begins a track. A track is
+/// confirmed when six of the last ten intercepts that fit its bearing were of its type, and
+/// forgotten before that after 10 s without one: so wrong identifications make no threat. A link's
+/// track of the same type that agrees with ours (gate of 99 %) is fused with it by covariance
+/// intersection, since it may contain what we have sent. Ours are never changed by the link, so
+/// that no report counts twice.
+///
+/// One thread at a time may use it.
+class AirDefencePicture {
+ public:
+  explicit AirDefencePicture(const WarnerReceiver& receiver) : receiver_(receiver) {}
+
+  /// A bearing, with what the warner takes it for. Unknown emitters are ignored. Times do not
+  /// decrease.
+  void hear(const Intercept& intercept, const Identification& identification,
+            const Local& aircraft);
+
+  /// Takes the place of an earlier report with the same id.
+  void report(const LinkTrack& track) { links_.insert_or_assign(track.id, track); }
+
+  /// All of which the place is known: the standard deviation of our own distance is 0.3 of it or
+  /// less. Ours first, by number; those of the link that none of ours is, with numbers from
+  /// kFirstLinkNumber.
+  std::vector<Threat> threats() const;
+
+  static constexpr std::uint32_t kFirstLinkNumber = 1000000;
+
+ private:
+  struct Track {
+    std::uint32_t id;
+    Identification identification;
+    BearingFilter filter;
+    double last_heard_s;
+    TrackConfirmation confirmation{6, 10};
+    bool confirmed = false;
+  };
+
+  WarnerReceiver receiver_;
+  std::uint32_t next_id_ = 1;
+  std::vector<Track> tracks_;
+  std::map<std::uint32_t, LinkTrack> links_;
+};
+
+}  // namespace reconnaissance
