@@ -124,6 +124,7 @@ TEST_CASE("Between steps are the movement, and the time that it takes to settle"
     const Pointing& now = plan->pointings[i];
     const double slew_s = slant_range_m(before.to, now.from) / std::hypot(800, 1000);
     CHECK(now.begin_s == Approx(before.begin_s + before.seconds + slew_s + 0.3));
+    CHECK(slant_range_m(before.to, now.from) < 110);  // To a neighbour.
   }
   CHECK(plan->seconds == Approx(plan->pointings.back().begin_s + 0.5));
   CHECK(plan->early_s == plan->seconds / 2);
