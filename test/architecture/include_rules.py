@@ -79,7 +79,7 @@ HOMES = {
     "Cyclone DDS": (r"dds/(dds\.h|ddsc/|ddsi/|ddsrt/)", ["src/dds/cyclonedds", "test/idl", *_OUTSIDE]),
     "Fast CDR": (r"fastcdr/", ["src/idl", "test/idl", *_OUTSIDE]),
     "OMPL": (r"ompl/", ["src/navigation/planners"]),
-    "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion"]),
+    "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion", "examples/reconnaissance"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "src/command", "test", "benchmarks"]),
     "zstd": (r"zstd\.h", ["src/recording/compression.cpp"]),
