@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
+#include <utility>
 
 namespace reconnaissance {
 namespace {
@@ -10,7 +12,6 @@ namespace {
 constexpr double kBearingGate = 0.9999;
 constexpr double kLinkGate = 0.99;
 constexpr double kForgetting_s = 10;
-constexpr double kGreatestRelativeSigma = 0.3;
 // Of the track of an emitter whose power is unknown.
 constexpr Interval kAnywhere_m{1000, 60000};
 
@@ -24,7 +25,38 @@ Interval possible_distances_m(const Intercept& intercept, const std::string& emi
   return kAnywhere_m;
 }
 
+/// The first stays: what is known of its distance holds for its place.
+void join_neighbours(std::vector<Bearing>& bearings) {
+  std::vector<Bearing> joined{bearings.front()};
+  std::size_t i = 1;
+  for (; i + 1 < bearings.size(); i += 2) {
+    const Bearing& a = bearings[i];
+    const Bearing& b = bearings[i + 1];
+    const double a_weight = 1 / (a.sigma_rad * a.sigma_rad);
+    const double b_weight = 1 / (b.sigma_rad * b.sigma_rad);
+    const double share = b_weight / (a_weight + b_weight);
+    const double difference = std::remainder(b.bearing_rad - a.bearing_rad, 2 * std::numbers::pi);
+    joined.push_back({{std::lerp(a.from.north_m, b.from.north_m, share),
+                       std::lerp(a.from.east_m, b.from.east_m, share),
+                       std::lerp(a.from.height_m, b.from.height_m, share)},
+                      a.bearing_rad + share * difference,
+                      1 / std::sqrt(a_weight + b_weight)});
+  }
+  if (i < bearings.size()) joined.push_back(bearings[i]);
+  bearings = std::move(joined);
+}
+
 }  // namespace
+
+std::optional<skein::fusion::Estimate> by_filter(std::span<const Bearing> bearings,
+                                                 const Interval& distances_m) {
+  return filter_bearings(bearings, distances_m.least, distances_m.greatest);
+}
+
+std::optional<skein::fusion::Estimate> by_triangulation(std::span<const Bearing> bearings,
+                                                        const Interval&) {
+  return triangulate(bearings);
+}
 
 void AirDefencePicture::hear(const Intercept& intercept, const Identification& identification,
                              const Local& aircraft) {
@@ -54,30 +86,35 @@ void AirDefencePicture::hear(const Intercept& intercept, const Identification& i
   }
   if (best) {
     best->filter.update(bearing);
+    if (best->bearings.size() == kGreatestBearings) join_neighbours(best->bearings);
+    best->bearings.push_back(bearing);
     best->identification = identification;
     best->last_heard_s = intercept.time_s;
     return;
   }
-  const auto [nearest_m, furthest_m] =
-      possible_distances_m(intercept, identification.emitter, receiver_);
-  tracks_.push_back({next_id_++, identification, BearingFilter(bearing, nearest_m, furthest_m),
+  const Interval distances_m = possible_distances_m(intercept, identification.emitter, receiver_);
+  tracks_.push_back({next_id_++,
+                     identification,
+                     distances_m,
+                     BearingFilter(bearing, distances_m.least, distances_m.greatest),
+                     {bearing},
                      intercept.time_s});
   tracks_.back().confirmation.look(true);
 }
 
-std::vector<Threat> AirDefencePicture::threats() const {
+std::vector<Threat> AirDefencePicture::threats(const Locate& locate) const {
   const double gate = skein::fusion::chi_square_quantile(kLinkGate, 2);
   std::vector<Threat> threats;
   std::set<std::uint32_t> fused;
   for (const Track& track : tracks_) {
-    if (!track.confirmed || track.filter.relative_range_sigma() > kGreatestRelativeSigma) {
-      continue;
-    }
+    if (!track.confirmed) continue;
+    const auto position = locate(track.bearings, track.distances_m);
+    if (!position) continue;
     Threat threat{track.id,
                   track.identification.emitter,
                   track.identification.mode,
                   track.identification.confidence,
-                  track.filter.position(),
+                  *position,
                   true,
                   false,
                   track.last_heard_s};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,6 +31,19 @@ struct Threat {
   double last_heard_s;               ///< 0 if only linked.
 };
 
+/// Places an emitter by the bearings of its track, of which the first had it within the distances;
+/// nullopt: not yet. How is a choice, for example of a Head.
+using Locate = std::function<std::optional<skein::fusion::Estimate>(std::span<const Bearing>,
+                                                                    const Interval& distances_m)>;
+std::optional<skein::fusion::Estimate> by_filter(std::span<const Bearing> bearings,
+                                                 const Interval& distances_m);
+std::optional<skein::fusion::Estimate> by_triangulation(std::span<const Bearing> bearings,
+                                                        const Interval& distances_m);
+
+/// So many bearings a track has at most. When there are more, neighbours become one, of the mean of
+/// both and the error of a mean.
+inline constexpr std::size_t kGreatestBearings = 1000;
+
 /// Which sites are where: from bearings of our own warner and tracks of the data link.
 ///
 /// A bearing belongs to the track of the same type of which it is most probable, if within a gate
@@ -53,10 +67,10 @@ class AirDefencePicture {
   /// Takes the place of an earlier report with the same id.
   void report(const LinkTrack& track) { links_.insert_or_assign(track.id, track); }
 
-  /// All of which the place is known: the standard deviation of our own distance is 0.3 of it or
-  /// less. Ours first, by number; those of the link that none of ours is, with numbers from
-  /// kFirstLinkNumber.
-  std::vector<Threat> threats() const;
+  /// All of which the place is known: ours that `locate` places, which is called for each confirmed
+  /// track in order of its number. Ours first; those of the link that none of ours is, with numbers
+  /// from kFirstLinkNumber.
+  std::vector<Threat> threats(const Locate& locate = by_filter) const;
 
   static constexpr std::uint32_t kFirstLinkNumber = 1000000;
 
@@ -64,7 +78,9 @@ class AirDefencePicture {
   struct Track {
     std::uint32_t id;
     Identification identification;
+    Interval distances_m;
     BearingFilter filter;
+    std::vector<Bearing> bearings;
     double last_heard_s;
     TrackConfirmation confirmation{6, 10};
     bool confirmed = false;

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Matrix2d, Eigen::RowVector2d, Eigen::Vector2d;
 
-constexpr double kGreatestRelativeSigma = 0.3;
 constexpr int kSteps = 20;
 constexpr double kKilometres_per_metre = 1e-3;  // The filter's numbers are of similar size.
 
@@ -83,7 +82,7 @@ std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bear
   }
   const Matrix2d covariance = information.inverse();
   const double greatest = Eigen::SelfAdjointEigenSolver<Matrix2d>(covariance).eigenvalues().y();
-  if (!(std::sqrt(greatest) <= kGreatestRelativeSigma * distance)) return std::nullopt;
+  if (!(std::sqrt(greatest) <= kPlacedSigma * distance)) return std::nullopt;
   return estimate(emitter, covariance);
 }
 
@@ -157,5 +156,14 @@ skein::fusion::Estimate BearingFilter::position() const {
 }
 
 skein::fusion::Estimate BearingFilter::state() const { return estimate(state_, covariance_); }
+
+std::optional<skein::fusion::Estimate> filter_bearings(std::span<const Bearing> bearings,
+                                                       double least_range_m,
+                                                       double greatest_range_m) {
+  BearingFilter filter(bearings.front(), least_range_m, greatest_range_m);
+  for (const Bearing& bearing : bearings.subspan(1)) filter.update(bearing);
+  if (filter.relative_range_sigma() > kPlacedSigma) return std::nullopt;
+  return filter.position();
+}
 
 }  // namespace reconnaissance

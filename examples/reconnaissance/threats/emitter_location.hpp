@@ -26,6 +26,9 @@ struct Bearing {
 /// standard deviation of more than 0.3 of the distance), or that meet behind the observer.
 std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bearings);
 
+/// The greatest standard deviation of a place, as a share of its distance, that counts as known.
+inline constexpr double kPlacedSigma = 0.3;
+
 /// An extended Kalman filter for an emitter that stands still, with bearings alone.
 ///
 /// Its state is modified polar about the place of the first bearing: that bearing, and the inverse
@@ -59,7 +62,7 @@ class BearingFilter {
   /// distance.
   double relative_range_sigma() const;
 
-  /// North and east; to be used when relative_range_sigma() is 0.3 or less.
+  /// North and east; to be used when relative_range_sigma() is kPlacedSigma or less.
   skein::fusion::Estimate position() const;
 
   /// The filter's own state: bearing in radians, and the inverse of the distance in 1/km, both from
@@ -74,5 +77,11 @@ class BearingFilter {
   Eigen::Vector2d state_;
   Eigen::Matrix2d covariance_;
 };
+
+/// The place by a BearingFilter over all bearings (at least one), for a CSP that keeps nothing
+/// between calls. nullopt while a standard deviation of the distance is more than 0.3 of it.
+std::optional<skein::fusion::Estimate> filter_bearings(std::span<const Bearing> bearings,
+                                                       double least_range_m,
+                                                       double greatest_range_m);
 
 }  // namespace reconnaissance

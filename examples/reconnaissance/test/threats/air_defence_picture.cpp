@@ -78,6 +78,51 @@ TEST_CASE("Two sites heard in flight are two threats where they are, with their 
   }
 }
 
+TEST_CASE("How sites are placed is a choice: by squares they are where the filter has them") {
+  AirDefencePicture picture(kReceiver);
+  Random random(38);
+  for (double time_s = 0; time_s < 180; time_s += 0.5) {
+    hear(picture, kShort, time_s, random, known(kShort));
+  }
+  const auto filtered = picture.threats();
+  const auto squared = picture.threats(by_triangulation);
+  REQUIRE((filtered.size() == 1 && squared.size() == 1));
+  // The filter knows a distance by the power, too.
+  CHECK(std::hypot(filtered[0].position.mean[0] - squared[0].position.mean[0],
+                   filtered[0].position.mean[1] - squared[0].position.mean[1]) < 20);
+  CHECK(picture.threats([](auto, const Interval&) { return std::nullopt; }).empty());
+}
+
+TEST_CASE("However long a flight, its bearings stay few and say as much") {
+  AirDefencePicture picture(kReceiver);
+  Random random(39);
+  std::vector<Bearing> all;
+  for (double time_s = 0; time_s < 400; time_s += 0.1) {
+    const double bearing =
+        std::atan2(kShort.antenna.east_m, kShort.antenna.north_m - on_leg(time_s).north_m);
+    // Better than they say, so that all fit.
+    all.push_back({on_leg(time_s), bearing + 0.015 * random.normal(), 0.035});
+    picture.hear({time_s, all.back().bearing_rad, 0.035, kShort.waveform, 1e-6}, known(kShort),
+                 on_leg(time_s));
+  }
+  std::size_t kept = 0;
+  const auto threats = picture.threats([&](std::span<const Bearing> bearings, const Interval&) {
+    kept = bearings.size();
+    return triangulate(bearings);
+  });
+  CHECK(kept <= kGreatestBearings);
+  CHECK(kept >= kGreatestBearings / 2);
+  REQUIRE(threats.size() == 1);
+  const auto exact = triangulate(all);
+  REQUIRE(exact);
+  for (const std::size_t i : {0, 3}) {
+    CHECK(threats[0].position.covariance[i] == Approx(exact->covariance[i]).epsilon(0.001));
+  }
+  for (const std::size_t i : {0, 1}) {
+    CHECK(threats[0].position.mean[i] == Approx(exact->mean[i]).margin(3));
+  }
+}
+
 TEST_CASE("By its power a site is placed sooner than by its bearings alone") {
   // Of a type that nobody knows the power of.
   Site unknown = kShort;

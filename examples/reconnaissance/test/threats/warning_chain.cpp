@@ -84,10 +84,11 @@ Flight fly(std::uint64_t seed, double pop_up_s) {
       if (!intercept) continue;
       if (flight.heard_s < 0) flight.heard_s = time_s;
       picture.hear(*intercept, warner.identify(*emission, *intercept), aircraft.place);
-      const std::size_t threats = picture.threats().size();
-      if (threats >= 1 && flight.placed_s == 0) flight.placed_s = time_s;
-      if (threats >= 2 && flight.pop_up_placed_s == 0) flight.pop_up_placed_s = time_s;
     }
+    if (tick % 50 != 0) continue;
+    const std::size_t threats = picture.threats().size();
+    if (threats >= 1 && flight.placed_s == 0) flight.placed_s = time_s;
+    if (threats >= 2 && flight.pop_up_placed_s == 0) flight.pop_up_placed_s = time_s;
   }
   flight.survival = survival.probability();
   flight.threats = picture.threats();
