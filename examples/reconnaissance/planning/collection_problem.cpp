@@ -1,0 +1,88 @@
+#include "planning/collection_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace reconnaissance {
+namespace {
+
+bool is_cost(const FlightCost& cost) {
+  const auto good = [](double part) { return std::isfinite(part) && part >= 0; };
+  return good(cost.seconds) && good(cost.fuel_kg) && good(cost.hazard);
+}
+
+}  // namespace
+
+FlightCost& FlightCost::operator+=(const FlightCost& other) {
+  seconds += other.seconds;
+  fuel_kg += other.fuel_kg;
+  hazard += other.hazard;
+  return *this;
+}
+
+bool covers(const FlightCost& a, const FlightCost& b) {
+  return a.seconds <= b.seconds && a.fuel_kg <= b.fuel_kg && a.hazard <= b.hazard;
+}
+
+FlightCost FlightLimits::most() const {
+  return {endurance_s, fuel_kg,
+          least_survival > 0 ? -std::log(least_survival) : std::numeric_limits<double>::infinity()};
+}
+
+std::vector<CollectionPass> passes_over(double north_m, double east_m, int courses) {
+  std::vector<CollectionPass> passes;
+  for (int i = 0; i < courses; ++i) {
+    const RoutePose pose{north_m, east_m, 2 * std::numbers::pi * i / courses};
+    passes.push_back({pose, pose, {}});
+  }
+  return passes;
+}
+
+std::vector<CollectionPass> passes_along(const RoutePose& one_end, const RoutePose& other_end,
+                                         const FlightCost& cost) {
+  const double course =
+      std::atan2(other_end.east_m - one_end.east_m, other_end.north_m - one_end.north_m);
+  const double back = course + std::numbers::pi;
+  return {
+      {{one_end.north_m, one_end.east_m, course},
+       {other_end.north_m, other_end.east_m, course},
+       cost},
+      {{other_end.north_m, other_end.east_m, back}, {one_end.north_m, one_end.east_m, back}, cost}};
+}
+
+CollectionProblem::CollectionProblem(const RoutePose& start, const RoutePose& landing,
+                                     std::vector<CollectionTask> tasks, const Leg& leg,
+                                     const FlightLimits& limits)
+    : tasks_(std::move(tasks)), limits_(limits.most()) {
+  if (tasks_.size() > 48) throw std::invalid_argument("more than 48 collection tasks");
+  std::vector<CollectionPass> passes{{start, start, {}}};
+  for (std::size_t task = 0; task < tasks_.size(); ++task) {
+    if (tasks_[task].passes.empty()) throw std::invalid_argument("a collection task has no pass");
+    if (!(tasks_[task].value > 0)) throw std::invalid_argument("a collection task has no value");
+    first_node_.push_back(passes.size());
+    for (const CollectionPass& pass : tasks_[task].passes) {
+      passes.push_back(pass);
+      task_of_.push_back(task);
+    }
+  }
+  passes.push_back({landing, landing, {}});
+  for (const CollectionPass& from : passes) {
+    for (const CollectionPass& to : passes) {
+      steps_.push_back(leg(from.end, to.begin) + to.cost);
+      if (!is_cost(steps_.back())) {
+        throw std::invalid_argument("the cost of a leg or pass is negative or not finite");
+      }
+    }
+  }
+}
+
+bool is_better(const CollectionTour& a, const CollectionTour& b) {
+  if (a.feasible != b.feasible) return a.feasible;
+  const double same = 1e-9 * std::max(a.value, b.value);
+  if (std::abs(a.value - b.value) > same) return a.value > b.value;
+  return a.cost.seconds < b.cost.seconds;
+}
+
+}  // namespace reconnaissance
