@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "../flight/guidance.hpp"
-#include "../flight/pilot.hpp"
-#include "../flight/point_mass.hpp"
-#include "../geodesy/local_frame.hpp"
-#include "../mission/places.hpp"
 #include "flight.idl.hpp"
+#include "flight/guidance.hpp"
+#include "flight/pilot.hpp"
+#include "flight/point_mass.hpp"
+#include "geodesy/local_frame.hpp"
+#include "mission/places.hpp"
 
 namespace reconnaissance {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "../flight/pilot.hpp"
-#include "../geodesy/local_frame.hpp"
 #include "flight.idl.hpp"
+#include "flight/pilot.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"

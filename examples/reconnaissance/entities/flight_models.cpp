@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "../flight/guidance.hpp"
 #include "convert.hpp"
+#include "flight/guidance.hpp"
 
 namespace reconnaissance {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "../flight/point_mass.hpp"
 #include "flight.idl.hpp"
+#include "flight/point_mass.hpp"
 
 namespace reconnaissance {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../flight/angles.hpp"
 #include "convert.hpp"
+#include "flight/angles.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
 #include "topics.hpp"

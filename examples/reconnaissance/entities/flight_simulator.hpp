@@ -4,11 +4,11 @@
 #include <memory>
 #include <thread>
 
-#include "../flight/sensors.hpp"
-#include "../geodesy/local_frame.hpp"
-#include "../mission/places.hpp"
 #include "flight.idl.hpp"
+#include "flight/sensors.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
+#include "mission/places.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <fstream>
 
-#include "../mission/conduct.hpp"
 #include "convert.hpp"
+#include "mission/conduct.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 #include "stream.hpp"

@@ -7,10 +7,10 @@
 #include <stop_token>
 #include <string>
 
-#include "../geodesy/local_frame.hpp"
-#include "../mission/verdict.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
+#include "mission/verdict.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 

@@ -3,10 +3,10 @@
 #include <mutex>
 #include <optional>
 
-#include "../geodesy/local_frame.hpp"
-#include "../mission/conduct.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
+#include "mission/conduct.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"

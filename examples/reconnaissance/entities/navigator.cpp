@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "../flight/angles.hpp"
 #include "convert.hpp"
+#include "flight/angles.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
 

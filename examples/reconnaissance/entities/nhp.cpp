@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "../mission/places.hpp"
+#include "mission/places.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <utility>
 
-#include "../clock/mission_clock.hpp"
-#include "../clock/participation.hpp"
+#include "clock/mission_clock.hpp"
+#include "clock/participation.hpp"
 #include "skein/entity.hpp"
 #include "time.idl.hpp"
 

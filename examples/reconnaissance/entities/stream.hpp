@@ -6,7 +6,7 @@
 #include <mutex>
 #include <optional>
 
-#include "../clock/ticks.hpp"
+#include "clock/ticks.hpp"
 #include "skein/entity.hpp"
 #include "topics.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../clock/lock_step.hpp"
-#include "../clock/pace.hpp"
+#include "clock/lock_step.hpp"
+#include "clock/pace.hpp"
 #include "skein/entity.hpp"
 #include "time.idl.hpp"
 

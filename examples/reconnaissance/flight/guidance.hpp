@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../geodesy/local_frame.hpp"
+#include "geodesy/local_frame.hpp"
 
 namespace reconnaissance {
 

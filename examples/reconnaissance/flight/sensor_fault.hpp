@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "../random.hpp"
+#include "random.hpp"
 
 namespace reconnaissance {
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <optional>
 
-#include "../random.hpp"
 #include "point_mass.hpp"
+#include "random.hpp"
 
 namespace reconnaissance {
 

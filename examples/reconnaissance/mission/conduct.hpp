@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "../flight/pilot.hpp"
+#include "flight/pilot.hpp"
 
 namespace reconnaissance {
 

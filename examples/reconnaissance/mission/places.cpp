@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "../flight/angles.hpp"
+#include "flight/angles.hpp"
 #include "skein/error.hpp"
 
 namespace reconnaissance {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "../flight/pilot.hpp"
-#include "../geodesy/local_frame.hpp"
+#include "flight/pilot.hpp"
+#include "geodesy/local_frame.hpp"
 
 namespace reconnaissance {
 

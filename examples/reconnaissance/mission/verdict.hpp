@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../geodesy/local_frame.hpp"
+#include "geodesy/local_frame.hpp"
 
 namespace reconnaissance {
 

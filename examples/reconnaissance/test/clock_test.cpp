@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "../clock/lock_step.hpp"
-#include "../clock/mission_clock.hpp"
-#include "../clock/pace.hpp"
-#include "../clock/participation.hpp"
+#include "clock/lock_step.hpp"
+#include "clock/mission_clock.hpp"
+#include "clock/pace.hpp"
+#include "clock/participation.hpp"
 
 using namespace reconnaissance;
 using namespace std::chrono_literals;

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "../flight/angles.hpp"
-#include "../flight/guidance.hpp"
-#include "../flight/point_mass.hpp"
-#include "../flight/sensor_fault.hpp"
-#include "../flight/sensors.hpp"
+#include "flight/angles.hpp"
+#include "flight/guidance.hpp"
+#include "flight/point_mass.hpp"
+#include "flight/sensor_fault.hpp"
+#include "flight/sensors.hpp"
 
 using namespace reconnaissance;
 

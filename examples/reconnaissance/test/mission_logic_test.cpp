@@ -1,10 +1,10 @@
 // The course of a mission, its verdict, and how a profile names places.
 #include <catch2/catch.hpp>
 
-#include "../flight/angles.hpp"
-#include "../mission/conduct.hpp"
-#include "../mission/places.hpp"
-#include "../mission/verdict.hpp"
+#include "flight/angles.hpp"
+#include "mission/conduct.hpp"
+#include "mission/places.hpp"
+#include "mission/verdict.hpp"
 #include "skein/error.hpp"
 
 using namespace reconnaissance;

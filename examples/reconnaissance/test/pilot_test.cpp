@@ -1,10 +1,10 @@
 // A whole flight, from standing to standing, with the point mass and sensors that err.
-#include "../flight/pilot.hpp"
+#include "flight/pilot.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../flight/angles.hpp"
+#include "flight/angles.hpp"
 
 using namespace reconnaissance;
 

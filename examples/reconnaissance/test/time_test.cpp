@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "../entities/participant.hpp"
-#include "../entities/stream.hpp"
-#include "../entities/time_keeper.hpp"
+#include "entities/participant.hpp"
+#include "entities/stream.hpp"
+#include "entities/time_keeper.hpp"
 #include "flight.idl.hpp"
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
