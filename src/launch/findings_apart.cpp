@@ -56,9 +56,9 @@ bool read_fields(const std::string& text, std::vector<Finding>& findings, Findin
   for (std::string severity = next(); stream; severity = next()) {
     if (severity == kEnd) return true;
     Finding finding;
-    finding.severity = severity == "error"     ? Severity::Error
-                       : severity == "warning" ? Severity::Warning
-                                               : Severity::Note;
+    finding.severity = severity == "error" || severity == kStep ? Severity::Error
+                       : severity == "warning"                  ? Severity::Warning
+                                                                : Severity::Note;
     finding.where.file = next();
     finding.where.line = std::atoi(next().c_str());
     finding.where.column = std::atoi(next().c_str());

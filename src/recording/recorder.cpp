@@ -119,8 +119,9 @@ struct Recorder::State {
   std::string name_channel(Recorded& known, const KnownTopic& topic, Duration patience) {
     ++known.questions;
     try {
-      known.channel = types.add_channel(
-          topic.name, topic.type, inspector.types(topic.type, witness_of(topic), patience), metadata_of(topic));
+      known.channel = types.add_channel(topic.name, topic.type,
+                                        inspector.types(topic.type, witness_of(topic), patience),
+                                        metadata_of(topic));
       known.has_schema = true;
       return "";
     } catch (const Error& error) {

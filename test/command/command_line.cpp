@@ -217,7 +217,7 @@ TEST_CASE(
         Contains("Exit codes:\n") && Contains("\n  71        the mission does not fly here"));
   }
   const auto words = words_of(line.app.help());
-  CHECK(std::ranges::search(words, words_of("of commands that look: it could not join the domain"))
+  CHECK(std::ranges::search(words, words_of("of commands that look: it could not join the domain,"))
             .begin() != words.end());
   const std::string decisions = line.command_of("skein decisions")->get_description();
   CHECK_THAT(decisions, Contains("nothing until the next one"));

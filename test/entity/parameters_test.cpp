@@ -78,8 +78,9 @@ TEST_CASE("a value of another type, of another size, or none, is refused by the 
                     Catch::Contains("as a text, and by the dictionary it is a duration, 1.5 s"));
   CHECK_THROWS_WITH(values.find<std::string>("Loud"),
                     Catch::Contains("as a text, and by the dictionary it is a boolean, true"));
-  CHECK_THROWS_WITH(values.get<double>("Sped"),
-                    Catch::Contains("'Sped', which has no value (did you mean 'Speed'?); set it"));
+  CHECK_THROWS_WITH(
+      values.get<double>("Speedd"),
+      Catch::Contains("'Speedd', which has no value (did you mean 'Speed'?); set it"));
   CHECK_THROWS_WITH(
       values.get<double>("Climb"),
       Catch::Contains("the code asks for the parameter 'Climb', which has no value") &&

@@ -290,14 +290,12 @@ system="${system}"/>)")),
        {},
        ""},
       {"the dictionary is missing, and nothing is said of the names that it would define",
-       "<mission name=\"city\" dictionary=\"dictionry.xml\">\n" + kArchive +
+       "<mission name=\"city\" plugin=\"no_plugin\" dictionary=\"dictionry.xml\">\n" + kArchive +
            R"(<peer name="office" component="parts/office.xml">
 <parameter name="Speed" value="5"/>)" +
            kClerk + "</peer></mission>",
-       {"city.xml:1:22: error: the dictionary cannot be read; name its file",
-        "dictionry.xml: error: cannot be opened: No such file or directory; check the path"},
-       {},
-       ""},
+       {"city.xml:1:41: error: the dictionary cannot be read; name its file",
+        "dictionry.xml: error: cannot be opened: No such file or directory; check the path"}},
       {"the dictionary is missing, the domain is none",
        "<mission name=\"city\" dictionary=\"dictionry.xml\"\ndomain=\"999\">" +
            std::string(R"(<peer name="x" program="true"/>)") + "</mission>",

@@ -225,6 +225,48 @@ std::vector<Call> calls_of_route_planning() {
   return calls;
 }
 
+/// Of the four peers that have services, without the others, for whom the mission's time waits.
+std::vector<Call> calls_of_reconnaissance() {
+  const std::string simulator = "recon/IFlightSimulator";
+  const std::string controller = "recon/IFlightController";
+  const std::string navigator = "recon/INavigator";
+  const std::string manager = "recon/IMissionManager";
+  const std::string refused = "recon::Refused";
+  const Json nothing = Json::object();
+  const Json status{
+      {"run", 0},        {"tick", 0},        {"paused", false},      {"participants", 0},
+      {"awaited", {""}}, {"speed_limit", 0}, {"ticks_per_second", 0}};
+  const Json limits{{"speed_m_s", 45},
+                    {"greatest_bank_rad", 0.5},
+                    {"greatest_climb_rad", 0.1},
+                    {"turn_radius_m", 400}};
+  const auto position = [](double latitude_deg, double longitude_deg) -> Json {
+    return {{"latitude_deg", latitude_deg}, {"longitude_deg", longitude_deg}, {"height_m", 500}};
+  };
+  const Json from = position(53.3, 27.4), to = position(53.4, 27.5);
+  const Json runway{{"threshold", from}, {"course_rad", 1}, {"length_m", 1500}};
+  const Json route{
+      {"number", 1}, {"planner", "nobody"}, {"points", {from, to}}, {"length_m", 13000}};
+  const auto request = [&](const Json& through) -> Json {
+    return {{"request", {{"from", from}, {"through", through}, {"limits", limits}}}};
+  };
+  const Json order{{"order", {{"runway", runway}, {"points", Json::array({to})}}}, {"tick", 0}};
+  return {{simulator, "status", nothing, status, ""},
+          {simulator, "pause", nothing, nothing, ""},
+          {simulator, "step", 50, nothing, ""},
+          {simulator, "limit_speed", 1, nothing, ""},
+          {simulator, "limit_speed", -1, {}, refused},
+          {simulator, "resume", nothing, nothing, ""},
+          {controller, "limits", nothing, limits, ""},
+          {controller, "take_off", {{"from", runway}, {"tick", 0}}, nothing, ""},
+          {controller, "follow", {{"route", route}, {"tick", 0}}, nothing, ""},
+          {controller, "land", {{"route", route}, {"to", runway}, {"tick", 0}}, nothing, ""},
+          {navigator, "plan", request(Json::array({to})), route, ""},
+          {navigator, "plan", request(Json::array()), {}, "recon::NoRoute"},
+          {manager, "begin", order, nothing, ""},
+          {manager, "begin", order, {}, refused}};
+}
+
 std::vector<Example> examples() {
   return {{"01_first_service",
            "0",
@@ -241,7 +283,14 @@ std::vector<Example> examples() {
              return launch(project_file("mission_profiles/route_planning.xml"),
                            {"navigator", "flight_controller", "ad_manager"});
            },
-           calls_of_route_planning()}};
+           calls_of_route_planning()},
+          {"reconnaissance", "43",
+           [] {
+             return launch(
+                 project_file("mission_profiles/reconnaissance.xml"),
+                 {"flight_simulator", "flight_controller", "navigator", "mission_manager"});
+           },
+           calls_of_reconnaissance()}};
 }
 
 // --- what runs

@@ -103,7 +103,7 @@ TEST_CASE("A part that is missing, no part, or no XML is a finding") {
        "mission.xml:1:1: error: <mission> is no part of a profile; the outermost element of what "
        "is included is <part>\n"},
       {R"(<include file="broken.xml"/>)",
-       "broken.xml:2:1: error: malformed XML: the tag <peer> has no end"},
+       "broken.xml:2:1: error: malformed XML: the tag <peer has no end"},
       {R"(<include/>)", "m.xml:2:1: error: <include> has no file"},
       {R"(<include file=""/>)", "<include> has an empty file"},
       {R"(<include href="planners.xml"/>)", "<include> has no \"href\"; known is \"file\""},
