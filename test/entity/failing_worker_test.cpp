@@ -67,10 +67,10 @@ TEST_CASE("a CSP that hangs is given up in time for the next best", "[wire]") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
   Hang hang;
   FirstFails team(place, hang.script());
-  CHECK(team.office.perform(Office::task(), 1s) == "second did it");
+  CHECK(team.office.perform(Office::task(), 3s) == "second did it");
   CHECK(team.office.attempts() == Lines{"first timed out", "second accepted"});
-  CHECK(std::chrono::nanoseconds(team.office.record.attempts[0].slice) <= 900ms);
-  CHECK(team.office.took() < 1s);
+  CHECK(std::chrono::nanoseconds(team.office.record.attempts[0].slice) <= 2700ms);
+  CHECK(team.office.took() < 3s);
   hang.release();
 }
 
