@@ -35,6 +35,8 @@ def main():
         "machine_paths": lambda: text_rules.machine_paths(tree),
         "sleeps": lambda: text_rules.sleeps(tree),
         "quotes": lambda: text_rules.quotes(tree),
+        "links": lambda: text_rules.links(tree),
+        "workarounds": lambda: text_rules.workarounds(tree),
         "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
         "older_standard": lambda: compile_rules.older_standard(tree, compiler),
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),

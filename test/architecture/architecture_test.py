@@ -255,6 +255,49 @@ class Texts(TreeTest):
         self.assertEqual(text_rules.quoted_code(self.tree), [("README.md", "idl", "module m {};\n"), ("GUIDE.md", "xml", "<a/>\n")])
 
 
+class Links(TreeTest):
+    def test_a_link_to_what_is_not_there_is_found(self):
+        self.write("a/README.md", "See [b](../b.md).\n\n[c](c.png)\n")
+        self.write("b.md", "")
+        self.assertFinds(text_rules.links(self.tree), "a/README.md:3", "c.png")
+
+    def test_a_link_to_a_heading_that_is_not_there_is_found(self):
+        self.write("b.md", "## One `heading`, and more\n")
+        self.write("a.md", "[b](b.md#one-heading-and-more) [b](b.md#two) [self](#three)\n\n# Three\n")
+        self.assertFinds(text_rules.links(self.tree), "a.md:1", "b.md#two")
+
+    def test_links_to_folders_pages_and_in_code_are_taken(self):
+        self.write("b/x.txt", "")
+        self.write("a.md", "[b](b) [page](https://example.org/x) `f[i](x)`\n\n```cpp\n[](x)\n```\n")
+        self.assertFindsNothing(text_rules.links(self.tree))
+
+
+class Workarounds(TreeTest):
+    HEAD = "| symptom | version | upstream | what we do | test | remove when |\n|---|---|---|---|---|---|\n"
+
+    def setUp(self):
+        super().setUp()
+        self.write("src/dds/x.cpp", "")
+        self.write("test/x.cpp", 'TEST_CASE("it is"\n          " so", "[tag]") {}\nTEST_CASE_METHOD(A, "that too") {}\n')
+
+    def check(self, row):
+        self.write(text_rules.WORKAROUNDS, self.HEAD + row + "\n")
+        return text_rules.workarounds(self.tree)
+
+    def test_a_whole_row_is_taken(self):
+        self.assertFindsNothing(self.check(
+            '| hangs | 1.0 | none known | [x](x.cpp) waits | [x](../../test/x.cpp): "it is so", "that too" | 1.1 |'))
+
+    def test_a_row_that_lacks_something_is_found(self):
+        self.assertFinds(self.check("| hangs | 1.0 | none known | [x](x.cpp) waits | none: rare | |"), "'remove when' is empty")
+        self.assertFinds(self.check("| hangs | 1.0 | none known | waits | none: rare | 1.1 |"), "no link to our file")
+        self.assertFinds(self.check("| hangs | 1.0 | [x](x.cpp) waits | none: rare | 1.1 |"), "has 5 columns")
+
+    def test_a_test_case_that_is_not_there_is_found(self):
+        self.assertFinds(self.check('| hangs | 1.0 | none known | [x](x.cpp) | [x](../../test/x.cpp): "it was so" | 1.1 |'),
+                         '"it was so"')
+
+
 class Compiled(TreeTest):
     def setUp(self):
         super().setUp()

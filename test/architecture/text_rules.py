@@ -1,5 +1,6 @@
-"""What no file of the project says, and what README and the guide quote."""
+"""What no file of the project says, what README and the guide quote, and where texts point."""
 
+import os
 import re
 
 from source_tree import SOURCES, within
@@ -28,6 +29,15 @@ QUOTING = {
     "README.md": (("cpp", "idl"), ("examples",)),
     "GUIDE.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
 }
+
+
+_FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+_CODE = re.compile(r"`[^`\n]*`")
+_LINK = re.compile(r"\]\(([^()\s]+)\)")
+_TEST_CASE = re.compile(r'\bTEST_CASE(?:_METHOD)?\s*\(\s*(?:\w+\s*,\s*)?((?:"[^"]*"\s*)+)')
+WORKAROUNDS = "src/dds/WORKAROUNDS.md"
+# The columns of its tables.
+_COLUMNS = ["symptom", "version", "upstream", "what we do", "test", "remove when"]
 
 
 def machine_paths(tree):
@@ -97,3 +107,66 @@ def _without_margin(lines):
     """The lines without the blanks that they begin with in common, and without those at their ends."""
     margin = min((len(line) - len(line.lstrip(" ")) for line in lines if line.strip()), default=0)
     return [line[margin:].rstrip() for line in lines]
+
+
+def links(tree):
+    """A link of a text to a file, a folder or a heading that is not there."""
+    for path in tree.files((".md",)):
+        text = _prose(tree.text(path))
+        for found in _LINK.finditer(text):
+            target, _, heading = found.group(1).partition("#")
+            if re.match(r"[a-z]+:", target):
+                continue
+            line = text.count("\n", 0, found.start()) + 1
+            there = os.path.normpath(os.path.join(os.path.dirname(path), target)) if target else path
+            if not tree.exists(there):
+                yield f"{path}:{line}: points to {target}, which does not exist"
+            elif heading and there.endswith(".md") and heading not in _anchors(tree.text(there)):
+                yield f"{path}:{line}: points to {target}#{heading}, but {there} has no such heading"
+
+
+def workarounds(tree):
+    """A row about a vendor that lacks something, or that names a test case which its file does not have."""
+    if not tree.exists(WORKAROUNDS):
+        return
+    for line, cells in _rows(tree.text(WORKAROUNDS)):
+        if cells[: len(_COLUMNS)] == _COLUMNS or set("".join(cells)) <= set("-: "):
+            continue
+        where = f"{WORKAROUNDS}:{line}"
+        if len(cells) != len(_COLUMNS):
+            yield f"{where}: has {len(cells)} columns; they are {', '.join(_COLUMNS)}"
+            continue
+        row = dict(zip(_COLUMNS, cells))
+        for column in _COLUMNS:
+            if not row[column]:
+                yield f"{where}: '{column}' is empty"
+        if row["what we do"] and not _LINK.search(row["what we do"]):
+            yield f"{where}: 'what we do' has no link to our file"
+        cases = set()
+        for target in _LINK.findall(row["test"]):
+            source = os.path.normpath(os.path.join(os.path.dirname(WORKAROUNDS), target))
+            if tree.exists(source) and source.endswith(".cpp"):
+                cases |= {"".join(re.findall(r'"([^"]*)"', name)) for name in _TEST_CASE.findall(tree.text(source))}
+        for name in re.findall(r'"([^"]+)"', row["test"]):
+            if name not in cases:
+                yield f"{where}: names the test case \"{name}\", which no file that it links has"
+
+
+def _prose(text):
+    """The text with its code blanked out, line by line."""
+    for pattern in (_FENCED, _CODE):
+        text = pattern.sub(lambda code: re.sub(r"[^\n]", " ", code.group()), text)
+    return text
+
+
+def _anchors(text):
+    """What a link to a heading says: lower case, without punctuation, with a dash for a blank."""
+    headings = re.findall(r"^#+ +(.*?) *$", _FENCED.sub("", text), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\]\([^)]*\)", "", heading).lower()).replace(" ", "-") for heading in headings}
+
+
+def _rows(text):
+    """(line, cells) of each row of a text's tables."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("|"):
+            yield number, [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip().strip("|"))]
