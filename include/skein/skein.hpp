@@ -31,3 +31,4 @@
 #include "skein/task.hpp"
 #include "skein/topic_qos.hpp"
 #include "skein/vendor.hpp"
+#include "skein/wait_for_signal.hpp"

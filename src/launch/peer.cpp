@@ -34,6 +34,7 @@
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "skein/wait_for_signal.hpp"
 #include "used_topics.hpp"
 #include "wake_up.hpp"
 
@@ -299,13 +300,6 @@ bool await_dependencies(Entity& entity, const PeerProfile& peer,
   return !told_to_end();
 }
 
-int await_end() {
-  const sigset_t signals = ending_signals();
-  int signal = 0;
-  sigwait(&signals, &signal);
-  return 0;
-}
-
 /// What a peer does that provides nothing.
 int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
                  const ComponentRegistry& registry) {
@@ -330,7 +324,8 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   provide_csp(entity, peer.system + "/" + peer.name, mission, csp, registry);
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
-  return await_end();
+  wait_for_signal();
+  return 0;
 }
 
 /// At the end: code may use a topic at any time.
@@ -391,10 +386,12 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
   try {
-    const int code =
-        peer.component->interfaces.empty()
-            ? run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); })
-            : await_end();
+    int code = 0;
+    if (peer.component->interfaces.empty()) {
+      code = run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); });
+    } else {
+      wait_for_signal();
+    }
     tell_unneeded_rules(entity, peer, topics);
     return code;
   } catch (const std::exception& error) {

@@ -34,7 +34,7 @@ FLOORS = {
 }
 # What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
 USERS_HEADERS = {
-    "core": "call call_context clock error executor guid stream",
+    "core": "call call_context clock error executor guid stream wait_for_signal",
     "idl": "describe",
     "dds": "loopback vendor",
     "topics": "publisher subscription topic_qos",
@@ -45,7 +45,7 @@ USERS_HEADERS = {
     "all of the library": "skein",
     "Asio": "asio",
 }
-MAX_USERS_HEADERS = 32
+MAX_USERS_HEADERS = 33
 # Those that skein/skein.hpp does not include: they need another library, or are that header.
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
