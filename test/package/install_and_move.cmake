@@ -1,6 +1,26 @@
-# cmake -D BUILD=folder -D PREFIX=folder -P install_and_move.cmake: nothing in the package may remember where it was installed.
+# cmake -D BUILD=folder -D PREFIX=folder [-D NINJA=program] -P install_and_move.cmake: nothing in the package may remember where it was
+# installed.
 set(first ${PREFIX}.first)
 file(REMOVE_RECURSE ${first} ${PREFIX})
+# After a build of some targets only an installation builds the rest: this file stands for what is missing then,
+file(REMOVE ${BUILD}/src/command/completion/skein.fish)
+# and all libraries and programs that are installed are of the target that it builds.
+if(NINJA)
+  execute_process(COMMAND ${NINJA} -C ${BUILD} -t commands skein_package OUTPUT_VARIABLE commands COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB scripts ${BUILD}/src/cmake_install.cmake ${BUILD}/src/*/cmake_install.cmake ${BUILD}/src/*/*/cmake_install.cmake
+    ${BUILD}/examples/*/cmake_install.cmake)
+  foreach(script IN LISTS scripts)
+    file(READ ${script} text)
+    string(REGEX MATCHALL "\"${BUILD}/(bin|lib)/[^\"]+" files "${text}")
+    foreach(file IN LISTS files)
+      string(REPLACE "\"${BUILD}/" "" file ${file})
+      string(FIND "${commands}" ${file} at)
+      if(at EQUAL -1)
+        message(SEND_ERROR "${file} is installed, but not of the target skein_package")
+      endif()
+    endforeach()
+  endforeach()
+endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${first} COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${first} ${PREFIX})
 file(GLOB_RECURSE texts ${PREFIX}/*.cmake ${PREFIX}/*.hpp ${PREFIX}/*.xml ${PREFIX}/*.idl ${PREFIX}/*.py)
