@@ -45,6 +45,19 @@ std::vector<std::string> references_out_of(const pugi::xml_node& picture) {
   return walker.found;
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  return {std::istreambuf_iterator<char>(text), {}};
+}
+
+/// What a picture's legend says of a route.
+std::string figures_of(const std::filesystem::path& file, const std::string& route) {
+  pugi::xml_document picture;
+  REQUIRE(picture.load_file(file.c_str()));
+  const auto label = picture.select_node(("//text[.='" + route + "']").c_str()).node();
+  return label.next_sibling("text").text().get();
+}
+
 }  // namespace
 
 TEST_CASE("the mission flies: every route is valid, and the unreachable goal is refused as such") {
@@ -95,14 +108,21 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
     REQUIRE(parsed);
     CHECK(std::string(picture.document_element().name()) == "svg");
     CHECK(references_out_of(picture) == std::vector<std::string>{});
-    std::ifstream text(run.file("route.svg"));
-    const std::string content{std::istreambuf_iterator<char>(text), {}};
+    const std::string content = text_of(run.file("route.svg"));
     for (const char* label :
          {"10 s, by declaration: RRTstar", "planner killed: AStar", "fresh picture: "}) {
       CHECK_THAT(content, Contains(label));
     }
     CHECK(std::regex_search(content, std::regex(">[0-9]+ ms: ")));  // in a hurry
   }
+}
+
+// Of its routes, only this one depends neither on chance nor on how fast the machine is.
+TEST_CASE("the picture that the example shows is of a flight like this one") {
+  const char* const route = "planner killed: AStar";
+  const std::string flown_figures = figures_of(flown().file("route.svg"), route);
+  CHECK_THAT(flown_figures, Contains(" km, exposure "));
+  CHECK(figures_of(project_file("examples/route_planning/route.svg"), route) == flown_figures);
 }
 
 TEST_CASE(

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 #include <pugixml.hpp>
 
+#include "../tools/places.hpp"
 #include "demo.hpp"
 #include "made_terrain.hpp"
 #include "skein/error.hpp"
@@ -91,6 +93,40 @@ TEST_CASE("A height profile has distances below it") {
   const auto routes = two_routes(demo);
   CHECK(distances({routes[0]}) >= of_the_map + 4);
   CHECK(distances(routes) >= of_the_map + 8);
+}
+
+// The missiles are those that the example's ground station reports before its fifth question.
+TEST_CASE("The picture and the text of the route-planning example show what A* plans today") {
+  const Demo demo;
+  const auto planner = make_a_star(demo.terrains);
+  const auto before = planner->plan(demo.problem);
+  auto problem = demo.problem;
+  const auto& middle = before.waypoints[before.waypoints.size() / 2];
+  problem.missile_sites.push_back({"Sierra", {middle.north_m, middle.east_m}, 20, 4000, 0.02});
+  problem.exposure_cap_m = 3 * before.radar_exposure + 10'000;
+  problem.kill_weight_m = 100'000;
+  const auto after = planner->plan(problem);
+
+  const auto example = skein::test::project_file("examples/route_planning");
+  pugi::xml_document picture;
+  REQUIRE(picture.load_file((example + "/route.svg").c_str()));
+  const auto shown = [&](const std::string& route) {
+    const auto label = picture.select_node(("//text[.='" + route + "']").c_str()).node();
+    return std::string(label.next_sibling("text").text().get());
+  };
+  const auto figures = [](const auto& route) {
+    return fmt::format("{:.1f} km, exposure {:.1f} km", route.length_m / 1000,
+                       route.radar_exposure / 1000);
+  };
+  CHECK(shown("planner killed: AStar") == figures(before));
+  CHECK(shown("fresh picture: AStar") == figures(after));
+
+  std::ifstream file(example + "/README.md");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  CHECK_THAT(text, Contains(fmt::format("  route     {:.2f} km by AStar, lowest {:.0f} m above "
+                                        "ground, radar exposure {:.2f} km, {} waypoints\n",
+                                        after.length_m / 1000, after.lowest_height_above_ground_m,
+                                        after.radar_exposure / 1000, after.waypoints.size())));
 }
 
 TEST_CASE("Names that look like XML stay names") {
