@@ -23,8 +23,23 @@ foreach(target skein_idl skein_broker skein_rpc skein_entity skein_navigation_id
 endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl/navigation DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/idl)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/mission_profiles DESTINATION ${CMAKE_INSTALL_DATADIR}/skein)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/mission_profiles DESTINATION ${CMAKE_INSTALL_DATADIR}/skein PATTERN README.md EXCLUDE)
+
+# What README and GUIDE point to is installed with them, as far as it can be read without the source tree.
+set(source ${PROJECT_SOURCE_DIR})
+file(GLOB documents RELATIVE ${source} CONFIGURE_DEPENDS ${source}/examples/0*/* ${source}/examples/route_planning/*.svg
+  ${source}/test/guide/*.*)
+list(APPEND documents README.md GUIDE.md SECURITY.md LICENSE benchmarks/README.md brokerless_discovery/RULES.md idl/README.md
+  mission_profiles/README.md examples/reconnaissance/README.md examples/route_planning/README.md)
+list(TRANSFORM documents PREPEND ${source}/ OUTPUT_VARIABLE originals)
+set(documents_folder ${CMAKE_CURRENT_BINARY_DIR}/documents)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_custom_command(OUTPUT ${documents_folder}/README.md
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${documents_folder}
+  COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/install_documents.py ${source} ${documents_folder} ${documents}
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/install_documents.py ${originals} VERBATIM)
+add_custom_target(skein_documents ALL DEPENDS ${documents_folder}/README.md)
+install(DIRECTORY ${documents_folder}/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(skein_idl_function ${CMAKE_INSTALL_DATADIR}/skein/idl/cmake/SkeinIdl.cmake)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/skeinConfig.cmake.in
