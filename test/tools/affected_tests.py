@@ -53,12 +53,12 @@ class Affected:
         top = path.split("/")[0]
         if top in ("examples", "mission_profiles"):  # texts, too, which tests hold to the code
             self.floor = min(self.floor, 7)
+        elif top == "benchmarks":  # its text, too
+            self.folders.add("benchmarks")
         elif _TEXTS.match(path):
             return
         elif top == "test" and path.count("/") > 1 and tree.exists(path) and _HOLDS_TESTS.search(tree.text(path)):
             self.folders.add(path.split("/")[1])
-        elif top == "benchmarks":
-            self.folders.add("benchmarks")
         elif top == "idl":
             self.floor = min(self.floor, 1)
         else:

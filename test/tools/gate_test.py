@@ -288,6 +288,7 @@ class Selection(unittest.TestCase):
         affected = Affected(self.TREE, ["README.md"])
         self.assertTrue(affected.breaks(8, "architecture"))
         self.assertFalse(affected.breaks(8, "mission"))
+        self.assertTrue(Affected(self.TREE, ["benchmarks/README.md"]).breaks(8, "benchmarks"))
 
     def test_an_unknown_commit_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
