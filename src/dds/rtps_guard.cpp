@@ -1,5 +1,6 @@
 #include "rtps_guard.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
@@ -11,17 +12,9 @@ namespace {
 
 using namespace rtps_message;
 
-constexpr std::optional<RtpsGuard::Refusal> kGood;
+constexpr Admission::Verdict kGood;
 
-/// A reader takes memory and time for each number of a GAP.
-constexpr std::int64_t kLongestGap = 1 << 16;
-
-Guid guid_of(const unsigned char* prefix, const unsigned char* entity) {
-  Guid guid;
-  std::memcpy(guid.bytes.data(), prefix, kPrefixSize);
-  std::memcpy(guid.bytes.data() + kPrefixSize, entity, 4);
-  return guid;
-}
+std::uint32_t entity_at(const unsigned char* id) { return get32(id, false); }
 
 enum class Builtin { None, Participants, Endpoints, Liveliness, Security };
 
@@ -46,23 +39,25 @@ Builtin builtin(const unsigned char* entity) {
   }
 }
 
-const char* describe(RtpsGuard::Refusal why) {
+const char* describe(Refusal why) {
   switch (why) {
-    case RtpsGuard::Refusal::Source:
+    case Refusal::Source:
       return "its address is not among the allowed sources";
-    case RtpsGuard::Refusal::Form:
+    case Refusal::Form:
       return "it is not formed as RTPS says";
-    case RtpsGuard::Refusal::Unused:
+    case Refusal::Unused:
       return "nobody here uses its kind";
-    case RtpsGuard::Refusal::Leap:
-      return "its sequence numbers are far beyond those announced";
-    case RtpsGuard::Refusal::Fragment:
+    case Refusal::Stranger:
+      return "its participant has not announced itself";
+    case Refusal::Leap:
+      return "its sequence numbers are far beyond what was received of its writer";
+    case Refusal::Fragment:
       return "its fragments are too small, or contradict earlier ones";
-    case RtpsGuard::Refusal::Room:
+    case Refusal::Room:
       return "its sample in fragments is too large, or one too many";
-    case RtpsGuard::Refusal::Parameters:
+    case Refusal::Parameters:
       return "its discovery parameters reach beyond it";
-    case RtpsGuard::Refusal::Lease:
+    case Refusal::Lease:
       return "it announces a participant without its lease (PID_PARTICIPANT_LEASE_DURATION)";
   }
   return "";
@@ -94,6 +89,7 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
     count(Refusal::Form, 0, source);
     return {};
   }
+  const Origin origin{sender(message), source, now};
   Passed passed;
   for (std::size_t at = kHeaderSize; at < size;) {
     const auto submessage = submessage_at(message, size, at);
@@ -104,7 +100,7 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
     at += kSubmessageHeaderSize + submessage->size;
     // Vendors' own, which others pass over. Each message of Debian's Fast DDS ends with one.
     const bool passed_over = submessage->kind() >= kFirstOfVendors;
-    const Verdict verdict = passed_over ? kGood : judge(*submessage, message + kPrefix, now);
+    const Verdict verdict = passed_over ? kGood : judge(*submessage, origin);
     if (!passed_over && !verdict) {
       passed.size = at;
       passed.announces |= is_announcement(*submessage);
@@ -120,8 +116,37 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
   return passed;
 }
 
-RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const unsigned char* prefix,
-                                    Clock::time_point now) {
+void RtpsGuard::found(const Guid& participant) {
+  const std::lock_guard lock(mutex_);
+  admission_.found(participant);
+}
+
+void RtpsGuard::removed(const Guid& participant) {
+  const std::lock_guard lock(mutex_);
+  admission_.removed(participant);
+}
+
+std::size_t RtpsGuard::participants() const {
+  const std::lock_guard lock(mutex_);
+  return admission_.participants();
+}
+
+void RtpsGuard::sent(const unsigned char* message, std::size_t size) {
+  Guid receiver;
+  // It only reads them.
+  for_each_submessage(const_cast<unsigned char*>(message), size, [&](const Submessage& submessage) {
+    const unsigned char* body = submessage.body();
+    if (submessage.kind() == kInfoDestination && submessage.size >= kPrefixSize) {
+      std::memcpy(receiver.bytes.data(), body, kPrefixSize);
+    }
+    if (submessage.kind() != kAckNack || submessage.size < 16) return;
+    const std::int64_t base = get_sequence_number(body + 8, submessage.little());
+    const std::lock_guard lock(mutex_);
+    admission_.acknowledged(receiver, entity_at(body + 4), entity_at(body), base - 1);
+  });
+}
+
+RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const Origin& origin) {
   const auto demand = [](bool well_formed) { return well_formed ? kGood : Verdict(Refusal::Form); };
   switch (submessage.kind()) {
     case kPad:
@@ -130,6 +155,18 @@ RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const unsigned
       return demand(submessage.flag(0x02) || submessage.size >= 8);
     case kInfoDestination:
       return demand(submessage.size >= kPrefixSize);
+    default:
+      break;
+  }
+  const std::lock_guard lock(mutex_);
+  const Verdict verdict = judge_by_kind(submessage, origin);
+  if (verdict || is_announcement(submessage) || admission_.knows(origin)) return verdict;
+  return Refusal::Stranger;
+}
+
+RtpsGuard::Verdict RtpsGuard::judge_by_kind(const Submessage& submessage, const Origin& origin) {
+  const auto demand = [](bool well_formed) { return well_formed ? kGood : Verdict(Refusal::Form); };
+  switch (submessage.kind()) {
     case kAckNack: {
       const auto set = sequence_number_set(submessage, 8);
       return demand(set && submessage.size >= set->end + 4);
@@ -145,46 +182,48 @@ RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const unsigned
                     get_sequence_number(submessage.body() + 8, submessage.little()) >= 1 &&
                     get32(submessage.body() + 16, submessage.little()) >= 1);
     case kHeartbeat:
-      return judge_heartbeat(submessage, prefix, now);
+      return judge_heartbeat(submessage, origin);
     case kGap:
-      return judge_gap(submessage, prefix, now);
+      return judge_gap(submessage, origin);
     case kData:
-      return judge_data(submessage, prefix, now);
+      return judge_data(submessage, origin);
     case kDataFrag:
-      return judge_data_frag(submessage, prefix, now);
+      return judge_data_frag(submessage, origin);
     default:
       return Refusal::Unused;
   }
 }
 
-RtpsGuard::Verdict RtpsGuard::judge_heartbeat(const Submessage& submessage,
-                                              const unsigned char* prefix, Clock::time_point now) {
+RtpsGuard::Verdict RtpsGuard::judge_heartbeat(const Submessage& submessage, const Origin& origin) {
   if (submessage.size < 28) return Refusal::Form;
-  const unsigned char* body = submessage.body();
-  const std::int64_t first = get_sequence_number(body + 8, submessage.little());
-  const std::int64_t last = get_sequence_number(body + 16, submessage.little());
+  unsigned char* body = submessage.body();
+  std::int64_t first = get_sequence_number(body + 8, submessage.little());
+  std::int64_t last = get_sequence_number(body + 16, submessage.little());
   if (first < 1 || last < first - 1) return Refusal::Form;
-  return announce(prefix, body + 4, last, now) ? kGood : Verdict(Refusal::Leap);
+  const Verdict verdict = admission_.heartbeat(origin, entity_at(body + 4), first, last);
+  put_sequence_number(body + 8, first, submessage.little());
+  put_sequence_number(body + 16, last, submessage.little());
+  return verdict;
 }
 
-RtpsGuard::Verdict RtpsGuard::judge_gap(const Submessage& submessage, const unsigned char* prefix,
-                                        Clock::time_point now) {
+RtpsGuard::Verdict RtpsGuard::judge_gap(const Submessage& submessage, const Origin& origin) {
   const auto set = sequence_number_set(submessage, 16);
   if (!set) return Refusal::Form;
   unsigned char* body = submessage.body();
   const std::int64_t start = get_sequence_number(body + 8, submessage.little());
   if (start < 1 || set->base < start) return Refusal::Form;
-  if (!announce(prefix, body + 4, set->base - 1 + set->bits, now)) return Refusal::Leap;
-  if (set->base - start > kLongestGap) {
-    // A part of it is as true; the reader asks for the rest.
-    put_sequence_number(body + 16, start + kLongestGap, submessage.little());
+  const std::int64_t said = std::max(start, set->base - 1 + set->bits);
+  std::int64_t last = said;
+  if (const auto verdict = admission_.gap(origin, entity_at(body + 4), start, last)) return verdict;
+  if (last < said) {
+    // A part of it is as true.
+    put_sequence_number(body + 16, std::min(set->base, last + 1), submessage.little());
     put32(body + 24, 0, submessage.little());
   }
   return kGood;
 }
 
-RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const unsigned char* prefix,
-                                         Clock::time_point now) {
+RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const Origin& origin) {
   const auto found = data(submessage);
   if (!found) return Refusal::Form;
   const Builtin service = builtin(found->writer);
@@ -194,44 +233,30 @@ RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const uns
                           ? check_liveliness(found->payload, found->payload_size)
                           : check_discovery(found->payload, found->payload_size);
     if (!good) return Refusal::Parameters;
-    if (service == Builtin::Participants && !names_lease(found->payload, found->payload_size)) {
-      return Refusal::Lease;
+    if (service == Builtin::Participants) {
+      if (!names_lease(found->payload, found->payload_size)) return Refusal::Lease;
+      if (const auto verdict = admission_.announced(origin)) return verdict;
     }
   }
-  return announce(prefix, found->writer, found->number, now) ? kGood : Verdict(Refusal::Leap);
+  // A farewell may come from who was never found.
+  if (service == Builtin::Participants && !admission_.knows(origin)) return kGood;
+  return admission_.sample(origin, entity_at(found->writer), found->number);
 }
 
-RtpsGuard::Verdict RtpsGuard::judge_data_frag(const Submessage& submessage,
-                                              const unsigned char* prefix, Clock::time_point now) {
+RtpsGuard::Verdict RtpsGuard::judge_data_frag(const Submessage& submessage, const Origin& origin) {
   Fragments fragments;
   const auto found = data_frag(submessage, fragments);
   if (!found) return Refusal::Form;
   // Discovery in pieces cannot be looked at, and vendors send it whole.
   if (builtin(found->writer) != Builtin::None) return Refusal::Unused;
-  const std::lock_guard lock(mutex_);
-  const Guid writer = guid_of(prefix, found->writer);
-  if (!ledger_.announce(writer, found->number, now)) return Refusal::Leap;
-  switch (ledger_.fragments(writer, found->number, fragments, now)) {
-    case WriterLedger::Verdict::Good:
-      return kGood;
-    case WriterLedger::Verdict::Contradiction:
-      return Refusal::Fragment;
-    case WriterLedger::Verdict::NoRoom:
-      return Refusal::Room;
-  }
-  return Refusal::Form;
-}
-
-bool RtpsGuard::announce(const unsigned char* prefix, const unsigned char* writer,
-                         std::int64_t number, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
-  return ledger_.announce(guid_of(prefix, writer), number, now);
+  return admission_.fragments(origin, entity_at(found->writer), found->number, fragments);
 }
 
 void RtpsGuard::count(Refusal why, unsigned char kind, std::uint32_t source) {
   const auto so_far =
       counts_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed) + 1;
-  if (!is_told(so_far)) return;
+  // Who has just found somebody speaks to him before the announcement has come.
+  if (why == Refusal::Stranger || !is_told(so_far)) return;
   char what[32] = "message";
   if (kind != 0) std::snprintf(what, sizeof what, "submessage (0x%02x)", kind);
   log(LogLevel::Warning, place_,

@@ -7,35 +7,27 @@
 #include <optional>
 #include <string>
 
+#include "admission.hpp"
 #include "dds/allowed_sources.hpp"
 #include "rtps_message.hpp"
-#include "writer_ledger.hpp"
 
 namespace skein::dds {
 
 /// Stands before a vendor's parser, and passes on of what comes from the network only what is well
-/// formed by the RTPS specification, of a kind that Skein's vendors use, and plausible against what
-/// was announced. GUARD.md says which of the vendors' known holes that closes. Thread-safe.
+/// formed by the RTPS specification, of a kind that Skein's vendors use, and admitted by what was
+/// received of its sender before. GUARD.md says which of the vendors' known holes that closes.
+/// Thread-safe.
 class RtpsGuard {
  public:
-  using Clock = WriterLedger::Clock;
+  using Clock = Admission::Clock;
 
-  enum class Refusal {
-    Source,      ///< The address is not among those allowed.
-    Form,        ///< Not as the specification says; what follows in the message is dropped, too.
-    Unused,      ///< A kind that nobody here uses.
-    Leap,        ///< Sequence numbers far beyond what the writer announced.
-    Fragment,    ///< A fragment that contradicts others of its sample, or is too small.
-    Room,        ///< A sample in fragments that is too large, or one too many.
-    Parameters,  ///< Discovery whose parameters do not lie within it.
-    Lease,       ///< A participant that does not say when it counts as gone.
-  };
-  static constexpr std::size_t kRefusals = 8;
+  using Refusal = dds::Refusal;
+  static constexpr std::size_t kRefusals = 9;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.
-  RtpsGuard(AllowedSources sources, std::string place)
-      : sources_(std::move(sources)), place_(std::move(place)) {}
+  RtpsGuard(AllowedSources sources, std::string place, SkippedNumbers skipped)
+      : sources_(std::move(sources)), place_(std::move(place)), admission_(skipped) {}
 
   /// What may be handed on of a message, and what that holds.
   struct Passed {
@@ -50,33 +42,39 @@ class RtpsGuard {
   Passed pass(unsigned char* message, std::size_t size, std::uint32_t source,
               Clock::time_point now);
 
+  /// The vendor has found a participant, or has removed it.
+  void found(const Guid& participant);
+  void removed(const Guid& participant);
+
+  /// Looks at a message that the vendor sends: what its readers acknowledge, they hold no longer.
+  void sent(const unsigned char* message, std::size_t size);
+
+  /// How many participants it knows.
+  std::size_t participants() const;
+
   /// How many messages or submessages were refused, since creation.
   std::uint64_t refused(Refusal kind) const {
     return counts_[static_cast<std::size_t>(kind)].load(std::memory_order_relaxed);
   }
 
  private:
-  /// Nothing: good.
-  using Verdict = std::optional<Refusal>;
+  using Origin = Admission::Origin;
+  using Verdict = Admission::Verdict;
 
-  Verdict judge(const rtps_message::Submessage& submessage, const unsigned char* prefix,
-                Clock::time_point now);
-  Verdict judge_data(const rtps_message::Submessage& submessage, const unsigned char* prefix,
-                     Clock::time_point now);
-  Verdict judge_data_frag(const rtps_message::Submessage& submessage, const unsigned char* prefix,
-                          Clock::time_point now);
-  Verdict judge_heartbeat(const rtps_message::Submessage& submessage, const unsigned char* prefix,
-                          Clock::time_point now);
-  Verdict judge_gap(const rtps_message::Submessage& submessage, const unsigned char* prefix,
-                    Clock::time_point now);
-  bool announce(const unsigned char* prefix, const unsigned char* writer, std::int64_t number,
-                Clock::time_point now);
+  // Under the lock:
+  Verdict judge(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_by_kind(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_data(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_data_frag(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_heartbeat(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_gap(const rtps_message::Submessage& submessage, const Origin& origin);
+
   void count(Refusal why, unsigned char kind, std::uint32_t source);
 
   const AllowedSources sources_;
   const std::string place_;
-  std::mutex mutex_;
-  WriterLedger ledger_;
+  mutable std::mutex mutex_;
+  Admission admission_;
   std::array<std::atomic<std::uint64_t>, kRefusals> counts_{};
 };
 

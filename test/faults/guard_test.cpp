@@ -10,8 +10,9 @@
 
 using namespace skein;
 using namespace skein::test;
+using dds::Admission;
 using dds::RtpsGuard;
-using dds::WriterLedger;
+using dds::SkippedNumbers;
 using Refusal = RtpsGuard::Refusal;
 using namespace std::chrono_literals;
 
@@ -23,6 +24,7 @@ constexpr unsigned kData = 0x15;
 constexpr unsigned kDataFrag = 0x16;
 constexpr unsigned kPad = 0x01;
 constexpr std::uint32_t kSomewhere = 10u << 24 | 7;
+constexpr std::uint32_t kHere = 127u << 24 | 1;
 
 Guid writer_of(unsigned number, unsigned char kind = 0x03) {
   Guid guid;
@@ -33,9 +35,44 @@ Guid writer_of(unsigned number, unsigned char kind = 0x03) {
   return guid;
 }
 
-/// A guard on its own, whose time the test tells.
+const Guid kWriter = writer_of(1);
+const Guid kReader = with_entity(Guid{{9, 9, 9}}, 0x104);
+
+std::span<const unsigned char> prefix_of(const Guid& guid) {
+  return std::span(guid.bytes).first(12);
+}
+
+const Octets kPayload{0, 1, 0, 0, 1, 2, 3, 4};
+/// A list of parameters, without its end: a lease of 60 s.
+const Octets kListWithLease{0, 3, 0, 0, 0x02, 0, 8, 0, 60, 0, 0, 0, 0, 0, 0, 0};
+const Octets kEndOfList{0x01, 0, 0, 0};
+
+Guid announcer_of(Guid participant) { return with_entity(participant, 0x100c2); }
+
+RtpsPacket from(const Guid& sender, unsigned kind, unsigned flags, const OctetWriter& body,
+                int claimed = -1) {
+  return RtpsPacket(sender).submessage(kind, flags, body, claimed);
+}
+
+RtpsPacket announcement_of(const Guid& participant) {
+  const Guid announcer = announcer_of(participant);
+  const Octets list = OctetWriter().append(kListWithLease).append(kEndOfList).octets();
+  return from(announcer, kData, kHasPayload, data(announcer, 1, list));
+}
+
+Guid stranger_of(unsigned number) {
+  Guid stranger = writer_of(1);
+  for (int i = 0; i < 4; ++i) stranger.bytes[8 + i] = static_cast<std::uint8_t>(number >> 8 * i);
+  stranger.bytes[5] = 1;
+  return stranger;
+}
+
+/// A guard on its own, whose time the test tells. It knows the participant of `kWriter`.
 struct Stage {
-  explicit Stage(dds::AllowedSources sources = {}) : guard(std::move(sources), "test") {}
+  explicit Stage(SkippedNumbers skipped = SkippedNumbers::Noted, dds::AllowedSources sources = {})
+      : guard(std::move(sources), "test", skipped) {
+    pass(announcement_of(kWriter).octets(), kHere);
+  }
 
   /// What is handed on.
   Octets pass(Octets message, std::uint32_t source = kSomewhere) {
@@ -48,25 +85,21 @@ struct Stage {
     return pass(packet.octets()).empty() && guard.refused(why) == before + 1;
   }
 
+  bool refuses_stranger(const RtpsPacket& packet) { return refuses(packet, Refusal::Stranger); }
+
+  /// A reader here says that it holds a writer's samples up to that one.
+  void acknowledge(const Guid& writer, std::int64_t number) {
+    const auto acknack = entities(kReader, writer).number(number + 1).u32(0).u32(7);
+    const Octets message = RtpsPacket(kReader)
+                               .submessage(0x0e, 0, OctetWriter().append(prefix_of(writer)))
+                               .submessage(0x06, 0, acknack)
+                               .octets();
+    guard.sent(message.data(), message.size());
+  }
+
   RtpsGuard guard;
   RtpsGuard::Clock::time_point now{};
 };
-
-const Guid kWriter = writer_of(1);
-const Octets kPayload{0, 1, 0, 0, 1, 2, 3, 4};
-/// A list of parameters, without its end: a lease of 60 s.
-const Octets kListWithLease{0, 3, 0, 0, 0x02, 0, 8, 0, 60, 0, 0, 0, 0, 0, 0, 0};
-
-Guid announcer_of_participants() {
-  Guid announcer = writer_of(0, 0xc2);
-  announcer.bytes[13] = 0x01;  // 0x000100c2
-  return announcer;
-}
-
-RtpsPacket from(const Guid& sender, unsigned kind, unsigned flags, const OctetWriter& body,
-                int claimed = -1) {
-  return RtpsPacket(sender).submessage(kind, flags, body, claimed);
-}
 
 }  // namespace
 
@@ -238,12 +271,12 @@ TEST_CASE("samples in fragments claim a bounded memory, and those given up make 
   const auto fragment = [&](std::int64_t number, std::uint32_t size) {
     return from(kWriter, kDataFrag, 0, data_frag(kWriter, number, {1, 1, 60'000, size}, 60'000));
   };
-  CHECK(stage.refuses(fragment(1, WriterLedger::kLargestSample + 1), Refusal::Room));
-  for (int i = 1; i <= 4; ++i) CHECK(stage.passes(fragment(i, WriterLedger::kLargestSample)));
-  CHECK(stage.refuses(fragment(5, WriterLedger::kLargestSample), Refusal::Room));
-  CHECK(stage.passes(fragment(4, WriterLedger::kLargestSample)));
+  CHECK(stage.refuses(fragment(1, Admission::kLargestSample + 1), Refusal::Room));
+  for (int i = 1; i <= 4; ++i) CHECK(stage.passes(fragment(i, Admission::kLargestSample)));
+  CHECK(stage.refuses(fragment(5, Admission::kLargestSample), Refusal::Room));
+  CHECK(stage.passes(fragment(4, Admission::kLargestSample)));
   stage.now += 6s;
-  CHECK(stage.passes(fragment(5, WriterLedger::kLargestSample)));
+  CHECK(stage.passes(fragment(5, Admission::kLargestSample)));
   CHECK(stage.refuses(fragment(1, 60'001), Refusal::Room));
 }
 
@@ -255,20 +288,100 @@ TEST_CASE("samples that are complete claim nothing") {
   }
 }
 
-TEST_CASE("a flood of unknown writers does not make the guard forget those that speak") {
+TEST_CASE("who has not announced itself is not heard") {
+  Stage stage;
+  const Guid stranger = stranger_of(1);
+  const auto acknack = entities({}, stranger).number(1).u32(0).u32(7);
+  const auto heard = [&](bool (Stage::*judged)(const RtpsPacket&)) {
+    return (stage.*judged)(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))) &&
+           (stage.*judged)(from(stranger, kData, kHasPayload, data(stranger, 1, kPayload))) &&
+           (stage.*judged)(from(stranger, kGap, 0, gap(stranger, 1, 3))) &&
+           (stage.*judged)(from(stranger, 0x06, 0, acknack));
+  };
+  CHECK(heard(&Stage::refuses_stranger));
+  CHECK(stage.passes(announcement_of(stranger)));
+  CHECK(heard(&Stage::passes));
+  stage.guard.removed(stranger.participant());
+  CHECK(heard(&Stage::refuses_stranger));
+  stage.guard.found(stranger.participant());
+  CHECK(heard(&Stage::passes));
+}
+
+TEST_CASE("a flood of strangers takes no memory, and none of those that are there forgotten") {
   Stage stage;
   CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  stage.guard.found(kWriter.participant());
   for (unsigned i = 0; i < 100'000; ++i) {
-    Guid stranger = writer_of(i);
-    stranger.bytes[4] = static_cast<std::uint8_t>(1 + i / 65536);
-    stranger.bytes[5] = 1;
-    REQUIRE(stage.passes(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))));
-    if (i % 1000 == 0) {
-      REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
-    }
+    const Guid stranger = stranger_of(i);
+    REQUIRE(stage.refuses_stranger(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))));
+    stage.pass(announcement_of(stranger).octets());
+    stage.now += 1ms;
   }
-  const std::int64_t far = WriterLedger::kMaxBefore - 1;
+  CHECK(stage.guard.participants() <= Admission::kMaxParticipants);
+  const std::int64_t far = std::int64_t{1} << 50;
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
   CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)), Refusal::Leap));
+}
+
+TEST_CASE("numbers that a reader counts one by one are skipped in parts, of which each is true") {
+  Stage stage(SkippedNumbers::Counted);
+  const auto leap = [](std::int64_t to) {
+    return from(kWriter, kHeartbeat, 0, heartbeat(kWriter, to, to));
+  };
+  const std::int64_t far = std::int64_t{1} << 32;
+  const std::int64_t at_once =
+      Admission::kCountedOfParticipant.at_once + Admission::kCountedOfSource.at_once;
+  CHECK(stage.pass(leap(far).octets()) ==
+        from(kWriter, kHeartbeat, 0, heartbeat(kWriter, at_once + 1, at_once)).octets());
+  CHECK(stage.refuses(leap(far), Refusal::Leap));
+  stage.now += 1s;
+  const std::int64_t a_second =
+      Admission::kCountedOfParticipant.a_second + Admission::kCountedOfSource.at_once;
+  CHECK(stage.pass(leap(far).octets()) ==
+        from(kWriter, kHeartbeat, 0, heartbeat(kWriter, at_once + a_second + 1, at_once + a_second))
+            .octets());
+}
+
+TEST_CASE("a late joiner that counts gets to a writer's three millionth sample in seconds") {
+  Stage stage(SkippedNumbers::Counted);
+  const auto beat = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 3'000'000, 3'000'010));
+  int beats = 1;
+  while (!stage.passes(beat)) {
+    stage.now += 100ms;
+    REQUIRE(++beats < 70);
+  }
+  CHECK(beats > 10);
+}
+
+TEST_CASE("what one address lets skip keeps no participant from its own start") {
+  Stage stage(SkippedNumbers::Counted);
+  const std::int64_t far = std::int64_t{1} << 32;
+  for (int i = 0; i < 20; ++i) {
+    stage.pass(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)).octets());
+  }
+  const Guid other = stranger_of(7);
+  CHECK(stage.passes(announcement_of(other)));
+  CHECK(stage.passes(from(other, kHeartbeat, 0, heartbeat(other, 10'000, 10'003))));
+}
+
+TEST_CASE("a reader that lacks a number is given few behind it that do not exist") {
+  Stage stage(SkippedNumbers::Counted);
+  constexpr std::int64_t kFar = 900'000;
+  REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, kFar))));
+  // Number 1 is missing: without limit each of these would cost the reader 65,536 entries.
+  std::int64_t skipped = 0;
+  for (std::int64_t start = 2; start < kFar; start += 65'536) {
+    skipped +=
+        !stage.pass(from(kWriter, kGap, 0, gap(kWriter, start, start + 65'535)).octets()).empty();
+  }
+  CHECK(skipped == 1);
+  CHECK(stage.pass(from(kWriter, kGap, 0, gap(kWriter, 2, 60'000)).octets()) ==
+        from(kWriter, kGap, 0, gap(kWriter, 2, Admission::kGapAhead + 1)).octets());
+  // It has acknowledged all up to there, and asks for the rest.
+  stage.acknowledge(kWriter, 4096);
+  CHECK(stage.pass(from(kWriter, kGap, 0, gap(kWriter, 4097, kFar)).octets()) ==
+        from(kWriter, kGap, 0, gap(kWriter, 4097, 4097 + 65'536)).octets());
+  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 70'000, 80'000)), Refusal::Leap));
 }
 
 TEST_CASE("vendors' own submessages are passed over in silence, the message's others go on") {
@@ -304,7 +417,7 @@ TEST_CASE("submessages of security, of replies to elsewhere and in another's nam
 
 TEST_CASE("discovery's parameters, texts and lists lie within it") {
   Stage stage;
-  const Guid announcer = announcer_of_participants();
+  const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](const OctetWriter& parameters) {
     const auto payload = OctetWriter().append(kListWithLease).append(parameters.octets());
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload.octets()));
@@ -351,7 +464,7 @@ TEST_CASE("discovery's parameters, texts and lists lie within it") {
 
 TEST_CASE("a participant says when it counts as gone") {
   Stage stage;
-  const Guid announcer = announcer_of_participants();
+  const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](const Octets& payload) {
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload));
   };
@@ -364,7 +477,7 @@ TEST_CASE("a participant says when it counts as gone") {
 
 TEST_CASE("the guard says whether it passed an announcement of a participant, and an ACKNACK") {
   Stage stage;
-  const Guid announcer = announcer_of_participants();
+  const Guid announcer = announcer_of(kWriter);
   const Octets parameters =
       OctetWriter().append(kListWithLease).append(Octets{0x01, 0, 0, 0}).octets();
   const auto acknack = entities({}, kWriter).number(1).u32(0).u32(7);
@@ -416,7 +529,7 @@ TEST_CASE("a message of liveliness holds what it says") {
 }
 
 TEST_CASE("packets come from allowed sources and this host only") {
-  Stage stage(dds::AllowedSources({"10.0.0.0/24", "10.1.2.3"}));
+  Stage stage(SkippedNumbers::Noted, dds::AllowedSources({"10.0.0.0/24", "10.1.2.3"}));
   const Octets good = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)).octets();
   CHECK(stage.pass(good, 0x0a000007) == good);
   CHECK(stage.pass(good, 0x0a010203) == good);
@@ -468,6 +581,8 @@ TEST_CASE("what the guard costs a packet", "[.benchmark]") {
       .submessage(0x09, 0, OctetWriter().zeros(8))
       .submessage(kData, kHasPayload, data(kWriter, 5, Octets(100)))
       .submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
+  // As all that stand in the table are.
+  for (unsigned i = 0; i < 100; ++i) stage.pass(announcement_of(stranger_of(i)).octets());
   time("INFO_DST, INFO_TS, DATA and HEARTBEAT", call);
   time("HEARTBEAT", from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)));
   time("DATA_FRAG", from(kWriter, kDataFrag, 0, data_frag(kWriter, 5, {1, 1, 8192, 60'000}, 8192)));

@@ -21,6 +21,8 @@ class PacketGuard {
   PacketGuard(const PacketGuard&) = delete;
   PacketGuard& operator=(const PacketGuard&) = delete;
 
+  RtpsGuard& guard() const noexcept { return *guard_; }
+
  private:
   const std::shared_ptr<RtpsGuard> guard_;
   std::vector<ddsi_tran_conn*> guarded_;

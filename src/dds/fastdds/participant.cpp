@@ -113,9 +113,11 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
     }
   }
   if (present) {
+    transport_->state->guard.found(guid);
     const auto& lease = info.info.m_leaseDuration;
     follow(guid, announced_lease(lease.seconds, lease.nanosec));
   } else {
+    transport_->state->guard.removed(guid);
     signs().forget(guid);
   }
   if (info.status == Info::CHANGED_QOS_PARTICIPANT || !options_.on_participant) return;

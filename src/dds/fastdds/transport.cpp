@@ -48,6 +48,7 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
     const auto now = std::chrono::steady_clock::now();
     if (!descriptor_.state->watch.may_send(now)) return true;
+    descriptor_.state->guard.sent(message, size);
     std::optional<std::int64_t> number;
     for_each_submessage(const_cast<rtps::octet*>(message), size, [&](const Submessage& submessage) {
       if (const auto announced = announcement_number(submessage)) number = announced;

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <arpa/inet.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "../tools/invented_peer.hpp"
+#include "../tools/wire_tap.hpp"
+#include "processes.hpp"
+
+namespace skein::test {
+
+/// A provider of the echo service in a process of its own, and a socket that sends it what a
+/// stranger would. For a network namespace where nobody else is.
+class AttackedProvider {
+ public:
+  static constexpr const char* kRequestTopic = "test/LouderEcho_Request";
+  static constexpr const char* kRequestType = "test::LouderEcho_Request";
+  static constexpr const char* kReplyTopic = "test/LouderEcho_Reply";
+  static constexpr const char* kReplyType = "test::LouderEcho_Reply";
+
+  AttackedProvider() : server_(start_peer("server", *Pairing::get().server)) {
+    server_.ask("provide");
+    constexpr std::uint16_t kFirst = 7400 + 250 * 17;  // of the domain: RTPS 9.6.1
+    for (const std::uint16_t port : udp_ports_of(server_.pid())) {
+      if (port >= kFirst && port < kFirst + 250) ports_.insert(port);  // others only send
+    }
+    socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+#ifndef __SANITIZE_ADDRESS__
+    // What makes it take all memory is not to take the machine's.
+    constexpr rlim_t kEnough = rlim_t{6} << 30;
+    const rlimit limit{kEnough, kEnough};
+    prlimit(server_.pid(), RLIMIT_AS, &limit, nullptr);
+#endif
+  }
+  ~AttackedProvider() { close(socket_); }
+  AttackedProvider(const AttackedProvider&) = delete;
+  AttackedProvider& operator=(const AttackedProvider&) = delete;
+
+  ChildProcess& process() { return server_; }
+
+  /// To all its ports, for discovery and for samples. Waits while it has much to read.
+  void send(const RtpsPacket& packet) { send(packet.octets()); }
+  void send(const Octets& packet) {
+    constexpr std::size_t kRoom = 64'000;
+    constexpr std::size_t kOverhead = 768;  // what a small packet takes of a socket's room
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    for (const std::uint16_t port : ports_) {
+      to.sin_port = htons(port);
+      sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+    }
+    sent_ += packet.size() + kOverhead;
+    if (sent_ < kRoom) return;
+    if (!has_read_all(std::chrono::seconds(60))) throw std::runtime_error("it reads no more");
+    sent_ = 0;
+  }
+
+  /// Whether it comes, in that time, to have read all that was sent.
+  bool has_read_all(std::chrono::seconds limit) const {
+    return eventually([&] { return unread() == 0; }, limit);
+  }
+
+  /// Makes `peer` known to it, with endpoints that match the provider's own.
+  void introduce(const InventedPeer& peer) {
+    send(peer.announcement());
+    send(peer.endpoint(peer.writer(1), kRequestTopic, kRequestType, 1));
+    send(peer.endpoint(peer.reader(2), kReplyTopic, kReplyType, 1));
+  }
+
+  /// Resident memory now, in MiB.
+  std::size_t resident_mib() const {
+    std::ifstream status("/proc/" + std::to_string(server_.pid()) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("VmRSS:")) return std::stoull(line.substr(6)) / 1024;
+    }
+    throw std::runtime_error("it has died");
+  }
+
+  /// Whether a client that has just come is answered, within `limit` in all: small and large.
+  void check_answers(std::chrono::seconds limit = std::chrono::seconds(10)) {
+    auto client = start_peer("client", *Pairing::get().client);
+    const auto start = std::chrono::steady_clock::now();
+    CHECK_THAT(client.ask("connect", limit), Catch::StartsWith("connected"));
+    CHECK_THAT(client.ask("echo 3 hello", limit), Catch::StartsWith("echoed"));
+    CHECK_THAT(client.ask("octets 300000 many", limit), Catch::StartsWith("echoed"));
+    CHECK(std::chrono::steady_clock::now() - start < limit);
+    client.finish();
+  }
+
+ private:
+  std::size_t unread() const {
+    std::ifstream table("/proc/net/udp");
+    std::string line;
+    std::getline(table, line);
+    std::size_t bytes = 0;
+    while (std::getline(table, line)) {
+      std::istringstream fields(line);
+      std::string skipped, local, queues;
+      fields >> skipped >> local >> skipped >> skipped >> queues;
+      const auto port = std::stoul(local.substr(local.find(':') + 1), nullptr, 16);
+      if (ports_.contains(static_cast<std::uint16_t>(port))) {
+        bytes += std::stoul(queues.substr(queues.find(':') + 1), nullptr, 16);
+      }
+    }
+    return bytes;
+  }
+
+  ChildProcess server_;
+  std::set<std::uint16_t> ports_;
+  int socket_ = -1;
+  std::size_t sent_ = 0;  // bytes since it was last seen reading
+};
+
+}  // namespace skein::test

@@ -1,0 +1,55 @@
+// What strangers send after they have announced themselves: a few packets each of which is well
+// formed, and true of its sender as far as the provider can know.
+#include <catch2/catch.hpp>
+
+#include "attacked_provider.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr unsigned kHeartbeat = 0x07;
+constexpr unsigned kGap = 0x08;
+constexpr std::size_t kLittleMemory = 64;  // MiB
+
+}  // namespace
+
+TEST_CASE("a heartbeat whose numbers begin at 2^32 does not stop a provider") {
+  AttackedProvider provider;
+  const InventedPeer peer(1);
+  const std::int64_t far = std::int64_t{1} << 32;
+  SECTION("of the writer that announces endpoints") {
+    const Guid writer = peer.entity(entity_id::kPublicationsAnnouncer);
+    provider.send(peer.announcement());
+    provider.send(peer.says(kHeartbeat, heartbeat(writer, far, far)));
+  }
+  SECTION("of a writer of requests") {
+    const Guid writer = peer.writer(1);
+    provider.introduce(peer);
+    provider.check_answers();  // by then the writer is matched
+    for (std::uint32_t i = 1; i <= 20; ++i) {
+      provider.send(peer.says(kHeartbeat, heartbeat(writer, far, far, i)));
+    }
+  }
+  CHECK(provider.has_read_all(5s));
+  provider.check_answers();
+}
+
+TEST_CASE("gaps behind a number that is missing take little of a provider's memory") {
+  AttackedProvider provider;
+  const InventedPeer peer(1);
+  provider.introduce(peer);
+  const Guid writer = peer.writer(1);
+  provider.check_answers();  // by then the writer is matched
+  const std::size_t before = provider.resident_mib();
+  provider.send(peer.says(kHeartbeat, heartbeat(writer, 1, std::int64_t{1} << 32)));
+  for (std::int64_t i = 0; i < 300; ++i) {
+    const std::int64_t start = 2 + i * 65'536;
+    provider.send(peer.says(kGap, gap(writer, start, start + 65'535)));
+  }
+  CHECK(provider.has_read_all(5s));
+  CHECK(provider.resident_mib() <= before + kLittleMemory);
+  provider.check_answers();
+}
