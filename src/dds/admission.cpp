@@ -7,11 +7,14 @@ namespace {
 
 constexpr Admission::Verdict kGood;
 
+/// Whether an entity id is one of DDS's own.
+bool is_of_discovery(std::uint32_t entity) { return (entity & 0xc0) == 0xc0; }
+
 }  // namespace
 
 std::int64_t Admission::Writer::held_up_to() const {
-  if (acknowledged.empty()) return 0;
-  return std::ranges::min(acknowledged, {}, &Acknowledgment::number).number;
+  if (readers.empty()) return 0;
+  return std::ranges::min(readers, {}, &Reader::acknowledged).acknowledged;
 }
 
 Admission::Participant* Admission::find(const Guid& participant) {
@@ -67,6 +70,8 @@ void Admission::place(Participant& participant, std::uint32_t source) {
 }
 
 void Admission::forget(std::unordered_map<Guid, Participant>::iterator participant) {
+  open_bytes_ -= participant->second.open_bytes;
+  open_samples_ -= participant->second.open_samples;
   if (participant->second.placed) --sources_[participant->second.source].participants;
   participants_.erase(participant);
 }
@@ -83,11 +88,15 @@ void Admission::forget_unconfirmed(Time now) {
 
 Admission::Verdict Admission::announce(Participant& participant, std::uint32_t entity,
                                        std::int64_t number, Time now, Writer*& found) {
-  const auto known = participant.writers.find(entity);
-  if (known == participant.writers.end()) {
+  auto known = participant.writers.find(entity);
+  if (known == participant.writers.end() || !known->second.heard) {
     if (number > kMaxBefore) return Refusal::Leap;
-    if (participant.writers.size() >= kMaxWriters) return Refusal::Room;
-    found = &participant.writers[entity];
+    if (known == participant.writers.end()) {
+      if (participant.writers.size() >= kMaxWriters) return Refusal::Room;
+      known = participant.writers.emplace(entity, Writer()).first;
+    }
+    found = &known->second;
+    found->heard = true;
     found->highest = number;
     found->advanced = now;
     return kGood;
@@ -162,16 +171,46 @@ Admission::Verdict Admission::gap(const Origin& origin, std::uint32_t entity, st
   return last < start ? Verdict(Refusal::Leap) : kGood;
 }
 
+// ---- readers here
+
+void Admission::matched(const Guid& participant, std::uint32_t entity, std::uint32_t reader,
+                        bool now) {
+  Participant* const remote = find(participant);
+  if (remote == nullptr) return;
+  const auto found = remote->writers.find(entity);
+  if (now) {
+    Writer& writer = found != remote->writers.end() ? found->second : remote->writers[entity];
+    if (!std::ranges::count(writer.readers, reader, &Reader::entity)) {
+      writer.readers.push_back({reader, 0});
+    }
+  } else if (found != remote->writers.end()) {
+    Writer& writer = found->second;
+    std::erase_if(writer.readers, [&](const Reader& each) { return each.entity == reader; });
+    if (!writer.readers.empty()) return;
+    for (auto& [number, sample] : writer.samples) close(*remote, sample);
+    writer.samples.clear();
+  }
+}
+
+void Admission::reader_gone(std::uint32_t reader) {
+  for (auto& [guid, participant] : participants_) {
+    for (auto& [entity, writer] : participant.writers) {
+      if (std::ranges::count(writer.readers, reader, &Reader::entity) > 0) {
+        matched(guid, entity, reader, false);
+      }
+    }
+  }
+}
+
 void Admission::acknowledged(const Guid& participant, std::uint32_t entity, std::uint32_t reader,
                              std::int64_t number) {
-  constexpr std::size_t kManyReaders = 64;
   Writer* const writer = find(participant, entity);
   if (writer == nullptr || number < 0) return;
-  const auto known = std::ranges::find(writer->acknowledged, reader, &Acknowledgment::reader);
-  if (known != writer->acknowledged.end()) {
-    known->number = number;
-  } else if (writer->acknowledged.size() < kManyReaders) {
-    writer->acknowledged.push_back({reader, number});
+  const auto known = std::ranges::find(writer->readers, reader, &Reader::entity);
+  if (known != writer->readers.end()) {
+    known->acknowledged = number;
+  } else if (is_of_discovery(entity)) {  // whose readers nobody tells of
+    writer->readers.push_back({reader, number});
   }
 }
 
@@ -180,67 +219,114 @@ void Admission::acknowledged(const Guid& participant, std::uint32_t entity, std:
 Admission::Verdict Admission::fragments(const Origin& origin, std::uint32_t entity,
                                         std::int64_t number,
                                         const rtps_message::Fragments& fragments) {
+  constexpr std::size_t kRemembered = 256;
   Participant* const sender = find(origin.participant);
   if (sender == nullptr) return Refusal::Stranger;
-  Writer* writer = nullptr;
-  if (const auto verdict = announce(*sender, entity, number, origin.now, writer)) return verdict;
   if (fragments.size < kSmallestFragment) return Refusal::Fragment;
-  const SampleId id{origin.participant, entity, number};
-  auto found = samples_.find(id);
-  if (found == samples_.end()) {
-    if (number <= writer->given_up) return Refusal::Room;
-    if (!make_room(fragments.sample_size, origin.now)) return Refusal::Room;
-    const std::uint32_t count = fragments.in_sample();
-    found = samples_
-                .emplace(id, Sample{fragments.sample_size, fragments.size, count,
-                                    std::vector<bool>(count), origin.now})
-                .first;
-    order_.push_back(id);
-    claimed_ += fragments.sample_size;
-  }
-  Sample& sample = found->second;
-  if (sample.size != fragments.sample_size || sample.fragment_size != fragments.size) {
+  if (fragments.sample_size > kLargestSample) return Refusal::Room;
+  Writer* writer = find(origin.participant, entity);
+  if (writer == nullptr || writer->readers.empty()) return Refusal::Unmatched;
+  if (const auto verdict = announce(*sender, entity, number, origin.now, writer)) return verdict;
+  const std::int64_t before = std::int64_t{fragments.first - 1} * fragments.size;
+  sender->earned = std::min<std::int64_t>(
+      kLargestSample, sender->earned + kAhead * std::min<std::int64_t>(
+                                                    std::int64_t{fragments.count} * fragments.size,
+                                                    fragments.sample_size - before));
+  const auto found = writer->samples.find(number);
+  const bool known = found != writer->samples.end();
+  if (known && (found->second.size != fragments.sample_size ||
+                found->second.fragment_size != fragments.size)) {
     return Refusal::Fragment;
   }
-  if (sample.missing == 0) return kGood;
+  if (known && found->second.given_up) return Refusal::Room;
+  if (known && found->second.missing == 0) return kGood;
+  const std::uint32_t count = fragments.in_sample();
+  if (!known || !found->second.open) {
+    if (!begin(*sender, fragments.sample_size, origin.now)) return Refusal::Room;
+    writer->samples[number] = {fragments.sample_size, fragments.size, count,
+                               std::vector<bool>(count), origin.now};
+    // The oldest one is forgotten that takes no room.
+    if (writer->samples.size() > kRemembered) {
+      const auto closed =
+          std::ranges::find_if(writer->samples, [](const auto& each) { return !each.second.open; });
+      if (closed != writer->samples.end()) writer->samples.erase(closed);
+    }
+  }
+  Sample& sample = writer->samples[number];
   sample.last = origin.now;
   for (std::uint32_t i = fragments.first - 1; i < fragments.first - 1 + fragments.count; ++i) {
     if (sample.received[i]) continue;
     sample.received[i] = true;
     --sample.missing;
   }
-  if (sample.missing == 0) {
-    sample.received = {};
-    claimed_ -= sample.size;
-  }
+  if (sample.missing == 0) close(*sender, sample);
   return kGood;
 }
 
-bool Admission::make_room(std::uint32_t size, Time now) {
-  constexpr auto kGivenUpAfter = std::chrono::seconds(5);
-  constexpr int kAskedAtATime = 8;
-  const auto is_room = [&] {
-    return samples_.size() < kMaxSamples && claimed_ + size <= kMaxBytes;
+// Pays for a sample, with what its sender has earned first.
+bool Admission::begin(Participant& participant, std::uint32_t size, Time now) {
+  const auto has_share = [&] {
+    return participant.open_bytes + size <= kMaxBytes - std::min(kMaxBytes, open_bytes_ + size) &&
+           participant.open_samples + 1 <= kMaxSamples - std::min(kMaxSamples, open_samples_ + 1);
   };
-  if (size > kLargestSample) return false;
-  for (int i = 0; i < kAskedAtATime && !is_room() && !order_.empty(); ++i) {
-    const SampleId id = order_.front();
-    order_.pop_front();
-    const auto found = samples_.find(id);
-    const Sample& sample = found->second;
-    if (sample.missing > 0 && now - sample.last < kGivenUpAfter) {
-      order_.push_back(id);
-      continue;
+  if (!has_share() && skipped_ == SkippedNumbers::Noted) close_stale(participant, now);
+  if (!has_share()) return false;
+  Source& source = sources_[participant.source];
+  const std::int64_t own = std::min<std::int64_t>(size, participant.earned);
+  if (size - own > source.begun.left(now)) return false;
+  participant.earned -= own;
+  source.begun.take(size - own);
+  participant.open_bytes += size;
+  open_bytes_ += size;
+  ++participant.open_samples;
+  ++open_samples_;
+  return true;
+}
+
+void Admission::close(Participant& participant, Sample& sample) {
+  if (!sample.open) return;
+  sample.open = false;
+  sample.received = {};
+  participant.open_bytes -= sample.size;
+  open_bytes_ -= sample.size;
+  --participant.open_samples;
+  --open_samples_;
+}
+
+// For a vendor that holds no more of a sample than was received of it. Not with each packet.
+void Admission::close_stale(Participant& participant, Time now) {
+  if (now - participant.closed_stale < kPatience / 10) return;
+  participant.closed_stale = now;
+  for (auto& [entity, writer] : participant.writers) {
+    for (auto& [number, sample] : writer.samples) {
+      if (now - sample.last > kPatience) close(participant, sample);
     }
-    if (sample.missing > 0) {
-      claimed_ -= sample.size;
-      if (Writer* const writer = find(id.participant, id.writer)) {
-        writer->given_up = std::max(writer->given_up, id.number);
+  }
+}
+
+std::vector<Admission::Incomplete> Admission::give_up(Time now) {
+  std::vector<Incomplete> all;
+  for (auto& [guid, participant] : participants_) {
+    if (participant.open_samples == 0) continue;
+    for (auto& [entity, writer] : participant.writers) {
+      for (auto& [number, sample] : writer.samples) {
+        if (!sample.open || now - sample.last <= kPatience) continue;
+        sample.given_up = true;
+        all.push_back({guid, entity, number});
       }
     }
-    samples_.erase(found);
   }
-  return is_room();
+  return all;
+}
+
+void Admission::dropped(const Incomplete& sample) {
+  Participant* const sender = find(sample.participant);
+  Writer* const writer = find(sample.participant, sample.writer);
+  if (writer == nullptr) return;
+  const auto found = writer->samples.find(sample.number);
+  if (found == writer->samples.end() || !found->second.given_up) return;
+  close(*sender, found->second);
+  writer->samples.erase(found);
 }
 
 }  // namespace skein::dds

@@ -2,7 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -20,6 +20,7 @@ enum class Refusal {
   Form,        ///< Not as the specification says; what follows in the message is dropped, too.
   Unused,      ///< A kind that nobody here uses.
   Stranger,    ///< Its participant has not announced itself.
+  Unmatched,   ///< A sample in fragments of a writer that no reader here is matched with.
   Leap,        ///< Sequence numbers far beyond what was received of the writer.
   Fragment,    ///< A fragment that contradicts others of its sample, or is too small.
   Room,        ///< A sample in fragments that is too large, or one too many.
@@ -59,10 +60,18 @@ class Admission {
   static constexpr std::int64_t kLongestGap = 1 << 16;
   static constexpr std::int64_t kGapAhead = 1 << 12;
 
-  /// Of one sample that comes in fragments, of all such that are not complete, and how many.
+  /// Of one sample that comes in fragments, of all such that are not complete, and how many. A
+  /// participant may have no more of both than are left for others.
   static constexpr std::uint32_t kLargestSample = dds::kLargestSample;
   static constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
   static constexpr std::size_t kMaxSamples = 4096;
+  /// Fast DDS takes memory for all of a sample when its first fragment comes. So who has sent so
+  /// little in fragments may not begin a sample that is more than so many times as large, beyond
+  /// what all participants at an address may begin at the start.
+  static constexpr std::int64_t kAhead = 16;
+  static constexpr Allowance::Rate kBegunAtSource{64 << 20, 4 << 20};
+  /// A sample of which nothing came for so long is given up.
+  static constexpr std::chrono::seconds kPatience{5};
   /// RTPS asks for 1024. Fast DDS keeps a list in the fragments that are missing, which smaller
   /// ones than 8 bytes would break.
   static constexpr std::uint16_t kSmallestFragment = 256;
@@ -105,34 +114,59 @@ class Admission {
   /// `last` is an earlier one; the reader asks for the rest.
   Verdict gap(const Origin& origin, std::uint32_t writer, std::int64_t start, std::int64_t& last);
 
+  /// A reader of this participant has been matched with a remote writer, or is no longer.
+  void matched(const Guid& participant, std::uint32_t writer, std::uint32_t reader, bool now);
+  /// A reader of this participant has gone.
+  void reader_gone(std::uint32_t reader);
+
   /// A reader of this participant has acknowledged what a writer wrote up to `number`: it holds
   /// nothing up to there, and has no need to count it.
   void acknowledged(const Guid& participant, std::uint32_t writer, std::uint32_t reader,
                     std::int64_t number);
 
-  /// Fragments of the sample `number` came. All must agree on its size and theirs. Where there is
-  /// no room, samples give way that are complete, or of which nothing came for 5 s; fragments of
-  /// the latter are refused from then on.
+  /// Fragments of the sample `number` came. All must agree on its size and theirs.
   Verdict fragments(const Origin& origin, std::uint32_t writer, std::int64_t number,
                     const rtps_message::Fragments& fragments);
 
- private:
-  struct Acknowledgment {
-    std::uint32_t reader;
+  /// A sample that is not complete.
+  struct Incomplete {
+    Guid participant;
+    std::uint32_t writer;
     std::int64_t number;
+  };
+  /// Samples to be given up. Their fragments are refused until the vendor has dropped them.
+  std::vector<Incomplete> give_up(Time now);
+  /// The vendor holds nothing of it any more: it may begin anew.
+  void dropped(const Incomplete& sample);
+
+ private:
+  struct Reader {
+    std::uint32_t entity;
+    std::int64_t acknowledged;
+  };
+  struct Sample {
+    std::uint32_t size;
+    std::uint16_t fragment_size;
+    std::uint32_t missing;
+    std::vector<bool> received;
+    Time last;
+    bool open = true;       // it counts
+    bool given_up = false;  // until the vendor has dropped it
   };
   struct Writer {
     std::int64_t highest = 0;
     std::int64_t allowance = kLeap;
     Time advanced{};
     std::int64_t counted = 0;  // skipped numbers up to here have been paid for
-    std::vector<Acknowledgment> acknowledged{};
-    std::int64_t given_up = 0;  // fragmented samples up to here, unless known
+    bool heard = false;
+    std::vector<Reader> readers{};             // here
+    std::map<std::int64_t, Sample> samples{};  // those that came in fragments; the latest ones
 
     std::int64_t held_up_to() const;
   };
   struct Source {
     Allowance numbers{kCountedOfSource};
+    Allowance begun{kBegunAtSource};
     std::size_t participants = 0;
   };
   struct Participant {
@@ -141,28 +175,12 @@ class Admission {
     std::uint32_t source = 0;
     Time heard{};
     Allowance numbers{kCountedOfParticipant};
+    std::int64_t earned = 0;  // bytes that it may begin, by what was received of it
+    std::uint64_t open_bytes = 0;
+    std::size_t open_samples = 0;
+    Time closed_stale{};
     std::unordered_map<std::uint32_t, Writer> writers{};
   };
-  struct SampleId {
-    Guid participant;
-    std::uint32_t writer;
-    std::int64_t number;
-    bool operator==(const SampleId&) const = default;
-  };
-  struct Hash {
-    std::size_t operator()(const SampleId& id) const noexcept {
-      return std::hash<Guid>()(id.participant) + id.writer * 0xC2B2AE3D27D4EB4F +
-             static_cast<std::size_t>(id.number) * 0x9E3779B97F4A7C15;
-    }
-  };
-  struct Sample {
-    std::uint32_t size;
-    std::uint16_t fragment_size;
-    std::uint32_t missing;
-    std::vector<bool> received;
-    Time last;
-  };
-
   Participant* find(const Guid& participant);
   Writer* find(const Guid& participant, std::uint32_t writer);
   void place(Participant& participant, std::uint32_t source);
@@ -171,15 +189,16 @@ class Admission {
   Verdict announce(Participant& participant, std::uint32_t writer, std::int64_t number, Time now,
                    Writer*& found);
   std::int64_t let_skip(Participant& participant, Writer& writer, std::int64_t up_to, Time now);
-  bool make_room(std::uint32_t size, Time now);
+  bool begin(Participant& participant, std::uint32_t size, Time now);
+  void close(Participant& participant, Sample& sample);
+  void close_stale(Participant& participant, Time now);
 
   const SkippedNumbers skipped_;
   std::unordered_map<Guid, Participant> participants_;
   std::unordered_map<std::uint32_t, Source> sources_;
   Allowance numbers_{kCountedInAll};
-  std::unordered_map<SampleId, Sample, Hash> samples_;
-  std::deque<SampleId> order_;  // of samples_, to be asked to give way
-  std::uint64_t claimed_ = 0;   // bytes of those not complete
+  std::uint64_t open_bytes_ = 0;  // of all participants
+  std::size_t open_samples_ = 0;
 };
 
 }  // namespace skein::dds

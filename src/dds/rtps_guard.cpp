@@ -49,6 +49,8 @@ const char* describe(Refusal why) {
       return "nobody here uses its kind";
     case Refusal::Stranger:
       return "its participant has not announced itself";
+    case Refusal::Unmatched:
+      return "it is a fragment of a writer that nobody here reads";
     case Refusal::Leap:
       return "its sequence numbers are far beyond what was received of its writer";
     case Refusal::Fragment:
@@ -124,6 +126,26 @@ void RtpsGuard::found(const Guid& participant) {
 void RtpsGuard::removed(const Guid& participant) {
   const std::lock_guard lock(mutex_);
   admission_.removed(participant);
+}
+
+void RtpsGuard::matched(const Guid& writer, std::uint32_t reader, bool now) {
+  const std::lock_guard lock(mutex_);
+  admission_.matched(writer.participant(), entity_of(writer), reader, now);
+}
+
+void RtpsGuard::reader_gone(std::uint32_t reader) {
+  const std::lock_guard lock(mutex_);
+  admission_.reader_gone(reader);
+}
+
+std::vector<Admission::Incomplete> RtpsGuard::give_up(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  return admission_.give_up(now);
+}
+
+void RtpsGuard::dropped(const Admission::Incomplete& sample) {
+  const std::lock_guard lock(mutex_);
+  admission_.dropped(sample);
 }
 
 std::size_t RtpsGuard::participants() const {

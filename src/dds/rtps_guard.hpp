@@ -22,7 +22,7 @@ class RtpsGuard {
   using Clock = Admission::Clock;
 
   using Refusal = dds::Refusal;
-  static constexpr std::size_t kRefusals = 9;
+  static constexpr std::size_t kRefusals = 10;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.
@@ -45,6 +45,16 @@ class RtpsGuard {
   /// The vendor has found a participant, or has removed it.
   void found(const Guid& participant);
   void removed(const Guid& participant);
+
+  /// A reader of this participant has been matched with a remote writer, or is no longer. `reader`
+  /// is its entity id, or what else tells it from others.
+  void matched(const Guid& writer, std::uint32_t reader, bool now);
+  void reader_gone(std::uint32_t reader);
+
+  /// Samples in fragments of which nothing came for some seconds. Each is to be dropped from the
+  /// vendor's memory, and `dropped` to be told then.
+  std::vector<Admission::Incomplete> give_up(Clock::time_point now);
+  void dropped(const Admission::Incomplete& sample);
 
   /// Looks at a message that the vendor sends: what its readers acknowledge, they hold no longer.
   void sent(const unsigned char* message, std::size_t size);

@@ -127,6 +127,11 @@ inline Guid sender(const unsigned char* message) {
   return result;
 }
 
+/// The entity id of an endpoint, as a number (RTPS 9.3.1.2).
+inline std::uint32_t entity_of(const Guid& endpoint) {
+  return get32(endpoint.bytes.data() + kPrefixSize, false);
+}
+
 /// The header of a message from a participant on Fast DDS 2.9, which writes RTPS 2.3.
 inline void put_header(unsigned char* message, const Guid& sender) {
   constexpr unsigned char kStart[kPrefix] = {'R', 'T', 'P', 'S', 2, 3, 1, 15};

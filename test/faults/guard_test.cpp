@@ -67,11 +67,13 @@ Guid stranger_of(unsigned number) {
   return stranger;
 }
 
-/// A guard on its own, whose time the test tells. It knows the participant of `kWriter`.
+/// A guard on its own, whose time the test tells. It knows `kWriter`, which a reader here is
+/// matched with.
 struct Stage {
   explicit Stage(SkippedNumbers skipped = SkippedNumbers::Noted, dds::AllowedSources sources = {})
       : guard(std::move(sources), "test", skipped) {
     pass(announcement_of(kWriter).octets(), kHere);
+    match(kWriter);
   }
 
   /// What is handed on.
@@ -86,6 +88,15 @@ struct Stage {
   }
 
   bool refuses_stranger(const RtpsPacket& packet) { return refuses(packet, Refusal::Stranger); }
+
+  void match(const Guid& writer, bool now = true) {
+    guard.matched(writer, dds::rtps_message::entity_of(kReader), now);
+  }
+
+  /// A fragment of 60,000 bytes, the first, of a sample of that size.
+  RtpsPacket begins(const Guid& writer, std::int64_t number, std::uint32_t size) const {
+    return from(writer, kDataFrag, 0, data_frag(writer, number, {1, 1, 60'000, size}, 60'000));
+  }
 
   /// A reader here says that it holds a writer's samples up to that one.
   void acknowledge(const Guid& writer, std::int64_t number) {
@@ -266,18 +277,80 @@ TEST_CASE("all fragments of a sample agree on its size and theirs") {
   CHECK(stage.passes(fragment({2, 1, 1024, 60'000})));
 }
 
-TEST_CASE("samples in fragments claim a bounded memory, and those given up make room") {
+TEST_CASE("only who is matched may begin a sample in fragments") {
   Stage stage;
-  const auto fragment = [&](std::int64_t number, std::uint32_t size) {
-    return from(kWriter, kDataFrag, 0, data_frag(kWriter, number, {1, 1, 60'000, size}, 60'000));
-  };
-  CHECK(stage.refuses(fragment(1, Admission::kLargestSample + 1), Refusal::Room));
-  for (int i = 1; i <= 4; ++i) CHECK(stage.passes(fragment(i, Admission::kLargestSample)));
-  CHECK(stage.refuses(fragment(5, Admission::kLargestSample), Refusal::Room));
-  CHECK(stage.passes(fragment(4, Admission::kLargestSample)));
-  stage.now += 6s;
-  CHECK(stage.passes(fragment(5, Admission::kLargestSample)));
-  CHECK(stage.refuses(fragment(1, 60'001), Refusal::Room));
+  const Guid other = writer_of(2);
+  CHECK(stage.refuses(stage.begins(other, 1, 100'000), Refusal::Unmatched));
+  stage.match(other);
+  CHECK(stage.passes(stage.begins(other, 1, 100'000)));
+  stage.match(other, false);
+  CHECK(stage.refuses(stage.begins(other, 1, 100'000), Refusal::Unmatched));
+  stage.guard.reader_gone(dds::rtps_message::entity_of(kReader));
+  CHECK(stage.refuses(stage.begins(kWriter, 1, 100'000), Refusal::Unmatched));
+}
+
+TEST_CASE("what may be begun depends on what was received: a claim of 256 MiB is no reason") {
+  Stage stage;
+  constexpr std::uint32_t kLargest = Admission::kLargestSample;
+  CHECK(stage.refuses(stage.begins(kWriter, 1, kLargest + 1), Refusal::Room));
+  CHECK(stage.refuses(stage.begins(kWriter, 1, kLargest), Refusal::Room));
+  // Who really sends so much is refused a part of it, which the reader asks for again.
+  const std::uint32_t fragments = (kLargest + 59'999) / 60'000;
+  std::uint32_t refused = 0;
+  for (std::uint32_t i = 1; i < fragments; ++i) {
+    refused += !stage.passes(
+        from(kWriter, kDataFrag, 0, data_frag(kWriter, 1, {i, 1, 60'000, kLargest}, 60'000)));
+  }
+  CHECK(refused > 0);
+  CHECK(refused * Admission::kAhead <= fragments);
+}
+
+TEST_CASE("small claims of one participant leave others their room, from the same address too") {
+  Stage stage;
+  const Guid rogue = stranger_of(1);
+  stage.pass(announcement_of(rogue).octets(), kHere);
+  stage.match(rogue);
+  for (int i = 1; i <= 20'000; ++i) {
+    const FragmentClaim claim{1, 1, 256, 20'000'000};
+    stage.pass(from(rogue, kDataFrag, 0, data_frag(rogue, i, claim, 256)).octets(), kHere);
+  }
+  // What kWriter begins it has to earn now.
+  std::uint32_t refused = 0;
+  for (std::uint32_t i = 1; i <= 17; ++i) {
+    refused += !stage.passes(
+        from(kWriter, kDataFrag, 0,
+             data_frag(kWriter, 1, {i, 1, 60'000, 1'000'000}, 40'000 + (i < 17 ? 20'000 : 0))));
+  }
+  CHECK(refused <= 2);
+}
+
+TEST_CASE("a sample of which nothing comes any more is given up, and may begin anew") {
+  Stage stage(SkippedNumbers::Counted);
+  REQUIRE(stage.passes(stage.begins(kWriter, 1, 60'001)));
+  stage.now += 4s;
+  CHECK(stage.guard.give_up(stage.now).empty());
+  REQUIRE(stage.passes(stage.begins(kWriter, 1, 60'001)));
+  stage.now += 4s;
+  CHECK(stage.guard.give_up(stage.now).empty());
+  stage.now += 2s;
+  const auto given_up = stage.guard.give_up(stage.now);
+  REQUIRE(given_up.size() == 1);
+  CHECK(given_up[0].participant == kWriter.participant());
+  CHECK(given_up[0].writer == dds::rtps_message::entity_of(kWriter));
+  CHECK(given_up[0].number == 1);
+  // Not while the vendor may hold a part of it.
+  CHECK(stage.refuses(stage.begins(kWriter, 1, 60'001), Refusal::Room));
+  stage.guard.dropped(given_up[0]);
+  CHECK(stage.guard.give_up(stage.now).empty());
+  CHECK(stage.passes(stage.begins(kWriter, 1, 70'000)));
+}
+
+TEST_CASE("a participant that loses the rest of each sample may begin others") {
+  Stage stage;  // Cyclone drops the oldest by itself
+  for (int i = 1; i <= 20'000; ++i) {
+    REQUIRE(stage.passes(stage.begins(kWriter, i, 100'000)));
+    stage.now += 33ms;
+  }
 }
 
 TEST_CASE("samples that are complete claim nothing") {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned kHeartbeat = 0x07;
 constexpr unsigned kGap = 0x08;
+constexpr unsigned kDataFrag = 0x16;
 constexpr std::size_t kLittleMemory = 64;  // MiB
 
 }  // namespace
@@ -52,4 +53,36 @@ TEST_CASE("gaps behind a number that is missing take little of a provider's memo
   CHECK(provider.has_read_all(5s));
   CHECK(provider.resident_mib() <= before + kLittleMemory);
   provider.check_answers();
+}
+
+TEST_CASE(
+    "a fragment that claims a large sample takes little of a provider's memory, for seconds") {
+  AttackedProvider provider;
+  const InventedPeer peer(1);
+  provider.introduce(peer);
+  provider.check_answers();  // by then the writer is matched
+  const std::size_t before = provider.resident_mib();
+  for (const std::uint32_t claimed : {256u << 20, 20u << 20}) {
+    for (int i = 1; i <= 24; ++i) {
+      const FragmentClaim claim{1, 1, 256, claimed};
+      provider.send(peer.says(kDataFrag, data_frag(peer.writer(1), i, claim, 256)));
+    }
+  }
+  CHECK(provider.has_read_all(5s));
+  CHECK(provider.resident_mib() <= before + kLittleMemory);
+  CHECK(eventually([&] { return provider.resident_mib() <= before + 8; }));
+  provider.check_answers();
+}
+
+TEST_CASE("fragments of writers that nobody reads keep no sample out") {
+  AttackedProvider provider;
+  const InventedPeer peer(1);
+  provider.send(peer.announcement());
+  for (std::uint32_t i = 1; i <= 8; ++i) {
+    const FragmentClaim claim{1, 1, 256, 256u << 20};
+    provider.send(peer.says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
+    provider.send(InventedPeer(1 + i).says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
+  }
+  CHECK(provider.has_read_all(5s));
+  provider.check_answers(4s);
 }

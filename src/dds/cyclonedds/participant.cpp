@@ -95,7 +95,7 @@ void CycloneParticipant::take_presence() {
     samples[0] = nullptr;
     if (guid == guid_) continue;
     present ? absences_->found(guid) : absences_->lost(guid);
-    present ? guard_->guard().found(guid) : guard_->guard().removed(guid);
+    present ? guard().found(guid) : guard().removed(guid);
     const bool news = present ? present_.insert(guid).second : present_.erase(guid) > 0;
     if (!news) continue;
     adapt_heartbeats();

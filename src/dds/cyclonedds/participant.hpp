@@ -35,6 +35,7 @@ class CycloneParticipant final : public Participant {
                                         ReaderListener listener) override;
   Guid guid() const override { return guid_; }
 
+  RtpsGuard& guard() const noexcept { return guard_->guard(); }
   dds_entity_t handle() const noexcept { return participant_.handle(); }
   TopicHandle acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);

@@ -23,7 +23,7 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
             dds_builtintopic_free_endpoint(data);
             return peers_ && peers_->refuses(guid) ? Guid{} : guid;
           },
-          listener_.on_matched, listener_.on_liveliness) {
+          [this](const Guid& writer, bool now) { matched(writer, now); }, listener_.on_liveliness) {
   if (EndpointWatch::is_needed(qos, listener_.on_incompatible != nullptr)) {
     peers_.emplace(participant_.endpoints(),
                    Endpoint{Side::Reader, topic.name, topic.type_name, qos},
@@ -38,7 +38,16 @@ CycloneReader::CycloneReader(CycloneParticipant& participant, const Topic& topic
   if (!queue_.empty()) data_available();
 }
 
-CycloneReader::~CycloneReader() { reader_.reset(); }
+CycloneReader::~CycloneReader() {
+  const auto number = static_cast<std::uint32_t>(reader_.handle());
+  reader_.reset();
+  participant_.guard().reader_gone(number);
+}
+
+void CycloneReader::matched(const Guid& writer, bool now) {
+  participant_.guard().matched(writer, static_cast<std::uint32_t>(reader_handle_), now);
+  if (listener_.on_matched) listener_.on_matched(writer, now);
+}
 
 Entity CycloneReader::make(const Topic& topic, const Qos& wanted) {
   const QosSet qos(wanted);

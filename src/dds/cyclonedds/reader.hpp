@@ -25,6 +25,7 @@ class CycloneReader final : public Reader {
  private:
   Entity make(const Topic& topic, const Qos& qos);
   void data_available();
+  void matched(const Guid& writer, bool now);
   void liveliness_changed(const dds_liveliness_changed_status_t& status);
 
   CycloneParticipant& participant_;

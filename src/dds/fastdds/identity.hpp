@@ -24,6 +24,13 @@ inline Guid to_guid(const rtps::InstanceHandle_t& handle) {
   return result;
 }
 
+inline rtps::GUID_t to_rtps(const Guid& guid) {
+  rtps::GUID_t result;
+  std::memcpy(result.guidPrefix.value, guid.bytes.data(), 12);
+  std::memcpy(result.entityId.value, guid.bytes.data() + 12, 4);
+  return result;
+}
+
 inline rtps::InstanceHandle_t to_handle(const Guid& key) {
   rtps::InstanceHandle_t handle;
   for (std::size_t i = 0; i < key.bytes.size(); ++i) handle.value[i] = key.bytes[i];

@@ -113,11 +113,11 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
     }
   }
   if (present) {
-    transport_->state->guard.found(guid);
+    guard().found(guid);
     const auto& lease = info.info.m_leaseDuration;
     follow(guid, announced_lease(lease.seconds, lease.nanosec));
   } else {
-    transport_->state->guard.removed(guid);
+    guard().removed(guid);
     signs().forget(guid);
   }
   if (info.status == Info::CHANGED_QOS_PARTICIPANT || !options_.on_participant) return;
@@ -187,6 +187,25 @@ void FastParticipant::tick() {
   assert_liveliness_if_due();
   check_leases();
   check_liveliness();
+  drop_incomplete();
+}
+
+void FastParticipant::remove(FastReader& reader) {
+  all_readers_.erase(&reader);
+  guard().reader_gone(rtps_message::entity_of(reader.guid()));
+}
+
+/// Fast DDS keeps the memory of a sample in fragments for as long as its writer is there.
+void FastParticipant::drop_incomplete() {
+  for (const auto& sample : guard().give_up(std::chrono::steady_clock::now())) {
+    Guid writer = sample.participant;
+    rtps_message::put32(writer.bytes.data() + rtps_message::kPrefixSize, sample.writer, false);
+    {
+      std::lock_guard lock(readers_);
+      for (FastReader* const reader : all_readers_) reader->drop_incomplete(writer, sample.number);
+    }
+    guard().dropped(sample);
+  }
 }
 
 void FastParticipant::check_leases() {

@@ -23,6 +23,8 @@ namespace skein::dds::fastdds {
 
 namespace rtps = eprosima::fastrtps::rtps;
 
+class FastReader;
+
 /// A participant on Fast DDS's RTPS layer. The DDS layer above it would add copies and locks for
 /// what this port does not have, and it is the one that reads files and environment: profiles,
 /// discovery servers, statistics. Here nothing does.
@@ -43,11 +45,15 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   /// To be held while a reader is created or removed: Fast DDS forgets a local reader without a
   /// lock.
   std::mutex& readers() noexcept { return readers_; }
+  /// With readers() held.
+  void add(FastReader& reader) { all_readers_.insert(&reader); }
+  void remove(FastReader& reader);
 
   /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
   void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);
   /// Tells others, often enough for `lease`, that this participant's writers live.
   void assert_liveliness_for(std::chrono::nanoseconds lease);
+  RtpsGuard& guard() noexcept { return transport_->state->guard; }
   LivelinessTracker& signs() noexcept { return transport_->state->signs; }
   Endpoints& endpoints() noexcept { return endpoints_; }
   int acquire_topic(const Topic& topic);
@@ -69,6 +75,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void assert_liveliness_if_due();
   void check_leases();
   void check_liveliness();
+  void drop_incomplete();
   void forget_all();
 
   struct Watched {
@@ -81,6 +88,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   TopicTable<int> topics_;
   Endpoints endpoints_;
   std::mutex readers_;
+  std::set<FastReader*> all_readers_;  // under readers_
   std::mutex mutex_;
   std::set<Guid> present_;
   std::vector<Watched> watched_;

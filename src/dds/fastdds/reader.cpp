@@ -36,6 +36,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   }
   participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic),
                                                   reader_qos(qos));
+  participant_.add(*this);
 }
 
 /// The listener stays until the RTPS reader is gone: other threads of Fast DDS's look whether there
@@ -43,6 +44,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
 FastReader::~FastReader() {
   {
     std::lock_guard lock(participant_.readers());
+    participant_.remove(*this);
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
   events_->close();
@@ -70,7 +72,9 @@ void FastReader::on_writer_discovery(rtps::RTPSReader*,
                                      rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
                                      const rtps::GUID_t& writer,
                                      const rtps::WriterProxyData* info) {
-  if (reason == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+  const bool found = reason != rtps::WriterDiscoveryInfo::REMOVED_WRITER;
+  participant_.guard().matched(to_guid(writer), rtps_message::entity_of(guid_), found);
+  if (!found) {
     queue_.writer_unmatched(to_guid(writer));
     return;
   }
@@ -103,6 +107,14 @@ bool FastReader::store(const rtps::CacheChange_t& change) {
   return queue_.store({alive ? take_over(change) : Payload{},
                        alive ? InstanceState::Alive : InstanceState::Disposed, key_of(change),
                        to_guid(change.writerGUID), written});
+}
+
+void FastReader::drop_incomplete(const Guid& writer, std::int64_t number) {
+  std::lock_guard lock(reader_->getMutex());
+  rtps::CacheChange_t* change = nullptr;
+  const rtps::SequenceNumber_t wanted(static_cast<std::uint64_t>(number));
+  if (!history_.get_change(wanted, to_rtps(writer), &change)) return;
+  if (!change->is_fully_assembled()) history_.remove_change(change);
 }
 
 Payload FastReader::take_over(const rtps::CacheChange_t& change) {

@@ -25,6 +25,9 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   std::vector<Guid> matched_writers() const override { return events_->peers(); }
   ReceiveCounters counters() const override { return queue_.counters(); }
 
+  /// Drops what has come of a writer's sample, unless all has: it may come anew.
+  void drop_incomplete(const Guid& writer, std::int64_t number);
+
  private:
   void onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo&) override {}
   void onReaderMatched(rtps::RTPSReader* reader,

@@ -74,7 +74,9 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
   struct State {
     State(std::chrono::nanoseconds lease, std::chrono::nanoseconds announcement_period,
           AllowedSources sources)
-        : watch(lease), pace(announcement_period), guard(std::move(sources), "dds/fastdds", SkippedNumbers::Counted) {}
+        : watch(lease),
+          pace(announcement_period),
+          guard(std::move(sources), "dds/fastdds", SkippedNumbers::Counted) {}
     std::atomic<bool> open{false};        // lets messages out
     std::atomic<std::uint32_t> ports{0};  // on which it listens
     LivelinessTracker signs;
