@@ -9,7 +9,7 @@ namespace skein::rpc {
 namespace {
 
 // No caller has room for more, whatever it claims.
-constexpr std::uint32_t kMaxCredit = 1 << 16;
+constexpr std::uint32_t kMaxCredit = PendingStream::kWindow;
 
 }  // namespace
 

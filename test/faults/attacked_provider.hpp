@@ -14,6 +14,36 @@
 
 namespace skein::test {
 
+/// Sends what one likes on 127.0.0.1.
+class RawSocket {
+ public:
+  RawSocket() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  ~RawSocket() { close(socket_); }
+  RawSocket(const RawSocket&) = delete;
+  RawSocket& operator=(const RawSocket&) = delete;
+
+  void send(const Octets& packet, std::uint16_t port) const {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(port);
+    sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  }
+
+ private:
+  const int socket_;
+};
+
+/// The UDP ports on which a process's participants of domain 17 receive; from others they send.
+inline std::set<std::uint16_t> receiving_ports_of(pid_t process) {
+  constexpr std::uint16_t kFirst = 7400 + 250 * 17;  // RTPS 9.6.1
+  std::set<std::uint16_t> ports;
+  for (const std::uint16_t port : udp_ports_of(process)) {
+    if (port >= kFirst && port < kFirst + 250) ports.insert(port);
+  }
+  return ports;
+}
+
 /// A provider of the echo service in a process of its own, and a socket that sends it what a
 /// stranger would. For a network namespace where nobody else is.
 class AttackedProvider {
@@ -25,11 +55,7 @@ class AttackedProvider {
 
   AttackedProvider() : server_(start_peer("server", *Pairing::get().server)) {
     server_.ask("provide");
-    constexpr std::uint16_t kFirst = 7400 + 250 * 17;  // of the domain: RTPS 9.6.1
-    for (const std::uint16_t port : udp_ports_of(server_.pid())) {
-      if (port >= kFirst && port < kFirst + 250) ports_.insert(port);  // others only send
-    }
-    socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    ports_ = receiving_ports_of(server_.pid());
 #ifndef __SANITIZE_ADDRESS__
     // What makes it take all memory is not to take the machine's.
     constexpr rlim_t kEnough = rlim_t{6} << 30;
@@ -37,10 +63,6 @@ class AttackedProvider {
     prlimit(server_.pid(), RLIMIT_AS, &limit, nullptr);
 #endif
   }
-  ~AttackedProvider() { close(socket_); }
-  AttackedProvider(const AttackedProvider&) = delete;
-  AttackedProvider& operator=(const AttackedProvider&) = delete;
-
   ChildProcess& process() { return server_; }
 
   /// To all its ports, for discovery and for samples. Waits while it has much to read.
@@ -48,13 +70,7 @@ class AttackedProvider {
   void send(const Octets& packet) {
     constexpr std::size_t kRoom = 64'000;
     constexpr std::size_t kOverhead = 768;  // what a small packet takes of a socket's room
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    for (const std::uint16_t port : ports_) {
-      to.sin_port = htons(port);
-      sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
-    }
+    for (const std::uint16_t port : ports_) socket_.send(packet, port);
     sent_ += packet.size() + kOverhead;
     if (sent_ < kRoom) return;
     if (!has_read_all(std::chrono::seconds(60))) throw std::runtime_error("it reads no more");
@@ -113,7 +129,7 @@ class AttackedProvider {
 
   ChildProcess server_;
   std::set<std::uint16_t> ports_;
-  int socket_ = -1;
+  RawSocket socket_;
   std::size_t sent_ = 0;  // bytes since it was last seen reading
 };
 

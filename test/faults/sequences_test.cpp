@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "attacked_provider.hpp"
+#include "dds/port.hpp"
+#include "skein/detail/bytes.hpp"
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -14,6 +17,24 @@ constexpr unsigned kHeartbeat = 0x07;
 constexpr unsigned kGap = 0x08;
 constexpr unsigned kDataFrag = 0x16;
 constexpr std::size_t kLittleMemory = 64;  // MiB
+
+/// A participant of the test's own process, and strangers that speak to it.
+struct Stage {
+  Stage() {
+    dds::ParticipantOptions options;
+    options.domain = 17;
+    participant = Pairing::get().server->create_participant(options);
+  }
+  void send(const RtpsPacket& packet) {
+    for (const std::uint16_t port : receiving_ports_of(getpid())) {
+      socket.send(packet.octets(), port);
+    }
+  }
+
+  const dds::Topic topic{"test/Sequences", "test::Sequences", false};
+  std::unique_ptr<dds::Participant> participant;
+  RawSocket socket;
+};
 
 }  // namespace
 
@@ -85,4 +106,25 @@ TEST_CASE("fragments of writers that nobody reads keep no sample out") {
   }
   CHECK(provider.has_read_all(5s));
   provider.check_answers(4s);
+}
+
+TEST_CASE("a reader that never acknowledges takes a bounded part of a writer's memory") {
+  Stage stage;
+  const auto writer = stage.participant->create_writer(stage.topic, {});
+  const InventedPeer peer(1);
+  REQUIRE(eventually([&] {
+    stage.send(peer.announcement());
+    stage.send(peer.endpoint(peer.reader(1), stage.topic.name, stage.topic.type_name, 1));
+    return !writer->matched_readers().empty();
+  }));
+  Bytes sample;
+  sample.resize(1 << 20);
+  std::memset(sample.data(), 0, sample.size());
+  sample.data()[1] = std::byte{1};  // PLAIN_CDR, little-endian
+  int written = 0;
+  const auto write_all = [&] {
+    for (; written < 64; ++written) writer->write(sample);
+  };
+  CHECK_THROWS_AS(write_all(), Overloaded);
+  CHECK(written <= 8);
 }

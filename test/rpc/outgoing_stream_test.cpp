@@ -76,6 +76,13 @@ TEST_CASE("a grant beyond all bounds stays within them") {
   CHECK(numbers.put(2));
 }
 
+TEST_CASE("no caller is sent more than a window of results ahead, whatever it grants") {
+  Numbers numbers(65'535);
+  numbers.stream->grant(65'535);
+  for (std::uint32_t i = 0; i < PendingStream::kWindow; ++i) CHECK(numbers.put(1));
+  CHECK_FALSE(numbers.put(1));
+}
+
 TEST_CASE("what waits for credit goes on with it, and ends with the deadline or with the caller") {
   Numbers numbers(1);
   std::atomic<int> ended = 0;

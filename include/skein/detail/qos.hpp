@@ -47,7 +47,7 @@ struct Qos {
   /// taken. Unset: all.
   std::optional<std::uint32_t> history_depth;
   /// Without history_depth: the number of unacknowledged samples at which a reliable writer blocks;
-  /// 0: no limit on their number (Cyclone DDS still limits them to 4 MiB). Readers have no limit: a
+  /// 0: no limit on their number; it then blocks once 4 MiB of them wait. Readers have no limit: a
   /// full one would stop the reception of its participant, and with it the leases.
   std::uint32_t max_samples = 0;
   /// Reader: maximum number of samples that wait to be taken; a further one replaces the oldest. 0:

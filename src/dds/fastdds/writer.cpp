@@ -115,15 +115,24 @@ rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_
 void FastWriter::wait_for_room(Lock& lock) {
   drop_acknowledged();
   if (!bounded()) return;
-  const auto has_room = [&] {
+  const auto has_room_now = [&] {
     drop_acknowledged();
-    return history_.getHistorySize() < qos_.max_samples;
+    return has_room();
   };
-  if (room_.wait_for(lock, qos_.max_blocking, has_room)) return;
+  if (room_.wait_for(lock, qos_.max_blocking, has_room_now)) return;
   throw Overloaded("topic '" + topic_.name + "': no room for a sample within " +
                    std::to_string(qos_.max_blocking.count()) + " ms; " +
-                   std::to_string(qos_.max_samples) +
-                   " wait for a matched reader's acknowledgment");
+                   std::to_string(history_.getHistorySize()) + ", of " +
+                   std::to_string(held_bytes_) +
+                   " bytes, wait for a matched reader's acknowledgment");
+}
+
+/// As much may wait as on Cyclone, whatever its number: a reader that acknowledges nothing would
+/// else have the writer take all memory.
+bool FastWriter::has_room() {
+  constexpr std::size_t kMostBytes = 4 << 20;
+  if (qos_.max_samples > 0 && history_.getHistorySize() >= qos_.max_samples) return false;
+  return qos_.transient_local || held_bytes_ < kMostBytes;
 }
 
 /// A volatile Cyclone reader begins behind the first heartbeat that it hears. Were that one sent
@@ -161,6 +170,7 @@ void FastWriter::send(rtps::CacheChange_t* change) {
   announce_position();
   ++last_sent_;
   unasked_bytes_ += change->serializedPayload.length;
+  held_bytes_ += change->serializedPayload.length;
   history_.add_change(change);
   ask_for_acknowledgment();
   // Best effort is over when it has been sent, and nothing reports that.
@@ -173,6 +183,7 @@ void FastWriter::drop(rtps::CacheChange_t* change) {
     std::erase(found->second, change);
     if (found->second.empty()) instances_.erase(found);
   }
+  held_bytes_ -= std::min<std::size_t>(held_bytes_, change->serializedPayload.length);
   history_.remove_change(change);
 }
 

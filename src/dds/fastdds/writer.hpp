@@ -39,9 +39,11 @@ class FastWriter final : public Writer, private rtps::WriterListener {
                            const rtps::GUID_t& reader, const rtps::ReaderProxyData* info) override;
   void onWriterChangeReceivedByAll(rtps::RTPSWriter* writer, rtps::CacheChange_t* change) override;
 
+  /// What is not acknowledged is all that the history holds, or its number is limited.
   bool bounded() const noexcept {
-    return qos_.reliable && !qos_.history_depth && qos_.max_samples > 0;
+    return qos_.reliable && !qos_.history_depth && (qos_.max_samples > 0 || !qos_.transient_local);
   }
+  bool has_room();
   rtps::CacheChange_t* make_change(std::size_t size, rtps::ChangeKind_t kind, const KeyHash& key);
   void wait_for_room(Lock& lock);
   void announce_position();
@@ -69,6 +71,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   /// What had been sent when the last reader was matched; -1 once a later sample was acknowledged
   /// by all.
   std::atomic<std::int64_t> new_reader_at_{-1};
+  std::size_t held_bytes_ = 0;     // of samples in the history
   std::size_t unasked_bytes_ = 0;  // sent since readers were last asked for an acknowledgment
   rtps::RTPSWriter* writer_ = nullptr;
   Guid guid_;
