@@ -26,6 +26,7 @@ enum class Refusal {
   Room,        ///< A sample in fragments that is too large, or one too many.
   Parameters,  ///< Discovery whose parameters do not lie within it.
   Lease,       ///< A participant that does not say when it counts as gone.
+  Foreign,     ///< Discovery of another participant, or of its endpoints.
 };
 
 /// What a vendor's reader does with numbers that its writer skips: it looks at each of them (Fast

@@ -16,29 +16,6 @@ constexpr Admission::Verdict kGood;
 
 std::uint32_t entity_at(const unsigned char* id) { return get32(id, false); }
 
-enum class Builtin { None, Participants, Endpoints, Liveliness, Security };
-
-/// To which of DDS's own services an entity id belongs.
-Builtin builtin(const unsigned char* entity) {
-  if ((entity[3] & 0xc0) != 0xc0) return Builtin::None;
-  if (entity[0] == 0xff) return Builtin::Security;
-  const unsigned number = entity[0] << 16 | entity[1] << 8 | entity[2];
-  switch (number) {
-    case 0x000100:
-      return Builtin::Participants;
-    case 0x000002:
-    case 0x000003:
-    case 0x000004:
-      return Builtin::Endpoints;
-    case 0x000200:
-      return Builtin::Liveliness;
-    case 0x000201:
-      return Builtin::Security;
-    default:
-      return Builtin::None;
-  }
-}
-
 const char* describe(Refusal why) {
   switch (why) {
     case Refusal::Source:
@@ -59,6 +36,8 @@ const char* describe(Refusal why) {
       return "its sample in fragments is too large, or one too many";
     case Refusal::Parameters:
       return "its discovery parameters reach beyond it";
+    case Refusal::Foreign:
+      return "it speaks of another participant, or of another's endpoints";
     case Refusal::Lease:
       return "it announces a participant without its lease (PID_PARTICIPANT_LEASE_DURATION)";
   }
@@ -80,6 +59,29 @@ bool is_header(const unsigned char* message, std::size_t size) {
 }
 
 }  // namespace
+
+enum class RtpsGuard::Service { None, Participants, Endpoints, Topics, Liveliness, Security };
+
+RtpsGuard::Service RtpsGuard::service_of(const unsigned char* entity) {
+  if ((entity[3] & 0xc0) != 0xc0) return Service::None;
+  if (entity[0] == 0xff) return Service::Security;
+  const unsigned number = entity[0] << 16 | entity[1] << 8 | entity[2];
+  switch (number) {
+    case 0x000100:
+      return Service::Participants;
+    case 0x000002:
+      return Service::Topics;
+    case 0x000003:
+    case 0x000004:
+      return Service::Endpoints;
+    case 0x000200:
+      return Service::Liveliness;
+    case 0x000201:
+      return Service::Security;
+    default:
+      return Service::None;
+  }
+}
 
 RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std::uint32_t source,
                                   Clock::time_point now) {
@@ -248,21 +250,36 @@ RtpsGuard::Verdict RtpsGuard::judge_gap(const Submessage& submessage, const Orig
 RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const Origin& origin) {
   const auto found = data(submessage);
   if (!found) return Refusal::Form;
-  const Builtin service = builtin(found->writer);
-  if (service == Builtin::Security) return Refusal::Unused;
-  if (submessage.flag(kHasData) && service != Builtin::None) {
-    const bool good = service == Builtin::Liveliness
-                          ? check_liveliness(found->payload, found->payload_size)
-                          : check_discovery(found->payload, found->payload_size);
-    if (!good) return Refusal::Parameters;
-    if (service == Builtin::Participants) {
-      if (!names_lease(found->payload, found->payload_size)) return Refusal::Lease;
-      if (const auto verdict = admission_.announced(origin)) return verdict;
-    }
+  const Service service = service_of(found->writer);
+  // Nobody here asks for topics.
+  if (service == Service::Security || service == Service::Topics) return Refusal::Unused;
+  if (service != Service::None) {
+    if (const auto verdict = judge_discovery(submessage, *found, service, origin)) return verdict;
   }
   // A farewell may come from who was never found.
-  if (service == Builtin::Participants && !admission_.knows(origin)) return kGood;
+  if (service == Service::Participants && !admission_.knows(origin)) return kGood;
   return admission_.sample(origin, entity_at(found->writer), found->number);
+}
+
+RtpsGuard::Verdict RtpsGuard::judge_discovery(const Submessage& submessage, const Data& found,
+                                              Service service, const Origin& origin) {
+  const unsigned char* prefix = origin.participant.bytes.data();
+  const bool has_payload = submessage.flag(kHasData) || submessage.flag(kHasKey);
+  if (service == Service::Liveliness) {
+    if (!has_payload) return kGood;
+    if (submessage.flag(kHasData) && !check_liveliness(found.payload, found.payload_size)) {
+      return Refusal::Parameters;
+    }
+    const bool own = is_liveliness_of(found.payload, found.payload_size, prefix);
+    return own ? kGood : Verdict(Refusal::Foreign);
+  }
+  if (has_payload && !check_discovery(found.payload, found.payload_size)) {
+    return Refusal::Parameters;
+  }
+  if (!is_of_sender(submessage, prefix)) return Refusal::Foreign;
+  if (!submessage.flag(kHasData) || service != Service::Participants) return kGood;
+  if (!names_lease(found.payload, found.payload_size)) return Refusal::Lease;
+  return admission_.announced(origin);
 }
 
 RtpsGuard::Verdict RtpsGuard::judge_data_frag(const Submessage& submessage, const Origin& origin) {
@@ -270,7 +287,7 @@ RtpsGuard::Verdict RtpsGuard::judge_data_frag(const Submessage& submessage, cons
   const auto found = data_frag(submessage, fragments);
   if (!found) return Refusal::Form;
   // Discovery in pieces cannot be looked at, and vendors send it whole.
-  if (builtin(found->writer) != Builtin::None) return Refusal::Unused;
+  if (service_of(found->writer) != Service::None) return Refusal::Unused;
   return admission_.fragments(origin, entity_at(found->writer), found->number, fragments);
 }
 

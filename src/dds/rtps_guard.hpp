@@ -22,7 +22,7 @@ class RtpsGuard {
   using Clock = Admission::Clock;
 
   using Refusal = dds::Refusal;
-  static constexpr std::size_t kRefusals = 10;
+  static constexpr std::size_t kRefusals = 11;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.
@@ -71,10 +71,16 @@ class RtpsGuard {
   using Origin = Admission::Origin;
   using Verdict = Admission::Verdict;
 
+  /// DDS's own services.
+  enum class Service;
+  static Service service_of(const unsigned char* entity);
+
   // Under the lock:
   Verdict judge(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_by_kind(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_data(const rtps_message::Submessage& submessage, const Origin& origin);
+  Verdict judge_discovery(const rtps_message::Submessage& submessage,
+                          const rtps_message::Data& found, Service service, const Origin& origin);
   Verdict judge_data_frag(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_heartbeat(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_gap(const rtps_message::Submessage& submessage, const Origin& origin);

@@ -178,6 +178,31 @@ bool check_discovery(unsigned char* payload, std::size_t size) {
   return for_each_parameter_of(payload, size, check_parameter).has_value();
 }
 
+bool is_of_sender(const Submessage& submessage, const unsigned char* prefix) {
+  bool named = false;
+  const auto is_own = [&](const Parameter& parameter) {
+    if (parameter.id != kParticipantGuid && parameter.id != kEndpointGuid &&
+        parameter.id != kKeyHash) {
+      return true;
+    }
+    named = true;
+    return parameter.size >= kPrefixSize && std::memcmp(parameter.value, prefix, kPrefixSize) == 0;
+  };
+  const auto found = data(submessage);
+  if (!found) return false;
+  if (submessage.flag(kInlineQos)) {
+    const std::size_t at = 4 + get16(submessage.body() + 2, submessage.little());
+    if (!for_each_parameter(submessage.body() + at, submessage.size - at, submessage.little(),
+                            is_own)) {
+      return false;
+    }
+  }
+  if (submessage.flag(kHasData) || submessage.flag(kHasKey)) {
+    if (!for_each_parameter_of(found->payload, found->payload_size, is_own)) return false;
+  }
+  return named;
+}
+
 bool names_lease(unsigned char* payload, std::size_t size) {
   bool found = false;
   for_each_parameter_of(payload, size, [&](const Parameter& parameter) {
@@ -185,6 +210,12 @@ bool names_lease(unsigned char* payload, std::size_t size) {
     return true;
   });
   return found;
+}
+
+bool is_liveliness_of(const unsigned char* payload, std::size_t size, const unsigned char* prefix) {
+  constexpr std::size_t kEncapsulation = 4;
+  return size >= kEncapsulation + kPrefixSize &&
+         std::memcmp(payload + kEncapsulation, prefix, kPrefixSize) == 0;
 }
 
 bool check_liveliness(const unsigned char* payload, std::size_t size) {

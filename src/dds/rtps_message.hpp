@@ -27,6 +27,9 @@ inline constexpr unsigned char kLivelinessWriter[] = {0x00, 0x02, 0x00, 0xc2};
 /// Ids of parameters.
 inline constexpr std::uint16_t kSentinel = 0x0001;
 inline constexpr std::uint16_t kParticipantLease = 0x0002;
+inline constexpr std::uint16_t kParticipantGuid = 0x0050;
+inline constexpr std::uint16_t kEndpointGuid = 0x005a;
+inline constexpr std::uint16_t kKeyHash = 0x0070;
 
 enum Kind : unsigned char {
   kPad = 0x01,
@@ -245,11 +248,17 @@ std::optional<std::size_t> for_each_parameter_of(unsigned char* payload, std::si
 /// little care (descriptions of types, shared memory, security's tokens) is made padding.
 bool check_discovery(unsigned char* payload, std::size_t size);
 
+/// Whether a DATA submessage of participant or endpoint discovery, whose payload is good, names a
+/// participant or an endpoint, and none but of the participant with that GUID prefix: in its inline
+/// QoS and in its payload.
+bool is_of_sender(const Submessage& submessage, const unsigned char* prefix);
+
 /// Whether a payload of participant discovery that is good says for how long its participant lives
 /// on unheard. Without it Fast DDS reads a lease of 0 s instead of RTPS's default.
 bool names_lease(unsigned char* payload, std::size_t size);
 
-/// The payload of a participant's message of liveliness.
+/// The payload of a message of liveliness of the participant with that GUID prefix.
 bool check_liveliness(const unsigned char* payload, std::size_t size);
+bool is_liveliness_of(const unsigned char* payload, std::size_t size, const unsigned char* prefix);
 
 }  // namespace skein::dds::rtps_message

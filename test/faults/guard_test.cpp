@@ -43,9 +43,18 @@ std::span<const unsigned char> prefix_of(const Guid& guid) {
 }
 
 const Octets kPayload{0, 1, 0, 0, 1, 2, 3, 4};
-/// A list of parameters, without its end: a lease of 60 s.
-const Octets kListWithLease{0, 3, 0, 0, 0x02, 0, 8, 0, 60, 0, 0, 0, 0, 0, 0, 0};
 const Octets kEndOfList{0x01, 0, 0, 0};
+
+/// A list of parameters, without its end: whose it is.
+OctetWriter list_of(const Guid& participant) {
+  return OctetWriter().u32(0x300).u16(0x50).u16(16).append(
+      with_entity(participant, entity_id::kParticipant).bytes);
+}
+
+/// And a lease.
+OctetWriter list_with_lease(const Guid& participant, std::uint32_t seconds = 60) {
+  return list_of(participant).u16(0x02).u16(8).u32(seconds).u32(0);
+}
 
 Guid announcer_of(Guid participant) { return with_entity(participant, 0x100c2); }
 
@@ -56,7 +65,7 @@ RtpsPacket from(const Guid& sender, unsigned kind, unsigned flags, const OctetWr
 
 RtpsPacket announcement_of(const Guid& participant) {
   const Guid announcer = announcer_of(participant);
-  const Octets list = OctetWriter().append(kListWithLease).append(kEndOfList).octets();
+  const Octets list = list_with_lease(participant).append(kEndOfList).octets();
   return from(announcer, kData, kHasPayload, data(announcer, 1, list));
 }
 
@@ -492,7 +501,7 @@ TEST_CASE("discovery's parameters, texts and lists lie within it") {
   Stage stage;
   const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](const OctetWriter& parameters) {
-    const auto payload = OctetWriter().append(kListWithLease).append(parameters.octets());
+    const auto payload = list_with_lease(kWriter).append(parameters.octets());
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload.octets()));
   };
   const auto parameter = [](unsigned id, const OctetWriter& value) {
@@ -541,18 +550,16 @@ TEST_CASE("a participant says when it counts as gone") {
   const auto announcement = [&](const Octets& payload) {
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload));
   };
-  const Octets sentinel{0x01, 0, 0, 0};
-  CHECK(stage.passes(announcement(OctetWriter().append(kListWithLease).append(sentinel).octets())));
-  CHECK(stage.refuses(announcement({0, 3, 0, 0, 0x01, 0, 0, 0}), Refusal::Lease));
-  const auto half = OctetWriter().u32(0x300).u16(0x02).u16(4).u32(60).append(sentinel);
+  CHECK(stage.passes(announcement(list_with_lease(kWriter).append(kEndOfList).octets())));
+  CHECK(stage.refuses(announcement(list_of(kWriter).append(kEndOfList).octets()), Refusal::Lease));
+  const auto half = list_of(kWriter).u16(0x02).u16(4).u32(60).append(kEndOfList);
   CHECK(stage.refuses(announcement(half.octets()), Refusal::Parameters));
 }
 
 TEST_CASE("the guard says whether it passed an announcement of a participant, and an ACKNACK") {
   Stage stage;
   const Guid announcer = announcer_of(kWriter);
-  const Octets parameters =
-      OctetWriter().append(kListWithLease).append(Octets{0x01, 0, 0, 0}).octets();
+  const Octets parameters = list_with_lease(kWriter).append(kEndOfList).octets();
   const auto acknack = entities({}, kWriter).number(1).u32(0).u32(7);
   const auto pass = [&](const RtpsPacket& packet) {
     Octets message = packet.octets();
@@ -579,7 +586,7 @@ TEST_CASE("the guard says whether it passed what a participant's writers live by
     return stage.guard.pass(message.data(), message.size(), kSomewhere, stage.now)
         .asserts_liveliness;
   };
-  const Octets alive = OctetWriter().u32(0x300).zeros(24).octets();
+  const Octets alive = OctetWriter().u32(0x300).append(prefix_of(liveliness)).zeros(12).octets();
   CHECK(asserts(from(liveliness, kData, kHasPayload, data(liveliness, 1, alive))));
   CHECK(asserts(from(liveliness, kHeartbeat, 0, heartbeat(liveliness, 1, 1))));
   CHECK_FALSE(asserts(from(kWriter, kData, kHasPayload, data(kWriter, 1, kPayload))));
@@ -591,14 +598,64 @@ TEST_CASE("a message of liveliness holds what it says") {
   Guid participant = writer_of(0, 0xc2);
   participant.bytes[13] = 0x02;  // 0x000200c2
   const auto message = [&](unsigned encapsulation, std::uint32_t claimed) {
-    const auto payload =
-        OctetWriter().u8(0).u8(encapsulation).u16(0).zeros(16).u32(claimed).zeros(4);
+    const auto payload = OctetWriter()
+                             .u8(0)
+                             .u8(encapsulation)
+                             .u16(0)
+                             .append(prefix_of(kWriter))
+                             .zeros(4)
+                             .u32(claimed)
+                             .zeros(4);
     return from(participant, kData, kHasPayload, data(participant, 1, payload.octets()));
   };
   CHECK(stage.passes(message(1, 4)));
   CHECK(stage.passes(message(3, 0)));  // as Fast DDS writes it
   CHECK(stage.refuses(message(1, 5), Refusal::Parameters));
   CHECK(stage.refuses(message(7, 0), Refusal::Parameters));
+}
+
+TEST_CASE("discovery speaks of its sender and of the sender's endpoints alone") {
+  Stage stage;
+  const Guid other = stranger_of(1);
+  stage.pass(announcement_of(other).octets());
+  const auto guid = [](unsigned id, const Guid& whose) {
+    return OctetWriter().u16(id).u16(16).append(whose.bytes);
+  };
+  const Octets gone = OctetWriter().u16(0x71).u16(4).u32(3u << 24).append(kEndOfList).octets();
+  const auto says = [&](std::uint32_t announcer, unsigned flags, const OctetWriter& list) {
+    const Guid writer = with_entity(kWriter, announcer);
+    return from(writer, kData, flags, data(writer, 1, list.octets()));
+  };
+  const auto list = [](const OctetWriter& parameters) {
+    return OctetWriter().u32(0x300).append(parameters.octets()).append(kEndOfList);
+  };
+  constexpr std::uint32_t kAnnouncers[] = {entity_id::kPublicationsAnnouncer,
+                                           entity_id::kSubscriptionsAnnouncer};
+  constexpr unsigned kKeyOnly = 0x08;
+  for (const std::uint32_t announcer : kAnnouncers) {
+    CHECK(stage.passes(says(announcer, kHasPayload, list(guid(0x5a, kWriter)))));
+    CHECK(stage.refuses(says(announcer, kHasPayload, list(guid(0x5a, other))), Refusal::Foreign));
+    const auto both = guid(0x5a, kWriter).append(guid(0x70, other).octets());
+    CHECK(stage.refuses(says(announcer, kHasPayload, list(both)), Refusal::Foreign));
+    CHECK(stage.refuses(says(announcer, kHasPayload, list({})), Refusal::Foreign));
+    CHECK(stage.passes(says(announcer, kHasInlineQos, guid(0x70, kWriter).append(gone))));
+    CHECK(stage.refuses(says(announcer, kHasInlineQos, guid(0x70, other).append(gone)),
+                        Refusal::Foreign));
+    // As Cyclone withdraws: by a key as payload.
+    const auto key = [&](const Guid& whose) {
+      return OctetWriter().append(gone).append(list(guid(0x5a, whose)).octets());
+    };
+    CHECK(stage.passes(says(announcer, kHasInlineQos | kKeyOnly, key(kWriter))));
+    CHECK(stage.refuses(says(announcer, kHasInlineQos | kKeyOnly, key(other)), Refusal::Foreign));
+  }
+  const std::uint32_t participants = entity_id::kParticipantAnnouncer;
+  CHECK(stage.passes(says(participants, kHasInlineQos, guid(0x70, kWriter).append(gone))));
+  CHECK(stage.refuses(says(participants, kHasInlineQos, guid(0x70, other).append(gone)),
+                      Refusal::Foreign));
+  CHECK(stage.refuses(says(participants, kHasPayload, list_with_lease(other).append(kEndOfList)),
+                      Refusal::Foreign));
+  const auto alive = OctetWriter().u32(0x300).append(prefix_of(other)).zeros(12);
+  CHECK(stage.refuses(says(0x200c2, kHasPayload, alive), Refusal::Foreign));
 }
 
 TEST_CASE("packets come from allowed sources and this host only") {

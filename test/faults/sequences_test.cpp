@@ -128,3 +128,31 @@ TEST_CASE("a reader that never acknowledges takes a bounded part of a writer's m
   CHECK_THROWS_AS(write_all(), Overloaded);
   CHECK(written <= 8);
 }
+
+TEST_CASE("who withdraws another's endpoint in its own name withdraws nothing") {
+  Stage stage;
+  dds::ParticipantOptions options;
+  options.domain = 17;
+  const auto other = Pairing::get().server->create_participant(options);
+  const auto reader = stage.participant->create_reader(stage.topic, {});
+  const auto writer = other->create_writer(stage.topic, {});
+  const auto matched = [&](const Guid& guid) {
+    const auto writers = reader->matched_writers();
+    return std::ranges::count(writers, guid) > 0;
+  };
+  REQUIRE(eventually([&] { return matched(writer->guid()); }));
+  const InventedPeer peer(1);
+  REQUIRE(eventually([&] {
+    stage.send(peer.announcement());
+    stage.send(peer.endpoint(peer.writer(1), stage.topic.name, stage.topic.type_name, 1));
+    return matched(peer.writer(1));
+  }));
+  stage.send(peer.withdrawal(writer->guid(), 2));
+  // It has seen that when it has seen what follows.
+  REQUIRE(eventually([&] {
+    stage.send(peer.endpoint(peer.writer(2), stage.topic.name, stage.topic.type_name, 3));
+    stage.send(peer.endpoint(peer.writer(2), stage.topic.name, stage.topic.type_name, 2));
+    return matched(peer.writer(2));
+  }));
+  CHECK(matched(writer->guid()));
+}

@@ -52,8 +52,8 @@ class InventedPeer {
             .append(parameter(0x07, text(type)))
             .append(parameter(0x1a, OctetWriter().u32(2).u32(0).u32(100'000'000)))
             .append(kEnd);
-    const Guid announcer = announcer_of(whose);
-    return RtpsPacket(guid_).submessage(0x15, kHasPayload, data(announcer, number, list.octets()));
+    return heartbeat_of(announcer_of(whose), number)
+        .submessage(0x15, kHasPayload, data(announcer_of(whose), number, list.octets()));
   }
 
   /// And that there is no such endpoint any more.
@@ -62,8 +62,8 @@ class InventedPeer {
                                 .append(parameter(0x70, OctetWriter().append(whose.bytes)))
                                 .append(parameter(0x71, OctetWriter().u32(3u << 24)))
                                 .append(kEnd);
-    return RtpsPacket(guid_).submessage(0x15, kHasInlineQos,
-                                        data(announcer_of(whose), number, qos.octets()));
+    return heartbeat_of(announcer_of(whose), number)
+        .submessage(0x15, kHasInlineQos, data(announcer_of(whose), number, qos.octets()));
   }
 
   RtpsPacket says(unsigned kind, const OctetWriter& body, unsigned flags = 0) const {
@@ -98,6 +98,12 @@ class InventedPeer {
   }
 
  private:
+  /// Cyclone takes nothing of a writer that it has not heard one of.
+  RtpsPacket heartbeat_of(const Guid& writer, std::int64_t last) const {
+    return RtpsPacket(guid_).submessage(
+        0x07, 0, heartbeat(writer, 1, last, static_cast<std::uint32_t>(last)));
+  }
+
   static constexpr unsigned char kList[] = {0, 3, 0, 0};
   static constexpr unsigned char kEnd[] = {1, 0, 0, 0};
   static constexpr std::uint16_t kPort = 9;  // where nobody answers
