@@ -34,13 +34,26 @@ Admission::Writer* Admission::find(const Guid& participant, std::uint32_t writer
 Admission::Verdict Admission::announced(const Origin& origin) {
   Participant* known = find(origin.participant);
   if (known == nullptr) {
-    if (participants_.size() >= kMaxParticipants) forget_unconfirmed(origin.now);
-    if (participants_.size() >= kMaxParticipants) return Refusal::Room;
+    Source& source = source_at(origin.source);
+    if (participants_.size() >= kMaxParticipants ||
+        source.participants >= kMaxParticipantsOfSource) {
+      forget_unconfirmed(origin.now);
+    }
+    if (participants_.size() >= kMaxParticipants ||
+        source.participants >= kMaxParticipantsOfSource || source.newcomers.left(origin.now) < 1) {
+      return Refusal::Crowd;
+    }
+    source.newcomers.take(1);
     known = &participants_[origin.participant];
   }
   known->heard = origin.now;
   place(*known, origin.source);
   return kGood;
+}
+
+bool Admission::has_announced_from(const Guid& participant, std::uint32_t source) const {
+  const auto known = participants_.find(participant);
+  return known != participants_.end() && std::ranges::count(known->second.sources, source) > 0;
 }
 
 void Admission::found(const Guid& participant) { participants_[participant].found = true; }
@@ -57,14 +70,26 @@ bool Admission::knows(const Origin& origin) {
   return true;
 }
 
-void Admission::place(Participant& participant, std::uint32_t source) {
+// Those from which nobody has announced himself are forgotten when there are many.
+Admission::Source& Admission::source_at(std::uint32_t address) {
   constexpr std::size_t kManySources = 4 * kMaxParticipants;
-  if (participant.placed && participant.source == source) return;
-  if (participant.placed) --sources_[participant.source].participants;
+  const auto known = sources_.find(address);
+  if (known != sources_.end()) return known->second;
   if (sources_.size() >= kManySources) {
     std::erase_if(sources_, [](const auto& each) { return each.second.participants == 0; });
   }
-  ++sources_[source].participants;
+  return sources_[address];
+}
+
+void Admission::place(Participant& participant, std::uint32_t source) {
+  constexpr std::size_t kInterfaces = 4;
+  if (!std::ranges::count(participant.sources, source)) {
+    if (participant.sources.size() >= kInterfaces) participant.sources.clear();
+    participant.sources.push_back(source);
+  }
+  if (participant.placed && participant.source == source) return;
+  if (participant.placed) --sources_[participant.source].participants;
+  ++source_at(source).participants;
   participant.source = source;
   participant.placed = true;
 }
@@ -128,7 +153,7 @@ std::int64_t Admission::let_skip(Participant& participant, Writer& writer, std::
   if (skipped_ == SkippedNumbers::Noted) return up_to;
   const std::int64_t from = std::max(writer.counted, writer.held_up_to());
   if (up_to <= from) return up_to;
-  Source& source = sources_[participant.source];
+  Source& source = source_at(participant.source);
   const std::int64_t wanted = up_to - from;
   const std::int64_t own = std::min(wanted, participant.numbers.left(now));
   const std::int64_t shared =
@@ -271,7 +296,7 @@ bool Admission::begin(Participant& participant, std::uint32_t size, Time now) {
   };
   if (!has_share() && skipped_ == SkippedNumbers::Noted) close_stale(participant, now);
   if (!has_share()) return false;
-  Source& source = sources_[participant.source];
+  Source& source = source_at(participant.source);
   const std::int64_t own = std::min<std::int64_t>(size, participant.earned);
   if (size - own > source.begun.left(now)) return false;
   participant.earned -= own;

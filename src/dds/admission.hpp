@@ -27,6 +27,8 @@ enum class Refusal {
   Parameters,  ///< Discovery whose parameters do not lie within it.
   Lease,       ///< A participant that does not say when it counts as gone.
   Foreign,     ///< Discovery of another participant, or of its endpoints.
+  Crowd,       ///< One participant too many, of its address or in all, or too soon.
+  Locator,     ///< A participant that can only be reached where it may not send others.
 };
 
 /// What a vendor's reader does with numbers that its writer skips: it looks at each of them (Fast
@@ -50,6 +52,9 @@ class Admission {
   static constexpr std::size_t kMaxWriters = 4096;  ///< Of a participant.
 
   static constexpr std::size_t kMaxParticipants = 1024;
+  /// Of them at an address: twice as many as find ports there. And how soon they may come.
+  static constexpr std::size_t kMaxParticipantsOfSource = 256;
+  static constexpr Allowance::Rate kNewcomersOfSource{128, 16};
 
   /// Skipped numbers that a reader counts, 0.22 us each: of a participant, and beyond that of all
   /// participants at an address, and of all addresses.
@@ -91,6 +96,8 @@ class Admission {
 
   /// A participant announces itself.
   Verdict announced(const Origin& origin);
+  /// Whether the sender has announced itself from that address.
+  bool has_announced_from(const Guid& participant, std::uint32_t source) const;
   /// The vendor has found a participant, or has removed it. One that it never finds is forgotten
   /// when it has been silent for kUnconfirmed.
   void found(const Guid& participant);
@@ -168,12 +175,14 @@ class Admission {
   struct Source {
     Allowance numbers{kCountedOfSource};
     Allowance begun{kBegunAtSource};
+    Allowance newcomers{kNewcomersOfSource};
     std::size_t participants = 0;
   };
   struct Participant {
     bool found = false;   // by the vendor
     bool placed = false;  // it has announced itself, from `source`
     std::uint32_t source = 0;
+    std::vector<std::uint32_t> sources{};  // from which it has announced itself of late
     Time heard{};
     Allowance numbers{kCountedOfParticipant};
     std::int64_t earned = 0;  // bytes that it may begin, by what was received of it
@@ -184,6 +193,7 @@ class Admission {
   };
   Participant* find(const Guid& participant);
   Writer* find(const Guid& participant, std::uint32_t writer);
+  Source& source_at(std::uint32_t address);
   void place(Participant& participant, std::uint32_t source);
   void forget(std::unordered_map<Guid, Participant>::iterator participant);
   void forget_unconfirmed(Time now);

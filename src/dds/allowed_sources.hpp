@@ -30,4 +30,17 @@ class AllowedSources {
   std::vector<Prefix> prefixes_;
 };
 
+/// The addresses with which a participant may have to do.
+struct Addresses {
+  AllowedSources sources;  ///< From which packets are taken.
+  AllowedSources own;      ///< Its own.
+  AllowedSources named;    ///< Those of its profile: peers and allowed sources, and its own.
+
+  /// Whether packets may be sent to `locator` because somebody at `source` has named it.
+  bool may_name(std::uint32_t source, std::uint32_t locator) const noexcept {
+    if (locator == source) return true;
+    return named.allows(locator) && (!own.allows(locator) || own.allows(source));
+  }
+};
+
 }  // namespace skein::dds

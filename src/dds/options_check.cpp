@@ -58,7 +58,7 @@ void check_domain(const ParticipantOptions& options) {
 void check_options(const ParticipantOptions& options) {
   check_domain(options);
   const auto addresses = interface_addresses(options.network);
-  allowed_sources(options.network);
+  AllowedSources(options.network.allowed_sources);
   for (const std::string& peer : options.network.peers) {
     if (!is_host_name(peer)) {
       throw InvalidArgument("peer '" + peer + "' is neither an address nor a host's name");
@@ -104,11 +104,18 @@ std::string place_of(const ParticipantOptions& options) {
   return place;
 }
 
-AllowedSources allowed_sources(const Network& network) {
-  AllowedSources sources(network.allowed_sources);
-  if (network.allowed_sources.empty()) return sources;
-  for (const std::string& address : interface_addresses(network)) sources.add(address);
-  return sources;
+Addresses addresses_of(const Network& network) {
+  Addresses addresses{AllowedSources(network.allowed_sources), {}, {}};
+  for (const std::string& address : interface_addresses(network)) {
+    if (!network.allowed_sources.empty()) addresses.sources.add(address);
+    addresses.own.add(address);
+  }
+  addresses.named = addresses.own;
+  for (const std::string& source : network.allowed_sources) addresses.named.add(source);
+  for (const std::string& peer : network.peers) {
+    for (const std::string& address : host_addresses(peer)) addresses.named.add(address);
+  }
+  return addresses;
 }
 
 bool is_loopback_only(const Network& network) {

@@ -36,8 +36,8 @@ std::vector<std::string> interface_addresses(const Network& network);
 /// Where such a participant looks for others, for messages: `domain 0 on 127.0.0.1`.
 std::string place_of(const ParticipantOptions& options);
 
-/// `network.allowed_sources`, with the addresses of its interfaces.
-AllowedSources allowed_sources(const Network& network);
+/// Asks the network's name servers for peers that are not addresses.
+Addresses addresses_of(const Network& network);
 
 /// Whether the network goes no further than this host's 127.0.0.1.
 bool is_loopback_only(const Network& network);

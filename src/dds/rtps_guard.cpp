@@ -38,6 +38,11 @@ const char* describe(Refusal why) {
       return "its discovery parameters reach beyond it";
     case Refusal::Foreign:
       return "it speaks of another participant, or of another's endpoints";
+    case Refusal::Crowd:
+      return "it is of one participant too many, of its address or in all, or too soon";
+    case Refusal::Locator:
+      return "its participant names only addresses that are not its own, and not in the profile "
+             "(peers, allowed_sources)";
     case Refusal::Lease:
       return "it announces a participant without its lease (PID_PARTICIPANT_LEASE_DURATION)";
   }
@@ -85,7 +90,7 @@ RtpsGuard::Service RtpsGuard::service_of(const unsigned char* entity) {
 
 RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std::uint32_t source,
                                   Clock::time_point now) {
-  if (!sources_.allows(source)) {
+  if (!addresses_.sources.allows(source)) {
     count(Refusal::Source, 0, source);
     return {};
   }
@@ -277,9 +282,22 @@ RtpsGuard::Verdict RtpsGuard::judge_discovery(const Submessage& submessage, cons
     return Refusal::Parameters;
   }
   if (!is_of_sender(submessage, prefix)) return Refusal::Foreign;
-  if (!submessage.flag(kHasData) || service != Service::Participants) return kGood;
-  if (!names_lease(found.payload, found.payload_size)) return Refusal::Lease;
-  return admission_.announced(origin);
+  if (!submessage.flag(kHasData)) return kGood;
+  if (service == Service::Participants) {
+    constexpr std::uint32_t kLongestLease = 100;  // RTPS's default, in seconds
+    if (!names_lease(found.payload, found.payload_size, kLongestLease)) return Refusal::Lease;
+    if (!check_locators(found, origin)) return Refusal::Locator;
+    return admission_.announced(origin);
+  }
+  check_locators(found, origin);
+  return kGood;
+}
+
+bool RtpsGuard::check_locators(const Data& found, const Origin& origin) const {
+  return keep_locators(found.payload, found.payload_size, [&](std::uint32_t address) {
+    return addresses_.may_name(origin.source, address) ||
+           admission_.has_announced_from(origin.participant, address);
+  });
 }
 
 RtpsGuard::Verdict RtpsGuard::judge_data_frag(const Submessage& submessage, const Origin& origin) {

@@ -22,12 +22,12 @@ class RtpsGuard {
   using Clock = Admission::Clock;
 
   using Refusal = dds::Refusal;
-  static constexpr std::size_t kRefusals = 11;
+  static constexpr std::size_t kRefusals = 13;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.
-  RtpsGuard(AllowedSources sources, std::string place, SkippedNumbers skipped)
-      : sources_(std::move(sources)), place_(std::move(place)), admission_(skipped) {}
+  RtpsGuard(Addresses addresses, std::string place, SkippedNumbers skipped)
+      : addresses_(std::move(addresses)), place_(std::move(place)), admission_(skipped) {}
 
   /// What may be handed on of a message, and what that holds.
   struct Passed {
@@ -81,13 +81,14 @@ class RtpsGuard {
   Verdict judge_data(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_discovery(const rtps_message::Submessage& submessage,
                           const rtps_message::Data& found, Service service, const Origin& origin);
+  bool check_locators(const rtps_message::Data& found, const Origin& origin) const;
   Verdict judge_data_frag(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_heartbeat(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_gap(const rtps_message::Submessage& submessage, const Origin& origin);
 
   void count(Refusal why, unsigned char kind, std::uint32_t source);
 
-  const AllowedSources sources_;
+  const Addresses addresses_;
   const std::string place_;
   mutable std::mutex mutex_;
   Admission admission_;

@@ -84,6 +84,13 @@ bool check_parameter(const Parameter& parameter) {
     case kParticipantLease:
       return parameter.size == 8 &&
              get32(parameter.value, parameter.little) <= std::numeric_limits<std::int32_t>::max();
+    case 0x000b:  // addresses and ports in the form of RTPS 1, which Cyclone still reads
+    case 0x000c:
+    case 0x000d:
+    case 0x000e:
+    case 0x0011:
+    case 0x0045:
+    case 0x0046:
     case 0x0069:  // descriptions of types
     case 0x0072:
     case 0x0075:
@@ -99,6 +106,19 @@ bool check_parameter(const Parameter& parameter) {
     default:
       return true;
   }
+}
+
+bool is_locator(std::uint16_t id) { return (id >= 0x002f && id <= 0x0033) || id == 0x0048; }
+
+/// Its value: kind, port, and 16 bytes of an address, whose last four are IPv4's.
+bool may_keep(const Parameter& locator, const std::function<bool(std::uint32_t)>& may_name) {
+  constexpr std::uint32_t kUdp4 = 1;
+  constexpr std::uint32_t kSharedMemory = 16;
+  constexpr std::uint32_t kGroup = 239u << 24 | 255 << 16 | 1;  // 239.255.0.1, RTPS 9.6.1.4
+  const std::uint32_t kind = get32(locator.value, locator.little);
+  if (kind == kSharedMemory) return true;
+  const std::uint32_t address = get32(locator.value + 20, false);
+  return kind == kUdp4 && (address == kGroup || may_name(address));
 }
 
 /// Where inline QoS or payload begin, and the parts of the header that both kinds share.
@@ -203,13 +223,36 @@ bool is_of_sender(const Submessage& submessage, const unsigned char* prefix) {
   return named;
 }
 
-bool names_lease(unsigned char* payload, std::size_t size) {
+bool names_lease(unsigned char* payload, std::size_t size, std::uint32_t longest_s) {
   bool found = false;
   for_each_parameter_of(payload, size, [&](const Parameter& parameter) {
-    found |= parameter.id == kParticipantLease;
+    if (parameter.id != kParticipantLease) return true;
+    found = true;
+    if (get32(parameter.value, parameter.little) >= longest_s) {
+      put32(parameter.value, longest_s, parameter.little);
+      put32(parameter.value + 4, 0, parameter.little);
+    }
     return true;
   });
   return found;
+}
+
+bool keep_locators(unsigned char* payload, std::size_t size,
+                   const std::function<bool(std::uint32_t)>& may_name) {
+  constexpr std::uint16_t kOfDiscovery = 0x0032;
+  int named = 0;
+  int kept = 0;
+  for_each_parameter_of(payload, size, [&](const Parameter& parameter) {
+    if (!is_locator(parameter.id)) return true;
+    const bool keep = may_keep(parameter, may_name);
+    if (!keep) parameter.header[0] = parameter.header[1] = 0;  // padding
+    if (parameter.id == kOfDiscovery) {
+      ++named;
+      kept += keep;
+    }
+    return true;
+  });
+  return named == 0 || kept > 0;
 }
 
 bool is_liveliness_of(const unsigned char* payload, std::size_t size, const unsigned char* prefix) {

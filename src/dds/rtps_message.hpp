@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <optional>
 
 #include "skein/guid.hpp"
@@ -254,8 +255,16 @@ bool check_discovery(unsigned char* payload, std::size_t size);
 bool is_of_sender(const Submessage& submessage, const unsigned char* prefix);
 
 /// Whether a payload of participant discovery that is good says for how long its participant lives
-/// on unheard. Without it Fast DDS reads a lease of 0 s instead of RTPS's default.
-bool names_lease(unsigned char* payload, std::size_t size);
+/// on unheard. Without it Fast DDS reads a lease of 0 s instead of RTPS's default. A longer lease
+/// than `longest_s` is changed into that.
+bool names_lease(unsigned char* payload, std::size_t size, std::uint32_t longest_s);
+
+/// Makes padding of the locators in a good payload of discovery that `may_name` does not allow:
+/// called with each IPv4 address that is no multicast group of DDS. Others than those of UDP and of
+/// shared memory are padding, too. False where no address is left at which the participant can be
+/// sent discovery, although some were named.
+bool keep_locators(unsigned char* payload, std::size_t size,
+                   const std::function<bool(std::uint32_t)>& may_name);
 
 /// The payload of a message of liveliness of the participant with that GUID prefix.
 bool check_liveliness(const unsigned char* payload, std::size_t size);

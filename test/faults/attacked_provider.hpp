@@ -14,23 +14,35 @@
 
 namespace skein::test {
 
-/// Sends what one likes on 127.0.0.1.
+/// Sends what one likes from and to addresses of this host (IPv4, in host order).
 class RawSocket {
  public:
-  RawSocket() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  explicit RawSocket(std::uint32_t from = INADDR_LOOPBACK)
+      : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    const sockaddr_in own = place(from, 0);
+    if (bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
+      throw std::runtime_error("this host has not that address");
+    }
+  }
   ~RawSocket() { close(socket_); }
   RawSocket(const RawSocket&) = delete;
   RawSocket& operator=(const RawSocket&) = delete;
 
-  void send(const Octets& packet, std::uint16_t port) const {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    to.sin_port = htons(port);
-    sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  void send(const Octets& packet, std::uint16_t port, std::uint32_t to = INADDR_LOOPBACK) const {
+    const sockaddr_in other = place(to, port);
+    sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&other),
+           sizeof other);
   }
 
  private:
+  static sockaddr_in place(std::uint32_t address, std::uint16_t port) {
+    sockaddr_in result{};
+    result.sin_family = AF_INET;
+    result.sin_addr.s_addr = htonl(address);
+    result.sin_port = htons(port);
+    return result;
+  }
+
   const int socket_;
 };
 

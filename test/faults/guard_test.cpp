@@ -79,8 +79,8 @@ Guid stranger_of(unsigned number) {
 /// A guard on its own, whose time the test tells. It knows `kWriter`, which a reader here is
 /// matched with.
 struct Stage {
-  explicit Stage(SkippedNumbers skipped = SkippedNumbers::Noted, dds::AllowedSources sources = {})
-      : guard(std::move(sources), "test", skipped) {
+  explicit Stage(SkippedNumbers skipped = SkippedNumbers::Noted, dds::Addresses addresses = {})
+      : guard(std::move(addresses), "test", skipped) {
     pass(announcement_of(kWriter).octets(), kHere);
     match(kWriter);
   }
@@ -658,8 +658,125 @@ TEST_CASE("discovery speaks of its sender and of the sender's endpoints alone") 
   CHECK(stage.refuses(says(0x200c2, kHasPayload, alive), Refusal::Foreign));
 }
 
+TEST_CASE(
+    "an address has room for twice as many participants as find ports there, and they come one by "
+    "one") {
+  Stage stage;
+  const auto announce = [&](unsigned number, std::uint32_t source) {
+    return !stage.pass(announcement_of(stranger_of(number)).octets(), source).empty();
+  };
+  constexpr auto kAtOnce = static_cast<unsigned>(Admission::kNewcomersOfSource.at_once);
+  unsigned accepted = 0;
+  for (unsigned i = 0; i < 1000; ++i) accepted += announce(i, kSomewhere);
+  CHECK(accepted == kAtOnce);
+  CHECK(announce(5000, kSomewhere + 1));  // others have theirs
+  CHECK(announce(0, kSomewhere));         // who is known may say it again
+  for (int second = 0; second < 60; ++second) {
+    stage.now += 1s;
+    for (unsigned i = 0; i < 1000; ++i) {
+      // The vendor has found them all.
+      if (announce(i, kSomewhere)) stage.guard.found(stranger_of(i).participant());
+    }
+  }
+  CHECK(stage.guard.participants() == Admission::kMaxParticipantsOfSource);
+  CHECK_FALSE(announce(2000, kSomewhere));
+  stage.guard.removed(stranger_of(0).participant());
+  CHECK(announce(2000, kSomewhere));
+}
+
+TEST_CASE("participants that the vendor never finds are forgotten when others need their room") {
+  Stage stage;
+  const auto announce = [&](unsigned number) {
+    return !stage.pass(announcement_of(stranger_of(number)).octets()).empty();
+  };
+  unsigned number = 0;
+  while (stage.guard.participants() < 1 + Admission::kMaxParticipantsOfSource) {
+    announce(++number);
+    stage.now += 10ms;
+  }
+  stage.now += 1s;
+  CHECK_FALSE(announce(100'000));
+  stage.now += Admission::kUnconfirmed;
+  CHECK(announce(100'000));
+}
+
+TEST_CASE("no lease is longer than RTPS's default") {
+  Stage stage;
+  const Guid announcer = announcer_of(kWriter);
+  const auto announcement = [&](std::uint32_t seconds) {
+    const auto list = list_with_lease(kWriter, seconds).append(kEndOfList);
+    return from(announcer, kData, kHasPayload, data(announcer, 1, list.octets()));
+  };
+  CHECK(stage.passes(announcement(99)));
+  CHECK(stage.pass(announcement(101).octets()) == announcement(100).octets());
+  CHECK(stage.pass(announcement(0x7fffffff).octets()) == announcement(100).octets());  // never
+}
+
+TEST_CASE("a participant names its own address, one of the profile, or a group of DDS") {
+  const dds::AllowedSources own({"10.0.0.1"});
+  const dds::AllowedSources named({"10.0.0.1", "10.5.0.0/16"});
+  Stage stage(SkippedNumbers::Noted, {{}, own, named});
+  const Guid peer = stranger_of(1);
+  const Guid announcer = announcer_of(peer);
+  const auto locator = [](unsigned id, std::uint32_t address, std::uint32_t kind = 1) {
+    OctetWriter writer = OctetWriter().u16(id).u16(24).u32(kind).u32(7410).zeros(12);
+    for (int shift = 24; shift >= 0; shift -= 8) writer.u8(address >> shift & 0xff);
+    return writer;
+  };
+  const auto announcement = [&](const OctetWriter& locators) {
+    const auto list = list_with_lease(peer).append(locators.octets()).append(kEndOfList);
+    return from(announcer, kData, kHasPayload, data(announcer, 1, list.octets()));
+  };
+  const auto both = [&](const OctetWriter& one, const OctetWriter& other) {
+    return announcement(OctetWriter(one).append(other.octets()));
+  };
+  constexpr std::uint32_t kVictim = 10u << 24 | 66;
+  constexpr std::uint32_t kOwn = 10u << 24 | 1;
+  constexpr std::uint32_t kNamed = 10u << 24 | 5 << 16 | 9;
+  constexpr std::uint32_t kGroup = 239u << 24 | 255 << 16 | 1;
+  constexpr std::uint32_t kOtherGroup = 239u << 24 | 255 << 16 | 2;
+  const auto true_one = locator(0x32, kSomewhere);
+  CHECK(stage.passes(both(true_one, locator(0x31, kSomewhere))));
+  CHECK(stage.passes(both(true_one, locator(0x31, kNamed))));
+  CHECK(stage.passes(both(true_one, locator(0x33, kGroup))));
+  CHECK(stage.passes(both(true_one, locator(0x31, 0, 16))));
+  const auto padded = [&](const OctetWriter& wrong) {
+    Octets padding = wrong.octets();
+    padding[0] = padding[1] = 0;
+    return stage.pass(both(true_one, wrong).octets()) ==
+           both(true_one, OctetWriter().append(padding)).octets();
+  };
+  for (const unsigned id : {0x2fu, 0x30u, 0x31u, 0x32u, 0x33u, 0x48u}) {
+    INFO(id);
+    CHECK(padded(locator(id, kVictim)));
+    CHECK(padded(locator(id, kOwn)));
+    CHECK(padded(locator(id, kOtherGroup)));
+    CHECK(padded(locator(id, kSomewhere, 4)));
+  }
+  CHECK(stage.refuses(announcement(locator(0x32, kVictim)), Refusal::Locator));
+  // On this host it may be either.
+  CHECK(!stage.pass(announcement(locator(0x32, kOwn)).octets(), kOwn).empty());
+  // From where it has announced itself, too: it has two interfaces.
+  CHECK(!stage.pass(announcement(locator(0x32, kVictim)).octets(), kVictim).empty());
+  CHECK(stage.passes(both(true_one, locator(0x31, kVictim))));
+  // And its endpoints have no others.
+  const Guid endpoints = with_entity(peer, entity_id::kPublicationsAnnouncer);
+  const auto endpoint = [&](const OctetWriter& place) {
+    const auto list = OctetWriter()
+                          .u32(0x300)
+                          .u16(0x5a)
+                          .u16(16)
+                          .append(with_entity(peer, 0x103).bytes)
+                          .append(place.octets())
+                          .append(kEndOfList);
+    return from(endpoints, kData, kHasPayload, data(endpoints, 1, list.octets())).octets();
+  };
+  CHECK(stage.pass(endpoint(locator(0x2f, kSomewhere))) == endpoint(locator(0x2f, kSomewhere)));
+  CHECK(stage.pass(endpoint(locator(0x2f, kVictim + 1))) != endpoint(locator(0x2f, kVictim + 1)));
+}
+
 TEST_CASE("packets come from allowed sources and this host only") {
-  Stage stage(SkippedNumbers::Noted, dds::AllowedSources({"10.0.0.0/24", "10.1.2.3"}));
+  Stage stage(SkippedNumbers::Noted, {dds::AllowedSources({"10.0.0.0/24", "10.1.2.3"}), {}, {}});
   const Octets good = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)).octets();
   CHECK(stage.pass(good, 0x0a000007) == good);
   CHECK(stage.pass(good, 0x0a010203) == good);

@@ -2,6 +2,8 @@
 // formed, and true of its sender as far as the provider can know.
 #include <catch2/catch.hpp>
 
+#include "../tools/cable.hpp"
+#include "../tools/wire_tap.hpp"
 #include "attacked_provider.hpp"
 #include "dds/port.hpp"
 #include "skein/detail/bytes.hpp"
@@ -155,4 +157,81 @@ TEST_CASE("who withdraws another's endpoint in its own name withdraws nothing") 
     return matched(peer.writer(2));
   }));
   CHECK(matched(writer->guid()));
+}
+
+TEST_CASE("thousands of invented participants keep no call from its answer") {
+  AttackedProvider provider;
+  constexpr std::uint32_t kNever = 0x7fffffff;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::uint32_t i = 1; i <= 3000; ++i) provider.send(InventedPeer(i).announcement(kNever));
+  CHECK(provider.has_read_all(10s));
+  CHECK(std::chrono::steady_clock::now() - start < 10s);
+  provider.check_answers();
+}
+
+TEST_CASE("nobody is sent anything because a stranger has named his address") {
+  constexpr std::uint32_t kVictim = 127u << 24 | 77;
+  WireTap tap;
+  AttackedProvider provider;
+  const InventedPeer liar(1, kVictim);
+  const InventedPeer honest(2);
+  provider.introduce(liar);
+  provider.introduce(honest);
+  const auto sent_to = [&](std::uint32_t address, std::uint16_t port) {
+    return tap.count([=](const Packet& packet) {
+      return packet.destination == address && packet.destination_port == port;
+    });
+  };
+  constexpr int kManyTimes = 3;
+  CHECK(eventually([&] { return sent_to(127u << 24 | 1, InventedPeer::kPort) >= kManyTimes; }));
+  CHECK(sent_to(kVictim, InventedPeer::kPort) == 0);
+  provider.check_answers();
+}
+
+TEST_CASE("who is not among a profile's allowed sources is shut out, whatever it announces") {
+  constexpr std::uint32_t kOwn = 10u << 24 | 77 << 16 | 1;
+  constexpr std::uint32_t kFriend = kOwn + 1;
+  constexpr std::uint32_t kStranger = kOwn + 65;
+  const NetworkSpace here;
+  const NetworkSpace there;
+  const Cable cable(here, there, 1);
+  there.run("ip addr add 10.77.0.66/24 dev skein0");
+  std::optional<RawSocket> from_stranger;
+  std::optional<RawSocket> from_friend;
+  {
+    const Inside inside(there);
+    from_stranger.emplace(kStranger);
+    from_friend.emplace(kFriend);
+  }
+  const Inside inside(here);
+  dds::ParticipantOptions options;
+  options.domain = 17;
+  options.network.interfaces = {"10.77.0.1"};
+  options.network.peers = {"10.77.0.2"};
+  options.network.allowed_sources = {"10.77.0.2"};
+  const auto participant = Pairing::get().server->create_participant(options);
+  const dds::Topic topic{"test/Sequences", "test::Sequences", false};
+  const auto reader = participant->create_reader(topic, {});
+  const InventedPeer stranger(1, kStranger);
+  const InventedPeer known(2, kFriend);
+  const auto introduce = [&](const RawSocket& socket, const InventedPeer& peer) {
+    constexpr std::uint16_t kDiscovery = 7400 + 250 * 17 + 10;  // RTPS 9.6.1
+    const auto endpoint = peer.endpoint(peer.writer(1), topic.name, topic.type_name, 1);
+    socket.send(peer.announcement().octets(), kDiscovery, kOwn);
+    socket.send(endpoint.octets(), kDiscovery, kOwn);
+  };
+  CHECK(eventually([&] {
+    introduce(*from_stranger, stranger);
+    introduce(*from_friend, known);
+    return !reader->matched_writers().empty();
+  }));
+  introduce(*from_stranger, stranger);
+  // What comes behind it has been received: a farewell.
+  CHECK(eventually([&] {
+    from_friend->send(farewell(known.entity(entity_id::kParticipant), 2).octets(),
+                      7400 + 250 * 17 + 10, kOwn);
+    const auto writers = reader->matched_writers();
+    CHECK(std::ranges::count(writers, stranger.writer(1)) == 0);
+    return writers.empty();
+  }));
 }

@@ -9,6 +9,9 @@ namespace skein::test {
 /// A participant that exists in its packets alone: what it says is well formed, and true of itself.
 class InventedPeer {
  public:
+  /// Where it says that it receives discovery, and samples at the next one. Nobody answers.
+  static constexpr std::uint16_t kPort = 9;
+
   /// Each number is another participant, whose packets come from `address` (IPv4, in host order).
   explicit InventedPeer(std::uint32_t number, std::uint32_t address = 127u << 24 | 1)
       : address_(address) {
@@ -106,8 +109,6 @@ class InventedPeer {
 
   static constexpr unsigned char kList[] = {0, 3, 0, 0};
   static constexpr unsigned char kEnd[] = {1, 0, 0, 0};
-  static constexpr std::uint16_t kPort = 9;  // where nobody answers
-
   Guid guid_;
   std::uint32_t address_;
 };

@@ -57,7 +57,7 @@ ssize_t read_guarded(ddsi_tran_conn* connection, unsigned char* buffer, std::siz
 }  // namespace
 
 PacketGuard::PacketGuard(ddsi_domaingv& domain, const ParticipantOptions& options)
-    : guard_(std::make_shared<RtpsGuard>(allowed_sources(options.network), "dds/cyclonedds",
+    : guard_(std::make_shared<RtpsGuard>(addresses_of(options.network), "dds/cyclonedds",
                                          SkippedNumbers::Noted)) {
   guarded_.resize(SKEIN_MOST_CONNECTIONS);
   guarded_.resize(skein_cyclone_connections(&domain, guarded_.data()));

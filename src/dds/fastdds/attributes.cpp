@@ -138,7 +138,7 @@ std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOpti
   udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = max_participants(options);
   return std::make_shared<StartupTransportDescriptor>(
-      std::move(udp), options.lease, announcement_period(options.lease), allowed_sources(network));
+      std::move(udp), options.lease, announcement_period(options.lease), addresses_of(network));
 }
 
 rtps::RTPSParticipantAttributes participant_attributes(

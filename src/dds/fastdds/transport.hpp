@@ -65,18 +65,18 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
   StartupTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> udp,
       std::chrono::nanoseconds lease, std::chrono::nanoseconds announcement_period,
-      AllowedSources sources)
+      Addresses addresses)
       : ChainingTransportDescriptor(std::move(udp)),
-        state(std::make_shared<State>(lease, announcement_period, std::move(sources))) {}
+        state(std::make_shared<State>(lease, announcement_period, std::move(addresses))) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   struct State {
     State(std::chrono::nanoseconds lease, std::chrono::nanoseconds announcement_period,
-          AllowedSources sources)
+          Addresses addresses)
         : watch(lease),
           pace(announcement_period),
-          guard(std::move(sources), "dds/fastdds", SkippedNumbers::Counted) {}
+          guard(std::move(addresses), "dds/fastdds", SkippedNumbers::Counted) {}
     std::atomic<bool> open{false};        // lets messages out
     std::atomic<std::uint32_t> ports{0};  // on which it listens
     LivelinessTracker signs;
