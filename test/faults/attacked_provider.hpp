@@ -68,12 +68,10 @@ class AttackedProvider {
   AttackedProvider() : server_(start_peer("server", *Pairing::get().server)) {
     server_.ask("provide");
     ports_ = receiving_ports_of(server_.pid());
-#ifndef __SANITIZE_ADDRESS__
     // What makes it take all memory is not to take the machine's.
     constexpr rlim_t kEnough = rlim_t{6} << 30;
     const rlimit limit{kEnough, kEnough};
     prlimit(server_.pid(), RLIMIT_AS, &limit, nullptr);
-#endif
   }
   ChildProcess& process() { return server_; }
 
