@@ -95,6 +95,7 @@ void Admission::place(Participant& participant, std::uint32_t source) {
 }
 
 void Admission::forget(std::unordered_map<Guid, Participant>::iterator participant) {
+  writers_ -= participant->second.writers.size();
   open_bytes_ -= participant->second.open_bytes;
   open_samples_ -= participant->second.open_samples;
   if (participant->second.placed) --sources_[participant->second.source].participants;
@@ -117,8 +118,10 @@ Admission::Verdict Admission::announce(Participant& participant, std::uint32_t e
   if (known == participant.writers.end() || !known->second.heard) {
     if (number > kMaxBefore) return Refusal::Leap;
     if (known == participant.writers.end()) {
-      if (participant.writers.size() >= kMaxWriters) return Refusal::Room;
+      const std::size_t left = kMaxWritersInAll - std::min(kMaxWritersInAll, writers_);
+      if (participant.writers.size() >= std::min(kMaxWriters, left)) return Refusal::Room;
       known = participant.writers.emplace(entity, Writer()).first;
+      ++writers_;
     }
     found = &known->second;
     found->heard = true;
@@ -204,6 +207,7 @@ void Admission::matched(const Guid& participant, std::uint32_t entity, std::uint
   if (remote == nullptr) return;
   const auto found = remote->writers.find(entity);
   if (now) {
+    if (found == remote->writers.end()) ++writers_;
     Writer& writer = found != remote->writers.end() ? found->second : remote->writers[entity];
     if (!std::ranges::count(writer.readers, reader, &Reader::entity)) {
       writer.readers.push_back({reader, 0});

@@ -49,7 +49,9 @@ class Admission {
   /// since, up to the second number.
   static constexpr std::int64_t kLeap = std::int64_t{1} << 20;
   static constexpr std::int64_t kGreatestLeap = std::int64_t{1} << 30;
-  static constexpr std::size_t kMaxWriters = 4096;  ///< Of a participant.
+  /// Of a participant, of whom no reader here need read, and of all; no more than are left.
+  static constexpr std::size_t kMaxWriters = 4096;
+  static constexpr std::size_t kMaxWritersInAll = 16384;
 
   static constexpr std::size_t kMaxParticipants = 1024;
   /// Of them at an address: twice as many as find ports there. And how soon they may come.
@@ -75,7 +77,7 @@ class Admission {
   /// little in fragments may not begin a sample that is more than so many times as large, beyond
   /// what all participants at an address may begin at the start.
   static constexpr std::int64_t kAhead = 16;
-  static constexpr Allowance::Rate kBegunAtSource{64 << 20, 4 << 20};
+  static constexpr Allowance::Rate kBegunAtSource{32 << 20, 2 << 20};
   /// A sample of which nothing came for so long is given up.
   static constexpr std::chrono::seconds kPatience{5};
   /// RTPS asks for 1024. Fast DDS keeps a list in the fragments that are missing, which smaller
@@ -208,7 +210,8 @@ class Admission {
   std::unordered_map<Guid, Participant> participants_;
   std::unordered_map<std::uint32_t, Source> sources_;
   Allowance numbers_{kCountedInAll};
-  std::uint64_t open_bytes_ = 0;  // of all participants
+  std::size_t writers_ = 0;  // of all participants
+  std::uint64_t open_bytes_ = 0;
   std::size_t open_samples_ = 0;
 };
 

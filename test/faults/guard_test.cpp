@@ -700,6 +700,25 @@ TEST_CASE("participants that the vendor never finds are forgotten when others ne
   CHECK(announce(100'000));
 }
 
+TEST_CASE("writers that participants invent are bounded, and leave others room for theirs") {
+  Stage stage;
+  std::size_t all = 0;
+  for (unsigned rogue = 1; rogue <= 8; ++rogue) {
+    stage.pass(announcement_of(stranger_of(rogue)).octets());
+    for (std::uint32_t number = 0; number < 5000; ++number) {
+      const Guid writer = with_entity(stranger_of(rogue), number << 8 | 0x03);
+      all += stage.passes(from(writer, kHeartbeat, 0, heartbeat(writer, 1, 5)));
+    }
+  }
+  CHECK(all <= Admission::kMaxWritersInAll);
+  CHECK(all > Admission::kMaxWriters);
+  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  stage.guard.removed(stranger_of(1).participant());
+  const Guid another = stranger_of(9);
+  stage.pass(announcement_of(another).octets());
+  CHECK(stage.passes(from(another, kHeartbeat, 0, heartbeat(another, 1, 5))));
+}
+
 TEST_CASE("no lease is longer than RTPS's default") {
   Stage stage;
   const Guid announcer = announcer_of(kWriter);
