@@ -85,7 +85,7 @@ TEST_CASE(
   provider.introduce(peer);
   provider.check_answers();  // by then the writer is matched
   const std::size_t before = provider.resident_mib();
-  for (const std::uint32_t claimed : {256u << 20, 10u << 20}) {
+  for (const std::uint32_t claimed : {256u << 20, 20u << 20}) {
     for (int i = 1; i <= 24; ++i) {
       const FragmentClaim claim{1, 1, 256, claimed};
       provider.send(peer.says(kDataFrag, data_frag(peer.writer(1), i, claim, 256)));

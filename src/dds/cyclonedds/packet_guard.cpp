@@ -1,6 +1,8 @@
 #include "packet_guard.hpp"
 
+#include <arpa/inet.h>
 #include <dds/ddsi/ddsi_tran.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <atomic>
@@ -11,6 +13,7 @@
 
 #include "../options_check.hpp"
 #include "connections.h"
+#include "core/file_descriptor.hpp"
 #include "skein/error.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -54,6 +57,22 @@ ssize_t read_guarded(ddsi_tran_conn* connection, unsigned char* buffer, std::siz
       guarded.guard->pass(buffer, received, address_of(from), RtpsGuard::Clock::now()).size);
 }
 
+/// A thread that waits in Cyclone's own function takes one more packet there: let it be this one,
+/// an RTPS header with nothing behind it.
+void wake_readers(const std::vector<ddsi_tran_conn*>& connections, const Network& network) {
+  const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  unsigned char message[rtps_message::kHeaderSize];
+  rtps_message::put_header(message, Guid::random());
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  inet_pton(AF_INET, interface_addresses(network).front().c_str(), &to.sin_addr);
+  for (const ddsi_tran_conn* connection : connections) {
+    to.sin_port = htons(static_cast<std::uint16_t>(connection->m_base.m_port));
+    sendto(socket.get(), message, sizeof message, 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
+  }
+}
+
 }  // namespace
 
 PacketGuard::PacketGuard(ddsi_domaingv& domain, const ParticipantOptions& options)
@@ -70,6 +89,7 @@ PacketGuard::PacketGuard(ddsi_domaingv& domain, const ParticipantOptions& option
     // Its threads read already.
     std::atomic_ref(connection->m_read_fn).store(&read_guarded);
   }
+  wake_readers(guarded_, options.network);
 }
 
 PacketGuard::~PacketGuard() {
