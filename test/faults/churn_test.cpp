@@ -122,7 +122,6 @@ class Round {
         const auto vendor = random() % 2 ? Pairing::get().server : Pairing::get().client;
         ChildProcess::Options options;
         options.arguments = {vendor->name(), std::to_string(lease_.count())};
-        options.watchdog = std::chrono::ceil<std::chrono::seconds>(length + 2min);
         peer.emplace("churn_peer", options);
         peer->expect("ready");
       }

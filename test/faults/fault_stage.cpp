@@ -24,7 +24,6 @@ std::unique_ptr<ChildProcess> FaultStage::make_peer(const std::string& name,
                                                     std::chrono::milliseconds lease) {
   const std::string number = std::to_string(++last_number_);
   ChildProcess::Options options;
-  options.watchdog = watchdog_;
   options.arguments = {"vendor=" + vendor.name(), "name=" + name + number, "number=" + number,
                        "journal=" + journal_.place(), "lease=" + std::to_string(lease.count())};
   if (place.space != nullptr) {

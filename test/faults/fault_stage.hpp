@@ -23,10 +23,6 @@ struct Place {
 /// calls one journal records.
 class FaultStage {
  public:
-  /// No process outlives `watchdog`.
-  explicit FaultStage(std::chrono::seconds watchdog = ChildProcess::Options{}.watchdog)
-      : watchdog_(watchdog) {}
-
   static constexpr std::chrono::milliseconds kLease{1000};
   /// So long that a silence is nobody's end, neither for the others nor for who was stopped.
   static constexpr std::chrono::milliseconds kLongLease{60'000};
@@ -75,7 +71,6 @@ class FaultStage {
   bool nothing_left();
   std::vector<ChildProcess*> everybody();
 
-  const std::chrono::seconds watchdog_;
   Journal journal_;
   std::uint64_t last_number_ = 0;
   std::vector<std::unique_ptr<ChildProcess>> servers_;

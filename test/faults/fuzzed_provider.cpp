@@ -15,13 +15,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kFuzzing = std::chrono::hours(24);
 constexpr auto kPatient = 60s;
 
 ChildProcess start(const std::string& name, const dds::Vendor& vendor) {
-  ChildProcess::Options options;
-  options.watchdog = kFuzzing;
-  return start_peer(name, vendor, {}, options);
+  return start_peer(name, vendor);
 }
 
 // A packet that makes the provider take all memory is not to take the machine's.

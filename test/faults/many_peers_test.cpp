@@ -63,8 +63,7 @@ class Crowd {
  private:
   struct Member {
     Member(const std::string& name_, const skein::dds::Vendor& vendor)
-        : name(name_),
-          process(start_peer(name_, vendor, {"keep_log=1"}, {.watchdog = 4 * kPatient})) {}
+        : name(name_), process(start_peer(name_, vendor, {"keep_log=1"})) {}
     std::string name;
     ChildProcess process;
   };

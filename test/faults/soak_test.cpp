@@ -21,7 +21,6 @@ std::chrono::seconds soak_length() {
 }
 
 /// Beyond the soak itself: start, a last round, and the checks.
-constexpr auto kMargin = 300s;
 constexpr auto kPatient = 60s;
 /// So many at least, where the machine is slow.
 constexpr int kFewestRounds = 16;
@@ -30,7 +29,7 @@ constexpr int kRoundsToKill = 3;
 
 class Soak {
  public:
-  explicit Soak(std::chrono::seconds length) : length_(length), stage_(length + kMargin) {
+  explicit Soak(std::chrono::seconds length) : length_(length) {
     // The callers find the one that is going to be killed, and nobody else.
     mortal_ = &stage_.add_server();
     observe("the callers", stage_.add_clients(4));

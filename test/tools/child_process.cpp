@@ -50,7 +50,6 @@ ChildProcess::ChildProcess(const std::string& program, const Options& options) :
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(125);
-    alarm(static_cast<unsigned>(options.watchdog.count()));
     if (options.network >= 0 && setns(options.network, CLONE_NEWNET) != 0) _exit(126);
     dup2(to_child[0], STDIN_FILENO);
     dup2(from_child[1], STDOUT_FILENO);

@@ -11,8 +11,7 @@
 namespace skein::test {
 
 /// A program beside the test's own in a process of its own, spoken with by lines. It never outlives
-/// the test: the kernel kills it with the thread that started it, and an alarm ends it in any case.
-/// Not thread-safe.
+/// the test: the kernel kills it with the thread that started it. Not thread-safe.
 class ChildProcess {
  public:
   struct Options {
@@ -21,8 +20,6 @@ class ChildProcess {
     std::vector<std::string> environment{};
     /// The network namespace that it lives in; -1 for the test's own.
     int network = -1;
-    /// When the alarm ends it.
-    std::chrono::seconds watchdog{150};
   };
 
   ChildProcess(const std::string& program, const Options& options);
