@@ -114,7 +114,7 @@ rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_
 
 void FastWriter::wait_for_room(Lock& lock) {
   drop_acknowledged();
-  if (!bounded()) return;
+  if (!bounded() || has_room()) return;
   const auto has_room_now = [&] {
     drop_acknowledged();
     return has_room();
@@ -160,7 +160,7 @@ void FastWriter::remember(rtps::CacheChange_t* change, const KeyHash& key) {
   if (!qos_.history_depth && !qos_.transient_local) return;
   Changes& changes = instances_[topic_.keyed ? key : KeyHash{}];
   if (qos_.history_depth && changes.size() >= *qos_.history_depth) {
-    history_.remove_change(changes.front());
+    remove(changes.front());
     changes.erase(changes.begin());
   }
   changes.push_back(change);
@@ -183,14 +183,18 @@ void FastWriter::drop(rtps::CacheChange_t* change) {
     std::erase(found->second, change);
     if (found->second.empty()) instances_.erase(found);
   }
-  held_bytes_ -= std::min<std::size_t>(held_bytes_, change->serializedPayload.length);
+  remove(change);
+}
+
+void FastWriter::remove(rtps::CacheChange_t* change) {
+  held_bytes_ -= change->serializedPayload.length;
   history_.remove_change(change);
 }
 
 void FastWriter::drop_all(const KeyHash& key) {
   const auto found = instances_.find(key);
   if (found == instances_.end()) return;
-  for (auto* change : found->second) history_.remove_change(change);
+  for (auto* change : found->second) remove(change);
   instances_.erase(found);
 }
 
@@ -202,7 +206,7 @@ void FastWriter::drop_expired(const KeyHash& key) {
     const auto oldest = std::chrono::system_clock::now().time_since_epoch() - *qos_.lifespan;
     std::erase_if(found->second, [&](rtps::CacheChange_t* change) {
       const bool expired = std::chrono::nanoseconds(change->sourceTimestamp.to_ns()) <= oldest;
-      if (expired) history_.remove_change(change);
+      if (expired) remove(change);
       return expired;
     });
     if (!found->second.empty()) return;

@@ -51,6 +51,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   void remember(rtps::CacheChange_t* change, const KeyHash& key);
   void send(rtps::CacheChange_t* change);
   void drop(rtps::CacheChange_t* change);
+  void remove(rtps::CacheChange_t* change);
   void drop_acknowledged();
   void drop_all(const KeyHash& key);
   void drop_expired(const KeyHash& key);
