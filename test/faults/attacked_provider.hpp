@@ -89,7 +89,7 @@ class AttackedProvider {
 
   /// Whether it comes, in that time, to have read all that was sent.
   bool has_read_all(std::chrono::seconds limit) const {
-    return eventually([&] { return unread() == 0; }, limit);
+    return eventually([&] { return unread_bytes(ports_) == 0; }, limit);
   }
 
   /// Makes `peer` known to it, with endpoints that match the provider's own.
@@ -120,23 +120,6 @@ class AttackedProvider {
   }
 
  private:
-  std::size_t unread() const {
-    std::ifstream table("/proc/net/udp");
-    std::string line;
-    std::getline(table, line);
-    std::size_t bytes = 0;
-    while (std::getline(table, line)) {
-      std::istringstream fields(line);
-      std::string skipped, local, queues;
-      fields >> skipped >> local >> skipped >> skipped >> queues;
-      const auto port = std::stoul(local.substr(local.find(':') + 1), nullptr, 16);
-      if (ports_.contains(static_cast<std::uint16_t>(port))) {
-        bytes += std::stoul(queues.substr(queues.find(':') + 1), nullptr, 16);
-      }
-    }
-    return bytes;
-  }
-
   ChildProcess server_;
   std::set<std::uint16_t> ports_;
   RawSocket socket_;

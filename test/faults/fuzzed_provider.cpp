@@ -114,20 +114,7 @@ std::size_t FuzzedProvider::unread() const {
   if (const char letter = state_of(server_.pid()).letter; letter == 'Z' || letter == 'X') {
     throw std::runtime_error("it has died");
   }
-  std::ifstream table("/proc/net/udp");
-  std::string line;
-  std::getline(table, line);
-  std::size_t bytes = 0;
-  while (std::getline(table, line)) {
-    std::istringstream fields(line);
-    std::string skipped, local, queues;
-    fields >> skipped >> local >> skipped >> skipped >> queues;
-    const auto port = std::stoul(local.substr(local.find(':') + 1), nullptr, 16);
-    if (ports_.contains(static_cast<std::uint16_t>(port))) {
-      bytes += std::stoul(queues.substr(queues.find(':') + 1), nullptr, 16);
-    }
-  }
-  return bytes;
+  return unread_bytes(ports_);
 }
 
 void FuzzedProvider::check_unharmed() {

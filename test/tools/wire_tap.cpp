@@ -55,6 +55,33 @@ Packet parse(const std::vector<std::byte>& bytes, std::size_t size) {
 // Builtin endpoints have the two highest bits of their kind set, vendors' own the second highest.
 bool is_user_endpoint(std::byte kind) { return (kind & std::byte{0xC0}) == std::byte{0}; }
 
+struct UdpSocket {
+  std::uint16_t port;
+  std::size_t unread;  // bytes, with what the kernel keeps beside them
+  std::string inode;
+};
+
+/// Those of the network namespace of a process, whose folder in /proc `process` is.
+std::vector<UdpSocket> udp_sockets(const std::string& process) {
+  const auto behind_colon = [](const std::string& field) {
+    return std::stoul(field.substr(field.find(':') + 1), nullptr, 16);
+  };
+  std::vector<UdpSocket> sockets;
+  std::ifstream table(process + "/net/udp");
+  std::string line;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::istringstream fields(line);
+    std::string skipped, local, queues, inode;
+    fields >> skipped >> local >> skipped >> skipped >> queues;
+    for (int i = 0; i < 4; ++i) fields >> skipped;
+    fields >> inode;
+    sockets.push_back(
+        {static_cast<std::uint16_t>(behind_colon(local)), behind_colon(queues), inode});
+  }
+  return sockets;
+}
+
 }  // namespace
 
 WireTap::WireTap()
@@ -165,21 +192,18 @@ std::set<std::uint16_t> udp_ports_of(pid_t process) {
     if (target.starts_with("socket:[")) sockets.insert(target.substr(8, target.size() - 9));
   }
   std::set<std::uint16_t> ports;
-  std::ifstream table(place + "/net/udp");
-  std::string line;
-  std::getline(table, line);
-  while (std::getline(table, line)) {
-    std::istringstream fields(line);
-    std::string skipped, local, inode;
-    fields >> skipped >> local;
-    for (int i = 0; i < 7; ++i) fields >> skipped;
-    fields >> inode;
-    if (sockets.contains(inode)) {
-      ports.insert(
-          static_cast<std::uint16_t>(std::stoul(local.substr(local.find(':') + 1), nullptr, 16)));
-    }
+  for (const UdpSocket& socket : udp_sockets(place)) {
+    if (sockets.contains(socket.inode)) ports.insert(socket.port);
   }
   return ports;
+}
+
+std::size_t unread_bytes(const std::set<std::uint16_t>& ports) {
+  std::size_t bytes = 0;
+  for (const UdpSocket& socket : udp_sockets("/proc/self")) {
+    if (ports.contains(socket.port)) bytes += socket.unread;
+  }
+  return bytes;
 }
 
 }  // namespace skein::test

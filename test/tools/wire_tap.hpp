@@ -72,4 +72,7 @@ std::vector<DataSubmessage> user_data(const Packet& packet);
 /// The UDP ports to which a process listens.
 std::set<std::uint16_t> udp_ports_of(pid_t process);
 
+/// What waits to be read at those UDP ports of the test's network namespace.
+std::size_t unread_bytes(const std::set<std::uint16_t>& ports);
+
 }  // namespace skein::test
