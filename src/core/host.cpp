@@ -1,7 +1,5 @@
 #include "core/host.hpp"
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
 #include <netdb.h>
 #include <strings.h>
 #include <unistd.h>
@@ -10,17 +8,11 @@
 #include <array>
 #include <memory>
 
+#include "core/network_interface.hpp"
 #include "skein/error.hpp"
 
 namespace skein {
 namespace {
-
-std::string dotted(const sockaddr* address) {
-  std::array<char, INET_ADDRSTRLEN> text{};
-  inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(address)->sin_addr, text.data(),
-            text.size());
-  return text.data();
-}
 
 bool same_name(const std::string& a, const std::string& b) {
   return ::strcasecmp(a.c_str(), b.c_str()) == 0;
@@ -37,13 +29,10 @@ bool is_own_address(const std::string& address, const std::vector<HostInterface>
 }  // namespace
 
 std::vector<HostInterface> interfaces_of_this_host() {
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) throw Internal("the interfaces of this host cannot be listed");
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, freeifaddrs);
   std::vector<HostInterface> found;
-  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
-    found.push_back({entry->ifa_name, dotted(entry->ifa_addr)});
+  for (const NetworkInterface& interface : network_interfaces()) {
+    for (const std::string& address : interface.addresses)
+      found.push_back({interface.name, address});
   }
   return found;
 }
@@ -67,7 +56,7 @@ std::vector<std::string> host_addresses(const std::string& host) {
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
   std::vector<std::string> addresses;
   for (const addrinfo* entry = list; entry != nullptr; entry = entry->ai_next)
-    addresses.push_back(dotted(entry->ai_addr));
+    addresses.push_back(dotted(*entry->ai_addr));
   return addresses;
 }
 

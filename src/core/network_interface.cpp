@@ -12,12 +12,6 @@
 namespace skein {
 namespace {
 
-std::string dotted(const sockaddr& address) {
-  char text[INET_ADDRSTRLEN] = "";
-  inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(address).sin_addr, text, sizeof text);
-  return text;
-}
-
 NetworkInterface& of_name(std::vector<NetworkInterface>& interfaces, const std::string& name) {
   const auto found = std::ranges::find(interfaces, name, &NetworkInterface::name);
   if (found != interfaces.end()) return *found;
@@ -26,6 +20,12 @@ NetworkInterface& of_name(std::vector<NetworkInterface>& interfaces, const std::
 }
 
 }  // namespace
+
+std::string dotted(const sockaddr& address) {
+  char text[INET_ADDRSTRLEN] = "";
+  inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(address).sin_addr, text, sizeof text);
+  return text;
+}
 
 std::vector<NetworkInterface> network_interfaces() {
   ifaddrs* first = nullptr;

@@ -4,7 +4,12 @@
 #include <string>
 #include <vector>
 
+struct sockaddr;
+
 namespace skein {
+
+/// An IPv4 address in dotted form.
+std::string dotted(const sockaddr& address);
 
 /// A network interface of a host, with or without an address.
 struct NetworkInterface {
