@@ -22,7 +22,7 @@ class RtpsGuard {
   using Clock = Admission::Clock;
 
   using Refusal = dds::Refusal;
-  static constexpr std::size_t kRefusals = 13;
+  static constexpr std::size_t kRefusals = static_cast<std::size_t>(Refusal::Locator) + 1;
 
   /// `place` is where the log says that something was refused: the first of each kind, the tenth,
   /// the hundredth and so on.
@@ -75,8 +75,8 @@ class RtpsGuard {
   enum class Service;
   static Service service_of(const unsigned char* entity);
 
-  // Under the lock:
   Verdict judge(const rtps_message::Submessage& submessage, const Origin& origin);
+  // Under the lock:
   Verdict judge_by_kind(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_data(const rtps_message::Submessage& submessage, const Origin& origin);
   Verdict judge_discovery(const rtps_message::Submessage& submessage,
