@@ -12,6 +12,15 @@ _IDL = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _OWN_FOLDERS = [os.path.join(_IDL, "skein"), os.path.join(_IDL, "corba")]  # behind those that the user names
 
 
+_USAGE_ERROR = 64  # as of Skein's other commands
+
+
+class _Options(argparse.ArgumentParser):
+    def error(self, message):
+        self.print_usage(sys.stderr)
+        self.exit(_USAGE_ERROR, f"{self.prog}: {message}; see `{self.prog} --help`\n")
+
+
 def main():
     arguments = _arguments()
     accepted = sum(_compiled(path, arguments) for path in arguments.files)
@@ -21,12 +30,12 @@ def main():
 
 
 def _arguments():
-    options = argparse.ArgumentParser(prog="skein-idl", description="Compiles IDL (OMG IDL 4.2) to C++ and to plain DDS IDL.")
+    options = _Options(prog="skein-idl", description="Compiles IDL (OMG IDL 4.2) to C++ and to plain DDS IDL.")
     options.add_argument("files", metavar="FILE", nargs="+", help="x.idl becomes x.idl.hpp, x.idl.cpp and x.dds.idl")
     options.add_argument("-I", dest="folders", metavar="DIR", action="append", default=[],
                          help="look for included files there; the output of a file below DIR keeps its path from there")  # fmt: skip
     options.add_argument("-D", dest="definitions", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro")
-    options.add_argument("--out", metavar="DIR", default=".", help="where to write; default: the current folder")
+    options.add_argument("--output", "--out", dest="out", metavar="DIR", default=".", help="where to write; default: the current folder")
     options.add_argument("--namespace", metavar="NAME", type=_namespace, default=(),
                          help="put all C++ names into this namespace, `a::b`; included files must be compiled with the same")  # fmt: skip
     options.add_argument("--depfile", metavar="FILE", help="write what the output depends on, as make and ninja read it")
@@ -53,7 +62,7 @@ def _compiled(path, arguments):
         try:
             compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile)
         except OSError as error:
-            sys.stderr.write(f"{error.filename or arguments.out}: error: cannot be written: {error.strerror}; name another folder by --out\n")
+            sys.stderr.write(f"{error.filename or arguments.out}: error: cannot be written: {error.strerror}; name another folder by --output\n")
             return False
     return compilation.accepted
 

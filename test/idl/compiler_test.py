@@ -173,6 +173,23 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_finding("struct S { Sequence<long> x; };",
                             "'<' stands behind 'Sequence' (did you mean 'sequence'?) where a declaration or a type is expected")  # fmt: skip
 
+    def test_what_is_used_before_it_is_declared_is_told_to_move_up(self):
+        for use in ("struct A { Pose p; };", "struct A : Pose { long x; };", "interface I { void f(in Pose p); };", "typedef sequence<Pose> Poses;"):
+            with self.subTest(use):
+                self.assert_refused(f"{use}\n\nstruct Pose {{ double x; }};\n",
+                                    "x.idl:1: error: 'Pose' is declared further down, at x.idl:3; move its declaration up, before its first use")  # fmt: skip
+        self.assert_refused("struct A { long x[N]; };\nconst long N = 3;\n",
+                            "x.idl:1: error: 'N' is declared further down, at x.idl:2; move its declaration up, before its first use")
+
+    def test_a_size_that_is_not_known_is_told_to_be_a_constant(self):
+        remedy = "there is no 'n' here; a size is a number or a constant: const unsigned long n = 10;"
+        for member in ("double x[n]", "sequence<double, n> x", "string<n> x"):
+            with self.subTest(member):
+                self.assert_finding(f"struct S {{ {member}; }};", remedy)
+
+    def test_a_constant_that_is_wrong_is_told_once_and_not_where_it_is_used(self):
+        self.assert_finding('const long N = "three"; struct S { long x[N]; }; typedef sequence<long, N> T;', "a whole number is expected here, for long")
+
     def test_values_without_end(self):
         said = "a value of {} would be without end: make a member by which it contains itself @optional, or a sequence"
         self.assert_finding("struct S; struct S { @external S x; };", said.format("S"))
@@ -271,6 +288,24 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_refused('const string A = "abc;\n', "x.idl:1: error: this text does not end on its line; add the '\"' (texts that follow each "
                             "other are joined)")  # fmt: skip
 
+    def test_what_idl_says_by_other_means(self):
+        self.assert_finding("struct S { double x = 3; };", "a member has no value in IDL; its default is told by @default(3) double x;")
+        self.assert_finding("struct S { sequence<long> x = {}; };", "a member has no value in IDL; its default is told by @default(VALUE) sequence<long> x;")
+        self.assert_finding("interface I { async double f(); };",
+                            "IDL has no 'async'; leave it out: every operation can also be called asynchronously, by async_NAME in C++")
+
+    def test_another_language_is_named_at_once(self):
+        for text, language in (
+            ('// a comment\nsyntax = "proto3";\nmessage A { int32 x = 1; }', "Protocol Buffers"),
+            ("package lift;\nmessage A { int32 x = 1; }", "Protocol Buffers"),
+            ("<?xml version='1.0'?>\n<types/>", "XML"),
+            ('{"type": "object"}', "JSON"),
+            ("namespace a { struct S { int x; }; }", "C++"),
+        ):
+            with self.subTest(language):
+                line = 2 if text.startswith("//") else 1
+                self.assert_refused(text + "\n", f"x.idl:{line}: error: this is no IDL: it looks like {language}")
+
     def test_more_errors_of_syntax_than_are_shown(self):
         code, said = self.compile("".join(f"struct A{i} {{ long 3; }};\n" for i in range(30)))
         self.assertIn("error: these were 20 errors of syntax; what follows was not read", said)
@@ -287,6 +322,19 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_refused('module m {\n#include "part.idl"\nstruct S { Part p; };\n};\n',
                             "x.idl:2: error: 'part.idl' is included within 'm'; include it outside, and write the module in it")  # fmt: skip
         self.assert_compiles('module m {\n#include "macros.idl"\nstruct S { long x[SIZE]; };\n};\n#include "part.idl"\n')
+
+    def test_a_command_line_that_is_wrong_has_an_exit_code_of_its_own(self):
+        code, said = run_compiler(ROOT, "--ouput", "out", "x.idl")
+        self.assertEqual(code, 64)
+        self.assertIn("skein-idl: unrecognized arguments: --ouput", said)
+        self.assertIn("see `skein-idl --help`", said)
+
+    def test_the_folder_of_the_output_is_named_as_for_other_commands(self):
+        path = self.write("x.idl", "struct S { long x; };\n")
+        for option in ("--output", "--out"):
+            folder = f"{self.folder}/by{option}"
+            self.assertEqual(run_compiler(ROOT, option, folder, path), (0, ""))
+            self.assertTrue(os.path.exists(f"{folder}/x.idl.hpp"))
 
     def test_a_name_with_quotes_is_a_file_like_others(self):
         code, said = self.compile("struct S { Nope x; };\n", name='a"b.idl')
@@ -448,6 +496,23 @@ class Clashes(CompilerTest):
     def test_names_that_become_one_by_a_maps_pairs_are_refused(self):
         self.assert_clash("struct S { map<long, long> m; };\nstruct S_m_Pair { long x; };\n",
                           2, "S_m_Pair", "the pairs of S_m", "S_m_Pair")  # fmt: skip
+
+    def test_two_of_one_scope_that_differ_only_in_case_are_warned_about_with_both_places(self):
+        for text, one, other in (
+            ("struct S { double x;\n double X; };", "x", "X"),
+            ("exception E { double x;\n double X; };", "x", "X"),
+            ("union U switch (long) { case 0: long a;\n case 1: long A; };", "a", "A"),
+            ("interface I { void shape();\n void Shape(); };", "shape", "Shape"),
+            ("interface I { attribute long a;\n attribute long A; };", "a", "A"),
+            ("interface I { void f(in long q,\n in long Q); };", "q", "Q"),
+            ("enum E { red,\n Red };", "red", "Red"),
+            ("module M { struct Pose { long x; };\n struct pose { long x; }; };", "Pose", "pose"),
+        ):
+            with self.subTest(text):
+                code, said = self.compile(text + "\n")
+                self.assertEqual((code, said), (0, f"x.idl:2: warning: '{other}' and '{one}', at x.idl:1, are one name in IDL, where case does not count: "
+                                 "other compilers may refuse them; rename one\n"))  # fmt: skip
+        self.assertEqual(self.compile("struct S { double x; };\ninterface S2 { void f(in S s); };\n"), (0, ""))
 
     def test_names_that_differ_only_in_case_are_two_names(self):
         self.assert_compiles("struct Problem { long x; }; interface I { void plan(in Problem problem); };")

@@ -60,6 +60,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._read = set()  # places and texts of declarations
 
     def build(self, tree):
+        self._declared_names = _declared_names(tree)
         self._each(tree.children)
         for decl, place in self._forwards.items():
             if decl.in_main_file and not self._quiet:
@@ -134,9 +135,9 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._error(name, reason)
         self._leave_out(name)
 
-    def _leave_out(self, name):
+    def _leave_out(self, name, told=False):
         """Of what `name` declares, whose cause was found a moment ago, nothing is generated."""
-        self._scope.names[scopes.plain(name)] = scopes.Symbol(scopes.LeftOut(self._cause), self._place(name))
+        self._scope.names[scopes.plain(name)] = scopes.Symbol(scopes.LeftOut(self._cause, told), self._place(name))
 
     def _read_annotations(self, *trees):
         found = annotations.Annotations(*trees)
@@ -208,8 +209,18 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._scope.names[plain] = scopes.Symbol(decl, place)
         return decl
 
+    def _warn_of_case(self, where, name, others):
+        """IDL takes names that differ in case alone for one (7.2.3), and so do compilers for languages that do. Files of others have such names
+        all the same (constants beside types, members `x` and `X`), and idlc and fastddsgen read them when told to: a warning."""
+        place = self._place(where)
+        other, first = next(((other, first) for other, first in others if other != name and other.lower() == name.lower()), (None, None))
+        if other is not None and place.file == self.source.path:
+            self.report.warning(place, f"'{name}' and '{other}', at {first}, are one name in IDL, where case does not count: other compilers may refuse them; "
+                                "rename one")  # fmt: skip
+
     def _check_free(self, name, plain):
         found = self._scope.names.get(plain)
+        self._warn_of_case(name, plain, ((other, symbol.place) for other, symbol in self._scope.names.items()))
         if found is not None and not isinstance(found.what, scopes.LeftOut):
             raise constants.Fault(name, f"'{plain}' is declared twice in one scope, first at {found.place}")
 
@@ -243,7 +254,11 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         built = self._type(kind)
         if built is None:
             return self._leave_out(name)
-        found = constants.value(expression, built, self._resolve)
+        try:
+            found = constants.value(expression, built, self._resolve)
+        except constants.Fault as fault:
+            self._fault(fault)
+            return self._leave_out(name, told=True)
         self._add(self._declare(model.Constant, name, tree, type=built, value=found))
 
     def _typedef(self, tree, noted):
@@ -303,6 +318,25 @@ class Builder(Types, Structures, Enumerations, Interfaces):
 
     def _refused(self, tree, noted):
         self._refuse(_name(tree), _REFUSED[tree.data])
+
+
+# Of a declaration, the tokens that are the names which it declares.
+_DECLARING = frozenset("const struct union enum bitset bitmask exception interface module".split())
+
+
+def _declared_names(tree):
+    """The names of all declarations, and the tokens where they stand."""
+    found = {}
+    for each in tree.iter_subtrees():
+        if each.data in _DECLARING:
+            tokens = [child for child in each.children if getattr(child, "type", "") == "IDENTIFIER"][:1]
+        elif each.data == "typedef":
+            tokens = [declarator.children[1] for declarator in each.children[1].children]
+        else:
+            continue
+        for token in tokens:
+            found.setdefault(scopes.plain(token), []).append(token)
+    return found
 
 
 def _name(tree):

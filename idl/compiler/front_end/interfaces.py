@@ -86,11 +86,12 @@ class Interfaces:
     def _operation(self, interface, tree, export, noted, taken, plain):
         oneway, kind, token, given, raises, context = tree.children
         name = scopes.plain(token)
+        self._warn_of_case(token, name, _declared_in(interface))
         if context is not None:
             self._error(context, "context clauses are not supported: pass what they carry as a parameter")
         result = None if kind.data == "void" else self._type(kind)
-        used = set()
-        parameters = [self._parameter(parameter, used) for parameter in (given.children if given else [])]
+        used, places = set(), {}
+        parameters = [self._parameter(parameter, used, places) for parameter in (given.children if given else [])]
         operation = model.Operation(
             name=name,
             cpp_name=names.unique(name, names.OPERATION, taken),
@@ -117,7 +118,7 @@ class Interfaces:
         given = stream and stream.arguments.get("by_default")
         return str(constants.value(given, model.String(0), self._resolve)) if given else None
 
-    def _parameter(self, tree, used):
+    def _parameter(self, tree, used, places):
         *around, kind, token = tree.children
         for each in around:
             if each is not None and each.data == "annotations":
@@ -126,6 +127,8 @@ class Interfaces:
         name = scopes.plain(token)
         if name in used:
             raise constants.Fault(token, f"there is a parameter '{name}' already")
+        self._warn_of_case(token, name, places.items())
+        places[name] = self._place(token)
         built = self._type(kind)
         if built is not None:
             built = self._complete(kind, built, apart=False)
@@ -149,6 +152,7 @@ class Interfaces:
         documentation = self._documentation(tree, export)
         for declarator in declarators.children:
             name = scopes.plain(declarator.children[1])
+            self._warn_of_case(declarator, name, _declared_in(interface))
             if len(declarator.children) > 3:
                 raise constants.Fault(declarator, f"the attribute '{name}' cannot be an array; give the array a name by typedef, and use that")
             shared = dict(
@@ -169,6 +173,11 @@ class Interfaces:
                 value = model.Parameter("value", "value", built, "in")
                 put = both + self._raises(set_raises)
                 interface.operations.append(model.Operation(name="_set_" + name, result=None, parameters=[value], raises=put, **shared))
+
+
+def _declared_in(interface):
+    """The names of the operations and attributes so far, and their places."""
+    return ((operation.name.removeprefix("_get_").removeprefix("_set_"), operation.place) for operation in interface.operations)
 
 
 def _names(call):

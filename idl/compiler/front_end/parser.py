@@ -25,6 +25,9 @@ _NAMES = {"IDENTIFIER": "a name", "INTEGER": "a number", "STRING": "text", "SEMI
 def parse(source, report):
     """The tree of what could be read; after an error the declaration in which it stands is passed over."""
     text = source.text
+    if language := _other_language(text):
+        report.error(source.place(_first(text)), f"this is no IDL: it looks like {language}")
+        return None
     for _ in range(_MOST_ERRORS):
         try:
             tree = _parser().parse(text)
@@ -84,6 +87,8 @@ def _reason(error, source, text, offset):
         return f"IDL has no '{error.token}'; write {own}{members}"
     found = "the file ends" if error.token.type == "$END" else f"'{error.token}' stands"
     before = re.search(r"(\w+)\s*$", text[:offset])
+    if said := _misplaced(str(error.token), text[:offset], text[offset:]):
+        return said
     if error.token == "<" and before and (own := _template(before[1], text[offset:])):
         return f"IDL has no '{before[1]}<'; write {own}"
     if error.token == "<" and before:
@@ -93,6 +98,36 @@ def _reason(error, source, text, offset):
     if expected and len(expected) == len(accepted):
         return f"{found} where {' or '.join(expected)} is expected"
     return f"{found} where a declaration or a type is expected" if "IDENTIFIER" in accepted else f"{found} where it cannot"
+
+
+def _misplaced(token, before, behind):
+    """What is said in IDL by other means; empty for what is not known."""
+    declared = re.split(r"[;{}()]", before)[-1]  # what is being declared, as far as it was read
+    if token == "=" and (member := re.fullmatch(r"\s*(?!const\b)([\w:<>, ]+?)\s+(\w+)\s*", declared)):
+        value = re.match(r"=\s*([^;,{}]*)", behind)[1].strip() or "VALUE"
+        return f"a member has no value in IDL; its default is told by @default({value}) {member[1]} {member[2]};"
+    if re.match(r"\s*async\s", declared):
+        return "IDL has no 'async'; leave it out: every operation can also be called asynchronously, by async_NAME in C++"
+    return ""
+
+
+# Files that other compilers read: how they begin.
+_OTHER_LANGUAGES = {
+    r"syntax\s*=|message\s+\w+\s*\{|package\s+[\w.]+\s*;": "Protocol Buffers",
+    r"<[?\w!]": "XML",
+    r"[\[{]\s*[\"{\[]": "JSON",
+    r"(class|namespace|template|using)\b": "C++",
+}
+
+
+def _other_language(text):
+    """Which other language the text is in, by how it begins; empty where it may be IDL."""
+    return next((language for begin, language in _OTHER_LANGUAGES.items() if re.match(begin, text[_first(text) :])), "")
+
+
+def _first(text):
+    """Where the first token begins."""
+    return len(text) - len(text.lstrip())
 
 
 def _template(name, text):

@@ -49,6 +49,7 @@ class LeftOut:
     """A declaration of which nothing is generated."""
 
     cause: Cause
+    told: bool = False  # its own error is enough: each use would repeat it
 
 
 # Of which names may be almost right.

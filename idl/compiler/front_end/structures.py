@@ -127,6 +127,7 @@ class Structures:
         return (None, None) if tree is None else (constants.value(tree, model.Primitive("long long"), self._resolve), tree)
 
     def _check_member(self, declarator, name, members):
+        self._warn_of_case(declarator, name, ((member.name, member.place) for member in members))
         if other := next((member for member in members if member.name == name), None):
             raise constants.Fault(declarator, f"there is a member '{name}' already, at {other.place}")
 

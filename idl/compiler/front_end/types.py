@@ -70,26 +70,36 @@ class Types:
         return model.Map(*built, self._bound(bound))
 
     def _bound(self, tree):
-        return constants.size(tree, self._resolve) if tree is not None else 0
+        return constants.size(tree, self._resolve_size) if tree is not None else 0
 
     def _with_sizes(self, kind, declarator):
         """The type with the sizes of an array that stand behind its name."""
         if declarator.children[2].children and not _is(declarator.children[-1], "dimension"):
             raise constants.Fault(declarator.children[2], "an annotation stands before what it is about, not behind")
-        sizes = [constants.size(child.children[0], self._resolve) for child in declarator.children if _is(child, "dimension")]
+        sizes = [constants.size(child.children[0], self._resolve_size) for child in declarator.children if _is(child, "dimension")]
         for size in reversed(sizes):
             kind = model.Array(kind, size)
         return kind
 
-    def _symbol(self, tree):
+    def _symbol(self, tree, remedy=""):
         """What a scoped name stands for; None, with an error, where it is unknown."""
         parts = [scopes.plain(token) for token in tree.children]
         found, reason = self._scope.find(parts, tree.data == "absolute_name")
         if found is None:
-            self._error(tree, "" if self._quiet else reason)
+            self._error(tree, "" if self._quiet else self._further_down(tree, parts[-1]) or reason + ("" if "did you mean" in reason else remedy))
         return found
 
-    def _resolve(self, tree):
+    def _further_down(self, tree, name):
+        """What is wrong where a name is used before it is declared; empty where it is declared nowhere."""
+        later = next((token for token in self._declared_names.get(name, []) if token.start_pos > self._offset(tree)), None)
+        if later is None:
+            return ""
+        return f"'{name}' is declared further down, at {self._place(later)}; move its declaration up, before its first use"
+
+    def _resolve_size(self, tree):
+        return self._resolve(tree, f"; a size is a number or a constant: const unsigned long {scopes.plain(tree.children[-1])} = 10;")
+
+    def _resolve(self, tree, remedy=""):
         """What a name in a constant expression stands for. `true` and `false`, which IDL writes in capitals, are taken, too."""
         spelled = _BOOLEANS.get(str(tree.children[0])) if len(tree.children) == 1 else None
         if spelled is not None and self._scope.find([str(tree.children[0])], False)[0] is None:
@@ -97,8 +107,8 @@ class Types:
             if place.file == self.source.path:
                 self.report.warning(place, f"IDL writes {str(spelled).upper()}")
             return spelled
-        found = self._symbol(tree)
-        if found is None:
+        found = self._symbol(tree, remedy)
+        if found is None or (isinstance(found.what, scopes.LeftOut) and found.what.told):
             raise constants.Fault(tree, "")
         if isinstance(found.what, scopes.LeftOut):
             raise constants.Fault(tree, f"{_spoken(tree)} cannot be used, see {found.what.cause.seen_from(self._place(tree).file)}")
