@@ -4,7 +4,8 @@
 # include folders (a.idl becomes a.idl.hpp). The flattened IDL for DDS without Skein (a.dds.idl) lies beside them, in the folder
 # that the target's property SKEIN_IDL_DIRECTORY names. A file below one of INCLUDES keeps its path from there: with
 # INCLUDES idl, idl/geo/point.idl becomes geo/point.idl.hpp. NAMESPACE puts all C++ names into a namespace, also those of included files, which must be
-# compiled with the same. Outputs are made anew when the file, what it includes, or the compiler changes. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
+# compiled with the same. Outputs are made anew when the file, what it includes, or the compiler changes. A file that another rule makes is named to CMake
+# before. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
 # The same in Skein's own tree and in an installed package.
 get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
@@ -19,6 +20,7 @@ function(skein_add_idl)
   if(TARGET ${IDL_TARGET}_generated)
     message(FATAL_ERROR "skein_add_idl: the target '${IDL_TARGET}' has its IDL from an earlier call; name all of its files in one call, behind FILES")
   endif()
+  _skein_idl_check_target(${IDL_TARGET})
   _skein_idl_require_lark()
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/${IDL_TARGET}.idl)
   set(outputs)
@@ -34,6 +36,7 @@ function(skein_add_idl)
   endforeach()
   foreach(file IN LISTS IDL_FILES)
     get_filename_component(path ${file} ABSOLUTE)
+    _skein_idl_check_file(${path})
     _skein_idl_name(name ${path} "${includes}")
     set(output ${directory}/${name})
     string(REGEX REPLACE "\\.idl$" ".dds.idl" flattened ${output})
@@ -58,6 +61,31 @@ function(skein_add_idl)
   target_include_directories(${IDL_TARGET} PUBLIC $<BUILD_INTERFACE:${directory}>)
   set_target_properties(${IDL_TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   set_property(TARGET ${IDL_TARGET} PROPERTY SKEIN_IDL_DIRECTORY ${directory})
+endfunction()
+
+# The generated sources are compiled for the target.
+function(_skein_idl_check_target target)
+  if(NOT TARGET ${target})
+    message(FATAL_ERROR "skein_add_idl: there is no target '${target}'; add it before, as in add_library(${target} STATIC)")
+  endif()
+  get_target_property(type ${target} TYPE)
+  get_target_property(alias ${target} ALIASED_TARGET)
+  get_target_property(imported ${target} IMPORTED)
+  if(alias OR imported OR type STREQUAL INTERFACE_LIBRARY OR type STREQUAL UTILITY)
+    message(FATAL_ERROR "skein_add_idl: the generated code is compiled for its target, and '${target}' has no code of its own; "
+      "name a target that has, as add_library(NAME STATIC), and link it to '${target}'")
+  endif()
+endfunction()
+
+function(_skein_idl_check_file path)
+  get_source_file_property(generated ${path} GENERATED)
+  if(NOT EXISTS ${path} AND NOT generated)
+    get_filename_component(folder ${path} DIRECTORY)
+    get_filename_component(name ${path} NAME)
+    file(GLOB there RELATIVE ${folder} ${folder}/*.idl)
+    list(JOIN there ", " there)
+    message(FATAL_ERROR "skein_add_idl: there is no file '${name}' in ${folder}, which has these: ${there}")
+  endif()
 endfunction()
 
 function(_skein_idl_require_lark)

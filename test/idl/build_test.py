@@ -78,12 +78,30 @@ class BuildTest(unittest.TestCase):
         self.assertIn("IDL main.idl", self.generate())
 
     def test_a_second_call_for_one_target_is_told_what_to_write(self):
-        self.write("CMakeLists.txt", PROJECT.format(idl=f"{ROOT}/idl") + "skein_add_idl(TARGET types FILES idl/main.idl)\n")
+        self.assert_refused("skein_add_idl(TARGET types FILES idl/main.idl)",
+                            "the target 'types' has its IDL from an earlier call; name all of its files in one call, behind FILES")
+
+    def assert_refused(self, lines, said):
+        """What CMake says where these lines follow the project's own."""
+        self.write("CMakeLists.txt", PROJECT.format(idl=f"{ROOT}/idl") + lines + "\n")
         done = subprocess.run([CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja"],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)  # fmt: skip
-        said = " ".join(done.stdout.split())
-        self.assertNotEqual(done.returncode, 0, said)
-        self.assertIn("the target 'types' has its IDL from an earlier call; name all of its files in one call, behind FILES", said)
+        self.assertNotEqual(done.returncode, 0, done.stdout)
+        self.assertIn(said, " ".join(done.stdout.split()))
+
+    def test_a_target_without_code_of_its_own_is_refused_when_the_project_is_configured(self):
+        for lines in ("add_library(bare INTERFACE)", "add_custom_target(bare)", "add_library(bare ALIAS types)", "add_library(bare STATIC IMPORTED)"):
+            with self.subTest(lines):
+                self.assert_refused(f"{lines}\nskein_add_idl(TARGET bare FILES idl/main.idl)",
+                                    "'bare' has no code of its own; name a target that has, as add_library(NAME STATIC), and link it to 'bare'")  # fmt: skip
+        self.assert_refused("skein_add_idl(TARGET typse FILES idl/main.idl)", "there is no target 'typse'; add it before")
+
+    def test_a_file_that_is_missing_is_refused_when_the_project_is_configured_unless_a_rule_makes_it(self):
+        lines = "add_library(more OBJECT)\nskein_add_idl(TARGET more FILES idl/mian.idl)"
+        self.assert_refused(lines, f"there is no file 'mian.idl' in {self.folder}/idl, which has these: main.idl")
+        rule = "add_custom_command(OUTPUT ${CMAKE_CURRENT_SOURCE_DIR}/idl/mian.idl COMMAND cp main.idl mian.idl)\n"
+        self.write("CMakeLists.txt", PROJECT.format(idl=f"{ROOT}/idl") + rule + lines + "\n")
+        self.run_tool(CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja")
 
     def test_a_refused_file_stops_the_build_with_its_place(self):
         self.configure(f"{ROOT}/idl")
