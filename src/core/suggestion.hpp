@@ -6,8 +6,9 @@
 
 namespace skein {
 
-/// ` (did you mean 'X'?)` for the known name that is nearest to `name` by edit distance, or an
-/// empty text where none is near (more than a third of the letters differ).
+/// ` (did you mean 'X'?)` for the known name that is nearest to `name` by edit distance (two
+/// neighbours that were exchanged are one edit), or an empty text where none is near (more than a
+/// third of the letters differ).
 std::string suggestion(std::string_view name, std::span<const std::string> known);
 
 }  // namespace skein

@@ -11,6 +11,9 @@ TEST_CASE("a name that is almost right gets a suggestion, a far one none") {
   const std::vector<std::string> known{"latency", "quality", "AStar"};
   CHECK(suggestion("latancy", known) == " (did you mean 'latency'?)");
   CHECK(suggestion("astar", known) == " (did you mean 'AStar'?)");
+  CHECK(suggestion("ASatr", known) == " (did you mean 'AStar'?)");
+  CHECK(suggestion("laod", std::vector<std::string>{"lamp", "load"}) ==
+        " (did you mean 'load'?)");  // two letters exchanged
   CHECK(suggestion("colour", known).empty());
   CHECK(suggestion("", known).empty());
   CHECK(suggestion("latency", {}).empty());
