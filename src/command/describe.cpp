@@ -49,7 +49,7 @@ types::TypeSystem types_named(Entity& entity, const std::string& name) {
   }
   for (const KnownTopic& topic : known_topics(inspector, kAnswerPatience)) {
     if (topic.name == name || is_type_named(topic.type, name)) {
-      tell_type_conflicts(topic);
+      tell_conflicts(inspector, topic);
       return types_of(inspector, topic);
     }
     known.insert({topic.name, topic.type});

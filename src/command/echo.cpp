@@ -15,7 +15,7 @@ int echo(const TopicArguments& arguments) {
   Entity entity(arguments.entity_options("echo"));
   Inspector inspector(entity);
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
-  tell_type_conflicts(topic);
+  tell_conflicts(inspector, topic);
   std::atomic<std::uint64_t> printed{0};
   const DynamicSubscription subscription(entity, topic.name, topic.type, types_of(inspector, topic),
                                          topic.reading_qos(), [&](const std::string& json) {

@@ -7,7 +7,6 @@
 #include "core/suggestion.hpp"
 #include "entity/topic_witness.hpp"
 #include "skein/error.hpp"
-#include "type_conflicts.hpp"
 
 namespace skein::command {
 namespace {
@@ -64,8 +63,18 @@ types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool p
   return inspector.types(topic.type, witness_of(topic, publishers), kAnswerPatience);
 }
 
-void tell_type_conflicts(const KnownTopic& topic) {
-  for (const std::string& conflict : type_conflicts(topic.endpoints))
+TellTypes types_told_by(Inspector& inspector) {
+  return [&inspector](const KnownTopic::Endpoint& asked) -> std::optional<types::TypeSystem> {
+    try {
+      return inspector.types(asked.told.type, asked.participant, kAnswerPatience);
+    } catch (const Unavailable&) {
+      return std::nullopt;
+    }
+  };
+}
+
+void tell_conflicts(Inspector& inspector, const KnownTopic& topic) {
+  for (const std::string& conflict : topic_conflicts(topic.endpoints, types_told_by(inspector)))
     std::fprintf(stderr, "skein: %s\n", printable(conflict, kLongestConflict).c_str());
 }
 

@@ -5,6 +5,7 @@
 
 #include "interruption.hpp"
 #include "skein/inspector.hpp"
+#include "topic_findings.hpp"
 
 namespace skein::command {
 
@@ -21,7 +22,10 @@ KnownTopic await_topic(Inspector& inspector, const std::string& name, double sec
 /// subscriptions; the other way round where not `publishers`.
 types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers = true);
 
-/// On stderr: who does not hear whom there, because their types differ.
-void tell_type_conflicts(const KnownTopic& topic);
+/// Asks entities for the types of their topics. `inspector` must outlive it.
+TellTypes types_told_by(Inspector& inspector);
+
+/// On stderr: who does not hear whom there, because their types or their QoS differ.
+void tell_conflicts(Inspector& inspector, const KnownTopic& topic);
 
 }  // namespace skein::command

@@ -7,8 +7,8 @@
 #include "interruption.hpp"
 #include "json_output.hpp"
 #include "skein/entity.hpp"
+#include "topic_findings.hpp"
 #include "topic_survey.hpp"
-#include "type_conflicts.hpp"
 
 namespace skein::command {
 namespace {
@@ -40,7 +40,7 @@ void print(const KnownTopic& topic) {
                 printable(entity).c_str(), qos_of(told).c_str(),
                 static_cast<unsigned long long>(told.samples),
                 told.publishes ? "published" : "received",
-                told.matched == 0 ? "; nobody on the other side" : "");
+                told.matched == 0 ? "; matches nobody" : "");
   }
 }
 
@@ -73,8 +73,10 @@ int list_topics(const TopicsArguments& arguments) {
     print(topic);
     endpoints.insert(endpoints.end(), topic.endpoints.begin(), topic.endpoints.end());
   }
-  for (const std::string& conflict : type_conflicts(endpoints))
+  for (const std::string& conflict : topic_conflicts(endpoints, types_told_by(inspector)))
     std::printf("%s\n", printable(conflict, kLongestConflict).c_str());
+  for (const UnpublishedTopic& topic : unpublished_topics(endpoints))
+    if (topic.misspelt) std::printf("%s\n", printable(topic.sentence, kLongestConflict).c_str());
   std::printf("%zu %s in %s\n", topics.size(), topics.size() == 1 ? "topic" : "topics",
               entity.broker().options().place.c_str());
   if (topics.empty()) tell_missions_elsewhere(arguments);

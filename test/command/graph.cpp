@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "command/doctor/encounter.hpp"
+#include "command/topic_findings.hpp"
 #include "skein/discovery.idl.hpp"
 
 using namespace skein;
@@ -192,7 +193,10 @@ TEST_CASE("publishers and subscriptions whose types differ, and that have not me
                       "subscribes, have different versions of geo::Pose"));
   SECTION("in another system they are not meant to meet") {
     subscription.systems = {"gs"};
-    CHECK(diagnose_peers(picture).empty());
+    const Symptoms symptoms = diagnose_peers(picture);
+    REQUIRE(symptoms.size() == 1);
+    CHECK(symptoms[0].severity == Severity::Note);
+    CHECK(symptoms[0].cause == "topic 'pose' has no publisher: gs/client subscribes to it");
   }
   SECTION("versions that have met are of a type that grows") {
     subscription.matched = publisher.matched = 1;
@@ -207,5 +211,110 @@ TEST_CASE("publishers and subscriptions whose types differ, and that have not me
     CHECK_THAT(diagnose_peers(picture).at(0).cause,
                Contains("uav-1/navigator publishes geo::Pose, and gs/client subscribes to "
                         "geo::Fix: they do not hear each other"));
+  }
+}
+
+namespace {
+
+types::TypeSystem pose_of(types::Kind kind, types::Extensibility extensibility) {
+  types::Declaration pose;
+  pose.name = "geo::Pose";
+  pose.extensibility = extensibility;
+  pose.members.resize(2);
+  pose.members[0].name = "north";
+  pose.members[0].type.kind = types::Kind::Double;
+  pose.members[1].name = "height";
+  pose.members[1].type.kind = kind;
+  return {{pose}, {}};
+}
+
+}  // namespace
+
+TEST_CASE("versions of a type that grows are told apart by the member in which they differ") {
+  using types::Extensibility;
+  const auto doubles = pose_of(types::Kind::Double, Extensibility::Appendable);
+  auto longer = doubles;
+  longer.declarations[0].members.resize(3);
+  longer.declarations[0].members[2].name = "speed";
+  CHECK_FALSE(difference_of(doubles, doubles));
+  CHECK_FALSE(difference_of(doubles, longer));
+  CHECK(difference_of(doubles, pose_of(types::Kind::Long, Extensibility::Appendable)) ==
+        "geo::Pose.height");
+  SECTION("a member that only one side has matters where it must be understood") {
+    longer.declarations[0].members[2].flags = types::MemberFlags::must_understand;
+    CHECK(difference_of(doubles, longer) == "geo::Pose.speed");
+  }
+  SECTION("and where the type does not grow") {
+    longer.declarations[0].extensibility = Extensibility::Final;
+    CHECK(difference_of(pose_of(types::Kind::Double, Extensibility::Final), longer) ==
+          "geo::Pose.speed");
+  }
+  SECTION("members of a mutable type are known by their numbers") {
+    auto mutable_one = pose_of(types::Kind::Double, Extensibility::Mutable);
+    mutable_one.declarations[0].members[1].id = 7;
+    auto turned = mutable_one;
+    std::swap(turned.declarations[0].members[0], turned.declarations[0].members[1]);
+    CHECK_FALSE(difference_of(mutable_one, turned));
+  }
+}
+
+TEST_CASE("the doctor asks peers that have not met in what their versions of a type differ") {
+  using namespace command::doctor;
+  DomainPicture picture = mission();
+  for (PeerPicture& each : picture) each.process->version = SKEIN_VERSION;
+  publish(picture[0], "pose", false);
+  picture[0].topics.back().signature = picture[1].topics.back().signature = 7;  // as they grow
+  const TellTypes tell = [](const KnownTopic::Endpoint& asked) {
+    return pose_of(asked.entity == "gs/client" ? types::Kind::Float : types::Kind::Double,
+                   types::Extensibility::Appendable);
+  };
+  CHECK_THAT(diagnose_peers(picture, tell).at(0).cause,
+             Contains("have different versions of geo::Pose, which differ in geo::Pose.height"));
+  SECTION("who does not answer is not blamed") {
+    CHECK(diagnose_peers(picture, [](const auto&) { return std::nullopt; }).empty());
+  }
+  SECTION("nor are those that have met") {
+    picture[0].topics.back().matched = picture[1].topics.back().matched = 1;
+    CHECK(diagnose_peers(picture, tell).empty());
+  }
+}
+
+TEST_CASE("QoS that keeps a publisher and a subscription apart is told with both values") {
+  using namespace command::doctor;
+  DomainPicture picture = mission();
+  for (PeerPicture& each : picture) each.process->version = SKEIN_VERSION;
+  publish(picture[0], "pose", false);
+  auto& subscription = picture[0].topics.back();
+  subscription.reliable = true;
+  const Symptom told = diagnose_peers(picture).at(0);
+  CHECK(told.severity == Severity::Warning);
+  CHECK_THAT(told.cause,
+             Contains("topic 'pose': uav-1/navigator, which publishes, and gs/client, which "
+                      "subscribes, do not match in reliability: the publisher offers best effort, "
+                      "the subscription requests reliable"));
+  SECTION("periods") {
+    subscription.reliable = false;
+    subscription.deadline = {200'000'000};
+    CHECK_THAT(diagnose_peers(picture).at(0).cause,
+               Contains("deadline: the publisher offers none, the subscription requests 200 ms"));
+  }
+  SECTION("a publisher may offer more") {
+    picture[1].topics.back().reliable = true;
+    CHECK(diagnose_peers(picture).empty());
+  }
+}
+
+TEST_CASE("a topic without a publisher is told, with the one that was meant") {
+  using namespace command::doctor;
+  DomainPicture picture = mission();
+  for (PeerPicture& each : picture) each.process->version = SKEIN_VERSION;
+  publish(picture[0], "psoe", false);
+  const Symptom misspelt = diagnose_peers(picture).at(0);
+  CHECK(misspelt.severity == Severity::Warning);
+  CHECK(misspelt.cause ==
+        "topic 'psoe' has no publisher (did you mean 'pose'?): gs/client subscribes to it");
+  SECTION("a topic that somebody hears is not meant") {
+    publish(picture[0], "pose", false);
+    CHECK(diagnose_peers(picture).at(0).severity == Severity::Note);
   }
 }

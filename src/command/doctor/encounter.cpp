@@ -8,7 +8,7 @@
 
 #include "bench.idl.hpp"
 #include "brokerless_discovery/broker.hpp"
-#include "command/type_conflicts.hpp"
+#include "command/topic_survey.hpp"
 #include "dds/vendor_names.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
@@ -186,12 +186,13 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
   const auto add = [&](const Symptoms& more) {
     symptoms.insert(symptoms.end(), more.begin(), more.end());
   };
-  add(diagnose_peers(picture));
+  Inspector inspector(looking);
+  add(diagnose_peers(picture, types_told_by(inspector)));
   if (mission) add(of_mission(picture, *mission, looking.broker().options().place));
   return symptoms;
 }
 
-Symptoms diagnose_peers(const DomainPicture& picture) {
+Symptoms diagnose_peers(const DomainPicture& picture, const TellTypes& tell_types) {
   Symptoms symptoms = namesakes_in(picture);
   for (const PeerPicture& peer : picture) {
     if (!peer.process) {
@@ -210,9 +211,17 @@ Symptoms diagnose_peers(const DomainPicture& picture) {
                           "restart it; run such CSPs in processes of their own"});
     }
   }
-  for (const std::string& conflict : type_conflicts(endpoints_of(picture))) {
+  const auto endpoints = endpoints_of(picture);
+  for (const std::string& conflict : topic_conflicts(endpoints, tell_types)) {
     symptoms.push_back({Severity::Warning, "topics", conflict, "skein topics",
-                        "build both sides from the same IDL, and end those that are old"});
+                        "give both sides the same QoS profile and type, and end those that are "
+                        "old"});
+  }
+  for (const UnpublishedTopic& topic : unpublished_topics(endpoints)) {
+    symptoms.push_back(
+        {topic.misspelt ? Severity::Warning : Severity::Note, "topics", topic.sentence,
+         "skein topics",
+         topic.misspelt ? "correct the name where the code or the profile says it" : ""});
   }
   return symptoms;
 }

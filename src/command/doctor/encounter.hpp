@@ -5,6 +5,7 @@
 #include "command/domain_picture.hpp"
 #include "command/interruption.hpp"
 #include "command/onlooker.hpp"
+#include "command/topic_findings.hpp"
 #include "profile/mission_profile.hpp"
 #include "symptom.hpp"
 
@@ -17,7 +18,8 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
                    const profile::MissionProfile* mission, const Interruption& interruption);
 
 /// What is odd about peers that are there: those that do not answer, or do not work, or are of
-/// another version of Skein, or do not hear each other since their types differ. A pure function.
-Symptoms diagnose_peers(const DomainPicture& picture);
+/// another version of Skein, or do not hear each other since types, QoS or names of their topics
+/// differ. `tell_types` is asked as topic_conflicts() does.
+Symptoms diagnose_peers(const DomainPicture& picture, const TellTypes& tell_types = {});
 
 }  // namespace skein::command::doctor
