@@ -29,6 +29,22 @@ TEST_CASE("each value of a sensor reaches a callback") {
   CHECK(chart.counters().malformed == 0);
 }
 
+TEST_CASE("a subscription can be kept where there is none yet") {
+  Site site;
+  skein::Entity& station = site.station;
+  std::atomic<double> north_m{0};
+  const auto show = [&](const survey::Pose& pose) { north_m = pose.north_m; };
+
+  std::optional<skein::Subscription<survey::Pose>> chart;
+  chart = station.subscription<survey::Pose>("pose", skein::TopicQos::sensor(), show);
+
+  auto poses = site.drone.publisher<survey::Pose>("pose", skein::TopicQos::sensor());
+  CHECK(eventually([&] {
+    poses.publish({"drone", 14.0, -3.5});
+    return north_m == 14;
+  }));
+}
+
 TEST_CASE("the newest value can be polled") {
   Site site;
   skein::Entity& station = site.station;
