@@ -53,6 +53,12 @@ void block_ending_signals() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 [[noreturn]] void refuse_process(const MissionProfile& mission, const std::string& process) {
   std::vector<std::string> names;
   for (const PeerProfile& peer : mission.peers) {
@@ -62,7 +68,7 @@ void block_ending_signals() {
     }
   }
   throw InvalidArgument("mission '" + mission.name + "' has no process '" + process + "'" +
-                        suggestion(process, names));
+                        suggestion(process, names) + "; it has " + list_of(names));
 }
 
 // `owner` is a peer or one of its CSPs.

@@ -277,8 +277,10 @@ class MissionRun {
       return accepted(names.back() + " is started anew");
     }
     const std::string unknown = printable(name);
+    std::string list;
+    for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;
     return refused("the mission has no process '" + unknown + "' here" +
-                   suggestion(unknown, names));
+                   suggestion(unknown, names) + "; it has " + list);
   }
 
   std::string status() const {

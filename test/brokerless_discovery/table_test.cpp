@@ -188,6 +188,8 @@ TEST_CASE("where nothing is found the reason is given", "[R9]") {
   CHECK_THAT(table.explain(query("A/INavigater")),
              Catch::Contains("nothing of that name") && Catch::Contains("INavigator"));
   CHECK_THAT(table.explain(query("navigater")), Catch::Contains("did you mean 'navigator'"));
+  table.on_description(description(2, "A/ILift", "hoist"), kWriter);
+  CHECK_THAT(table.explain(query("ILfit")), Catch::Contains("did you mean 'ILift'"));
 
   Query elsewhere = query("A/INavigator");
   elsewhere.system = "uav-7";

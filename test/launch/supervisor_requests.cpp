@@ -116,7 +116,7 @@ TEST_CASE("What a launcher cannot do it refuses with the reason") {
   REQUIRE(mission.becomes(0, "starting"));
   CHECK_THROWS_WITH(mission.ask("restart navigatro"),
                     Contains("the mission has no process 'navigatro' here (did you mean "
-                             "'navigator'?)"));
+                             "'navigator'?); it has navigator, late"));
   CHECK_THROWS_WITH(mission.ask("restart late"), Contains("late was not started yet"));
   CHECK_THROWS_WITH(mission.ask("dance"), Contains("does not know this request"));
 }

@@ -57,6 +57,14 @@ TEST_CASE("who types another tool's command is told Skein's") {
   CHECK_THAT(run.output(), Contains("there is no command 'service'; in Skein: skein services"));
 }
 
+TEST_CASE("a process that a mission has not is told with those that it has") {
+  const Errand errand;
+  CommandRun run({"peer", errand.profile("", kOffice + kClient), "offcie"});
+  CHECK(run.wait() == 78);
+  CHECK_THAT(run.output(), Contains("mission 'errand' has no process 'offcie' (did you mean "
+                                    "'office'?); it has office, client"));
+}
+
 TEST_CASE("output that cannot be written is no success") {
   const Errand errand;
   const std::string profile = errand.profile("", kOffice + kClient);
