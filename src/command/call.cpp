@@ -145,9 +145,9 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
 std::string at_command_line(std::string text) {
   const std::string_view remedy = rpc::kMoreTime;
   const std::size_t place = text.find(remedy);
-  if (place != std::string::npos)
-    text.replace(place, remedy.size(), "; --within DURATION sets a longer limit");
-  return text;
+  const std::string option = "; --within DURATION sets a longer limit";
+  if (place == std::string::npos) return text + option;
+  return text.replace(place, remedy.size(), option);
 }
 
 void print(const std::string& result, bool json) {
@@ -159,7 +159,7 @@ void print(const std::string& result, bool json) {
 
 int call(const CallArguments& arguments) {
   const std::string values = arguments.example ? "" : values_of(arguments);
-  Entity entity(arguments.entity_options("call"));
+  Entity entity = join(arguments, "call");
   const DynamicProxy proxy = connect_dynamic(entity, connection_of(entity, arguments))
                                  .within(nanoseconds(arguments.within));
   demand_one_service(entity, arguments, proxy.interface_name());

@@ -77,12 +77,12 @@ class Narration {
 
 int show_calls(const CallsArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("calls"));
+  Entity entity = join(arguments, "calls");
   Narration narration(arguments.json);
   introspection::Reader<introspection::CallEvents> reader(
       entity.participant(), introspection::kCalls,
       [&](const introspection::CallEvents& batch) { narration.tell(batch); });
-  tell_watching(arguments);
+  tell_waiting(arguments, "the next call");
   interruption.wait(arguments.seconds);
   return 0;
 }

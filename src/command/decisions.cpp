@@ -37,10 +37,10 @@ void print_as_json(const introspection::Decision& record) { print_json(json_of(r
 
 void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("decisions"));
+  Entity entity = join(arguments, "decisions");
   introspection::Reader<introspection::Decision> reader(
       entity.participant(), introspection::kDecisions, arguments.json ? print_as_json : print);
-  tell_watching(arguments);
+  tell_waiting(arguments, "the next decision");
   interruption.wait(arguments.seconds);
 }
 

@@ -72,7 +72,7 @@ void print_lines(const std::string& text) {
 
 int describe(const DescribeArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("describe"));
+  Entity entity = join(arguments, "describe");
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const types::TypeSystem types = types_named(entity, arguments.name);
   if (arguments.json) {

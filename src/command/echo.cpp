@@ -12,7 +12,7 @@ namespace skein::command {
 
 int echo(const TopicArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("echo"));
+  Entity entity = join(arguments, "echo");
   Inspector inspector(entity);
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   tell_conflicts(inspector, topic);

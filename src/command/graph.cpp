@@ -249,7 +249,7 @@ int draw_graph(const GraphArguments& arguments) {
   const std::string format = arguments.json ? "json" : arguments.format;
   if (format != "dot" && format != "mermaid" && format != "json")
     throw InvalidArgument("--format is dot, mermaid or json, and not '" + format + "'");
-  Entity entity(arguments.entity_options("graph"));
+  Entity entity = join(arguments, "graph");
   const introspection::StatisticsReader statistics(entity.participant());
   DomainLook look(entity);
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);

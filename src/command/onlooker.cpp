@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/printable.hpp"
+#include "core/whole_file.hpp"
 #include "dds/options_check.hpp"
 #include "launch/address_space.hpp"
 #include "launch/launch_plan.hpp"
@@ -82,9 +83,20 @@ EntityOptions Onlooker::entity_options(const std::string& name) const {
   return options;
 }
 
+Entity join(const Onlooker& onlooker, const std::string& name) {
+  auto options = onlooker.entity_options(name);
+  try {
+    return Entity(std::move(options));
+  } catch (const Unavailable& error) {
+    throw Internal(error.what());
+  }
+}
+
 int look(const Onlooker& onlooker, const std::function<int()>& command) {
   try {
     return command();
+  } catch (const WriteFailed&) {
+    throw;
   } catch (const Unavailable& error) {
     if (!launch::address_space_limit().empty()) throw;  // which is told as the cause
     return fail(onlooker, error, kNothingThere);
@@ -100,11 +112,10 @@ void tell_missions_elsewhere(const Onlooker& onlooker) {
   if (!elsewhere.empty()) std::fprintf(stderr, "skein: %s\n", elsewhere.c_str());
 }
 
-void tell_watching(const Onlooker& onlooker) {
-  if (isatty(STDERR_FILENO) == 0) return;
+void tell_waiting(const Onlooker& onlooker, const char* what) {
   const std::uint32_t domain = onlooker.watched_domain();
   const std::string elsewhere = missions_elsewhere(domain);
-  std::fprintf(stderr, "skein: watching domain %u; Ctrl-C ends it%s%s\n", domain,
+  std::fprintf(stderr, "skein: waiting for %s on domain %u; Ctrl-C ends it%s%s\n", what, domain,
                elsewhere.empty() ? "" : "; ", elsewhere.c_str());
 }
 

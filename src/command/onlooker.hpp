@@ -10,8 +10,9 @@
 #include "launch/exit_codes.hpp"
 
 namespace skein {
+class Entity;
 struct EntityOptions;
-}
+}  // namespace skein
 
 namespace skein::command {
 
@@ -37,6 +38,10 @@ struct Onlooker {
   /// InvalidArgument where none of its peers is of this host, or options are missing.
   EntityOptions entity_options(const std::string& name) const;
 };
+
+/// Joins the domain. Throws as entity_options(), and Internal where that fails: nothing was looked
+/// for yet.
+Entity join(const Onlooker& onlooker, const std::string& name);
 
 inline constexpr const char* kDomainVariable = "SKEIN_DOMAIN";
 
@@ -65,7 +70,7 @@ int look(const Onlooker& onlooker, const std::function<int()>& command);
 /// On stderr, for who finds nobody: where missions fly, if they do.
 void tell_missions_elsewhere(const Onlooker& onlooker);
 
-/// On a terminal: what is watched, and how it ends.
-void tell_watching(const Onlooker& onlooker);
+/// On stderr: what it waits for, where, and how it ends.
+void tell_waiting(const Onlooker& onlooker, const char* what);
 
 }  // namespace skein::command

@@ -73,7 +73,7 @@ nlohmann::ordered_json to_json(const PeerPicture& peer) {
 
 int list_peers(const PeersArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("peers"));
+  Entity entity = join(arguments, "peers");
   DomainLook look(entity);
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const DomainPicture picture = look.take(false);

@@ -80,7 +80,7 @@ void print(std::uint64_t published, std::size_t subscribers, bool acknowledged, 
 
 int publish(const PublishArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("publish"));
+  Entity entity = join(arguments, "publish");
   Inspector inspector(entity);
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic, false),

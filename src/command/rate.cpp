@@ -98,7 +98,7 @@ void print(const nlohmann::ordered_json& figures) {
 int show_rate(const TopicArguments& arguments) {
   constexpr double kInterval = 1;
   const Interruption interruption;
-  Entity entity(arguments.entity_options("rate"));
+  Entity entity = join(arguments, "rate");
   Inspector inspector(entity);
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   Arrivals arrivals;

@@ -7,6 +7,7 @@
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/wall_clock.hpp"
+#include "core/whole_file.hpp"
 #include "interruption.hpp"
 #include "json_output.hpp"
 #include "local_time.hpp"
@@ -85,7 +86,7 @@ void tell_missing(const std::vector<std::string>& wanted,
 
 int record(const RecordArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("record"));
+  Entity entity = join(arguments, "record");
   Inspector inspector(entity);
   const std::string file = file_of(arguments);
   recording::Recorder recorder(entity, file, options_of(arguments));
@@ -103,7 +104,7 @@ int record(const RecordArguments& arguments) {
   const auto print_counts = arguments.json ? print_as_json : print;
   try {
     recorder.close();
-  } catch (const Unavailable& error) {  // a full disk: what is in the file counts all the same
+  } catch (const WriteFailed& error) {  // a full disk: what is in the file counts all the same
     print_counts(recorder.statistics());
     std::fprintf(stderr, "skein: %s\n", printable(error.what(), kLongestProblem).c_str());
     return launch::kOutputLost;

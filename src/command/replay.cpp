@@ -36,7 +36,7 @@ int replay_recording(const ReplayArguments& arguments) {
   }
   const Interruption interruption;
   const recording::Reader reader(arguments.file);
-  Entity entity(arguments.entity_options("replay"));
+  Entity entity = join(arguments, "replay");
   recording::Player player(entity, reader, {arguments.topics, arguments.rate});
   for (const std::string& topic : player.topics()) {
     std::fprintf(stderr, "skein: publishes %s\n", printable(topic).c_str());

@@ -80,7 +80,7 @@ void print_as_json(const brokerless_discovery::Table::Found& services) {
 
 int list_services(const ServicesArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("services"));
+  Entity entity = join(arguments, "services");
   std::optional<introspection::StatisticsReader> statistics;
   if (arguments.statistics) statistics.emplace(entity.participant());
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);

@@ -202,7 +202,7 @@ void show_once(Watch& watch, bool json, const Interruption& interruption) {
 
 int show_top(const TopArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("top"));
+  Entity entity = join(arguments, "top");
   Watch watch(entity, arguments.tools);
   if (arguments.once) {
     show_once(watch, arguments.json, interruption);

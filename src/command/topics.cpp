@@ -58,7 +58,7 @@ nlohmann::ordered_json json_of(const KnownTopic& topic) {
 
 int list_topics(const TopicsArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("topics"));
+  Entity entity = join(arguments, "topics");
   Inspector inspector(entity);
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const auto topics = known_topics(inspector, kAnswerPatience);

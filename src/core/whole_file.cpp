@@ -11,7 +11,6 @@
 
 #include "file_descriptor.hpp"
 #include "printable.hpp"
-#include "skein/error.hpp"
 
 namespace skein {
 namespace {
@@ -88,7 +87,7 @@ class Draft {
   [[noreturn]] void refuse() const {
     throw InvalidArgument(told("opening") + "; name a file in a folder that may be written to");
   }
-  [[noreturn]] void fail(const char* step) const { throw Unavailable(told(step)); }
+  [[noreturn]] void fail(const char* step) const { throw WriteFailed(told(step)); }
 
   const std::string& what_;
   const std::filesystem::path& file_;

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/whole_file.hpp"
 #include "skein/error.hpp"
 
 namespace skein::recording {
@@ -59,7 +60,7 @@ void OutputFile::fail(int error) {
   if (::ftruncate(file_.get(), end) != 0 || ::lseek(file_.get(), end, SEEK_SET) != end) {
     text += "; its last piece could not be taken away: " + words(errno);
   }
-  throw Unavailable(text + "; what stands there can be read. Make room, or record elsewhere");
+  throw WriteFailed(text + "; what stands there can be read. Make room, or record elsewhere");
 }
 
 }  // namespace skein::recording

@@ -15,7 +15,7 @@ class OutputFile {
   /// Throws InvalidArgument where it cannot be made, or is there already.
   explicit OutputFile(std::string path);
 
-  /// Throws Unavailable, with the reason and the remedy.
+  /// Throws WriteFailed, with the reason and the remedy.
   void append(std::span<const std::byte> piece);
 
   /// Brings all of it to the disk. Throws as append() does.

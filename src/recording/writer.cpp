@@ -11,6 +11,7 @@
 
 #include "core/log.hpp"
 #include "core/start_thread.hpp"
+#include "core/whole_file.hpp"
 #include "recording/chunk_queue.hpp"
 #include "recording/drop_report.hpp"
 #include "recording/recording_file.hpp"
@@ -303,7 +304,7 @@ void Writer::close() {
   state_->queue.close();
   std::call_once(state_->joined, [this] { state_->thread.join(); });
   const std::string failure = statistics().failure;
-  if (!failure.empty()) throw Unavailable(failure);
+  if (!failure.empty()) throw WriteFailed(failure);
 }
 
 }  // namespace skein::recording

@@ -79,7 +79,7 @@ class Writer {
 
   WriterStatistics statistics() const;
 
-  /// Writes what waits, and the index. Throws Unavailable where something could not be written.
+  /// Writes what waits, and the index. Throws WriteFailed where something could not be written.
   void close();
 
  private:

@@ -82,7 +82,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(
       write_whole_file("the picture", "/dev/full", "new"),
       "the picture '/dev/full' cannot be written: writing '/dev/full': No space left on device");
-  CHECK_THROWS_AS(write_whole_file("the picture", "/dev/full", "new"), Unavailable);
+  CHECK_THROWS_AS(write_whole_file("the picture", "/dev/full", "new"), WriteFailed);
 }
 
 TEST_CASE("Whether a file can be written is tried without a trace") {

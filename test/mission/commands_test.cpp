@@ -664,6 +664,19 @@ TEST_CASE("a recording on a full disk fails, and says what is in the file") {
   CHECK(json.json()["messages"] > 0);
 }
 
+TEST_CASE("a recording that cannot even begin is told as output that was lost") {
+  const std::string vendor = any_vendor();
+  if (!installed(vendor)) return;
+  const Shelf shelf;
+  const Field field(vendor);
+  Command record = field.start({"record", "--output", shelf / "none.mcap"}, {.prepare = [] {
+                                 const rlimit limit{4, 4};
+                                 signal(SIGXFSZ, SIG_IGN);
+                                 setrlimit(RLIMIT_FSIZE, &limit);
+                               }});
+  CHECK(record.code() == 74);  // what it says ends, as all its files, after four bytes
+}
+
 TEST_CASE("decisions that are made again are counted") {
   const Shelf shelf;
   const std::string log = shelf / "decisions.jsonl";

@@ -1,5 +1,6 @@
 // What the commands say that look at a domain: who is there, who speaks to whom, what it costs.
 #include <pty.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -394,17 +395,38 @@ TEST_CASE("a domain of the environment is watched where no option names one") {
   CHECK_THAT(run_in("72", {"doctor"}).output, Contains("nobody speaks on domain 72"));
 }
 
-TEST_CASE("on a terminal, who watches is told what, and how it ends") {
+TEST_CASE("who watches a domain on which nothing happens is told what is waited for") {
   if (!installed("cyclonedds")) return;
-  for (const char* command : {"calls", "decisions"}) {
-    InTerminal watch({command, "--domain", "74"}, {});
-    CHECK(watch.writes("skein: watching domain 74; Ctrl-C ends it"));
+  for (const std::string what : {"call", "decision"}) {
+    const std::string told =
+        "skein: waiting for the next " + what + " on domain 74; Ctrl-C ends it";
+    InTerminal watch({what + "s", "--domain", "74"}, {});
+    CHECK(watch.writes(told));
     watch.type("\x03");
     CHECK(watch.wait() == 0);
+    CommandRun elsewhere({what + "s", "--domain", "74"});
+    CHECK(elsewhere.writes(told));
+    elsewhere.signal(SIGINT);
+    CHECK(elsewhere.wait() == 0);
   }
 }
 
-TEST_CASE("whose reader has gone ends by SIGPIPE, without a word") {
+TEST_CASE("who cannot join the domain is told so, and by another code than who finds nothing") {
+  const std::string vendor = GENERATE("fastdds", "cyclonedds");
+  if (!installed(vendor)) return;
+  const auto without_interface = [] { unshare(CLONE_NEWNET); };  // its loopback is down
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"services"}, {"topics"}, {"echo", "pose"}}) {
+    CAPTURE(words.front(), vendor);
+    auto all = words;
+    all.insert(all.end(), {"--domain", "75", "--vendor", vendor});
+    CommandRun run(all, {.prepare = without_interface});
+    CHECK(run.wait() == 71);
+    CHECK_THAT(run.output(), Contains("no participant in domain 75"));
+  }
+}
+
+TEST_CASE("whose reader has gone ends by SIGPIPE, without a word about it") {
   if (!installed("cyclonedds")) return;
   StaffedDesk desk(75);
   auto proxy = desk.entity.connect<crew::Desk>();
@@ -420,7 +442,8 @@ TEST_CASE("whose reader has gone ends by SIGPIPE, without a word") {
     return (code = calls.wait(std::chrono::seconds(0))) != -1;
   }));
   CHECK(code == 128 + SIGPIPE);
-  CHECK(calls.output().empty());
+  CHECK(calls.output() ==
+        "skein: waiting for the next call on domain " + desk.domain + "; Ctrl-C ends it\n");
 }
 
 TEST_CASE("a recording says into which file, and which topics have not appeared") {

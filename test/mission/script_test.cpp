@@ -92,6 +92,13 @@ TEST_CASE("units of systemd are written to the folder, which is made, and named"
   CHECK_THAT(nowhere.output(), Contains("'/no/such/folder/start.sh' cannot be written"));
 }
 
+TEST_CASE("a script for which the disk has no room is output that was lost") {
+  const Errand errand;
+  CommandRun run({"script", errand.profile("", kPeers), "--output", "/dev/full"});
+  CHECK(run.wait() == 74);
+  CHECK_THAT(run.output(), Contains("the script '/dev/full' cannot be written: writing"));
+}
+
 TEST_CASE("a peer that systemd has started tells it what it waits for, and when it is ready") {
   if (!installed("fastdds")) return;
   const Errand errand;

@@ -28,7 +28,7 @@ struct Peer {
   std::unique_ptr<Entity> entity;
 };
 
-Peer join(Onlooker place, const std::string& vendor) {
+Peer join_by(Onlooker place, const std::string& vendor) {
   place.vendor = vendor;
   Peer peer{vendor, std::make_unique<Entity>(place.entity_options("doctor-" + vendor))};
   peer.entity->provide<skein_bench_service::Mirror>(std::make_shared<Mirror>());
@@ -166,7 +166,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
   if (vendors.empty()) return {};
   std::vector<Peer> peers;
   try {
-    for (const std::string& vendor : vendors) peers.push_back(join(place, vendor));
+    for (const std::string& vendor : vendors) peers.push_back(join_by(place, vendor));
   } catch (const Error& error) {
     return {{Severity::Error, "discovery", "a peer cannot join the domain", error.what(),
              "see the other findings"}};

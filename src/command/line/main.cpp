@@ -14,6 +14,7 @@
 #include "command_line.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "core/whole_file.hpp"
 #include "familiar_names.hpp"
 #include "launch/address_space.hpp"
 #include "launch/exit_codes.hpp"
@@ -128,6 +129,9 @@ int run(CLI::App& app, int argc, char** argv, const int& result) {
   } catch (const InvalidArgument& error) {
     complain(printable(error.what(), kLongestError));
     return launch::kConfigurationError;
+  } catch (const WriteFailed& error) {
+    complain(printable(error.what(), kLongestError));
+    return launch::kOutputLost;
   } catch (const Interrupted& interrupted) {
     complain(printable(interrupted.what(), kLongestError));
     return launch::kInterrupted + interrupted.signal();

@@ -39,7 +39,7 @@ void add_services(view::Graph& graph, const brokerless_discovery::Broker& broker
 
 int serve_view(const ViewArguments& arguments) {
   const Interruption interruption;
-  Entity entity(arguments.entity_options("view"));
+  Entity entity = join(arguments, "view");
   Inspector inspector(entity);
   view::Server server(server_options(arguments));
   ServiceFeed services(server, entity, inspector);
