@@ -179,8 +179,7 @@ Incompatibility explained(const std::string& topic, const Guid& peer, const Mism
   return {peer, mismatch.policy, mismatch.offered, mismatch.requested,
           "topic '" + topic + "': a writer and a reader do not match in " + mismatch.policy +
               ": the writer offers " + mismatch.offered + ", the reader requests " +
-              mismatch.requested + "; " + mismatch.remedy + " (the other side is " + peer.hex() +
-              ")"};
+              mismatch.requested + "; " + mismatch.remedy};
 }
 
 }  // namespace
@@ -208,6 +207,12 @@ std::optional<Incompatibility> find_other_type(const std::string& topic, const G
   return explained(topic, peer,
                    {"type", printable(offered), printable(requested),
                     "give both sides the same type, or one of them another topic"});
+}
+
+Incompatibility with_other_side(Incompatibility why, const std::string& name) {
+  why.explanation +=
+      " (the other side is " + (name.empty() ? why.peer.hex() : printable(name)) + ")";
+  return why;
 }
 
 }  // namespace skein::dds

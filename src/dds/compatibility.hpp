@@ -19,4 +19,8 @@ std::optional<Incompatibility> find_other_type(const std::string& topic, const G
                                                const std::string& offered,
                                                const std::string& requested);
 
+/// With who it is in its explanation: the name of the peer's participant, or its GUID where that is
+/// not told.
+Incompatibility with_other_side(Incompatibility why, const std::string& name);
+
 }  // namespace skein::dds

@@ -42,7 +42,7 @@ void EndpointWatch::consider(const Guid& peer, const Endpoint& endpoint) {
     if (!refused_.insert(peer).second) return;
     any_ = true;
   }
-  if (told_) told_(*why);
+  if (told_) told_(with_other_side(*why, endpoint.participant));
 }
 
 bool EndpointWatch::refuses(const Guid& peer) const {

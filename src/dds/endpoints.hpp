@@ -19,6 +19,7 @@ struct Endpoint {
   std::string topic;
   std::string type;
   Qos qos;
+  std::string participant{};  ///< The name of its participant; empty where that is not known.
 };
 
 class EndpointWatch;

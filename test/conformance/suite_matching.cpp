@@ -147,6 +147,8 @@ TEST_CASE("another type of the same topic is told on both sides") {
     CHECK(each->incompatible().front().policy == "type");
     CHECK_THAT(each->incompatible().front().explanation,
                Catch::Contains("the writer offers test::One, the reader requests test::Other"));
+    CHECK_THAT(each->incompatible().front().explanation,
+               Catch::Contains("(the other side is conformance)"));  // its participant's name
   }
 }
 

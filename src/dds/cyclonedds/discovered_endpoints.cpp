@@ -72,9 +72,29 @@ Qos to_qos(const dds_qos_t* from) {
   return qos;
 }
 
+/// Empty where it told none, or has gone.
+std::string name_of(dds_entity_t participants, dds_instance_handle_t participant) {
+  void* samples[1] = {nullptr};
+  dds_sample_info_t info;
+  if (dds_read_instance(participants, samples, &info, 1, 1, participant) != 1) return {};
+  char* name = nullptr;
+  if (info.valid_data) {
+    const auto& found = *static_cast<const dds_builtintopic_participant_t*>(samples[0]);
+    dds_qget_entity_name(found.qos, &name);
+  }
+  std::string text = name ? name : "";
+  dds_free(name);
+  dds_return_loan(participants, samples, 1);
+  return text;
+}
+
 }  // namespace
 
 DiscoveredEndpoints::DiscoveredEndpoints(dds_entity_t participant) {
+  participants_ = Entity(
+      check(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
+            "participants cannot be watched"));
+  writers_.participants = readers_.participants = participants_.handle();
   open(writers_, participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
   open(readers_, participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
 }
@@ -101,7 +121,8 @@ void DiscoveredEndpoints::take(Source& source) {
     if (info.instance_state != DDS_IST_ALIVE) {
       source.all.lost(guid);
     } else if (info.valid_data) {
-      source.all.found(guid, {source.side, found.topic_name, found.type_name, to_qos(found.qos)});
+      source.all.found(guid, {source.side, found.topic_name, found.type_name, to_qos(found.qos),
+                              name_of(source.participants, found.participant_instance_handle)});
     }
     dds_return_loan(reader, samples, 1);
     samples[0] = nullptr;

@@ -24,6 +24,7 @@ class DiscoveredEndpoints {
   struct Source {
     Side side;
     Endpoints& all;
+    dds_entity_t participants = 0;  // the reader of their names
     std::mutex taking{};
     std::atomic<dds_entity_t> handle{0};  // 0 for a listener that comes before it is known
     Entity reader{};                      // goes first: its listener uses the rest
@@ -33,6 +34,7 @@ class DiscoveredEndpoints {
   static void take(Source& source);
 
   Endpoints all_;
+  Entity participants_;
   Source writers_{Side::Writer, all_};
   Source readers_{Side::Reader, all_};
 };

@@ -114,10 +114,18 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
   }
   if (present) {
     guard().found(guid);
+    {
+      std::lock_guard lock(mutex_);
+      names_[guid] = info.info.m_participantName.to_string();
+    }
     const auto& lease = info.info.m_leaseDuration;
     follow(guid, announced_lease(lease.seconds, lease.nanosec));
   } else {
     guard().removed(guid);
+    {
+      std::lock_guard lock(mutex_);
+      names_.erase(guid);
+    }
     signs().forget(guid);
   }
   if (info.status == Info::CHANGED_QOS_PARTICIPANT || !options_.on_participant) return;
@@ -131,13 +139,22 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
 void FastParticipant::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return endpoints_.lost(guid);
-  endpoints_.found(guid, to_endpoint(info.info));
+  found(guid, to_endpoint(info.info));
 }
 
 void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return endpoints_.lost(guid);
-  endpoints_.found(guid, to_endpoint(info.info));
+  found(guid, to_endpoint(info.info));
+}
+
+void FastParticipant::found(const Guid& guid, Endpoint endpoint) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto name = names_.find(guid.participant());
+    if (name != names_.end()) endpoint.participant = name->second;
+  }
+  endpoints_.found(guid, std::move(endpoint));
 }
 
 void FastParticipant::follow(const Guid& participant,

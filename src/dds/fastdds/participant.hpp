@@ -2,6 +2,7 @@
 
 #include <fastdds/rtps/participant/RTPSParticipantListener.h>
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -76,6 +77,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void check_leases();
   void check_liveliness();
   void drop_incomplete();
+  void found(const Guid& guid, Endpoint endpoint);
   void forget_all();
 
   struct Watched {
@@ -87,6 +89,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   const std::shared_ptr<StartupTransportDescriptor> transport_;
   TopicTable<int> topics_;
   Endpoints endpoints_;
+  std::map<Guid, std::string> names_;  // of participants that are present, under mutex_
   std::mutex readers_;
   std::set<FastReader*> all_readers_;  // under readers_
   std::mutex mutex_;

@@ -50,9 +50,10 @@ void Hub::tell_incompatible(const std::shared_ptr<WriterCore>& writer,
   const auto tell = [&](const auto& endpoint, const EndpointCore& peer) {
     if (!knows(*endpoint->participant, *peer.participant)) return;
     if (!endpoint->refused.insert(peer.guid).second) return;
-    const auto why = mismatch(*writer, *reader, peer.guid);
+    const auto why =
+        with_other_side(*mismatch(*writer, *reader, peer.guid), peer.participant->options.name);
     post(endpoint.get(), [endpoint, why] {
-      if (endpoint->listener.on_incompatible) endpoint->listener.on_incompatible(*why);
+      if (endpoint->listener.on_incompatible) endpoint->listener.on_incompatible(why);
     });
   };
   tell(writer, *reader);
