@@ -117,7 +117,16 @@ class Checker {
                      mission_.dictionary, findings_);
       check_references(csp.parameters, peer);
       check_isolation(csp);
+      check_implements_something(csp);
     }
+  }
+
+  void check_implements_something(const CspProfile& csp) {
+    if (!csp.component->interfaces.empty() || !csp.component->complete) return;
+    findings_.error(csp.where,
+                    "the CSP " + in_quotes(csp.name) + " implements no interface (" +
+                        to_text(csp.component->where) + ")",
+                    "add what it implements to <interfaces> there; an activity is a <peer>");
   }
 
   void check_network(const PeerProfile& peer) {
@@ -166,6 +175,7 @@ class Checker {
         note_other_systems(peer, need);
         continue;
       }
+      if (some_incomplete()) continue;  // that may be the provider, and has a finding of its own
       const std::string who =
           need.csp.empty() ? in_quotes(peer.name) : in_quotes(peer.name + "/" + need.csp);
       const std::string csp = composition_.csp_with(need.interface);
@@ -198,6 +208,12 @@ class Checker {
                        in_quotes(first.name) + " of " + in_quotes(first.system),
                    "its code finds that if it names the system or kAnySystem; otherwise give both "
                    "peers one system"});
+  }
+
+  bool some_incomplete() const {
+    return std::any_of(mission_.peers.begin(), mission_.peers.end(), [](const PeerProfile& peer) {
+      return peer.component && !peer.component->complete;
+    });
   }
 
   std::string unless_unread() const {
@@ -237,8 +253,9 @@ class Checker {
   void check_subcomponents(const PeerProfile& peer) {
     const auto& wanted = peer.component->subcomponents;
     if (misspelt_subcomponents(peer)) return;
-    const bool all_read = std::all_of(peer.csps.begin(), peer.csps.end(),
-                                      [](const CspProfile& csp) { return bool(csp.component); });
+    const bool all_read = std::all_of(
+        peer.csps.begin(), peer.csps.end(),
+        [](const CspProfile& csp) { return csp.component && !csp.component->interfaces.empty(); });
     for (const auto& item : wanted) {
       const bool found = std::any_of(peer.csps.begin(), peer.csps.end(), [&](const auto& csp) {
         return csp.component && implements(csp, item.type);
@@ -250,7 +267,7 @@ class Checker {
                       "add a <csp> whose component implements it");
     }
     for (const auto& csp : peer.csps) {
-      const bool fits = !csp.component ||
+      const bool fits = !csp.component || csp.component->interfaces.empty() ||
                         std::any_of(wanted.begin(), wanted.end(),
                                     [&](const auto& item) { return implements(csp, item.type); });
       if (fits) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/suggestion.hpp"
 #include "repeated.hpp"
 #include "words.hpp"
 
@@ -22,6 +23,9 @@ void check_value(const DictionaryEntry& entry, const std::string& value,
                  const SourcePosition& where, FindingList& findings) {
   try {
     parse_value(entry, value);
+  } catch (const UnknownUnit& error) {
+    findings.error(entry.where, error.what(),
+                   "correct it there, or write the value without a unit at " + to_text(where));
   } catch (const InvalidArgument& error) {
     findings.error(where, error.what(), "it is defined at " + to_text(entry.where));
   }
@@ -64,6 +68,17 @@ void check_parameter(const Parameter& parameter, const Dictionary& dictionary,
                  "the parameter " + in_quotes(parameter.name) + " is a " + expected + ", not a " +
                      parameter.type,
                  "it is defined at " + to_text(entry->where));
+}
+
+/// Whether the component's own parameter of nearly that name is the one that no dictionary has.
+bool is_misspelt_in(const ComponentDescription& component, const std::string& name,
+                    const Dictionary& dictionary) {
+  if (!dictionary.is_read() || dictionary.find(EntryKind::Parameter, name) == nullptr) return false;
+  return std::ranges::any_of(component.parameters(), [&](const Parameter* parameter) {
+    const std::vector<std::string> one{parameter->name};
+    return dictionary.find(EntryKind::Parameter, parameter->name) == nullptr &&
+           !suggestion(name, one).empty();
+  });
 }
 
 /// What a value looks like.
@@ -121,6 +136,7 @@ void check_settings(const std::string& owner, const std::vector<Setting>& settin
     if (setting.name.empty()) continue;  // a finding of the reader
     names.add(setting.name, setting.where, findings);
     if (!takes_any && !is_known(setting.name, known)) {
+      if (is_misspelt_in(component, setting.name, dictionary)) continue;  // which is a finding
       findings.error(setting.where,
                      in_quotes(component.name) + " has no parameter " + in_quotes(setting.name),
                      remedy_for(setting.name, known));
@@ -133,8 +149,9 @@ void check_settings(const std::string& owner, const std::vector<Setting>& settin
   for (const Parameter* parameter : component.required_parameters()) {
     const bool given = std::ranges::any_of(
         settings, [&](const Setting& setting) { return setting.name == parameter->name; });
-    if (given || parameter->name.empty()) continue;
     const auto* entry = dictionary.find(EntryKind::Parameter, parameter->name);
+    const bool unknown = entry == nullptr && dictionary.is_read();  // a finding of the component
+    if (given || parameter->name.empty() || unknown) continue;
     findings.error(where,
                    in_quotes(owner) + " has no value for the parameter " +
                        in_quotes(parameter->name) + ", which its component requires (" +

@@ -57,6 +57,8 @@ struct ComponentDescription {
       dependencies;  ///< Services of others without which it cannot work.
   std::vector<InterfaceReference> subcomponents;  ///< Managed interfaces of the CSPs that it hosts.
   SourcePosition where;
+  /// False where an interface that it implements stands in it and could not be read.
+  bool complete = true;
 
   /// The implemented interface of that name in any spelling, or null.
   /// Throws InvalidArgument if `interface_name` is no interface name.

@@ -99,6 +99,7 @@ ComponentDescription read_component(const XmlNode& node, FindingList& findings) 
         component.interfaces.push_back(*std::move(implemented));
       }
     }
+    component.complete = component.interfaces.size() == interfaces->children().size();
   }
   component.required = read_parameters(root, "required");
   component.optional = read_parameters(root, "optional");

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/suggestion.hpp"
 #include "dds/vendor_names.hpp"
 #include "words.hpp"
 
@@ -132,11 +133,11 @@ std::string with_unit(double number, const std::string& unit) {
   return number_text(number) + (unit.empty() ? "" : " " + unit);
 }
 
-/// The names of units: those of a quantity, or all.
-std::string unit_list(std::optional<Unit::Quantity> quantity) {
+/// The names of a quantity's units.
+std::string unit_list(Unit::Quantity quantity) {
   std::vector<std::string> names;
   for (const Unit& unit : kUnits)
-    if (!quantity || unit.quantity == *quantity) names.emplace_back(unit.name);
+    if (unit.quantity == quantity) names.emplace_back(unit.name);
   return dds::alternatives(names);
 }
 
@@ -146,8 +147,7 @@ std::string remedy_for_unit(const DictionaryEntry& entry) {
   if (entry.type == ValueType::Integer) return ": write the number alone, or in " + entry.unit;
   const auto* unit = std::ranges::find(kUnits, std::string_view(entry.unit), &Unit::name);
   if (unit != kUnits.end()) return ": write a number in " + unit_list(unit->quantity);
-  return ": nothing is converted into " + entry.unit + ", the dictionary's unit, which is not " +
-         unit_list(std::nullopt);
+  return {};
 }
 
 /// What to write instead; empty where that is not to be seen.
@@ -163,7 +163,26 @@ std::string remedy_for_number(const DictionaryEntry& entry, std::string_view tex
   return number && !unit.empty() ? remedy_for_unit(entry) : "";
 }
 
+/// A value in a unit that is known, where the dictionary has one that nothing is converted into.
+bool is_of_unknown_unit(const DictionaryEntry& entry, std::string_view text) {
+  const auto known = [](std::string_view name) {
+    return std::ranges::any_of(kUnits, [&](const Unit& unit) { return unit.name == name; });
+  };
+  const auto [number, unit] = split(text);
+  return entry.type == ValueType::Real && number && known(unit) && !entry.unit.empty() &&
+         !known(entry.unit);
+}
+
+[[noreturn]] void refuse_unit(const DictionaryEntry& entry, std::string_view text) {
+  std::vector<std::string> names;
+  for (const Unit& unit : kUnits) names.emplace_back(unit.name);
+  throw UnknownUnit(in_quotes(entry.name) + " has the unit " + in_quotes(entry.unit) +
+                    ", into which " + in_quotes(text) + " is not converted" +
+                    skein::suggestion(entry.unit, names));
+}
+
 [[noreturn]] void refuse_type(const DictionaryEntry& entry, std::string_view text) {
+  if (is_of_unknown_unit(entry, text)) refuse_unit(entry, text);
   std::string problem = in_quotes(entry.name) + " is " + in_quotes(text) + ", which is no " +
                         std::string(to_string(entry.type));
   if (!entry.unit.empty()) problem += " in " + entry.unit;

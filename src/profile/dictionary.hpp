@@ -36,6 +36,13 @@ struct DictionaryEntry {
   SourcePosition where;
 };
 
+/// A value names a unit, and the entry has one that nothing is converted into: most likely one that
+/// is misspelt in the dictionary.
+class UnknownUnit : public InvalidArgument {
+ public:
+  using InvalidArgument::InvalidArgument;
+};
+
 /// Reads `text` as the entry demands. A boolean is `true` or `false`. A duration is a number with
 /// one of the units ns, us, ms, s, min, h. An integer or real is a number, in the entry's unit; it
 /// may name that unit, and a real also another one of the same quantity (lengths, speeds, angles,

@@ -76,6 +76,28 @@ void read_unit_and_range(const XmlElement& element, DictionaryEntry& entry) {
   }
 }
 
+/// What Skein itself reads is of the type that it reads it as.
+void demand_type_of_known_attribute(const XmlElement& element, const DictionaryEntry& entry) {
+  if (entry.kind != EntryKind::Attribute) return;
+  const auto demand = [&](bool fits, const char* wanted) {
+    if (fits) return;
+    element.findings().error(element.where(),
+                             "the attribute " + in_quotes(entry.name) + " is a " +
+                                 std::string(to_string(entry.type)) +
+                                 (entry.unit.empty() ? "" : " in " + entry.unit) +
+                                 ", and Skein reads it as something else",
+                             std::string("write ") + wanted);
+  };
+  if (entry.name == "latency") {
+    demand(entry.type == ValueType::Duration && entry.unit == "ms",
+           "type=\"duration\" unit=\"ms\"; its values may be in other units of time");
+  } else if (entry.name == "quality") {
+    demand(entry.type == ValueType::Real || entry.type == ValueType::Integer, "type=\"real\"");
+  } else if (entry.name == "isolated") {
+    demand(entry.type == ValueType::Boolean, "type=\"boolean\"");
+  }
+}
+
 void read_interface(const XmlElement& element, DictionaryEntry& entry) {
   const auto interface = element.maybe_attribute("interface");
   if (!interface) return;
@@ -99,6 +121,7 @@ DictionaryEntry read_entry(const XmlElement& element) {
   entry.documentation = element.text();
   if (read_type(element, entry)) {
     read_unit_and_range(element, entry);
+    demand_type_of_known_attribute(element, entry);
     read_interface(element, entry);
   }
   if (entry.documentation.empty()) {

@@ -1,5 +1,7 @@
 #include "head_reader.hpp"
 
+#include <string>
+
 #include "value_readers.hpp"
 
 namespace skein::profile {
@@ -34,6 +36,17 @@ HeadOptions read_head_options(const XmlElement& element) {
       static_cast<std::size_t>(read_count(element, "max_stuck", static_cast<int>(head.max_stuck)));
   head.breaker = read_breaker(element);
   return head;
+}
+
+void warn_of_head_without_csps(const XmlElement& element) {
+  for (const char* name : kHeadAttributes) {
+    const auto attribute = element.maybe_attribute(name);
+    if (!attribute || attribute->inherited) continue;
+    element.findings().warning(
+        attribute->where,
+        std::string(name) + " has no effect, since the peer has no CSPs to choose among",
+        "remove it, or add a <csp>");
+  }
 }
 
 }  // namespace skein::profile

@@ -28,19 +28,41 @@ auto& demand_named(Items& items, std::string_view name, const std::string& kind)
                         remedy_for(name, names_of(items)));
 }
 
-void demand_parameter(const ComponentDescription& component, std::string_view name) {
-  std::vector<std::string_view> known;
-  for (const Parameter* parameter : component.parameters()) known.push_back(parameter->name);
+std::vector<std::string_view> parameters_of(const ComponentDescription& component) {
+  std::vector<std::string_view> names;
+  for (const Parameter* parameter : component.parameters()) names.push_back(parameter->name);
+  return names;
+}
+
+/// The settings by which the peer's CSPs, or for a CSP nobody, take that parameter.
+std::string settings_of_csps(const PeerProfile& peer, std::string_view name) {
+  std::string settings;
+  for (const CspProfile& csp : peer.csps) {
+    if (!csp.component || std::ranges::count(parameters_of(*csp.component), name) == 0) continue;
+    settings +=
+        (settings.empty() ? "" : ", ") + peer.name + "/" + csp.name + "." + std::string(name);
+  }
+  return settings;
+}
+std::string settings_of_csps(const CspProfile&, std::string_view) { return {}; }
+
+/// `owner`: a peer or a CSP, whose component that is.
+template <typename Owner>
+void demand_parameter(const Owner& owner, const ComponentDescription& component,
+                      std::string_view name) {
+  const auto known = parameters_of(component);
   if (known.empty() && component.interfaces.empty()) return;
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw InvalidArgument(in_quotes(component.name) + " has no parameter " + in_quotes(name) + "; " +
-                        remedy_for(name, known));
+  if (std::ranges::count(known, name) > 0) return;
+  const std::string settings = settings_of_csps(owner, name);
+  throw InvalidArgument(
+      in_quotes(component.name) + " has no parameter " + in_quotes(name) + "; " +
+      (settings.empty() ? remedy_for(name, known) : "what it chooses among has it: " + settings));
 }
 
 template <typename Owner>
 void set_parameter(Owner& owner, const Dictionary& dictionary, const std::string& name,
                    const std::string& value) {
-  if (owner.component) demand_parameter(*owner.component, name);
+  if (owner.component) demand_parameter(owner, *owner.component, name);
   const auto* entry = dictionary.find(EntryKind::Parameter, name);
   if (entry == nullptr) {
     throw InvalidArgument("the dictionary has no parameter " + in_quotes(name) + "; " +

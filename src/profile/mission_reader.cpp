@@ -181,6 +181,9 @@ class MissionReader {
     peer.topics = read_topic_rules(element);
     peer.parameters = parameters_of(element);
     for (const auto& child : element.children("csp")) peer.csps.push_back(csp_of(child, peer));
+    const bool chooses = !peer.csps.empty() || !peer.component ||
+                         !peer.component->subcomponents.empty();  // it lacks their CSPs
+    if (!chooses) warn_of_head_without_csps(element);
     return peer;
   }
 

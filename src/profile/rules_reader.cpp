@@ -59,6 +59,19 @@ void warn_of_rules_without_restart(const XmlElement& element) {
   }
 }
 
+/// A process whose reports come later than that for want of a processor is not stuck.
+void demand_time_for_reports(const XmlElement& element, const ProcessRules& rules) {
+  constexpr nanoseconds kShortest = std::chrono::milliseconds(100);
+  const auto written = element.maybe_attribute("progress_timeout");
+  if (!written || rules.progress_timeout == nanoseconds(0) || rules.progress_timeout >= kShortest)
+    return;
+  element.findings().error(
+      written->where,
+      "progress_timeout is " + in_quotes(written->value) +
+          ", and a process in order may need that long to tell of its progress",
+      "write 100 ms or more");
+}
+
 }  // namespace
 
 ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
@@ -73,16 +86,16 @@ ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
   rules.progress_timeout = read_time(element, "progress_timeout", rules.progress_timeout);
   rules.stop_timeout = read_time(element, "stop_timeout", rules.stop_timeout);
   rules.on_loss = read_loss_policy(element, on_loss);
+  demand_time_for_reports(element, rules);
   if (restart.policy != RestartPolicy::Never) demand_reachable_cap(element, restart);
   warn_of_rules_without_restart(element);
   return rules;
 }
 
 void refuse_process_rules(const XmlElement& element) {
-  const auto refuse = [&](const char* name) {
+  const auto refuse = [&](const std::string& name) {
     if (const auto attribute = element.maybe_attribute(name)) {
-      element.findings().error(attribute->where,
-                               std::string(name) + " is for processes, and this CSP has none",
+      element.findings().error(attribute->where, name + " is for processes, and this CSP has none",
                                "write process=\"own\", or set it at the <peer>");
     }
   };

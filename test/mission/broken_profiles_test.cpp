@@ -250,9 +250,10 @@ system="${system}"/>)")),
        {{"rash.xml", Office::component("rash", "city/Clerk", "", "",
                                        R"(<attribute name="isolated" value="true"/>)")}}},
       {"two peers write one file",
-       mission(
-           R"(<peer name="archive" component="parts/archive.xml" count="2" history="h.json"/>)"),
-       {"city.xml:2:1: error: the file of a history or decision_log \"h.json\" is there twice"}},
+       mission(kArchive +
+               R"(<peer name="office" component="parts/office.xml" count="2" history="h.json">)" +
+               kClerk + "</peer>"),
+       {"city.xml:3:1: error: the file of a history or decision_log \"h.json\" is there twice"}},
       {"a tag is not closed",
        "<mission name=\"city\">\n  <peer name=\"archive\" component=\"parts/archive.xml\">\n"
        "</mission>",

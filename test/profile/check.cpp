@@ -157,6 +157,70 @@ TEST_CASE("A profile's parameters are compared with the component and the dictio
       Catch::Contains("m.xml:3:") && Catch::Contains(finding));
 }
 
+TEST_CASE("A parameter that the peer's CSPs have, and not the peer, is set at them") {
+  ProfileFolder folder;
+  folder.write("q.xml", R"(<component name="Q"><interfaces><implements><type>M/IP</type>
+<optional><parameter name="Time limit"/></optional></implements></interfaces></component>)");
+  folder.write("h.xml", R"(<component name="H"><interfaces><implements>M/IH</implements>
+</interfaces><subcomponents><subcomponent>M/IP</subcomponent></subcomponents></component>)");
+  const auto file = folder.mission(R"(<peer name="h" component="h.xml"><csp component="q.xml"/>
+<csp name="r" component="q.xml"/><csp component="p.xml"/></peer>)");
+  CHECK_THROWS_WITH(read_checked_profile(file, {}, {"h.Time limit=1 s"}),
+                    "\"H\" has no parameter \"Time limit\"; what it chooses among has it: "
+                    "h/Q.Time limit, h/r.Time limit");
+  CHECK_NOTHROW(read_checked_profile(file, {}, {"h/Q.Time limit=1 s"}));
+}
+
+TEST_CASE("A unit that nothing is converted into is a mistake of the dictionary") {
+  ProfileFolder folder;
+  folder.write("dictionary.xml", R"(<dictionary>
+<parameter name="Speed" type="real" unit="mps">d</parameter></dictionary>)");
+  folder.write("c.xml", R"(<component name="C"><optional><parameter name="Speed"/></optional>
+</component>)");
+  const auto check = [&](const std::string& value) {
+    return folder.check(R"(<peer name="c" component="c.xml">
+<parameter name="Speed" value=")" +
+                        value + R"("/></peer>)");
+  };
+  CHECK(check("5 m/s") ==
+        "dictionary.xml:2:1: error: \"Speed\" has the unit \"mps\", into which \"5 m/s\" is not "
+        "converted (did you mean 'm/s'?); correct it there, or write the value without a unit at "
+        "m.xml:3:1\n");
+  CHECK(check("5 mps") == "");
+  CHECK(check("5") == "");
+}
+
+TEST_CASE("A mistake in a component is told there alone, and not once more where it is used") {
+  ProfileFolder folder;
+  SECTION("a parameter that the dictionary does not have") {
+    const std::string group = GENERATE("optional", "required");
+    folder.write("c.xml", "<component name=\"C\">\n<" + group +
+                              "><parameter name=\"Time limitt\"/></" + group + "></component>");
+    CHECK(folder.check(R"(<peer name="c" component="c.xml">
+<parameter name="Time limit" value="1 s"/></peer>)") ==
+          "c.xml:2:11: error: the parameter \"Time limitt\" is unknown; did you mean 'Time limit'? "
+          "(or add it to the dictionary)\n");
+  }
+  SECTION("an interface that is no name") {
+    folder.write("f.xml",
+                 "<component name=\"F\"><interfaces>\n<implements>M.IF</implements>"
+                 "</interfaces></component>");
+    CHECK(
+        folder.check(kF + kN) ==
+        "f.xml:2:1: error: <implements> holds \"M.IF\" instead of an interface; write a name like "
+        "IDL:AE_navigator/IPlanner\n");
+  }
+}
+
+TEST_CASE("A CSP whose component implements nothing is one finding") {
+  ProfileFolder folder;
+  folder.write("lone.xml", "<component name=\"Lone\"/>");
+  CHECK(folder.check(kF + R"(<peer name="n" component="n.xml">
+<csp component="lone.xml"/></peer>)") ==
+        "m.xml:3:1: error: the CSP \"Lone\" implements no interface (lone.xml:1:1); add what it "
+        "implements to <interfaces> there; an activity is a <peer>\n");
+}
+
 TEST_CASE("A service reference to a CSP of the peer is in order") {
   ProfileFolder folder;
   CHECK(folder.check(kF + R"(<peer name="n" component="n.xml"><csp component="p.xml"/>

@@ -193,11 +193,21 @@ TEST_CASE("A Head that cannot decide as the profile says is found, with its plac
 
 TEST_CASE("A strategy that only a plugin may know is taken at its word") {
   ProfileFolder folder;
-  CHECK(folder.check(R"(<peer name="f" component="f.xml" plugin="mine" strategy="steady"/>)") ==
-        "");
-  const auto mission = read_mission_profile(
-      folder.mission(R"(<peer name="f" component="f.xml" plugin="mine" strategy="steady"/>)"));
-  CHECK(mission.peers.at(0).head.strategy == "steady");
+  const std::string peers = R"(<peer name="f" component="f.xml"/>
+<peer name="n" component="n.xml" plugin="mine" strategy="steady"><csp component="p.xml"/></peer>)";
+  CHECK(folder.check(peers) == "");
+  CHECK(read_mission_profile(folder.mission(peers)).peers.at(1).head.strategy == "steady");
+}
+
+TEST_CASE("What a Head is told that has no CSPs to choose among is a warning") {
+  ProfileFolder folder;
+  CHECK(folder.check(R"(<peer name="f" component="f.xml" strategy="learned" max_stuck="3"/>)") ==
+        "m.xml:2:34: warning: strategy has no effect, since the peer has no CSPs to choose among; "
+        "remove it, or add a <csp>\n"
+        "m.xml:2:53: warning: max_stuck has no effect, since the peer has no CSPs to choose among; "
+        "remove it, or add a <csp>\n");
+  CHECK(folder.check(R"(<group name="g" strategy="learned"><peer name="f" component="f.xml"/>
+</group>)") == "");
 }
 
 TEST_CASE("A CSP has no Head") {
@@ -281,6 +291,9 @@ TEST_CASE("A profile's words that are unknown are answered with the nearest know
       {R"(restrat="always")", "<peer> has no \"restrat\"; did you mean 'restart'?"},
       {R"(on_loss="abord")", "\"abord\" is no answer to a loss; did you mean 'abort'?"},
       {R"(progress_timeout="0 s")", "progress_timeout is zero"},
+      {R"(progress_timeout="1 ms")",
+       "progress_timeout is \"1 ms\", and a process in order may need that long to tell of its "
+       "progress; write 100 ms or more"},
       {R"(stop_timeout="0 s")", "stop_timeout is zero"},
       {R"(stop_timeout="3000")",
        "stop_timeout: \"3000\" has no unit of time; write \"3000 ms\" or \"3000 s\""},
