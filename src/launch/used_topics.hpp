@@ -15,7 +15,8 @@ class UsedTopics {
   void add(const std::string& topic);
 
   /// What is to be told of each rule of the peer's own that no topic needed, with the nearest that
-  /// was used.
+  /// was used; and of a rule for several peers where this one used a topic of almost that name, for
+  /// which there is no rule.
   std::vector<std::string> unneeded(const std::vector<profile::TopicRules>& rules) const;
 
  private:
