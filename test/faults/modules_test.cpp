@@ -112,3 +112,43 @@ TEST_CASE("a plugin whose function is C++'s is told what is forgotten") {
   CHECK_THROWS_WITH(registry.load_plugin(plugin),
                     Contains("exports skein_register_components as C++; write `extern \"C\"`"));
 }
+
+TEST_CASE("a plugin that is not linked with what it calls is told the function, as it is written") {
+  ComponentRegistry registry;
+  CHECK_THROWS_WITH(
+      registry.load_plugin(built_file("test/faults/wrong_modules/libskein_unlinked_plugin.so")),
+      Contains("libskein_unlinked_plugin.so cannot be loaded: it uses charts::depth_m(double, "
+               "double), which is not defined; link it with the library that does"));
+}
+
+TEST_CASE("a plugin that registers nothing by any function is told the function") {
+  ComponentRegistry registry;
+  CHECK_THROWS_WITH(
+      registry.load_plugin(built_file("test/faults/wrong_modules/libskein_bare_plugin.so")),
+      Contains("exports no skein_register_components") &&
+          Contains("; a plugin needs the function extern \"C\" void skein_register_components("
+                   "skein::ComponentRegistry& registry)"));
+}
+
+TEST_CASE("a plugin's name that is almost right is told with the right one") {
+  const std::string folder = built_file("test/faults/wrong_modules");
+  const std::string file = (fs::path(folder) / "libskein_bare_plugin.so").string();
+  const std::string before = [] {
+    const char* set = getenv("SKEIN_MODULE_PATH");
+    return std::string(set ? set : "");
+  }();
+  setenv("SKEIN_MODULE_PATH", (folder + ":/no/such/bulid:" + file).c_str(), 1);
+  ComponentRegistry registry;
+  const auto [name, answer] = GENERATE(table<std::string, std::string>({
+      {"skein_bare_plugins", "no libskein_bare_plugins.so (did you mean 'skein_bare_plugin'?) in "},
+      {"libskein_bare_plugin.so", " (write 'skein_bare_plugin') in "},
+      {"skein_nowhere_at_all", "/no/such/bulid (of SKEIN_MODULE_PATH, and no folder), "},
+      {"skein_nowhere_at_all", "libskein_bare_plugin.so (of SKEIN_MODULE_PATH, and no folder), "},
+  }));
+  CHECK_THROWS_AS(registry.load_plugin(name), Unavailable);
+  CHECK_THROWS_WITH(registry.load_plugin(name), Contains(answer));
+  const std::string without_suffix = file.substr(0, file.size() - 3);
+  CHECK_THROWS_WITH(registry.load_plugin(without_suffix),
+                    "there is no " + without_suffix + "; write " + file);
+  setenv("SKEIN_MODULE_PATH", before.c_str(), 1);
+}
