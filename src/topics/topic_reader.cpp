@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -55,6 +56,8 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   bool decode(const dds::Sample& sample, void* into);
   void report_malformed(const std::string& reason);
   SubscriptionCounters counters() const;
+  /// Waits for the callback that another thread runs, and says so when that takes long.
+  void await_callback();
   bool runs_here() const { return runner.load() == std::this_thread::get_id(); }
 
   Executor& executor;
@@ -71,8 +74,11 @@ struct TopicReader::State : std::enable_shared_from_this<State> {
   std::atomic<std::uint64_t> missed_deadlines{0};
   std::mutex running;                     // one callback at a time
   std::atomic<std::thread::id> runner{};  // whose thread has it
-  bool closed = false;                    // under running
-  bool threw = false;                     // under running
+  std::atomic<bool> ending{false};        // no further callback begins; one may run
+  std::mutex ending_mutex;
+  std::condition_variable returned;
+  bool closed = false;  // under running
+  bool threw = false;   // under running
   std::unique_ptr<dds::Reader> reader;
   std::optional<Register::Entry> entry;  // until it is closed
 };
@@ -113,11 +119,23 @@ TopicReader::~TopicReader() {
     return;
   }
   std::unique_ptr<dds::Reader> reader;
+  state_->await_callback();
   {
     std::lock_guard lock(state_->running);
     state_->closed = true;
     reader = std::move(state_->reader);
   }
+}
+
+void TopicReader::State::await_callback() {
+  ending = true;
+  std::unique_lock lock(ending_mutex);
+  const auto idle = [this] { return runner.load() == std::thread::id(); };
+  if (returned.wait_for(lock, kTooLong, idle)) return;
+  log(LogLevel::Warning, "topics",
+      "topic '" + name +
+          "': whoever ends its subscription waits for a callback that does not return; let it "
+          "return");
 }
 
 dds::ReaderListener TopicReader::State::listener() {
@@ -185,8 +203,12 @@ void TopicReader::State::post(std::function<void(State&)> tell) {
     std::lock_guard lock(state->running);
     if (state->closed) return;
     state->runner = std::this_thread::get_id();
-    state->guarded([&] { tell(*state); });
+    if (!state->ending) state->guarded([&] { tell(*state); });
     state->runner = std::thread::id();
+    if (state->ending) {
+      const std::lock_guard ending(state->ending_mutex);
+      state->returned.notify_all();
+    }
     if (state->closed) ended = std::move(state->reader);
   });
   if (!posted) {
@@ -205,7 +227,7 @@ void TopicReader::State::hand_over() {
   scheduled = false;  // before taking: what comes from now on asks for another turn
   if (!reader) return;
   const auto hand = [this](const dds::Sample& sample) {
-    if (!closed) guarded([&] { hand_over(sample); });
+    if (!closed && !ending) guarded([&] { hand_over(sample); });
   };
   if (reader->take(hand, kTurn) == kTurn) schedule();
 }

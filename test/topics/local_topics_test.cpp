@@ -1,7 +1,9 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
@@ -304,6 +306,30 @@ TEST_CASE("a callback that does not return is told once, when a further value ha
   rudder.publish({"helm", 4});
   CHECK(told() == 1);
   may_return = true;
+}
+
+TEST_CASE("who ends a subscription whose callback does not return is told what it waits for") {
+  Sea sea;
+  const Log log;
+  auto rudder = sea.rudder();
+  ThreadExecutor executor("topics");
+  std::atomic<bool> inside = false;
+  std::atomic<bool> may_return = false;
+  auto watch = std::make_unique<Subscription<Rudder>>(
+      *sea.shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
+        inside = true;
+        eventually([&] { return may_return.load(); });
+      });
+  rudder.publish({"helm", 1});
+  REQUIRE(eventually([&] { return inside.load(); }));
+  std::thread ends([&] { watch.reset(); });
+  CHECK(eventually([&] {
+    return log.count(
+               "topic 'rudder': whoever ends its subscription waits for a callback that does "
+               "not return") == 1;
+  }));
+  may_return = true;
+  ends.join();
 }
 
 TEST_CASE("a callback may not destroy its own subscription: that is told, and it is the last") {
