@@ -21,7 +21,12 @@ constexpr int kReadsAtOnce = 16;
 
 std::string seconds_text(std::chrono::nanoseconds time) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f s", std::chrono::duration<double>(time).count());
+  const double s = std::chrono::duration<double>(time).count();
+  if (s < 0.01) {
+    std::snprintf(text.data(), text.size(), "%.3g ms", s * 1000);
+  } else {
+    std::snprintf(text.data(), text.size(), "%.2f s", s);
+  }
   return text.data();
 }
 

@@ -84,7 +84,7 @@ class SupervisedChild {
   std::string loss_;
 };
 
-/// `0.21 s`.
+/// `0.21 s`, and what is shorter than that shows as `1.5 ms`.
 std::string seconds_text(std::chrono::nanoseconds time);
 
 }  // namespace skein::launch

@@ -9,6 +9,7 @@
 
 #include "core/file_descriptor.hpp"
 #include "shell_mission.hpp"
+#include "supervised_child.hpp"
 #include "temporary_folder.hpp"
 
 using namespace skein::launch;
@@ -365,7 +366,7 @@ TEST_CASE("The first fault is told beside what ended the mission, where they dif
   RecordedMission both({first, second});
   const auto result = both.run();
   CHECK(result.reason == "mission, which runs the mission, ended with exit code 5");
-  CHECK_THAT(result.first_fault, Catch::Matches("after [0-9.]+ s, a ended with exit code 4"));
+  CHECK_THAT(result.first_fault, Catch::Matches("after [0-9.]+ m?s, a ended with exit code 4"));
   RecordedMission one({mission_child("exit 5")});
   CHECK(one.run().first_fault.empty());
 }
@@ -475,4 +476,11 @@ TEST_CASE("A callback that throws leaves no process behind") {
   CHECK_THROWS_WITH(mission.run(), "from a callback");
   REQUIRE(numbers_in(pids).size() == 1);
   CHECK_FALSE(exists(numbers_in(pids)[0]));
+}
+
+TEST_CASE("a time is told in seconds, and one that would show as none in milliseconds") {
+  CHECK(seconds_text(3s) == "3.00 s");
+  CHECK(seconds_text(10ms) == "0.01 s");
+  CHECK(seconds_text(1ms) == "1 ms");
+  CHECK(seconds_text(1500us) == "1.5 ms");
 }
