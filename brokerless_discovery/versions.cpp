@@ -16,16 +16,22 @@ const OperationDigest* find_operation(const ServiceDescription& provider, std::u
   return found == provider.operations.end() ? nullptr : &*found;
 }
 
-const OperationInfo* differing_operation(const InterfaceInfo& client,
-                                         const ServiceDescription& provider) {
+const OperationInfo* find_operation(const InterfaceInfo& provider, std::uint32_t hash) {
+  return provider.find_operation(hash);
+}
+
+/// `provider` is its description, or its interface.
+template <class Provider>
+const OperationInfo* differing_operation(const InterfaceInfo& client, const Provider& provider) {
   for (const OperationInfo& operation : client.operations) {
-    const OperationDigest* digest = find_operation(provider, operation.hash);
-    if (!digest || digest->signature != operation.signature) return &operation;
+    const auto* const there = find_operation(provider, operation.hash);
+    if (!there || there->signature != operation.signature) return &operation;
   }
   return nullptr;
 }
 
-auto differing_member(const InterfaceInfo& client, const ServiceDescription& provider) {
+template <class Provider>
+auto differing_member(const InterfaceInfo& client, const Provider& provider) {
   return find_difference(client.growing, provider.growing);
 }
 
@@ -46,6 +52,10 @@ std::string text(const GrowingMember* here, const discovery::GrowingMember* ther
 }  // namespace
 
 bool understands(const InterfaceInfo& client, const ServiceDescription& provider) {
+  return !differing_operation(client, provider) && !differing_member(client, provider);
+}
+
+bool understands(const InterfaceInfo& client, const InterfaceInfo& provider) {
   return !differing_operation(client, provider) && !differing_member(client, provider);
 }
 

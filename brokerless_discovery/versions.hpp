@@ -11,6 +11,8 @@ namespace skein::brokerless_discovery {
 /// with their signatures, and the types that may grow have only grown. `provider.growing` is
 /// sorted.
 bool understands(const InterfaceInfo& client, const discovery::ServiceDescription& provider);
+/// The same of a provider whose interface is at hand.
+bool understands(const InterfaceInfo& client, const InterfaceInfo& provider);
 
 /// What of the provider's interface is another, for people; empty where understands() holds.
 std::string difference(const InterfaceInfo& client, const discovery::ServiceDescription& provider);

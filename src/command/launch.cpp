@@ -81,12 +81,13 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
   return options;
 }
 
-/// Throws DescriptionError with all that `check` finds, where one of it is an error. A dry run
-/// starts nothing, and does not need what this machine may lack.
+/// Throws DescriptionError with all that `check` finds, where one of it is an error; otherwise says
+/// what it finds. A dry run starts nothing, and does not need what this machine may lack.
 profile::MissionProfile read_checked(const LaunchArguments& arguments) {
   if (arguments.dry_run) return read_mission(arguments);
   auto [mission, findings] = check_mission(arguments);
   if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+  std::fputs(profile::to_text(findings).c_str(), stderr);
   return std::move(mission);
 }
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <span>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/growth.hpp"
 #include "core/printable.hpp"
+#include "idl/type_text.hpp"
 #include "type_version.hpp"
 
 namespace skein::dds {
@@ -71,52 +71,10 @@ std::string name_of(std::uint32_t type, const Members& ours, const Members& thei
   return "a type";
 }
 
-/// The next line of a type's text, without its end; nothing behind the last whole one.
-std::optional<std::string_view> take_line(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  if (end == std::string_view::npos) return std::nullopt;
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end + 1);
-  return line;
-}
-
-/// What a line that opens a declaration declares: of `@final struct Pose {` that is Pose.
-std::string_view declared(std::string_view line) {
-  line = line.substr(0, line.find(" {"));
-  line = line.substr(0, line.find(" switch ("));
-  return line.substr(line.rfind(' ') + 1);
-}
-
-std::string shown(const std::string& scope, std::string_view line) {
-  if (scope.empty()) return std::string(line);
-  if (line.starts_with('}')) return scope + " without a further member";
-  if (line.ends_with(';')) line.remove_suffix(1);
-  return scope + " with '" + std::string(line) + "'";
-}
-
-/// What the first line in which the two texts differ says on either side; nothing where what is
-/// known of both is the same.
-std::optional<std::pair<std::string, std::string>> difference_of_texts(std::string_view offered,
-                                                                       std::string_view requested) {
-  std::vector<std::string> scopes{""};
-  for (;;) {
-    const auto one = take_line(offered);
-    const auto other = take_line(requested);
-    if (!one || !other) return std::nullopt;
-    if (*one != *other) return std::pair(shown(scopes.back(), *one), shown(scopes.back(), *other));
-    if (one->ends_with('{')) {
-      const std::string around = scopes.back().empty() ? "" : scopes.back() + "::";
-      scopes.push_back(around + std::string(declared(*one)));
-    } else if (one->starts_with('}') && scopes.size() > 1) {
-      scopes.pop_back();
-    }
-  }
-}
-
 std::optional<Mismatch> find_mismatch(const TypeVersion& offered, const TypeVersion& requested) {
   if (offered.signature == 0 || requested.signature == 0) return std::nullopt;
   if (offered.signature != requested.signature) {
-    if (auto texts = difference_of_texts(offered.text, requested.text)) {
+    if (auto texts = idl::difference_of_texts(offered.text, requested.text)) {
       return Mismatch{"type", std::move(texts->first), std::move(texts->second), kSameVersion};
     }
     return Mismatch{"type", "version " + hexadecimal(offered.signature, 16),

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "brokerless_discovery/broker.hpp"
+#include "brokerless_discovery/versions.hpp"
+#include "core/log.hpp"
 #include "core/suggestion.hpp"
 #include "head_state.hpp"
 #include "rpc/local_directory.hpp"
@@ -62,6 +65,26 @@ bool Head::State::Known::hangs() const {
   return instance && instance->overdue();
 }
 
+// Under the lock. Of what was given to this entity and is never a candidate, each once.
+void Head::State::tell_unusable(brokerless_discovery::Query query, std::size_t usable) {
+  const InterfaceInfo& interface = *query.client;
+  query.client = nullptr;
+  const auto all = parts.broker.find_service(query);
+  if (all.size() == usable) return;
+  for (const auto& description : all) {
+    const std::string differing = brokerless_discovery::difference(interface, *description);
+    if (differing.empty()) continue;
+    const Guid provider{description->provider};
+    const bool told = told_unusable.erase(provider);
+    told_unusable.insert(provider);
+    if (told) continue;
+    log(LogLevel::Warning, parts.entity,
+        "CSP '" + description->entity + "' is never chosen for " + std::string(interface.name) +
+            ", since it holds another version of it: " + differing +
+            "; build both sides from the same IDL");
+  }
+}
+
 // Under the lock. The Broker is asked again once its table has changed.
 const Head::State::Roster& Head::State::roster(const InterfaceInfo& interface) {
   Roster& roster = rosters[&interface];
@@ -73,6 +96,7 @@ const Head::State::Roster& Head::State::roster(const InterfaceInfo& interface) {
   roster.csps.clear();
   for (const auto& description : found) roster.csps.push_back(known(interface, description));
   roster.generation = generation;
+  tell_unusable(std::move(query), found.size());
   return roster;
 }
 

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "brokerless_discovery/broker.hpp"
+#include "core/recent_set.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "rpc/service.hpp"
 #include "skein/head.hpp"
@@ -94,6 +95,7 @@ struct Head::State {
   std::vector<Running> running;
   std::set<Guid> hung;  // in this process, and perhaps back since
   std::set<const InterfaceInfo*> told_waiting;
+  RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
   std::uint64_t last_run = 0;
   std::uint64_t last_decision = 0;
@@ -107,6 +109,8 @@ struct Head::State {
 
  private:
   const Roster& roster(const InterfaceInfo& interface);
+  /// `usable`: how many CSPs `query`, which names the Head's version of the interface, has found.
+  void tell_unusable(brokerless_discovery::Query query, std::size_t usable);
   Known known(const InterfaceInfo& interface,
               const std::shared_ptr<const brokerless_discovery::ServiceDescription>& described);
   std::shared_ptr<const std::string> host_of(const InterfaceInfo& interface,

@@ -51,28 +51,36 @@ const char* remedy_for(Kind wanted, Kind found) {
   return "register what it provides by add_body, or remove <implements> from its description";
 }
 
+/// Where none of the loaded plugins has the component.
+CodeLack missing(const std::string& who, const std::string& component, const std::string& plugin,
+                 const LoadedPlugins& plugins) {
+  if (plugin.empty()) {
+    return {"no plugin is named for the " + who, "name the one that implements it: plugin=\"...\""};
+  }
+  const auto own = plugins.names_of(plugin);
+  if (own.empty()) {
+    return {
+        "the plugin '" + plugin + "' registers no component at all, and is to implement the " + who,
+        "register it in the plugin's skein_register_components"};
+  }
+  std::string names;
+  for (const std::string& name : own) names += (names.empty() ? "" : ", ") + name;
+  return {"the plugin '" + plugin + "' has no implementation of the " + who +
+              suggestion(component, own),
+          "it implements " + names};
+}
+
 /// `wanted`: any of these will do; the first is the one that messages name.
 std::optional<CodeLack> find_lack(const std::string& component, const std::vector<Kind>& wanted,
-                                  const std::string& plugin, const ComponentRegistry& registry) {
-  const auto found = kind_of(component, registry);
+                                  const std::string& plugin, const LoadedPlugins& plugins) {
+  const auto found = kind_of(component, plugins.registry());
   if (found && std::ranges::count(wanted, *found) > 0) return std::nullopt;
   const KindWords words = words_for(wanted.front());
   const std::string who = std::string(words.name) + " '" + component + "'";
-  if (found) {
-    return CodeLack{"no code would run for the " + who + ": it is registered by " +
-                        words_for(*found).registered_by + ", not by " + words.registered_by,
-                    remedy_for(wanted.front(), *found)};
-  }
-  if (plugin.empty()) {
-    return CodeLack{"no plugin is named for the " + who,
-                    "name the one that implements it: plugin=\"...\""};
-  }
-  const auto known = registry.names();
-  std::string names;
-  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  return CodeLack{"the plugin '" + plugin + "' has no implementation of the " + who +
-                      suggestion(component, known),
-                  names.empty() ? "it has none at all" : "it implements " + names};
+  if (!found) return missing(who, component, plugin, plugins);
+  return CodeLack{"no code would run for the " + who + ": it is registered by " +
+                      words_for(*found).registered_by + ", not by " + words.registered_by,
+                  remedy_for(wanted.front(), *found)};
 }
 
 std::vector<Kind> wanted_of(const profile::PeerProfile& peer) {
@@ -83,14 +91,34 @@ std::vector<Kind> wanted_of(const profile::PeerProfile& peer) {
 
 }  // namespace
 
-std::optional<CodeLack> find_lack(const profile::PeerProfile& peer,
-                                  const ComponentRegistry& registry) {
-  return find_lack(peer.component->name, wanted_of(peer), peer.plugin, registry);
+std::optional<CodeLack> find_lack(const profile::PeerProfile& peer, const LoadedPlugins& plugins) {
+  return find_lack(peer.component->name, wanted_of(peer), peer.plugin, plugins);
 }
 
-std::optional<CodeLack> find_lack(const profile::CspProfile& csp,
-                                  const ComponentRegistry& registry) {
-  return find_lack(csp.component->name, {Kind::Csp}, csp.plugin, registry);
+std::optional<CodeLack> find_lack(const profile::CspProfile& csp, const LoadedPlugins& plugins) {
+  return find_lack(csp.component->name, {Kind::Csp}, csp.plugin, plugins);
+}
+
+std::vector<profile::Finding> compare(const profile::ComponentDescription& component,
+                                      const InterfaceInfo& code) {
+  std::vector<profile::Finding> findings;
+  std::vector<std::string> provided{std::string(code.name)};
+  for (const InterfaceInfo* base : code.bases) provided.emplace_back(base->name);
+  for (const auto& declared : component.interfaces) {
+    if (std::ranges::count(provided, declared.type) > 0) continue;
+    findings.push_back({profile::Severity::Error, declared.where,
+                        "'" + component.name + "' declares " + declared.type +
+                            ", which its code does not implement" +
+                            suggestion(declared.type, provided),
+                        "its code implements " + provided.front()});
+  }
+  if (findings.empty() && !component.find_interface(code.name)) {
+    findings.push_back({profile::Severity::Error, component.where,
+                        "'" + component.name + "' does not declare " + provided.front() +
+                            ", which its code implements",
+                        "write <implements>IDL:" + provided.front() + "</implements>"});
+  }
+  return findings;
 }
 
 }  // namespace skein::launch

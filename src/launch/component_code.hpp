@@ -2,9 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "loaded_plugins.hpp"
 #include "profile/mission_profile.hpp"
-#include "skein/component_registry.hpp"
 
 namespace skein::launch {
 
@@ -15,15 +16,17 @@ struct CodeLack {
   std::string remedy;
 };
 
-/// What is missing in `registry`, which holds the plugins of the peer and of the CSPs in its
-/// process: a Body, if the component implements an interface; an activity, if it implements none;
-/// with role="mission" a mission will do, too. Nothing if the registry has it. The component has
-/// been read.
-std::optional<CodeLack> find_lack(const profile::PeerProfile& peer,
-                                  const ComponentRegistry& registry);
+/// What is missing in `plugins`, which are those of the peer and of the CSPs in its process: a
+/// Body, if the component implements an interface; an activity, if it implements none; with
+/// role="mission" a mission will do, too. Nothing if they have it. The component has been read.
+std::optional<CodeLack> find_lack(const profile::PeerProfile& peer, const LoadedPlugins& plugins);
 
 /// The same of a CSP, which is to be registered as one.
-std::optional<CodeLack> find_lack(const profile::CspProfile& csp,
-                                  const ComponentRegistry& registry);
+std::optional<CodeLack> find_lack(const profile::CspProfile& csp, const LoadedPlugins& plugins);
+
+/// What the description declares against what its code implements: an error for each interface that
+/// one of the two lacks.
+std::vector<profile::Finding> compare(const profile::ComponentDescription& component,
+                                      const InterfaceInfo& code);
 
 }  // namespace skein::launch

@@ -236,14 +236,15 @@ class PluginCheck {
   }
 
   /// False, with a finding, where it cannot be loaded.
-  bool load(ComponentRegistry& registry, const std::string& plugin,
+  bool load(LoadedPlugins& plugins, const std::string& plugin,
             const profile::SourcePosition& where) {
     if (plugin.empty()) return true;
     tell_step_({Severity::Error, where, "loading the plugin '" + plugin + "'",
                 "look at what runs then: its skein_register_components, and the constructors of "
                 "its global objects"});
     try {
-      registry.load_plugin(plugin);
+      plugins.load(plugin);
+      check_versions(plugins, where);
       return true;
     } catch (const std::exception& error) {
       add(where, "the plugin '" + plugin + "': " + error.what(), "");
@@ -251,21 +252,25 @@ class PluginCheck {
     return false;
   }
 
+  /// Also of plugins in different processes: whoever calls across them finds no provider.
+  void check_versions(const LoadedPlugins& plugins, const profile::SourcePosition& where) {
+    for (std::string& text : add_versions(held_, plugins.interfaces()))
+      add(where, std::move(text), "build both from the same IDL", Severity::Warning);
+  }
+
   /// A peer with the CSPs in its process, as it would be started.
   void check_process(const PeerProfile& peer) {
     ComponentRegistry registry;
-    std::map<std::string, profile::SourcePosition> plugins{{peer.plugin, peer.where}};
+    LoadedPlugins plugins(registry);
+    if (!load(plugins, peer.plugin, peer.where)) return;
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner) plugins.insert({csp.plugin, csp.where});
-    }
-    for (const auto& [plugin, where] : plugins) {
-      if (!load(registry, plugin, where)) return;
+      if (csp.process == CspProcess::InOwner && !load(plugins, csp.plugin, csp.where)) return;
     }
     check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner && csp.component) demand_code(csp, registry);
+      if (csp.process == CspProcess::InOwner && csp.component) demand_code(csp, plugins);
     }
-    if (peer.component) demand_code(peer, registry);
+    if (peer.component) demand_code(peer, plugins);
   }
 
   void check_strategy(const PeerProfile& peer, const ComponentRegistry& registry) {
@@ -280,16 +285,24 @@ class PluginCheck {
 
   void check_own(const CspProfile& csp) {
     ComponentRegistry registry;
-    if (load(registry, csp.plugin, csp.where)) demand_code(csp, registry);
+    LoadedPlugins plugins(registry);
+    if (load(plugins, csp.plugin, csp.where)) demand_code(csp, plugins);
+  }
+
+  /// What is wrong with a description is a finding of its reader, and no other one follows from it.
+  static bool is_told_already(const PeerProfile& peer) { return !peer.component->complete; }
+  static bool is_told_already(const CspProfile& csp) {
+    return !csp.component->complete || csp.component->interfaces.empty();
   }
 
   /// Of a peer or a CSP.
   template <class Profile>
-  void demand_code(const Profile& profile, const ComponentRegistry& registry) {
-    if (const auto lack = find_lack(profile, registry)) {
+  void demand_code(const Profile& profile, const LoadedPlugins& plugins) {
+    if (is_told_already(profile)) return;
+    if (const auto lack = find_lack(profile, plugins)) {
       add(profile.where, lack->problem, lack->remedy);
     } else if (!profile.component->interfaces.empty()) {
-      check_interfaces(*profile.component, registry);
+      check_interfaces(*profile.component, plugins.registry());
     }
   }
 
@@ -305,26 +318,12 @@ class PluginCheck {
           "register it by add_body<INTERFACE> or add_csp<INTERFACE>", Severity::Note);
       return;
     }
-    std::vector<std::string> provided{std::string(code->name)};
-    for (const InterfaceInfo* base : code->bases) provided.emplace_back(base->name);
-    bool all = true;
-    for (const auto& declared : component.interfaces) {
-      if (std::ranges::count(provided, declared.type) > 0) continue;
-      all = false;
-      add(declared.where,
-          "'" + component.name + "' declares " + declared.type +
-              ", which its code does not implement" + suggestion(declared.type, provided),
-          "its code implements " + provided.front());
-    }
-    if (all && !component.find_interface(code->name)) {
-      add(component.where,
-          "'" + component.name + "' does not declare " + provided.front() +
-              ", which its code implements",
-          "write <implements>IDL:" + provided.front() + "</implements>");
-    }
+    for (Finding& finding : compare(component, *code))
+      add(finding.where, std::move(finding.problem), std::move(finding.remedy));
   }
 
   const TellStep& tell_step_;
+  std::vector<LoadedPlugins::Held> held_;  // by the plugins of the whole mission
   std::vector<Finding> findings_;
 };
 

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
-#include <set>
 #include <stop_token>
 #include <thread>
 
@@ -105,23 +104,10 @@ ParameterValues values_of(const std::vector<profile::Setting>& settings,
 // What the component's description declares of the interface that `servant` implements.
 ServiceOptions service_options(const profile::ComponentDescription& component,
                                const profile::Dictionary& dictionary, const Servant& servant) {
-  const auto* implemented = component.find_interface(servant.interface_info().name);
-  if (!implemented) {
-    throw InvalidArgument(profile::to_text(component.where) + ": component '" + component.name +
-                          "' does not declare " + std::string(servant.interface_info().name) +
-                          ", which its implementation provides; add it to <interfaces>");
-  }
-  const auto& bases = servant.interface_info().bases;
-  for (const auto& declared : component.interfaces) {
-    const bool is_base = std::any_of(bases.begin(), bases.end(), [&](const InterfaceInfo* base) {
-      return base->name == declared.type;
-    });
-    if (is_base || &declared == implemented) continue;
-    throw InvalidArgument(profile::to_text(declared.where) + ": component '" + component.name +
-                          "' declares " + declared.type +
-                          ", which its implementation does not provide; it provides " +
-                          std::string(servant.interface_info().name));
-  }
+  const InterfaceInfo& code = servant.interface_info();
+  const auto differing = compare(component, code);
+  if (!differing.empty()) throw profile::DescriptionError(differing);
+  const auto* implemented = component.find_interface(code.name);
   ServiceOptions options;
   for (const auto& attribute : implemented->attributes) {
     const auto* entry = dictionary.find(profile::EntryKind::Attribute, attribute.name);
@@ -140,8 +126,8 @@ const std::shared_ptr<Servant>& servant_of(const ComponentRegistry::Body& body) 
 
 /// Throws InvalidArgument where no code would run for a peer or a CSP.
 template <class Profile>
-void demand_code(const Profile& profile, const ComponentRegistry& registry) {
-  const auto lack = find_lack(profile, registry);
+void demand_code(const Profile& profile, const LoadedPlugins& plugins) {
+  const auto lack = find_lack(profile, plugins);
   if (!lack) return;
   throw InvalidArgument(profile::to_text(profile.where) + ": " + lack->problem + "; " +
                         lack->remedy);
@@ -212,9 +198,9 @@ auto make_component(const Profile& profile, const Factory& factory, Arguments&&.
 }
 
 void provide_csp(Entity& entity, const std::string& owner, const MissionProfile& mission,
-                 const CspProfile& csp, const ComponentRegistry& registry) {
-  demand_code(csp, registry);
-  auto servant = make_component(csp, *registry.find_csp(csp.component->name),
+                 const CspProfile& csp, const LoadedPlugins& plugins) {
+  demand_code(csp, plugins);
+  auto servant = make_component(csp, *plugins.registry().find_csp(csp.component->name),
                                 values_of(csp.parameters, mission.dictionary));
   ServiceOptions options = service_options(*csp.component, mission.dictionary, *servant);
   options.thread = csp.threads.thread;
@@ -317,17 +303,14 @@ int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfil
   return (*activity)(entity, values, told_to_end.get_token());
 }
 
-void load_plugin(ComponentRegistry& registry, const std::string& plugin) {
-  if (!plugin.empty()) registry.load_plugin(plugin);
-}
-
 int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
             ComponentRegistry& registry) {
-  load_plugin(registry, csp.plugin);
+  LoadedPlugins plugins(registry);
+  plugins.load(csp.plugin);
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
-  provide_csp(entity, peer.system + "/" + peer.name, mission, csp, registry);
+  provide_csp(entity, peer.system + "/" + peer.name, mission, csp, plugins);
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
   wait_for_signal();
@@ -344,18 +327,23 @@ void tell_unneeded_rules(const Entity& entity, const PeerProfile& peer, const Us
     log(LogLevel::Warning, entity.id(), text);
 }
 
-// The peer's plugin and those of its CSPs in this process, each once.
-void load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
-  std::set<std::string> plugins{peer.plugin};
+/// The peer's plugin and those of its CSPs in this process.
+LoadedPlugins load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
+  LoadedPlugins plugins(registry);
+  plugins.load(peer.plugin);
   for (const CspProfile& csp : peer.csps) {
-    if (csp.process == profile::CspProcess::InOwner) plugins.insert(csp.plugin);
+    if (csp.process == profile::CspProcess::InOwner) plugins.load(csp.plugin);
   }
-  for (const std::string& plugin : plugins) load_plugin(registry, plugin);
+  std::vector<LoadedPlugins::Held> held;
+  for (const std::string& text : add_versions(held, plugins.interfaces())) {
+    log(LogLevel::Warning, peer.system + "/" + peer.name, text + "; build both from the same IDL");
+  }
+  return plugins;
 }
 
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry,
              std::chrono::steady_clock::time_point begun) {
-  load_plugins(registry, peer);
+  const LoadedPlugins plugins = load_plugins(registry, peer);
   // An activity is told, also one that runs the mission.
   if (registry.find_activity(peer.component->name)) block_ending_signals();
   Entity* self = nullptr;
@@ -381,9 +369,9 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
       });
   for (const CspProfile& csp : peer.csps) {
     if (csp.process == profile::CspProcess::InOwner)
-      provide_csp(entity, entity.id(), mission, csp, registry);
+      provide_csp(entity, entity.id(), mission, csp, plugins);
   }
-  demand_code(peer, registry);
+  demand_code(peer, plugins);
   SelfTest self_test;
   if (!peer.component->interfaces.empty())
     self_test = provide_body(entity, mission, peer, registry);

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "../tools/describe.hpp"
+#include "../tools/log.hpp"
 #include "office.hpp"
 #include "rpc/dds_server.hpp"
 #include "skein/detail/codec.hpp"
@@ -17,7 +18,8 @@ namespace {
 /// A CSP whose description says that it lives elsewhere; behind it is nothing until it is served.
 class DistantWorker {
  public:
-  DistantWorker(const Office& office, const std::string& name)
+  /// `version` is added to the signature of its first operation: not 0, and no Head can call it.
+  DistantWorker(const Office& office, const std::string& name, unsigned version = 0)
       : participant_(Pairing::get().client->create_participant(participant_options())),
         id_(participant_->guid().participant()) {
     id_.bytes[12] = 1;
@@ -32,8 +34,9 @@ class DistantWorker {
     description.system = "uav-1";
     description.owner = office.owner->id();
     description.host = "elsewhere";
+    description.operations.at(0).signature += version;
     writer_->write(idl::encode_message(description), id_);
-    REQUIRE(eventually([&] { return office.is_available(name); }));
+    if (version == 0) REQUIRE(eventually([&] { return office.is_available(name); }));
   }
 
   void serve(std::shared_ptr<crew::Worker> worker) {
@@ -76,6 +79,23 @@ struct Slowest final : SelectionStrategy {
 };
 
 }  // namespace
+
+TEST_CASE("A CSP that holds another version of its interface is told once, with the difference") {
+  const Log log;
+  Office office;
+  office.add("near", Place::Inside, answer_as("near"), declared("1", "1"));
+  const DistantWorker stranger(office, "stranger", 1);
+  const auto ask = [&] { office.perform(Office::task(), 10s); };
+  const std::string told =
+      "CSP 'stranger' is never chosen for crew/Worker, since it holds another "
+      "version of it: operation 'work' has another signature there (";
+  REQUIRE(eventually([&] {
+    ask();
+    return log.count(told) > 0;
+  }));
+  ask();
+  CHECK(log.count(told) == 1);
+}
 
 TEST_CASE("the Head selects by declared quality among those that fit into the time", "[wire]") {
   Office office;

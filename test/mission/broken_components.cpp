@@ -20,8 +20,18 @@ class Desk final : public crew::Desk {
   std::string ask(const std::string& text) override { return text; }
 };
 
+class Worker final : public crew::Worker {
+ public:
+  std::string work(const std::string& task) override { return task; }
+  void improve(const std::string&, StreamSink<std::string>&) override {}
+};
+
 std::shared_ptr<Servant> desk() {
   return std::make_shared<crew::Desk::Skeleton>(std::make_shared<Desk>());
+}
+
+std::shared_ptr<Servant> worker() {
+  return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>());
 }
 
 void break_down(ComponentRegistry& registry, const std::string& how) {
@@ -39,6 +49,8 @@ extern "C" std::uint32_t skein_plugin_abi() {
 }
 
 extern "C" void skein_register_components(ComponentRegistry& registry) {
+  const char* how = std::getenv("BROKEN_PLUGIN");
+  if (how && std::string(how) == "registers nothing") return;
   const auto body = [](Entity&, const ParameterValues&) { return ComponentRegistry::Body{desk()}; };
   registry.add_body<crew::Desk>("office", body);
   registry.add_body("quiet", body);
@@ -46,5 +58,6 @@ extern "C" void skein_register_components(ComponentRegistry& registry) {
   registry.add_mission("client", [](Entity&, const ParameterValues&) { return 0; });
   registry.add_activity("herald",
                         [](Entity&, const ParameterValues&, const std::stop_token&) { return 0; });
-  if (const char* how = std::getenv("BROKEN_PLUGIN")) break_down(registry, how);
+  registry.add_csp<crew::Worker>("worker", [](const ParameterValues&) { return worker(); });
+  if (how) break_down(registry, how);
 }

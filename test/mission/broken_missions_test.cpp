@@ -87,6 +87,16 @@ std::string implementing(const std::string& content) {
                    "</implements></interfaces>");
 }
 
+const std::string kManager =
+    "<component name=\"office\"><interfaces><implements>crew/Desk</implements></interfaces>"
+    "<subcomponents><subcomponent>crew/Worker</subcomponent></subcomponents></component>";
+
+/// A CSP for what kManager has as its subcomponent.
+std::string csp(const std::string& name) {
+  return "<component name=\"" + name +
+         "\"><interfaces><implements>crew/Worker</implements></interfaces></component>";
+}
+
 std::vector<Broken> broken_missions() {
   return {
       // code
@@ -208,6 +218,20 @@ std::vector<Broken> broken_missions() {
        "two implementations of component 'office' are registered; this plugin registers it twice",
        {},
        "registers twice"},
+      {"a plugin that registers nothing",
+       R"(<peer name="o" component="office.xml">
+<csp component="stranger.xml" plugin="skein_changed_components"/></peer>)",
+       "the plugin 'skein_broken_components' registers no component at all, and is to implement "
+       "the component 'office'; register it in the plugin's skein_register_components",
+       {{"office.xml", kManager}, {"stranger.xml", csp("stranger")}},
+       "registers nothing"},
+      {"a component that another plugin of the peer would not have either",
+       R"(<peer name="o" component="office.xml">
+<csp component="clerk.xml" plugin="skein_changed_components"/>
+<csp component="missing.xml" plugin="skein_changed_components"/></peer>)",
+       "the plugin 'skein_changed_components' has no implementation of the CSP 'missing'; it "
+       "implements stranger\n",
+       {{"office.xml", kManager}, {"clerk.xml", csp("stranger")}, {"missing.xml", csp("missing")}}},
       // names and files
       {"a system with a blank", R"(<peer name="h" component="herald.xml" system="uav 1"/>)",
        "town.xml:2:39: error: \"uav 1\" is no name of a system; use letters, digits, '_', '-' and "
@@ -301,6 +325,35 @@ TEST_CASE("A broken mission is refused with the message that a person needs, and
       CHECK_THAT(run.output(), Contains(broken.message) && !Contains("started as process"));
     }
   }
+}
+
+TEST_CASE("Two plugins that hold two versions of an interface are told, with the difference") {
+  const Town town;
+  town.write("office.xml", kManager);
+  town.write("worker.xml", csp("worker"));
+  town.write("stranger.xml", csp("stranger"));
+  const std::string process = GENERATE("in", "own");
+  const std::string profile = town.profile(R"(<peer name="o" component="office.xml">
+<csp component="worker.xml"/>
+<csp component="stranger.xml" plugin="skein_changed_components" process=")" +
+                                           process + R"("/></peer>
+<peer name="h" component="herald.xml" role="mission"/>)");
+  const std::string told =
+      "the plugins 'skein_broken_components' and 'skein_changed_components' hold two versions of "
+      "crew/Worker, and neither calls what the other implements: ";
+  const std::string remedy = "; build both from the same IDL";
+  CommandRun check({"check", profile});
+  CHECK(check.wait() == 0);
+  CHECK_THAT(check.output(), Contains("town.xml:4:1: warning: " + told) && Contains(remedy) &&
+                                 Contains("Worker with 'string work(in string task)") &&
+                                 Contains("and Worker with 'string work(in double task)'"));
+  if (!installed("fastdds")) return;
+  CommandRun launch({"launch", profile});
+  CHECK(launch.wait() == 0);
+  CHECK_THAT(launch.output(), Contains("town.xml:4:1: warning: " + told));
+  if (process == "own") return;
+  CommandRun peer({"peer", profile, "o"});
+  CHECK(peer.writes("warning: default/o: " + told));
 }
 
 TEST_CASE("A plugin that every user may replace is not loaded, neither to check nor to run it") {
