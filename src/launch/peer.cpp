@@ -23,6 +23,7 @@
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
 #include "hung_csp.hpp"
+#include "last_words.hpp"
 #include "launch/address_space.hpp"
 #include "launch/child_state.hpp"
 #include "launch/exit_codes.hpp"
@@ -190,6 +191,7 @@ auto make_component(const Profile& profile, const Factory& factory, Arguments&&.
   const std::string place = profile::to_text(profile.where) + ": ";
   const std::string& name = profile.component->name;
   const MakingWatch watch(profile);
+  const StartStep step("makes '" + name + "'");
   auto made = run_user_code(place + "while making '" + name + "': ",
                             [&] { return factory(std::forward<Arguments>(arguments)...); });
   if (servant_of(made)) return made;
@@ -303,10 +305,16 @@ int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfil
   return (*activity)(entity, values, told_to_end.get_token());
 }
 
+void load(LoadedPlugins& plugins, const std::string& plugin) {
+  if (plugin.empty()) return;
+  const StartStep step("loads the plugin '" + plugin + "'");
+  plugins.load(plugin);
+}
+
 int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
             ComponentRegistry& registry) {
   LoadedPlugins plugins(registry);
-  plugins.load(csp.plugin);
+  load(plugins, csp.plugin);
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
@@ -330,9 +338,9 @@ void tell_unneeded_rules(const Entity& entity, const PeerProfile& peer, const Us
 /// The peer's plugin and those of its CSPs in this process.
 LoadedPlugins load_plugins(ComponentRegistry& registry, const PeerProfile& peer) {
   LoadedPlugins plugins(registry);
-  plugins.load(peer.plugin);
+  load(plugins, peer.plugin);
   for (const CspProfile& csp : peer.csps) {
-    if (csp.process == profile::CspProcess::InOwner) plugins.load(csp.plugin);
+    if (csp.process == profile::CspProcess::InOwner) load(plugins, csp.plugin);
   }
   std::vector<LoadedPlugins::Held> held;
   for (const std::string& text : add_versions(held, plugins.interfaces())) {
@@ -421,6 +429,7 @@ EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& p
 int run_process(const MissionProfile& mission, const std::string& process,
                 ComponentRegistry& registry) {
   const auto begun = std::chrono::steady_clock::now();
+  leave_last_words();
   demand_address_space();
   const std::size_t slash = process.find('/');
   const PeerProfile* peer = mission.find_peer(process.substr(0, slash));

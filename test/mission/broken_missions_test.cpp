@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 
 #include "../profile/temporary_folder.hpp"
@@ -354,6 +355,21 @@ TEST_CASE("Two plugins that hold two versions of an interface are told, with the
   if (process == "own") return;
   CommandRun peer({"peer", profile, "o"});
   CHECK(peer.writes("warning: default/o: " + told));
+}
+
+TEST_CASE("A peer whose plugin ends its process says which, and does not end as if all were well") {
+  if (!installed("fastdds")) return;
+  const Town town;
+  const std::string profile = town.profile(R"(<peer name="h" component="herald.xml"/>)");
+  const auto [how, code, told] = GENERATE(table<std::string, int, std::string>({
+      {"aborts", 128 + SIGABRT, "skein: dies of signal 6 while it "},
+      {"exits in order", 71, "skein: is ended by a call of exit() while it "},
+  }));
+  CommandOptions options;
+  options.prepare = [how = how] { setenv("BROKEN_PLUGIN", how.c_str(), 1); };
+  CommandRun peer({"peer", profile, "h"}, options);
+  CHECK(peer.wait() == code);
+  CHECK_THAT(peer.output(), Contains(told + "loads the plugin 'skein_broken_components'"));
 }
 
 TEST_CASE("A plugin that every user may replace is not loaded, neither to check nor to run it") {

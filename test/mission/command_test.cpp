@@ -266,6 +266,33 @@ TEST_CASE("a peer whose component is being made, and never is, obeys the signals
   CHECK_THAT(run.output(), Contains("told to end while 'bad' is made"));
 }
 
+TEST_CASE("of a process that dies or hangs the launcher says what it did") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const auto [how, told] = GENERATE(table<std::string, std::string>({
+      {"a crash",
+       "b ended by signal 6 (Aborted) (last it said: dies of signal 6 while it makes 'bad')"},
+      {"never", "b did not become ready within 2.00 s (last it said: makes 'bad')"},
+  }));
+  CommandRun run({"launch", errand.profile("",
+                                           "<peer name='b' component='bad.xml' ready_timeout="
+                                           "'2 s'><argument value='" +
+                                               how + "'/></peer>")});
+  CHECK(run.wait() == 71);
+  CHECK_THAT(run.output(), Contains(told));
+}
+
+TEST_CASE("of a ready process that dies the launcher says in which thread") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"launch", errand.profile("", kOffice)});
+  REQUIRE(run.writes("all 1 processes are ready"));
+  CommandRun call({"call", "Desk", "ask", "\"die\"", "--domain", "48"});
+  CHECK(run.wait() == 70);
+  CHECK_THAT(run.output(), Contains("office | skein: dies of signal 6 in its thread 'office'\n") &&
+                               Contains("(last it said: dies of signal 6 in its thread 'office')"));
+}
+
 TEST_CASE("two peers of one name each warn of the other, and the doctor of both") {
   if (!installed("fastdds")) return;
   const Errand errand;

@@ -1,6 +1,7 @@
 // A small mission, for tests of how missions are started: a desk that answers, one that fails its
 // self-test, and those who ask; and a strategy of selection.
 #include <cstdio>
+#include <cstdlib>
 #include <future>
 #include <memory>
 #include <stdexcept>
@@ -26,6 +27,7 @@ class Desk final : public crew::Desk {
  public:
   std::string ask(const std::string& text) override {
     while (text == "spin") spun_ = spun_ + 1;
+    if (text == "die") std::abort();
     return "yes, " + text;
   }
 
@@ -93,6 +95,7 @@ int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the cli
 std::shared_ptr<Servant> make_badly(const std::string& how) {
   if (how == "nothing") return nullptr;
   if (how == "an int") throw 7;
+  if (how == "a crash") std::abort();
   if (how == "never") {
     std::puts("is being made");
     std::fflush(stdout);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace skein::launch {
+
+/// While it lives, the launcher knows what this process does before it is ready, and so does
+/// whoever reads what it says when it dies of that (see leave_last_words()). Only the main thread
+/// makes one, and one at a time.
+class StartStep {
+ public:
+  /// Follows `it`: `loads the plugin 'survey'`.
+  explicit StartStep(const std::string& what);
+  ~StartStep();
+  StartStep(const StartStep&) = delete;
+  StartStep& operator=(const StartStep&) = delete;
+};
+
+/// From now on, when code in this process makes it die of a signal, the process tells on stderr,
+/// and the launcher, in which thread, or in which StartStep; then it dies as it would have. One
+/// that ends by exit() within a StartStep says so, too, and ends with kStartFailed.
+void leave_last_words();
+
+}  // namespace skein::launch
