@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <mutex>
+#include <set>
 #include <string_view>
 
+#include "asked_parameters.hpp"
 #include "core/suggestion.hpp"
 #include "skein/error.hpp"
 
@@ -35,9 +38,29 @@ std::string text_of(const ParameterValue& value) {
   return std::visit(Words{}, value);
 }
 
+struct Asked {
+  std::mutex mutex;
+  std::set<std::string> names;
+};
+
+/// Of the whole process: the values are copied at will, and each copy may be read.
+Asked& asked() {
+  static auto& all = *new Asked;  // static objects may ask when they end
+  return all;
+}
+
 }  // namespace
 
+bool was_parameter_asked(const std::string& name) {
+  const std::lock_guard lock(asked().mutex);
+  return asked().names.contains(name);
+}
+
 const ParameterValue* ParameterValues::find_value(const std::string& name) const {
+  {
+    const std::lock_guard lock(asked().mutex);
+    asked().names.insert(name);
+  }
   const auto found = values_.find(name);
   return found == values_.end() ? nullptr : &found->second;
 }

@@ -22,6 +22,7 @@
 #include "core/run_user_code.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
+#include "entity/asked_parameters.hpp"
 #include "hung_csp.hpp"
 #include "last_words.hpp"
 #include "launch/address_space.hpp"
@@ -311,6 +312,17 @@ void load(LoadedPlugins& plugins, const std::string& plugin) {
   plugins.load(plugin);
 }
 
+/// At the end: code may ask at any time.
+void tell_unread_parameters(const Entity& entity, const std::string& component,
+                            const std::vector<profile::Setting>& settings) {
+  for (const profile::Setting& setting : settings) {
+    if (was_parameter_asked(setting.name)) continue;
+    log(LogLevel::Warning, entity.id(),
+        "'" + component + "' never asked for its parameter '" + setting.name + "' (" +
+            profile::to_text(setting.where) + "), by get() or find()");
+  }
+}
+
 int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspProfile& csp,
             ComponentRegistry& registry) {
   LoadedPlugins plugins(registry);
@@ -322,6 +334,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
   wait_for_signal();
+  tell_unread_parameters(entity, csp.component->name, csp.parameters);
   return 0;
 }
 
@@ -395,6 +408,11 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
       wait_for_signal();
     }
     tell_unneeded_rules(entity, peer, topics);
+    tell_unread_parameters(entity, peer.component->name, peer.parameters);
+    for (const CspProfile& csp : peer.csps) {
+      if (csp.process == profile::CspProcess::InOwner)
+        tell_unread_parameters(entity, csp.component->name, csp.parameters);
+    }
     return code;
   } catch (const std::exception& error) {
     const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +

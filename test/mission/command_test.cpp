@@ -293,6 +293,21 @@ TEST_CASE("of a ready process that dies the launcher says in which thread") {
                                Contains("(last it said: dies of signal 6 in its thread 'office')"));
 }
 
+TEST_CASE("a parameter that is set, and that no code has asked for, is told at the end") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run({"peer",
+                  errand.profile("",
+                                 "<peer name='h' component='herald.xml'>"
+                                 "<parameter name='Time limit' value='1 s'/></peer>"),
+                  "h"});
+  REQUIRE(run.writes("hear, hear"));
+  run.signal(SIGTERM);
+  CHECK(run.wait() == 0);
+  CHECK_THAT(run.output(),
+             Contains("uav-1/h: 'herald' never asked for its parameter 'Time limit' ("));
+}
+
 TEST_CASE("two peers of one name each warn of the other, and the doctor of both") {
   if (!installed("fastdds")) return;
   const Errand errand;
