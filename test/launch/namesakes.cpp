@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/host.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/inspection.idl.hpp"
 
 using namespace skein;
 using namespace skein::launch;
@@ -37,6 +39,27 @@ TEST_CASE("A peer of the same name in another process is told once") {
              Contains("process " + std::to_string(kOther) + " runs a peer of the same name"));
   CHECK(namesakes.look_at(added(service_of("here", kOther))).empty());
   CHECK_THAT(namesakes.look_at(added(service_of("there", getpid()))), Contains("on another host"));
+}
+
+TEST_CASE("A namesake that provides nothing is told by what it says of itself, once") {
+  Namesakes namesakes("boat", "tide", "here", static_cast<std::uint32_t>(getpid()));
+  inspection::Answer answer;
+  answer.entity = "boat/tide";
+  CHECK(namesakes.look_at(answer).empty());
+  answer.peer.emplace_back();
+  answer.peer[0].host = name_of_this_host();
+  answer.peer[0].pid = static_cast<std::uint32_t>(getpid());
+  CHECK(namesakes.look_at(answer).empty());
+  answer.peer[0].pid = static_cast<std::uint32_t>(kOther);
+  CHECK_THAT(namesakes.look_at(answer),
+             Contains("process " + std::to_string(kOther) + " runs a peer of the same name"));
+  CHECK(namesakes.look_at(answer).empty());
+  CHECK(namesakes.look_at(added(service_of("here", kOther))).empty());
+  answer.peer[0].host = "elsewhere";
+  CHECK_THAT(namesakes.look_at(answer), Contains("on another host"));
+  answer.entity = "boat/chart";
+  answer.peer[0].pid += 1;
+  CHECK(namesakes.look_at(answer).empty());
 }
 
 TEST_CASE("Who has another name, belongs to another, goes or is dead is no namesake") {
