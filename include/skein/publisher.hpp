@@ -64,7 +64,8 @@ class [[nodiscard]] Publisher {
 
   /// Sends the value to all subscribers that are matched now, and keeps it for late joiners if the
   /// QoS say so. Throws Overloaded if reliable subscribers make no room within `max_blocking`,
-  /// InvalidArgument for a value that CDR cannot carry.
+  /// InvalidArgument for a value that CDR cannot carry. A value of more than 1 MiB that is
+  /// published best effort is logged, the first time: it hardly arrives.
   void publish(const T& value) { writer_->publish(&value); }
 
   /// Disposes the instance with this value's key. Throws as publish() does.

@@ -55,7 +55,8 @@ class TopicReader {
               const TopicType& type, const TopicQos& qos, Consumer consumer,
               SubscriptionOptions options, Register* known);
   ~TopicReader();
-  /// Decodes the oldest waiting value into `value`; false if none waits.
+  /// Decodes the oldest waiting value into `value`; false if none waits. Throws InvalidArgument if
+  /// there is a consumer.
   bool take(void* value);
   std::size_t publishers() const;
   SubscriptionCounters counters() const;
@@ -93,8 +94,8 @@ class [[nodiscard]] Subscription {
             participant, executor, name, topics::topic_type<T>(), qos,
             consumer_of(std::move(callback)), std::move(options), known)) {}
 
-  /// The oldest waiting value, or nullopt. Like latest(), only for subscriptions without a
-  /// callback.
+  /// The oldest waiting value, or nullopt. Throws InvalidArgument, as latest() does, if the
+  /// subscription has a callback.
   std::optional<T> take() {
     T value{};
     return reader_->take(&value) ? std::optional<T>(std::move(value)) : std::nullopt;

@@ -11,6 +11,7 @@
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/detail/malformed_sample.hpp"
+#include "skein/error.hpp"
 #include "skein/subscription.hpp"
 #include "wire_topic.hpp"
 
@@ -276,6 +277,11 @@ void TopicReader::State::report_malformed(const std::string& reason) {
 }
 
 bool TopicReader::take(void* value) {
+  if (state_->consumer) {
+    throw InvalidArgument("topic '" + state_->name +
+                          "': a subscription with a callback has no values to take; they go to the "
+                          "callback: subscribe without one, to poll");
+  }
   bool found = false;
   const auto keep = [&](const dds::Sample& sample) { found = state_->decode(sample, value); };
   while (!found && state_->reader->take(keep, 1) == 1) {

@@ -1,6 +1,8 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "core/log.hpp"
 #include "dds/port.hpp"
@@ -12,8 +14,26 @@
 
 namespace skein::topics {
 
+namespace {
+
+/// Best effort, so large a value hardly arrives: it travels in more pieces than a receiver's socket
+/// buffer has room for, and each that is lost loses it.
+constexpr std::size_t kTooLarge = 1 << 20;
+
+}  // namespace
+
 struct TopicWriter::State {
-  explicit State(const TopicType& type_) : type(type_) {}
+  State(std::string name_, const TopicType& type_, bool best_effort_)
+      : name(std::move(name_)), type(type_), best_effort(best_effort_) {}
+
+  void tell_if_too_large(std::size_t size) {
+    if (!best_effort || size <= kTooLarge || told_too_large.exchange(true)) return;
+    log(LogLevel::Warning, "topics",
+        "topic '" + name + "': a value of " + std::to_string(size) +
+            " bytes is published best effort, by which more than 1 MiB arrives seldom or never; "
+            "let both sides ask for TopicQos{}, which sends again what is lost, or set `reliable`; "
+            "further values are not told of");
+  }
 
   Bytes spare_buffer() {
     std::lock_guard lock(mutex);
@@ -24,7 +44,10 @@ struct TopicWriter::State {
     spare = std::move(buffer);
   }
 
+  const std::string name;
   const TopicType type;
+  const bool best_effort;
+  std::atomic<bool> told_too_large{false};
   std::mutex mutex;
   Bytes spare;  // for the next value, so that a steady flow allocates nothing
   std::atomic<std::uint64_t> published{0};
@@ -35,7 +58,7 @@ struct TopicWriter::State {
 
 TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
                          const TopicType& type, const TopicQos& qos, Register* known)
-    : state_(std::make_unique<State>(type)) {
+    : state_(std::make_unique<State>(name, type, !qos.reliable)) {
   dds::WriterListener listener;
   listener.on_deadline_missed = [state = state_.get()](const Guid&) { ++state->missed_deadlines; };
   listener.on_incompatible = [](const dds::Incompatibility& why) {
@@ -43,8 +66,8 @@ TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
   };
   state_->writer =
       participant.create_writer(wire_topic(name, type), wire_qos(qos, type), std::move(listener));
-  state_->entry.emplace(known, [state = state_.get(), name, qos] {
-    return Endpoint{.name = name,
+  state_->entry.emplace(known, [state = state_.get(), qos] {
+    return Endpoint{.name = state->name,
                     .type = state->type,
                     .qos = qos,
                     .publishes = true,
@@ -61,6 +84,7 @@ void TopicWriter::publish(const void* value) {
   message.clear();
   message.append(encapsulation(state_->type.support->representation));
   idl::encode_value(*state_->type.support, value, message);
+  state_->tell_if_too_large(message.size());
   const auto key_of = state_->type.key_of;
   state_->writer->write(message, key_of != nullptr ? key_of(value) : Guid{});
   ++state_->published;

@@ -84,6 +84,34 @@ TEST_CASE("without a callback values wait until they are taken") {
   CHECK(watch.counters().received == 3);
 }
 
+TEST_CASE("who has a callback cannot take values, and is told so") {
+  Sea sea;
+  auto rudder = sea.rudder();
+  auto watch = sea.watch_rudder();
+  rudder.publish({"helm", 1});
+  CHECK_THROWS_AS(watch.take(), InvalidArgument);
+  CHECK_THROWS_WITH(watch.latest(),
+                    "topic 'rudder': a subscription with a callback has no values to take; they "
+                    "go to the callback: subscribe without one, to poll");
+  sea.executor.run_all();
+  CHECK(sea.angles == Angles{1});
+}
+
+TEST_CASE("of values that are too large to be sent best effort the publisher tells once") {
+  Sea sea;
+  const Log log;
+  const std::string large((1 << 20) + 1, 'x');
+  Publisher<Depth> reliable(*sea.ship, "depth", {});
+  reliable.publish({1, 1, large});
+  Publisher<Depth> sensor(*sea.ship, "depth", TopicQos::sensor());
+  sensor.publish({1, 1, "small"});
+  CHECK(log.text().empty());
+  for (int i = 0; i < 3; ++i) sensor.publish({1, 1, large});
+  CHECK(log.count("\n") == 1);
+  CHECK(log.count("topic 'depth': a value of 1048") == 1);
+  CHECK(log.count("published best effort") == 1);
+}
+
 TEST_CASE("a slow subscriber loses its own oldest values, counted, and holds up nobody") {
   Sea sea;
   TopicQos qos;
