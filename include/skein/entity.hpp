@@ -54,7 +54,8 @@ struct ServiceAttribute {
 };
 
 struct ServiceOptions {
-  /// What the service declares: `latency` (in ms, or with a unit: `0.3 s`), `quality`, ...
+  /// What the service declares: `latency` (in ms, or with a unit: `0.3 s`), `quality`, ... A name
+  /// that misses one of these two by a letter is logged.
   std::vector<ServiceAttribute> attributes{};
   /// Where blocking calls from the same process run; all others run on the service's own threads.
   /// With CallThread::Caller, calls run one at a time, and `threads` must be 1.
@@ -98,7 +99,9 @@ class Entity {
   Guid guid() const;
 
   /// Provides a public service, implemented by a Body. Each client gets a session of the Head.
-  /// Returns the provider's identity. Throws InvalidArgument for options that cannot work.
+  /// Returns the provider's identity. Provided twice, an interface has two providers of the same
+  /// name, among which clients choose as among any others. Throws InvalidArgument for options that
+  /// cannot work.
   template <class Interface>
   Guid provide(std::shared_ptr<Interface> body, const ServiceOptions& options = {}) {
     return provide(skeleton_of(std::move(body)), options);

@@ -32,9 +32,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string suggestion(std::string_view name, std::span<const std::string> known) {
+std::string suggestion(std::string_view name, std::span<const std::string> known,
+                       std::size_t most) {
   const std::string* best = nullptr;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t least = std::min(most, std::max<std::size_t>(1, name.size() / 3)) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,7 +9,8 @@ namespace skein {
 
 /// ` (did you mean 'X'?)` for the known name that is nearest to `name` by edit distance (two
 /// neighbours that were exchanged are one edit), or an empty text where none is near (more than a
-/// third of the letters differ).
-std::string suggestion(std::string_view name, std::span<const std::string> known);
+/// third of the letters differ, or more than `most`).
+std::string suggestion(std::string_view name, std::span<const std::string> known,
+                       std::size_t most = SIZE_MAX);
 
 }  // namespace skein

@@ -1,5 +1,6 @@
 #include "skein/entity.hpp"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -13,6 +14,7 @@
 #include "core/interface_name.hpp"
 #include "core/leave_behind.hpp"
 #include "core/log.hpp"
+#include "core/suggestion.hpp"
 #include "dds/options_check.hpp"
 #include "dds/port.hpp"
 #include "dds/vendor_names.hpp"
@@ -72,13 +74,26 @@ void check_owner(const std::string& owner, const std::string& csp) {
                         "' is no entity: write SYSTEM/ENTITY, as Entity::id() returns it");
 }
 
+// One letter is a slip; what differs by more may be an attribute of the user's own.
+void tell_misspelt(const std::string& entity, const std::string& name, const std::string& who) {
+  static const std::array<std::string, 2> read{"latency", "quality"};
+  const std::string meant = suggestion(name, read, 1);
+  if (meant.empty()) return;
+  log(LogLevel::Warning, entity,
+      "'" + who + "' declares the attribute '" + name + "', which no Head reads" + meant);
+}
+
 // A Head reads these two, whether or not a dictionary describes them.
-void check_attributes(const ServiceOptions& options, const std::string& who) {
+void check_attributes(const ServiceOptions& options, const std::string& entity,
+                      const std::string& who) {
   using Kind = brokerless_discovery::Quantity::Kind;
   for (const auto& [name, value] : options.attributes) {
     const auto quantity = brokerless_discovery::quantity_of(value);
     const bool latency = name == "latency";
-    if (!latency && name != "quality") continue;
+    if (!latency && name != "quality") {
+      tell_misspelt(entity, name, who);
+      continue;
+    }
     const bool finite = std::isfinite(quantity.value);
     if (finite && (quantity.kind == Kind::Number || (latency && quantity.kind == Kind::Time))) {
       continue;
@@ -348,7 +363,7 @@ Guid Entity::provide_csp(const std::string& name, const std::string& owner,
 Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options,
                  const std::string& name, const std::string& owner) {
   check_servant(servant, name);
-  check_attributes(options, name);
+  check_attributes(options, id(), name);
   if (options.threads == 0) {
     throw InvalidArgument("the service of '" + name + "' has 0 threads; give it 1 or more");
   }

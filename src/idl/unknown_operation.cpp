@@ -15,4 +15,9 @@ void throw_unknown_operation(const InterfaceInfo& interface, const OperationInfo
                       std::string(operation.name) + "'" + suggestion(operation.name, known));
 }
 
+void throw_no_implementation(const InterfaceInfo& interface) {
+  throw InvalidArgument("a service of " + std::string(interface.name) +
+                        " has no implementation: null");
+}
+
 }  // namespace skein::idl

@@ -353,3 +353,21 @@ TEST_CASE("where nothing can be selected beforehand, that is recorded with the r
   CHECK_THAT(explain(office.record),
              Catch::Contains("for the Body to call itself") && Catch::Contains("  failed after"));
 }
+
+TEST_CASE("an attribute that is almost one which a Head reads is told of") {
+  const Log log;
+  Office office;
+  ServiceOptions options;
+  options.attributes = {{"latancy", "10"}, {"Quality", "0.5"}, {"cost", "3"}, {"quantity", "3"}};
+  office.add("quick", Place::Inside, answer_as("quick"), options);
+  CHECK(log.count("uav-1/office: 'quick' declares the attribute 'latancy', which no Head reads "
+                  "(did you mean 'latency'?)") == 1);
+  CHECK(log.count("the attribute 'Quality', which no Head reads (did you mean 'quality'?)") == 1);
+  CHECK(log.count("\n") == 2);
+}
+
+TEST_CASE("a skeleton without an implementation is refused when it is made") {
+  CHECK_THROWS_AS(crew::Worker::Skeleton(nullptr), InvalidArgument);
+  CHECK_THROWS_WITH(crew::Worker::Skeleton(nullptr),
+                    "a service of crew/Worker has no implementation: null");
+}

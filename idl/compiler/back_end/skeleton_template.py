@@ -11,6 +11,7 @@ def definition(interface):
         "/// dispatches decides how many calls run at once.",
         f"class {name} final : public ::skein::Servant {{",
         " public:",
+        "  /// Throws InvalidArgument for nullptr.",
         f"  explicit {name}(std::shared_ptr<{interface.cpp}> implementation);",
         "  const ::skein::InterfaceInfo& interface_info() const noexcept override;",
         "  void dispatch(const ::skein::OperationInfo& operation, const void* in, void* out) override;",
@@ -31,7 +32,9 @@ def source(interface):
         signature = signature.removesuffix(" out")
     lines = [
         f"{name}::{name}(std::shared_ptr<{interface.cpp}> implementation)",
-        "    : implementation_(std::move(implementation)) {}",
+        "    : implementation_(std::move(implementation)) {",
+        f"  if (!implementation_) ::skein::idl::throw_no_implementation({interface.cpp}::interface_info());",
+        "}",
         "",
         f"const ::skein::InterfaceInfo& {name}::interface_info() const noexcept {{",
         f"  return {interface.cpp}::interface_info();",
