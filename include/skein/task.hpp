@@ -59,16 +59,16 @@ struct TaskOptions {
   std::string request{};
   /// Only the CSP with this name; empty: the Head chooses.
   std::string only{};
-  /// Properties of the request that may matter for the choice.
+  /// Properties of the request that may matter for the choice: finite numbers, each named once.
   Features features{};
   /// What the result is worth, for `learned`.
   Utility utility{};
   Execution execution = Execution::One;
-  /// Maximum number of CSPs that work at a time.
+  /// Maximum number of CSPs that work at a time; 1 or more.
   std::size_t width = SIZE_MAX;
-  /// Number of accepted results with which a synthesis is tried; kAll: waits for every CSP that
-  /// began, until the time is up. If no CSP is left, or the time is up, it is tried with the
-  /// results that there are.
+  /// Number, 1 or more, of accepted results with which a synthesis is tried; kAll: waits for every
+  /// CSP that began, until the time is up. If no CSP is left, or the time is up, it is tried with
+  /// the results that there are.
   std::size_t enough = 1;
   static constexpr std::size_t kAll = SIZE_MAX;
 };

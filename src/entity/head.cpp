@@ -1,6 +1,7 @@
 #include "skein/head.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/log.hpp"
 #include "core/wall_clock.hpp"
@@ -27,6 +28,31 @@ Duration time_left(Instant now, Duration limit) {
   const CallContext* context = CallContext::current();
   if (!context) return limit;
   return std::min(limit, context->deadline() - now - Duration(kAnswerReserve));
+}
+
+void check_features(const Features& features) {
+  for (auto feature = features.begin(); feature != features.end(); ++feature) {
+    const auto refuse = [&](const std::string& why) {
+      throw InvalidArgument("the feature '" + feature->name + "' of the task " + why);
+    };
+    if (!std::isfinite(feature->value)) refuse("is no finite number");
+    const auto same = [&](const Feature& other) { return other.name == feature->name; };
+    if (std::any_of(features.begin(), feature, same)) refuse("stands there twice");
+  }
+}
+
+void check_options(const TaskOptions& task) {
+  if (task.width == 0) {
+    throw InvalidArgument("the task's `width` is 0, so that no CSP may work on it; give 1 or more");
+  }
+  if (task.enough == 0) {
+    throw InvalidArgument(
+        "the task's `enough` is 0, which no result is needed for; give 1 or more, or kAll");
+  }
+  if (!std::isfinite(task.utility.good_enough)) {
+    throw InvalidArgument("the task's `utility.good_enough` is no finite number");
+  }
+  check_features(task.features);
 }
 
 }  // namespace
@@ -89,8 +115,9 @@ Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrate
 void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Duration limit,
                   Decision* wanted) {
   const Instant begin = state_->parts.clock.now();
-  const auto strategy = state_->strategy();
   const TaskOptions& options = task.options();
+  check_options(options);
+  const auto strategy = state_->strategy();
   Decision record = open_record(interface, *strategy, options, begin, limit);
   record.request = options.request;
   record.execution = to_string(options.execution);
@@ -105,6 +132,7 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
 std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const Features& features,
                                          Duration limit) {
   const Instant begin = state_->parts.clock.now();
+  check_features(features);
   const auto strategy = state_->strategy();
   TaskOptions options;
   options.features = features;

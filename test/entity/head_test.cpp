@@ -354,6 +354,34 @@ TEST_CASE("where nothing can be selected beforehand, that is recorded with the r
              Catch::Contains("for the Body to call itself") && Catch::Contains("  failed after"));
 }
 
+TEST_CASE("a task that no CSP could fulfil is refused with what is wrong in it") {
+  Office office;
+  const auto quick = office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  const auto refused = [&](const WorkTask& task, const std::string& text) {
+    CHECK_THROWS_AS(office.perform(task, 1s), InvalidArgument);
+    CHECK_THROWS_WITH(office.perform(task, 1s), text);
+  };
+  WorkTask task = Office::task();
+  task.width = 0;
+  refused(task, "the task's `width` is 0, so that no CSP may work on it; give 1 or more");
+  task = Office::task();
+  task.enough = 0;
+  refused(task, "the task's `enough` is 0, which no result is needed for; give 1 or more, or kAll");
+  task = Office::task();
+  task.utility.good_enough = std::numeric_limits<double>::quiet_NaN();
+  refused(task, "the task's `utility.good_enough` is no finite number");
+  task = Office::task();
+  task.features = {{"cells", 1}, {"area", std::numeric_limits<double>::quiet_NaN()}};
+  refused(task, "the feature 'area' of the task is no finite number");
+  task.features = {{"cells", std::numeric_limits<double>::infinity()}};
+  refused(task, "the feature 'cells' of the task is no finite number");
+  task.features = {{"cells", 1}, {"area", 2}, {"cells", 1}};
+  refused(task, "the feature 'cells' of the task stands there twice");
+  CHECK_THROWS_WITH(office.owner->head().preselect<crew::Worker>(task.features),
+                    "the feature 'cells' of the task stands there twice");
+  CHECK(quick->calls == 0);
+}
+
 TEST_CASE("an attribute that is almost one which a Head reads is told of") {
   const Log log;
   Office office;
