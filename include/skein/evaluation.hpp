@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -7,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "skein/detail/version.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
@@ -23,6 +24,8 @@ class Evaluation {
     std::string check;
     std::string reason;
     bool fault = true;  ///< Whether it counts as a fault of the CSP.
+    /// What the check threw, which says nothing of the result; then there is no reason.
+    std::exception_ptr thrown{};
   };
 
   Evaluation() = default;
@@ -33,6 +36,7 @@ class Evaluation {
     check("evaluation", std::move(judge));
   }
 
+  /// Throws InvalidArgument for a check without a function; so does admitted().
   Evaluation& check(std::string name, Check check) {
     return add({std::move(name), std::move(check), true});
   }
@@ -45,8 +49,14 @@ class Evaluation {
 
   std::optional<Rejection> operator()(const Result& result) const {
     for (const Named& each : checks_) {
-      if (auto reason = each.check(result))
+      try {
+        auto reason = each.check(result);
+        if (!reason) continue;
+        if (reason->empty()) reason = "the check '" + each.name + "' gives no reason";
         return Rejection{each.name, std::move(*reason), each.fault};
+      } catch (...) {
+        return Rejection{each.name, {}, false, std::current_exception()};
+      }
     }
     return std::nullopt;
   }
@@ -59,6 +69,9 @@ class Evaluation {
   };
 
   Evaluation& add(Named named) {
+    if (!named.check) {
+      throw InvalidArgument("the check '" + named.name + "' has no function: null");
+    }
     checks_.push_back(std::move(named));
     return *this;
   }

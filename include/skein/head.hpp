@@ -76,9 +76,15 @@ class Head {
   /// deadline of the current call less 3 ms if that is sooner; it holds even if every CSP hangs
   /// (but see CallThread::Caller).
   ///
-  /// Throws NoCandidate; NoneAccepted if the last result was rejected or the accepted ones do not
-  /// agree; TimedOut if there was no time to ask a CSP; otherwise the error of the last attempt.
-  /// `record` receives the decision, also if this throws.
+  /// What one of the task's own functions or the strategy throws is told as theirs (`the check
+  /// 'map' threw: no map`), and no CSP is charged for it. It is thrown on as Internal; an Error
+  /// keeps its class, a UserException its type. After `run`, `evaluate`, `quality` and `settles`
+  /// the next best CSP follows first.
+  ///
+  /// Throws InvalidArgument for a task that cannot work; NoCandidate; NoneAccepted if the last
+  /// result was rejected or the accepted ones do not agree; TimedOut if there was no time to ask a
+  /// CSP; otherwise the error of the last attempt. `record` receives the decision, also if this
+  /// throws.
   template <class Interface, class Result>
   Result perform(const Task<Interface, Result>& task, introspection::Decision* record = nullptr,
                  Duration limit = std::chrono::seconds(60)) {

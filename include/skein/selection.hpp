@@ -87,7 +87,8 @@ class SelectionStrategy {
   virtual std::string name() const = 0;
   /// Whether Candidate::learned is to be filled, which takes some 10 µs.
   virtual bool reads_history() const { return true; }
-  /// `candidates` is not empty.
+  /// `candidates` is not empty. A slice that is not longer than 0 ends the request, as does what
+  /// this throws; no CSP is charged for it.
   virtual Selection select(const std::vector<Candidate>& candidates,
                            const Situation& situation) const = 0;
 };
@@ -147,10 +148,13 @@ class CandidateIterator {
     Selection selection;  ///< Its slice is at most the time left.
   };
   /// `remaining` is the time left. Only if not done(). Throws Internal if the strategy selects a
-  /// candidate that does not exist.
+  /// candidate that does not exist, gives it no time, or throws, which is named; an Error of the
+  /// strategy's keeps its class.
   Next next(Duration remaining);
 
  private:
+  Selection select() const;
+
   const SelectionStrategy& strategy_;
   std::vector<Candidate> left_;
   Situation situation_;

@@ -59,6 +59,37 @@ Verdict task_run::verdict_of_current_exception() {
   return verdict;
 }
 
+void task_run::throw_as_thrown_by(const std::string& who, const std::exception_ptr& thrown) {
+  const std::string threw = who + " threw: ";
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const UserException&) {
+    throw;
+  } catch (const Error& error) {
+    throw_error(error.code(), threw + error.what());
+  } catch (const std::exception& error) {
+    throw Internal(threw + error.what());
+  } catch (...) {
+    throw Internal(threw + "something that is no std::exception");
+  }
+}
+
+Verdict task_run::verdict_on_body(const std::string& who, const std::exception_ptr& thrown) {
+  Verdict verdict;
+  try {
+    throw_as_thrown_by(who, thrown);
+  } catch (const UserException& exception) {
+    verdict.text = who + " threw: " + exception.what();
+    verdict.error = thrown;
+  } catch (const Error& error) {
+    verdict.text = error.what();
+    verdict.error = std::current_exception();
+  }
+  verdict.fault = false;
+  verdict.own = true;
+  return verdict;
+}
+
 void Head::Run::Bell::ring() {
   std::lock_guard lock(mutex_);
   rung_ = true;
@@ -258,12 +289,13 @@ void Head::Run::note(Live& live, Verdict verdict) {
   attempt.quality = wire_values::list(verdict.quality);
   // Late by less is a matter of load, and for the history.
   const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * expected;
+  const bool fault = verdict.fault && !hardly_late;
   state_.end(interface_, live.candidate, features_, live.run,
-             {verdict.outcome, took, expected, verdict.quality, verdict.fault && !hardly_late,
-              verdict.settled, record_.decided + 1, static_cast<std::uint32_t>(live.attempt)});
+             {verdict.outcome, took, expected, verdict.quality, fault, verdict.settled, verdict.own,
+              record_.decided + 1, static_cast<std::uint32_t>(live.attempt)});
   settled_ = verdict.settled;
+  last_csp_ = verdict.own ? std::string() : live.candidate.name;
   last_ = std::move(verdict);
-  last_csp_ = live.candidate.name;
 }
 
 void Head::Run::conclude_if_enough() {

@@ -106,7 +106,7 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
     } else {
       breaker.end();
     }
-    remember(interface, candidate, features, ending);
+    if (!ending.own) remember(interface, candidate, features, ending);
     if (timed_out && candidate.in_process) hung.insert(candidate.provider);
   }
   if (is_told) options.on_hang(candidate);

@@ -43,6 +43,7 @@ struct Head::State {
     std::optional<double> quality;
     bool fault;
     bool settled;           ///< A refusal that is the answer.
+    bool own;               ///< As Verdict::own.
     std::uint64_t request;  ///< Its number.
     std::uint32_t after;    ///< As History::Sample::after.
   };

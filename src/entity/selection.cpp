@@ -4,6 +4,7 @@
 
 #include "core/suggestion.hpp"
 #include "selection_text.hpp"
+#include "skein/detail/task_run.hpp"
 #include "skein/error.hpp"
 #include "slice.hpp"
 
@@ -84,7 +85,8 @@ class FixedOrderSelection final : public SelectionStrategy {
 
   Selection select(const std::vector<Candidate>& candidates,
                    const Situation& situation) const override {
-    return {0, situation.remaining / static_cast<Duration::rep>(candidates.size()),
+    const Duration share = situation.remaining / static_cast<Duration::rep>(candidates.size());
+    return {0, share > Duration::zero() ? share : situation.remaining,
             candidates.front().name + " is the next in order; " +
                 std::to_string(candidates.size() - 1) + " others share the time that is left",
             latency_of(candidates.front())};
@@ -161,14 +163,29 @@ void CandidateIterator::add(std::vector<Candidate> candidates) {
   }
 }
 
+Selection CandidateIterator::select() const {
+  try {
+    return strategy_.select(left_, situation_);
+  } catch (...) {
+    task_run::throw_as_thrown_by("the strategy '" + strategy_.name() + "'",
+                                 std::current_exception());
+  }
+}
+
 CandidateIterator::Next CandidateIterator::next(Duration remaining) {
   if (!situation_.tried.empty()) situation_.tried.back().took = situation_.remaining - remaining;
   situation_.remaining = remaining;
-  Selection selection = strategy_.select(left_, situation_);
+  Selection selection = select();
   situation_.exploration = 0;  // only a request's first choice explores
   if (selection.candidate >= left_.size()) {
     throw Internal("the strategy '" + strategy_.name() + "' selected candidate " +
                    std::to_string(selection.candidate) + " of " + std::to_string(left_.size()));
+  }
+  if (selection.slice <= Duration::zero() && remaining > Duration::zero()) {
+    throw Internal("the strategy '" + strategy_.name() + "' gave CSP '" +
+                   left_[selection.candidate].name + "' a time slice of " + in_ms(selection.slice) +
+                   ", while " + in_ms(remaining) +
+                   " are left; a slice (Selection::slice) is longer than 0");
   }
   selection.slice =
       std::clamp(selection.slice, Duration::zero(), std::max(remaining, Duration::zero()));

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -41,11 +42,13 @@ inline std::string percent(double share) { return std::to_string(std::lround(100
 
 /// Whole milliseconds; below ten with a tenth.
 inline std::string in_ms(Duration duration) {
-  const auto tenths =
+  const auto signed_tenths =
       std::chrono::duration_cast<std::chrono::duration<long long, std::ratio<1, 10000>>>(duration)
           .count();
-  if (tenths >= 100 || tenths % 10 == 0) return std::to_string(tenths / 10) + " ms";
-  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " ms";
+  const std::string sign = signed_tenths < 0 ? "-" : "";
+  const auto tenths = std::abs(signed_tenths);
+  if (tenths >= 100 || tenths % 10 == 0) return sign + std::to_string(tenths / 10) + " ms";
+  return sign + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " ms";
 }
 
 }  // namespace skein::selection_text

@@ -26,7 +26,7 @@ inline Duration reserve_beside(Duration latency, std::optional<Duration> least_o
 /// that is expected of it. All but the reserve; of plenty of time half: who has not answered by
 /// then, and has had kHangs times that latency, will hardly do so.
 inline Duration slice_beside(Duration latency, Duration reserve, Duration remaining) {
-  if (reserve == Duration::zero()) return remaining;
+  if (reserve == Duration::zero() || reserve >= remaining) return remaining;
   return std::min(std::max(kHangs * latency, remaining / 2), remaining - reserve);
 }
 

@@ -186,3 +186,109 @@ TEST_CASE("an entity that ends waits no longer for several CSPs that hang than f
   for (auto& call : calls) CHECK_THROWS_AS(call.get(), Disconnected);
   hang.release();
 }
+
+namespace {
+
+/// A function of a Body's that throws, and what is to be said of it.
+struct Faulty {
+  std::string who;
+  std::function<void(WorkTask&, const std::function<void()>& fail)> put;
+};
+
+const std::vector<Faulty> kFaulty{
+    {"the task's `run`",
+     [](WorkTask& task, const std::function<void()>& fail) {
+       task.run = [fail](crew::Worker::Proxy&, Duration) {
+         fail();
+         return std::string();
+       };
+     }},
+    {"the check 'map'",
+     [](WorkTask& task, const std::function<void()>& fail) {
+       task.evaluate.check("map", [fail](const std::string&) {
+         fail();
+         return std::nullopt;
+       });
+     }},
+    {"the task's `quality`",
+     [](WorkTask& task, const std::function<void()>& fail) {
+       task.quality = [fail](const std::string&) {
+         fail();
+         return 1.0;
+       };
+     }},
+    {"the task's `synthesis`",
+     [](WorkTask& task, const std::function<void()>& fail) {
+       task.synthesis = [fail](const std::vector<Opinion<std::string>>&) {
+         fail();
+         return std::optional<Synthesised<std::string>>();
+       };
+     }},
+};
+
+}  // namespace
+
+TEST_CASE("what a Body's own function throws is told as the Body's, and no CSP pays for it") {
+  const auto& [who, put] = GENERATE(from_range(kFaulty));
+  const bool standard = GENERATE(true, false);
+  CAPTURE(who);
+  Office office;
+  office.add("first", Place::Inside, answer_as("first"), declared("10", "0.9"));
+  office.add("second", Place::Inside, answer_as("second"), declared("10", "0.5"));
+  WorkTask task = Office::task();
+  put(task, [standard] {
+    if (standard) throw std::runtime_error("my bug");
+    throw 42;
+  });
+  const std::string text =
+      who + " threw: " + (standard ? "my bug" : "something that is no std::exception");
+  for (int request = 0; request < 4; ++request) {
+    CHECK_THROWS_AS(office.perform(task, 10s), Internal);
+    CHECK_THROWS_WITH(office.perform(task, 10s), text);
+  }
+  CHECK(office.record.failure == text);
+  for (const auto& candidate : office.record.candidates)
+    CHECK(candidate.breaker == introspection::BreakerState::Closed);
+  const bool of_results = who == "the task's `synthesis`";  // those were good
+  const auto learned =
+      office.owner->head().history().predict("crew/Worker", {"first", "second"}, {});
+  for (const auto& prediction : learned) CHECK((of_results || !prediction));
+}
+
+TEST_CASE("what decides whether a refusal is final may throw, too, and no CSP pays for it") {
+  Office office;
+  office.add("only", Place::Inside, refuse(false), declared("10", "0.9"));
+  WorkTask task = Office::task();
+  task.settles = [](const UserException&, const Candidate&) -> bool {
+    throw std::runtime_error("my bug");
+  };
+  CHECK_THROWS_WITH(office.perform(task, 10s), "the task's `settles` threw: my bug");
+}
+
+TEST_CASE("an error of a Skein call inside a check keeps its class, and is the check's") {
+  Office office;
+  office.add("only", Place::Inside, answer_as("only"), declared("10", "0.9"));
+  WorkTask task = Office::task();
+  task.evaluate.check("map", [](const std::string&) -> std::optional<std::string> {
+    throw Unavailable("no map service");
+  });
+  CHECK_THROWS_AS(office.perform(task, 10s), Unavailable);
+  CHECK_THROWS_WITH(office.perform(task, 10s), "the check 'map' threw: no map service");
+  CHECK(office.attempt_of("only").check == "map");
+}
+
+TEST_CASE("a strategy that fails is named, and its CSPs stay out of quarantine") {
+  struct Stingy final : SelectionStrategy {
+    std::string name() const override { return "stingy"; }
+    Selection select(const std::vector<Candidate>&, const Situation&) const override {
+      return {0, -5ms, "it is the first"};
+    }
+  };
+  Office office(HeadOptions{.strategy = "stingy", .strategies = {std::make_shared<Stingy>()}});
+  const auto first = office.add("first", Place::Inside, answer_as("first"), declared("10", "0.9"));
+  CHECK_THROWS_WITH(
+      office.perform(Office::task(), 300ms),
+      Catch::StartsWith("the strategy 'stingy' gave CSP 'first' a time slice of -5 "));
+  CHECK(first->calls == 0);
+  CHECK(office.record.attempts.empty());
+}

@@ -1,6 +1,10 @@
 #include "skein/selection.hpp"
 
 #include <catch2/catch.hpp>
+#include <functional>
+#include <stdexcept>
+
+#include "skein/error.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -41,6 +45,62 @@ TEST_CASE("a strategy that selects a candidate that is not there is named") {
   const Beyond beyond;
   CandidateIterator iterator(beyond, {candidate("only", 10ms, 1)}, {});
   CHECK_THROWS_WITH(iterator.next(1s), Catch::Contains("'beyond'"));
+}
+
+TEST_CASE("a strategy that gives a CSP no time is named, and no CSP pays for it") {
+  struct Stingy final : SelectionStrategy {
+    explicit Stingy(Duration given) : slice(given) {}
+    std::string name() const override { return "stingy"; }
+    Selection select(const std::vector<Candidate>&, const Situation&) const override {
+      return {0, slice, ""};
+    }
+    Duration slice;
+  };
+  const auto next = [](Duration slice) {
+    const Stingy stingy(slice);
+    CandidateIterator(stingy, {candidate("only", 10ms, 1)}, {}).next(1s);
+  };
+  CHECK_THROWS_AS(next(-5ms), Internal);
+  CHECK_THROWS_WITH(next(-5ms),
+                    "the strategy 'stingy' gave CSP 'only' a time slice of -5 ms, while 1000 ms "
+                    "are left; a slice (Selection::slice) is longer than 0");
+  CHECK_THROWS_WITH(next(0ms), Catch::Contains("a time slice of 0 ms"));
+}
+
+TEST_CASE("what a strategy throws is told as the strategy's") {
+  struct Broken final : SelectionStrategy {
+    explicit Broken(std::function<void()> thrower) : fail(std::move(thrower)) {}
+    std::string name() const override { return "mine"; }
+    Selection select(const std::vector<Candidate>&, const Situation&) const override {
+      fail();
+      return {};
+    }
+    std::function<void()> fail;
+  };
+  const auto next = [](std::function<void()> thrower) {
+    const Broken broken(std::move(thrower));
+    CandidateIterator(broken, {candidate("only", 10ms, 1)}, {}).next(1s);
+  };
+  const auto standard = [] { throw std::runtime_error("table empty"); };
+  const auto number = [] { throw 42; };
+  const auto own = [] { throw Unavailable("no table"); };
+  CHECK_THROWS_AS(next(standard), Internal);
+  CHECK_THROWS_WITH(next(standard), "the strategy 'mine' threw: table empty");
+  CHECK_THROWS_AS(next(number), Internal);
+  CHECK_THROWS_WITH(next(number), "the strategy 'mine' threw: something that is no std::exception");
+  CHECK_THROWS_AS(next(own), Unavailable);
+  CHECK_THROWS_WITH(next(own), "the strategy 'mine' threw: no table");
+}
+
+TEST_CASE("whoever is selected gets some time, also where others need just what is left") {
+  const std::vector<Candidate> pair{candidate("undeclared", std::nullopt, 0.9),
+                                    candidate("quick", 100ms, 0.5)};
+  const auto declared = make_declared_selection();
+  CandidateIterator iterator(*declared, pair, {});
+  CHECK(iterator.next(100ms).selection.slice == 100ms);
+  const auto in_order = make_fixed_order_selection();
+  CandidateIterator last_moment(*in_order, kThree, {});
+  CHECK(last_moment.next(2ns).selection.slice > 0ns);
 }
 
 TEST_CASE("a slice is never longer than the time left") {

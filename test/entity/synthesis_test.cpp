@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "skein/error.hpp"
 #include "skein/evaluation.hpp"
 
 using namespace skein;
@@ -83,4 +84,18 @@ TEST_CASE("without checks every result passes, and a function that judges is one
   CHECK_FALSE(Evaluation<double>()(-1).has_value());
   const Evaluation<double> evaluation = [](double) { return std::optional<std::string>("no"); };
   CHECK(evaluation(1)->reason == "no");
+}
+
+TEST_CASE("a check without a function is refused when it is added") {
+  Evaluation<double> evaluation;
+  CHECK_THROWS_AS(evaluation.check("reachable", nullptr), InvalidArgument);
+  CHECK_THROWS_WITH(evaluation.check("reachable", nullptr),
+                    "the check 'reachable' has no function: null");
+  CHECK_THROWS_AS(evaluation.admitted("exact", nullptr), InvalidArgument);
+}
+
+TEST_CASE("a check that rejects without a reason is named in its place") {
+  Evaluation<double> evaluation;
+  evaluation.check("reachable", [](double) { return std::optional<std::string>(""); });
+  CHECK(evaluation(1)->reason == "the check 'reachable' gives no reason");
 }

@@ -24,10 +24,18 @@ struct Verdict {
   std::exception_ptr error{};
   bool fault = true;     ///< Counts as a fault of the CSP.
   bool settled = false;  ///< No other CSP is to be asked.
+  bool own = false;      ///< The Body's own functions failed: says nothing of the CSP.
 };
 
 /// The verdict for the exception that is being handled.
 Verdict verdict_of_current_exception();
+
+/// Throws on what `thrown` is, with `WHO threw: ` before its text: an Error of its class, a
+/// UserException as it is, all else as Internal.
+[[noreturn]] void throw_as_thrown_by(const std::string& who, const std::exception_ptr& thrown);
+
+/// The verdict where `who`, a function of the Body's, has thrown `thrown`.
+Verdict verdict_on_body(const std::string& who, const std::exception_ptr& thrown);
 
 /// One CSP at work; destroying it cancels its call.
 class Work {
@@ -70,7 +78,7 @@ class TypedRun final : public TaskRun {
   std::optional<std::string> synthesise() override {
     if (opinions_.empty()) return std::nullopt;
     if (task_.synthesis) {
-      auto made = task_.synthesis(opinions_);
+      auto made = combine();
       if (!made) return std::nullopt;
       result_ = std::move(made->result);
       return std::move(made->how);
@@ -92,8 +100,13 @@ class TypedRun final : public TaskRun {
       try {
         typename Interface::Proxy proxy(std::move(channel), budget);
         answer_.emplace(run.task_.run(proxy, budget));
-      } catch (...) {
+      } catch (const UserException&) {
         error_ = std::current_exception();
+      } catch (const Error&) {
+        error_ = std::current_exception();
+      } catch (...) {  // no call ends so
+        error_ = std::current_exception();
+        own_ = true;
       }
     }
 
@@ -102,35 +115,65 @@ class TypedRun final : public TaskRun {
     void notify(std::function<void()> action) override { answer_->notify(std::move(action)); }
 
     Verdict judge() override {
+      if (own_) return verdict_on_body("the task's `run`", error_);
+      std::optional<Result> result;
       try {
         if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-        return run_.judge(candidate_, answer_->get());
+        result.emplace(answer_->get());
       } catch (const UserException& exception) {
-        Verdict verdict = verdict_of_current_exception();
-        verdict.settled = run_.task_.settles && run_.task_.settles(exception, candidate_);
-        return verdict;
+        return refused(exception);
       } catch (...) {
         return verdict_of_current_exception();
       }
+      return run_.judge(candidate_, std::move(*result));
     }
 
    private:
+    /// Of the exception that is being handled.
+    Verdict refused(const UserException& exception) {
+      Verdict verdict = verdict_of_current_exception();
+      try {
+        verdict.settled = run_.task_.settles && run_.task_.settles(exception, candidate_);
+      } catch (...) {
+        return verdict_on_body("the task's `settles`", std::current_exception());
+      }
+      return verdict;
+    }
+
     TypedRun& run_;
     const Candidate candidate_;
     std::optional<Awaited<Result>> answer_;
     std::exception_ptr error_;
+    bool own_ = false;  // the error is none of the call's
   };
+
+  auto combine() const {
+    try {
+      return task_.synthesis(opinions_);
+    } catch (...) {
+      throw_as_thrown_by("the task's `synthesis`", std::current_exception());
+    }
+  }
 
   Verdict judge(const Candidate& candidate, Result result) {
     Verdict verdict;
     if (auto rejection = task_.evaluate(result)) {
+      if (rejection->thrown) {
+        verdict = verdict_on_body("the check '" + rejection->check + "'", rejection->thrown);
+        verdict.check = std::move(rejection->check);
+        return verdict;
+      }
       verdict.outcome = introspection::Outcome::Rejected;
       verdict.check = std::move(rejection->check);
       verdict.text = std::move(rejection->reason);
       verdict.fault = rejection->fault;
       return verdict;
     }
-    if (task_.quality) verdict.quality = task_.quality(result);
+    try {
+      if (task_.quality) verdict.quality = task_.quality(result);
+    } catch (...) {
+      return verdict_on_body("the task's `quality`", std::current_exception());
+    }
     if (!std::isfinite(verdict.quality.value_or(0))) return without_quality();
     verdict.outcome = introspection::Outcome::Accepted;
     verdict.fault = false;
