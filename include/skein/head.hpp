@@ -30,8 +30,9 @@ class NoneAccepted : public Internal {
 /// The deciding part of an entity: it selects the CSPs that run a task, evaluates their results,
 /// makes one result from several, and falls back to other CSPs on failure. The candidates are the
 /// CSPs that the Broker knows at that moment, so CSPs may come and go while the system runs. A CSP
-/// that fails repeatedly is quarantined (CircuitBreaker). The time and the quality of each CSP are
-/// remembered (History). Thread-safe.
+/// that fails repeatedly is quarantined (CircuitBreaker), which is logged with the reason, once for
+/// each cause; so is that a CSP in this process does not return. The time and the quality of each
+/// CSP are remembered (History). Thread-safe.
 ///
 /// A CSP in this process runs on the thread that it declares (ServiceOptions::thread). If it hangs
 /// on a thread of its own, the Head continues at the end of its time slice, and does not call it

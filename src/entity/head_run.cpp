@@ -34,6 +34,12 @@ constexpr std::chrono::seconds kOpeningPatience{2};
   }
 }
 
+/// Why a CSP is at fault.
+std::string reason(const Attempt& attempt) {
+  if (attempt.check.empty()) return attempt.text;
+  return "the check '" + attempt.check + "' rejects its result: " + attempt.text;
+}
+
 }  // namespace
 
 Verdict task_run::verdict_of_current_exception() {
@@ -225,8 +231,11 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     Instant reached = began;
     auto channel = state_.channel_to(live.candidate,
                                      std::min(end - began, Duration(kOpeningPatience)), reached);
-    live.work =
-        task_.begin(std::move(channel), std::max(Duration::zero(), end - reached), live.candidate);
+    {
+      const State::Watch watch(state_, interface_, live.candidate, end);
+      live.work = task_.begin(std::move(channel), std::max(Duration::zero(), end - reached),
+                              live.candidate);
+    }
     if (live.work->waited()) state_.tell_waiting(interface_, task_.options());
     live_.push_back(std::move(live));
   } catch (...) {
@@ -292,7 +301,8 @@ void Head::Run::note(Live& live, Verdict verdict) {
   const bool fault = verdict.fault && !hardly_late;
   state_.end(interface_, live.candidate, features_, live.run,
              {verdict.outcome, took, expected, verdict.quality, fault, verdict.settled, verdict.own,
-              record_.decided + 1, static_cast<std::uint32_t>(live.attempt)});
+              fault ? reason(attempt) : std::string(), record_.decided + 1,
+              static_cast<std::uint32_t>(live.attempt)});
   settled_ = verdict.settled;
   last_csp_ = verdict.own ? std::string() : live.candidate.name;
   last_ = std::move(verdict);

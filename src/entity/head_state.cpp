@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "core/log.hpp"
 #include "core/whole_file.hpp"
@@ -23,6 +24,9 @@ using introspection::Decision;
 using introspection::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
+constexpr std::chrono::seconds kPatrol{1};
+
+const std::string kOverdue = " has not returned from a request whose time is over";
 
 /// Who wrote it before was killed, say.
 bool ends_in_mid_line(const std::string& path) {
@@ -53,6 +57,13 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
                           "; name a file in a folder that may be written to");
   }
   if (ends_in_mid_line(options.log)) log_file << std::endl;
+}
+
+Head::State::~State() {
+  std::unique_lock lock(mutex);
+  const TimerId last = patrol;
+  lock.unlock();
+  parts.clock.cancel(last);
 }
 
 std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
@@ -97,17 +108,24 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
     std::lock_guard lock(mutex);
     std::erase_if(running, [&](const Running& each) { return each.run == run; });
     CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);
-    if (is_told) {  // it may be ended
-      breaker.trip(parts.clock.now());
-    } else if (ending.fault) {
-      breaker.fail(parts.clock.now());
+    if (is_told || ending.fault) {
+      const Instant now = parts.clock.now();
+      const bool was_closed = breaker.state(now) == CircuitBreaker::State::Closed;
+      if (is_told) {  // it may be ended
+        breaker.trip(now);
+      } else {
+        breaker.fail(now);
+      }
+      if (was_closed && breaker.state(now) != CircuitBreaker::State::Closed)
+        tell(interface.name, candidate.name, " is in quarantine: " + ending.reason);
     } else if (ending.outcome == Outcome::Accepted || ending.outcome == Outcome::Refused) {
       breaker.succeed();
     } else {
       breaker.end();
     }
     if (!ending.own) remember(interface, candidate, features, ending);
-    if (timed_out && candidate.in_process) hung.insert(candidate.provider);
+    if (timed_out && candidate.in_process)
+      hung.insert_or_assign(candidate.provider, Hung{interface.name, candidate.name, ending.fault});
   }
   if (is_told) options.on_hang(candidate);
 }
@@ -151,6 +169,56 @@ void Head::State::tell_waiting(const InterfaceInfo& interface, const TaskOptions
           "`async_` function returns");
 }
 
+// Under the lock. Nothing that was told of it last: one cause is not told again at each request.
+void Head::State::tell(std::string_view interface, const std::string& csp,
+                       const std::string& text) {
+  std::string& last = told[{std::string(interface), csp}];
+  if (last == text) return;
+  last = text;
+  log(LogLevel::Warning, parts.entity, "CSP '" + csp + "'" + text);
+}
+
+Head::State::Watch::Watch(State& state, const InterfaceInfo& interface, const Candidate& candidate,
+                          Instant end)
+    : state_(state), interface_(interface.name), candidate_(candidate), end_(end) {
+  if (!candidate.in_process) return;
+  std::lock_guard lock(state.mutex);
+  state.watches.push_back(this);
+  if (state.patrol == 0) state.arm_patrol(end);
+}
+
+Head::State::Watch::~Watch() {
+  if (!candidate_.in_process) return;
+  std::lock_guard lock(state_.mutex);
+  std::erase(state_.watches, this);
+}
+
+// Under the lock. Not one timer a request, which would cost it more than all else that a Head does.
+void Head::State::arm_patrol(Instant next_end) {
+  const Instant latest = parts.clock.now() + kPatrol;
+  patrol = parts.clock.call_at(std::min(next_end, latest), [this] { go_on_patrol(); });
+}
+
+void Head::State::go_on_patrol() {
+  std::lock_guard lock(mutex);
+  const Instant now = parts.clock.now();
+  auto next_end = Instant::max();
+  for (const Watch* watch : watches) {
+    if (watch->end_ > now) {
+      next_end = std::min(next_end, watch->end_);
+      continue;
+    }
+    const auto service = parts.directory->find(watch->candidate_.provider);
+    if (!service || service->thread() != CallThread::Caller) continue;
+    tell(watch->interface_, watch->candidate_.name,
+         kOverdue +
+             "; it runs on its caller's thread, which waits for it: give it a thread of its "
+             "own (CallThread::Own)");
+  }
+  patrol = 0;
+  if (next_end != Instant::max()) arm_patrol(next_end);
+}
+
 std::size_t Head::State::count_stuck() {
   std::lock_guard lock(mutex);
   return stuck();
@@ -158,15 +226,23 @@ std::size_t Head::State::count_stuck() {
 
 // Under the lock.
 std::size_t Head::State::stuck() {
-  std::erase_if(hung, [&](const Guid& provider) {
-    const auto service = parts.directory->find(provider);
+  std::erase_if(hung, [&](const auto& entry) {
+    const auto service = parts.directory->find(entry.first);
     return !service || !service->overdue();
   });
+  std::string names;
+  for (auto& [provider, csp] : hung) {
+    names += (names.empty() ? "" : ", ") + csp.csp;
+    // Who is hardly late is told of only if he still is so when he is looked at again.
+    if (std::exchange(csp.tell, true))
+      tell(csp.interface, csp.csp, kOverdue + "; it is not asked again before it returns");
+  }
   const std::size_t stuck = hung.size();
   const bool degraded = stuck >= options.max_stuck;
   if (degraded && !was_degraded) {
     log(LogLevel::Error, parts.entity,
-        std::to_string(stuck) + " CSPs in this process do not return; it should be restarted");
+        "CSPs in this process that do not return: " + names + "; as many as max_stuck (" +
+            std::to_string(options.max_stuck) + "), so that it should be restarted");
   }
   was_degraded = degraded;
   return stuck;

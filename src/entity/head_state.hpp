@@ -20,6 +20,7 @@ namespace skein {
 /// What a Head holds from one request to the next. Thread-safe.
 struct Head::State {
   State(const Parts& parts, HeadOptions options);
+  ~State();
 
   std::shared_ptr<const SelectionStrategy> strategy() const;
   /// Those that are available; perhaps none.
@@ -44,6 +45,7 @@ struct Head::State {
     bool fault;
     bool settled;           ///< A refusal that is the answer.
     bool own;               ///< As Verdict::own.
+    std::string reason;     ///< Of a fault, in words.
     std::uint64_t request;  ///< Its number.
     std::uint32_t after;    ///< As History::Sample::after.
   };
@@ -59,6 +61,23 @@ struct Head::State {
   void conclude(introspection::Decision&& record, introspection::Decision* wanted = nullptr);
   /// Logs, once for each interface, that CSPs do not work at a time since `run` waits for each.
   void tell_waiting(const InterfaceInfo& interface, const TaskOptions& task);
+
+  /// While it lives this thread may run a CSP, and then cannot say itself that it does not return:
+  /// that is logged after `end`, at most a second later.
+  class Watch {
+   public:
+    Watch(State& state, const InterfaceInfo& interface, const Candidate& candidate, Instant end);
+    ~Watch();
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+   private:
+    friend State;
+    State& state_;
+    const std::string_view interface_;
+    const Candidate& candidate_;
+    const Instant end_;
+  };
   std::size_t count_stuck();
 
   /// A CSP as its description tells of it.
@@ -78,6 +97,13 @@ struct Head::State {
     std::vector<Known> csps;
   };
 
+  /// A CSP in this process that did not answer in time; perhaps it has since.
+  struct Hung {
+    std::string_view interface;
+    std::string csp;
+    bool tell;  ///< Whether it is told of when it is looked at next.
+  };
+
   struct Running {
     std::uint64_t run;
     std::string csp;
@@ -94,7 +120,10 @@ struct Head::State {
   std::unordered_map<const InterfaceInfo*, Roster> rosters;
   std::map<Guid, std::shared_ptr<Channel>> channels;
   std::vector<Running> running;
-  std::set<Guid> hung;  // in this process, and perhaps back since
+  std::map<Guid, Hung> hung;
+  std::map<std::pair<std::string, std::string>, std::string, ByCsp> told;  // last, of each CSP
+  std::vector<const Watch*> watches;
+  TimerId patrol = 0;  // armed while there are watches, and until the next round after them
   std::set<const InterfaceInfo*> told_waiting;
   RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
@@ -121,6 +150,9 @@ struct Head::State {
                 const std::shared_ptr<const Features>& features, const Ending& ending);
   void begin_learning(const std::string& service);
   std::size_t stuck();
+  void arm_patrol(Instant next_end);
+  void go_on_patrol();
+  void tell(std::string_view interface, const std::string& csp, const std::string& text);
   void write_log(const introspection::Decision& record);
 };
 

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "../tools/log.hpp"
 #include "office.hpp"
 
 using namespace skein;
@@ -86,4 +87,65 @@ TEST_CASE(
     CHECK(office.attempts() == Lines{"rough rejected", "exact accepted"});
     CHECK(office.record.attempts[0].check == "exact");
   }
+}
+
+TEST_CASE("that a CSP is put into quarantine is told once for each cause, with the reason") {
+  const Log log;
+  Office office(HeadOptions{.breaker = kHasty});
+  const auto reason = std::make_shared<std::string>("drive not homed");
+  const auto patient = office.add(
+      "patient", Place::Inside,
+      [reason](const std::string& task) -> std::string {
+        if (!reason->empty()) throw std::runtime_error(*reason);
+        return "patient did " + task;
+      },
+      declared("10", "0.9"));
+  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  const auto told = [&](const std::string& why) {
+    return log.count("uav-1/office: CSP 'patient' is in quarantine: " + why);
+  };
+  const auto fail_and_recover = [&](const std::string& why) {
+    *reason = why;
+    const int before = patient->calls;
+    REQUIRE(eventually([&] {
+      office.perform(Office::task(), 10s);
+      return patient->calls >= before + 5;
+    }));
+    *reason = "";
+    REQUIRE(eventually([&] { return office.perform(Office::task(), 10s) == "patient did it"; }));
+  };
+  office.perform(Office::task(), 10s);
+  CHECK(told("") == 0);
+  fail_and_recover("drive not homed");
+  CHECK(told("'work' failed: drive not homed") == 1);
+  fail_and_recover("drive not homed");
+  CHECK(told("") == 1);
+  fail_and_recover("drive too hot");
+  CHECK(told("'work' failed: drive too hot") == 1);
+  CHECK(told("") == 2);
+}
+
+TEST_CASE("a CSP whose results are rejected is told of with the check that rejects them") {
+  const Log log;
+  Office office(HeadOptions{.breaker = kHasty});
+  office.add("liar", Place::Inside, answer_as("wrong"), declared("10", "0.9"));
+  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  for (int i = 0; i < 5; ++i) office.perform(Office::task(), 10s);
+  CHECK(log.count("CSP 'liar' is in quarantine: the check 'evaluation' rejects its result: it is "
+                  "wrong did it") == 1);
+  CHECK(log.count("\n") == 1);
+}
+
+TEST_CASE("a CSP in the process that does not return is told of when that shows, once") {
+  const Log log;
+  Hang hang;
+  Office office(HeadOptions{.max_stuck = 1});
+  office.add("stuck", Place::Inside, hang.script(), declared("1", "0.9"));
+  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  for (int i = 0; i < 3; ++i) office.perform(Office::task(), 400ms);
+  CHECK(log.count("uav-1/office: CSP 'stuck' has not returned from a request whose time is over; "
+                  "it is not asked again before it returns") == 1);
+  CHECK(log.count("CSPs in this process that do not return: stuck; as many as max_stuck (1)") == 1);
+  CHECK(log.count("\n") == 2);
+  hang.release();
 }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "../tools/log.hpp"
 #include "office.hpp"
 
 using namespace skein;
@@ -153,4 +154,22 @@ TEST_CASE("whoever waits for a turn is refused when the service is withdrawn") {
   withdrawing.join();
   CHECK(entered);
   CHECK(busy->calls == 1);
+}
+
+TEST_CASE("a CSP that hangs on its caller's thread is told of at once, while its caller waits") {
+  const Log log;
+  Office office;
+  Hang hang;
+  office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  std::thread caller([&] {
+    CHECK_THROWS_AS(office.owner->head().perform(blocking_task(), nullptr, 50ms), TimedOut);
+  });
+  CHECK(eventually([&] {
+    return log.count(
+               "uav-1/office: CSP 'busy' has not returned from a request whose time is over; "
+               "it runs on its caller's thread, which waits for it: give it a thread of its "
+               "own (CallThread::Own)") == 1;
+  }));
+  hang.release();
+  caller.join();
 }
