@@ -5,6 +5,7 @@
 #endif
 
 #include <coroutine>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -71,13 +72,17 @@ class [[nodiscard]] Call {
 
   /// Runs `continuation(Call<Result>)` with this finished call on the connection's continuation
   /// executor; after the entity has ended, on the thread that finishes the call. It always runs, as
-  /// does a coroutine that awaits the call. It must not throw.
+  /// does a coroutine that awaits the call. What it throws is logged, and goes nowhere else.
   template <class Continuation>
   void then(Continuation continuation) && {
     const auto pending = this->pending().shared_from_this();
     auto shared = make_shared_in_call_memory<Call>(std::move(*this));
     auto run = [shared, continuation = std::move(continuation)]() mutable {
-      continuation(std::move(*shared));
+      try {
+        continuation(std::move(*shared));
+      } catch (...) {
+        report_thrown_by_continuation(std::current_exception());
+      }
     };
     Executor& executor = shared->channel_->continuations();
     pending->on_finished(
@@ -167,7 +172,8 @@ class ProxyBase {
     });
   }
 
-  void set_timeout(Duration timeout) { timeout_ = timeout; }
+  /// Throws InvalidArgument for less than 0.
+  void set_timeout(Duration timeout);
 
   /// A nested call never outlives the deadline of the outer call.
   CallTime call_time() const {

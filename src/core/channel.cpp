@@ -1,13 +1,39 @@
 #include "skein/detail/channel.hpp"
 
 #include <chrono>
+#include <string>
 #include <thread>
 #include <utility>
 
+#include "core/log.hpp"
+#include "skein/call.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/error.hpp"
 
 namespace skein {
+
+void report_thrown_by_continuation(const std::exception_ptr& thrown) noexcept {
+  const auto tell = [](const std::string& what) {
+    log(LogLevel::Error, "call", "a continuation of Call::then threw: " + what);
+  };
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    tell(error.what());
+  } catch (...) {
+    tell("something that is no std::exception");
+  }
+}
+
+void ProxyBase::set_timeout(Duration timeout) {
+  if (timeout < Duration::zero()) {
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
+    throw InvalidArgument(
+        "within() is given " + std::to_string(ms) +
+        " ms; a call takes a time limit from 0 on, and ends as TimedOut after it");
+  }
+  timeout_ = timeout;
+}
 
 void PendingCall::finish(std::exception_ptr error) {
   Action action;

@@ -5,6 +5,7 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/invariant.hpp"
+#include "../tools/log.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "rpc/dds_channel.hpp"
@@ -262,6 +263,30 @@ TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
   auto cancelled = pair.echo->within(60s).async_wait(60'000);
   cancelled.cancel();
   CHECK_THROWS_AS(cancelled.get(), Cancelled);
+}
+
+TEST_CASE("what a continuation throws is told as the continuation's, and the next one runs") {
+  const Log log;
+  Pair pair;
+  const bool standard = GENERATE(true, false);
+  pair.echo->async_echo("x").then([standard](Call<std::string>) {
+    if (standard) throw std::runtime_error("oops");
+    throw 42;
+  });
+  std::atomic<bool> continued = false;
+  pair.echo->async_echo("x").then([&](Call<std::string>) { continued = true; });
+  CHECK(eventually([&] { return continued.load(); }));
+  CHECK(log.count(std::string("a continuation of Call::then threw: ") +
+                  (standard ? "oops" : "something that is no std::exception")) == 1);
+}
+
+TEST_CASE("a time limit that has passed before any call is refused") {
+  Pair pair;
+  CHECK_THROWS_AS(pair.echo->within(-1s), InvalidArgument);
+  CHECK_THROWS_WITH(pair.echo->within(-1s),
+                    "within() is given -1000 ms; a call takes a time limit from 0 on, and ends as "
+                    "TimedOut after it");
+  CHECK_THROWS_AS(pair.echo->within(0s).echo("x"), TimedOut);
 }
 
 TEST_CASE("a call is used once, and says so the second time") {

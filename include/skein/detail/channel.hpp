@@ -16,6 +16,9 @@
 
 namespace skein {
 
+/// Logs what a continuation of Call::then() threw.
+void report_thrown_by_continuation(const std::exception_ptr& thrown) noexcept;
+
 /// One call in progress. It is finished exactly once, by a reply or by an error, whichever claims
 /// it first. Shared by the caller and the transport that carries it.
 class PendingCall : public std::enable_shared_from_this<PendingCall> {
