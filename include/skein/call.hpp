@@ -89,6 +89,14 @@ class [[nodiscard]] Call {
         [&executor, run = std::move(run)]() mutable { executor.post_or_run(std::move(run)); });
   }
 
+  /// For those who forget that then() takes the call over.
+  template <class Continuation>
+  void then(Continuation&&) const& {
+    static_assert(
+        std::is_void_v<Continuation>,
+        "then() takes the call over: write std::move(call).then(...) where it has a name");
+  }
+
   auto operator co_await() && {
     struct Awaiter {
       Call call;

@@ -36,6 +36,16 @@ struct ProviderQuery;
 using brokerless_discovery::Constraint;
 using brokerless_discovery::Relation;
 
+/// `Interface::Proxy`, for those who take a struct for an interface.
+template <class Interface>
+struct ProxyOf {
+  static_assert(
+      requires { typename Interface::Proxy; },
+      "only an IDL interface is connected to; values of a struct or union are published "
+      "on a topic: Entity::publisher() and Entity::subscription()");
+  using type = typename Interface::Proxy;
+};
+
 /// Which provider to connect to, and how. The defaults choose among the providers of the interface
 /// in the entity's own system: of two taken at random the one with less load; if all have the same
 /// load, the first in the Broker's order (by entity name).
@@ -74,7 +84,7 @@ template <class Interface>
 struct Connected {
   Guid provider;
   std::string entity;
-  typename Interface::Proxy proxy;
+  typename ProxyOf<Interface>::type proxy;
 };
 
 /// The connector of Oswald's architecture (2004): connect() returns a typed proxy. It looks
@@ -107,15 +117,15 @@ class Connector {
   /// no provider is found in time, the last refusal if all refuse, InvalidArgument for an ambiguous
   /// name or an impossible constraint, and any other error with which a Head refuses.
   template <class Interface>
-  typename Interface::Proxy connect(const ConnectOptions& options = {}) {
+  typename ProxyOf<Interface>::type connect(const ConnectOptions& options = {}) {
     return typename Interface::Proxy(open(Interface::interface_info(), options));
   }
 
   /// Connects to exactly the provider of a service reference, in any system. Throws InvalidArgument
   /// for a nil reference.
   template <class Interface>
-  typename Interface::Proxy connect(const Reference<Interface>& reference,
-                                    const ConnectOptions& options = {}) {
+  typename ProxyOf<Interface>::type connect(const Reference<Interface>& reference,
+                                            const ConnectOptions& options = {}) {
     return typename Interface::Proxy(open(Interface::interface_info(), to(reference, options)));
   }
 

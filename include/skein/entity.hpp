@@ -26,7 +26,7 @@ struct EntityOptions {
   /// The vehicle or station to which the entity belongs.
   std::string system = "default";
   /// The DDS implementation; required: `dds::load_vendor("cyclonedds")`.
-  std::shared_ptr<dds::Vendor> vendor{};
+  dds::VendorPointer vendor{};
   /// The DDS domain of the mission, 0 to 232.
   std::uint32_t domain = 0;
   /// By default 127.0.0.1 only.
@@ -139,13 +139,13 @@ class Entity {
 
   /// See Connector::connect.
   template <class Interface>
-  typename Interface::Proxy connect(const ConnectOptions& options = {}) {
+  typename ProxyOf<Interface>::type connect(const ConnectOptions& options = {}) {
     return connector().connect<Interface>(options);
   }
 
   template <class Interface>
-  typename Interface::Proxy connect(const Reference<Interface>& reference,
-                                    const ConnectOptions& options = {}) {
+  typename ProxyOf<Interface>::type connect(const Reference<Interface>& reference,
+                                            const ConnectOptions& options = {}) {
     return connector().connect(reference, options);
   }
 
@@ -198,6 +198,10 @@ class Entity {
 
   template <class Interface>
   static std::shared_ptr<Servant> skeleton_of(std::shared_ptr<Interface> implementation) {
+    static_assert(
+        requires { typename Interface::Skeleton; },
+        "only an IDL interface is provided; values of a struct or union are published on "
+        "a topic: Entity::publisher()");
     if (!implementation) return nullptr;
     return std::make_shared<typename Interface::Skeleton>(std::move(implementation));
   }

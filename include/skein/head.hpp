@@ -99,8 +99,8 @@ class Head {
   /// recorded. `limit` is the proxy's timeout. Throws NoCandidate, or the error of opening the
   /// connection.
   template <class Interface>
-  typename Interface::Proxy preselect(const Features& features = {},
-                                      Duration limit = std::chrono::seconds(5)) {
+  typename ProxyOf<Interface>::type preselect(const Features& features = {},
+                                              Duration limit = std::chrono::seconds(5)) {
     return
         typename Interface::Proxy(preselect(Interface::interface_info(), features, limit), limit);
   }

@@ -49,7 +49,7 @@ class TopicWriter {
 /// Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Publisher {
-  static_assert(topics::kIsNoInterface<T>,
+  static_assert(topics::kIsType<T>,
                 "a topic carries values of an IDL struct or union; an interface is provided by "
                 "Entity::provide() and called by Entity::connect()");
 

@@ -79,7 +79,7 @@ class TopicReader {
 /// Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Subscription {
-  static_assert(topics::kIsNoInterface<T>,
+  static_assert(topics::kIsType<T>,
                 "a topic carries values of an IDL struct or union; an interface is provided by "
                 "Entity::provide() and called by Entity::connect()");
 

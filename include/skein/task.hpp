@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 #include "skein/call.hpp"
@@ -73,13 +74,32 @@ struct TaskOptions {
   static constexpr std::size_t kAll = SIZE_MAX;
 };
 
+/// The function that calls the CSP: a std::function, but for the words with which it refuses what
+/// is called otherwise.
+template <class Interface, class Result>
+class TaskFunction
+    : public std::function<Awaited<Result>(typename Interface::Proxy& csp, Duration budget)> {
+  using Base = std::function<Awaited<Result>(typename Interface::Proxy&, Duration)>;
+
+ public:
+  TaskFunction() = default;
+  using Base::Base;
+  template <class Other>
+  requires(!std::is_constructible_v<Base, Other>) TaskFunction(Other&&) {
+    static_assert(std::is_void_v<Other>,
+                  "a task's `run` is called with the CSP's Proxy and the Duration that it has: "
+                  "[](Interface::Proxy& csp, Duration budget); it returns the Result, or a Call or "
+                  "a Stream of it");
+  }
+};
+
 /// A task for a CSP that the Head selects. Its functions run on the thread that performs it.
 template <class Interface, class Result>
 struct Task : TaskOptions {
   /// Required. Calls the CSP by its proxy, whose calls time out after `budget`. With several CSPs
   /// at a time it must not wait, but return what an `async_` function returned: else they work one
   /// after the other, which is logged.
-  std::function<Awaited<Result>(typename Interface::Proxy& csp, Duration budget)> run{};
+  TaskFunction<Interface, Result> run{};
   Evaluation<Result> evaluate{};
   /// Whether an exception that the interface declares is final, so that no other CSP is asked.
   /// Empty: never.

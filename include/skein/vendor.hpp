@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "skein/detail/version.hpp"
@@ -45,6 +49,18 @@ class Vendor {
   /// Throws InvalidArgument for invalid options, such as an unknown interface; Unavailable if no
   /// ports are free.
   virtual std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) = 0;
+};
+
+/// A vendor, as EntityOptions hold it: a std::shared_ptr, which refuses a vendor's name in words.
+class VendorPointer : public std::shared_ptr<Vendor> {
+ public:
+  VendorPointer(std::nullptr_t = nullptr) {}
+  VendorPointer(std::shared_ptr<Vendor> vendor) : std::shared_ptr<Vendor>(std::move(vendor)) {}
+  template <class Name>
+  requires(std::is_convertible_v<Name, std::string_view>) VendorPointer(const Name&) {
+    static_assert(!std::is_convertible_v<Name, std::string_view>,
+                  "a vendor is loaded by its name: dds::load_vendor(\"cyclonedds\")");
+  }
 };
 
 /// Loads the vendor's module (once; it is never unloaded). `loopback` is a network inside the

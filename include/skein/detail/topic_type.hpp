@@ -13,10 +13,10 @@ concept Keyed = requires(const T& value) {
 
 namespace topics {
 
-/// For those who take an interface for a type.
+/// A generated type; no interface, and nothing of C++'s own.
 template <class T>
-inline constexpr bool kIsNoInterface = !requires {
-  T::interface_info();
+inline constexpr bool kIsType = requires(const T* none) {
+  type_support(none);
 };
 
 /// A topic's type without its definition.
