@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "../../src/navigation/components/flight_controller.hpp"
 #include "../../src/navigation/components/navigator.hpp"
@@ -169,6 +170,19 @@ TEST_CASE(
     CHECK(flight.planner->asked.back().radar_sites.size() == 4);
     CHECK(all_clear->asked == 1);
   }
+}
+
+TEST_CASE(
+    "a problem that holds what is no number comes to a planner, which may say what is wrong") {
+  Flight flight;
+  flight.navigator->provide<IFlightController>(flying_at(60));
+  flight.navigator->provide_csp<IPlanner>("OneRoute", flight.navigator->id(), flight.planner, {});
+  flight.request.problem.exposure_cap_m = std::numeric_limits<double>::quiet_NaN();
+  try {
+    flight.ask();
+  } catch (const std::exception&) {  // what is made of its route is not the matter here
+  }
+  CHECK(flight.planner->asked.size() == 1);
 }
 
 TEST_CASE("where no AD manager answers, the refusal names the cap") {
