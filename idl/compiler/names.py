@@ -19,7 +19,7 @@ EXCEPTION_MEMBER = MEMBER | {"info", "value", "what", "text", "exception_info"}
 UNION_MEMBER = MEMBER | {"discriminator", "select", "tag_", "held_", "index_of"}
 PARAMETER = MACROS | {"in", "out"}
 OPERATION = MEMBER | {
-    "Proxy", "Skeleton", "interface_info", "channel", "disconnect", "within", "dispatch", "call", "async_call",
+    "Proxy", "Skeleton", "Deferred", "answers_later", "interface_info", "channel", "disconnect", "within", "dispatch", "call", "async_call",
     "set_timeout", "call_time", "ProxyBase", "kDefaultTimeout", "implementation", "TypedCall", "type_support",
 }  # fmt: skip
 

@@ -4,6 +4,7 @@
 #include "skein/detail/version.hpp"  // which says so: <coroutine> would say less
 #endif
 
+#include <concepts>
 #include <coroutine>
 #include <exception>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "skein/call_context.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/detail/channel.hpp"
+#include "skein/detail/pending_reply.hpp"
 #include "skein/error.hpp"
 #include "skein/stream.hpp"
 
@@ -126,6 +128,89 @@ class [[nodiscard]] Call {
 
   std::shared_ptr<PendingCall> pending_;
   std::shared_ptr<Channel> channel_;
+  Stored* result_;
+};
+
+/// The answer that an implementation owes. It may be given on any thread, also after the operation
+/// has returned: until then the call occupies no thread. Copies belong to the same call, whose
+/// first answer counts. The arguments of the operation live as long as a copy.
+///
+/// If the last copy goes without an answer, the caller gets Internal, with a text that says so.
+/// When its service is withdrawn, a call that has no answer ends as Disconnected.
+///
+/// The answer leaves on the thread that gives it, as that of an ordinary implementation does. T is
+/// what an asynchronous call of the operation returns: its result, or `I_f_Out` where it has out
+/// parameters. Thread-safe. A reply that was moved from throws InvalidArgument.
+template <class T>
+class Reply {
+  using Stored = std::conditional_t<std::is_void_v<T>, char, T>;
+
+ public:
+  /// `result` points into the out struct of `pending` (nullptr for void). Used by generated code.
+  explicit Reply(std::shared_ptr<PendingReply> pending, Stored* result = nullptr)
+      : pending_(std::move(pending)), result_(result) {}
+
+  /// Answers with the result. Returns false, has no effect, and logs a warning, if the call was
+  /// answered before or its service was withdrawn. If only the caller has given up, the answer
+  /// just goes nowhere.
+  bool answer(Stored result) const requires(!std::is_void_v<T>) {
+    if (!pending().claim()) return false;
+    *result_ = std::move(result);
+    pending().finish(nullptr);
+    return true;
+  }
+  bool answer() const requires std::is_void_v<T> {
+    if (!pending().claim()) return false;
+    pending().finish(nullptr);
+    return true;
+  }
+
+  /// Answers with an exception: the caller gets what it would get if an ordinary implementation
+  /// threw it. Otherwise as answer().
+  bool fail(std::exception_ptr error) const {
+    if (!pending().claim()) return false;
+    pending().finish(std::move(error));
+    return true;
+  }
+  template <std::derived_from<std::exception> Exception>
+  bool fail(Exception error) const {
+    return fail(std::make_exception_ptr(std::move(error)));
+  }
+
+  /// Answers with what `function` returns or throws: `reply.answer_with([&] { return call.get();
+  /// })` passes on how another call has ended.
+  template <std::invocable Function>
+  bool answer_with(Function&& function) const {
+    try {
+      if constexpr (std::is_void_v<T>) {
+        function();
+        return answer();
+      } else {
+        return answer(function());
+      }
+    } catch (...) {
+      return fail(std::current_exception());
+    }
+  }
+
+  /// The call that is to be answered; valid as long as a copy of the reply. Under `CallContextScope
+  /// scope(reply.call())`, calls made on another thread inherit its deadline.
+  const CallContext& call() const { return pending().call(); }
+
+  /// Runs `action` once nobody waits for the answer any more: the caller has cancelled, its
+  /// deadline has passed there, it is gone, or the service is withdrawn. At once if that is so
+  /// already; not after the answer. `reply.on_cancel(call.canceller())` passes it on to another
+  /// call. It runs on the thread that notices, possibly a vendor's, so it must neither block nor
+  /// run user code. At most one action.
+  void on_cancel(Action action) const { pending().on_cancel(std::move(action)); }
+
+ private:
+  PendingReply& pending() const {
+    if (pending_) return *pending_;
+    throw InvalidArgument("this reply was moved from; use the object that it was moved to");
+  }
+
+  std::shared_ptr<PendingReply> pending_;
   Stored* result_;
 };
 

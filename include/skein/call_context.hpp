@@ -19,14 +19,14 @@ class Session {
 };
 
 /// The call that the current thread executes: its caller, its deadline, and the services that wait
-/// for it. An implementation gets it from CallContext::current(); it is valid until the
-/// implementation returns. Calls that the implementation makes on this thread inherit the deadline;
-/// blocking ones also inherit the chain.
+/// for it. An implementation gets it from CallContext::current() until it returns, or from
+/// Reply::call(). Calls that it makes on this thread inherit the deadline; blocking ones also
+/// inherit the chain.
 class CallContext {
  public:
   /// The services that wait for the answer: first the chain of `outer`, if this call runs on the
   /// thread of another one, or else those that the request names; last this service, whose identity
-  /// is `strand`.
+  /// is `strand`, unless it is nil: a call that is answered later blocks no thread.
   struct Waiting {
     const CallContext* outer = nullptr;
     std::span<const Guid> named{};
@@ -62,7 +62,8 @@ class CallContext {
   /// Identity of the client's connection; nil for a caller in the same process.
   const Guid& caller() const noexcept { return caller_; }
 
-  /// The services that wait for this call's answer, outermost first; the last is this one.
+  /// The services that wait for this call's answer, outermost first; the last is this one, if its
+  /// thread waits, too.
   std::vector<Guid> chain() const;
 
   /// How often `strand` occurs in the chain.

@@ -66,7 +66,8 @@ struct ServiceOptions {
   ThreadSettings scheduling{};
   /// Capacity of the request queue, for all clients together; further requests are refused as
   /// Overloaded. So is a request of a peer that has as many waiting as there are free places: a
-  /// single peer fills at most half of the queue, and there is always room for a new one.
+  /// single peer fills at most half of the queue, and there is always room for a new one. As many
+  /// calls again may be begun and not answered yet, where the implementation answers later.
   std::size_t queue = 2048;
   /// The component description as XML, for clients that look the service up.
   std::string component{};
@@ -106,6 +107,12 @@ class Entity {
   Guid provide(std::shared_ptr<Interface> body, const ServiceOptions& options = {}) {
     return provide(skeleton_of(std::move(body)), options);
   }
+  /// A Body that answers later: see Reply.
+  template <class Interface>
+  Guid provide(std::shared_ptr<typename Interface::Deferred> body,
+               const ServiceOptions& options = {}) {
+    return provide(std::shared_ptr<Servant>(std::move(body)), options);
+  }
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
 
   /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. If the owner is
@@ -116,6 +123,12 @@ class Entity {
   Guid provide_csp(const std::string& name, const std::string& owner,
                    std::shared_ptr<Interface> csp, const ServiceOptions& options = {}) {
     return provide_csp(name, owner, skeleton_of(std::move(csp)), options);
+  }
+  template <class Interface>
+  Guid provide_csp(const std::string& name, const std::string& owner,
+                   std::shared_ptr<typename Interface::Deferred> csp,
+                   const ServiceOptions& options = {}) {
+    return provide_csp(name, owner, std::shared_ptr<Servant>(std::move(csp)), options);
   }
   Guid provide_csp(const std::string& name, const std::string& owner,
                    std::shared_ptr<Servant> servant, const ServiceOptions& options);

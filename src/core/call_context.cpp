@@ -12,7 +12,7 @@ const CallContext* CallContext::current() noexcept { return innermost; }
 std::vector<Guid> CallContext::chain() const {
   auto chain = waiting_.outer ? waiting_.outer->chain()
                               : std::vector<Guid>(waiting_.named.begin(), waiting_.named.end());
-  chain.push_back(waiting_.strand);
+  if (!waiting_.strand.is_nil()) chain.push_back(waiting_.strand);
   return chain;
 }
 

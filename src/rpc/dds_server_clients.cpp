@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "common.hpp"
 #include "core/log.hpp"
@@ -299,10 +300,20 @@ void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
 
 // One that has no session is known by its request writer alone.
 void DdsServer::State::end_foreign_calls(const Guid& writer) {
-  std::lock_guard lock(mutex);
-  for (const auto& [id, invocation] : active) {
-    if (invocation->connection == writer) invocation->cancel();
+  cancel_if([&](const RequestId&, const Invocation& call) { return call.connection == writer; });
+}
+
+// Unlocked: whoever hears of it may answer at once.
+template <class Predicate>
+void DdsServer::State::cancel_if(Predicate predicate) {
+  std::vector<std::shared_ptr<Invocation>> cancelled;
+  {
+    std::lock_guard lock(mutex);
+    for (const auto& [id, invocation] : active) {
+      if (predicate(id, *invocation)) cancelled.push_back(invocation);
+    }
   }
+  for (const auto& invocation : cancelled) invocation->cancel();
 }
 
 void DdsServer::State::drop_unless_matched(const Guid& key) {
@@ -333,10 +344,8 @@ void DdsServer::State::drop(const Guid& key) {
     forgotten.insert(key);
     discount_unsent(*client, client->unsent_size);
     client->unsent.clear();
-    for (const auto& [id, invocation] : active) {
-      if (id.client == key) invocation->cancel();
-    }
   }
+  cancel_if([&](const RequestId& id, const Invocation&) { return id.client == key; });
   clock.cancel(patience);
   clock.cancel(retry);
 }

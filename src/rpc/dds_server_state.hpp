@@ -137,6 +137,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   void remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
               std::chrono::milliseconds after);
   void end_foreign_calls(const Guid& writer);
+  template <class Predicate>
+  void cancel_if(Predicate predicate);
   void drop_unless_matched(const Guid& key);
   void drop(const Guid& key);
   void send_unsent(const std::shared_ptr<Client>& client);

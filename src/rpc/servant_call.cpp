@@ -36,11 +36,10 @@ void check_sendable(const OperationInfo& operation, const UserException& excepti
   }
 }
 
-}  // namespace
-
-void call_servant(Servant& servant, const OperationInfo& operation, const void* in, void* out) {
+// What is being handled now, as every caller gets it.
+[[noreturn]] void rethrow(const OperationInfo& operation) {
   try {
-    servant.dispatch(operation, in, out);
+    throw;
   } catch (const UserException& exception) {
     check_declared(operation, exception);
     check_sendable(operation, exception);
@@ -51,6 +50,24 @@ void call_servant(Servant& servant, const OperationInfo& operation, const void* 
     throw Internal(quoted(operation) + " failed: " + failure.what());
   } catch (...) {
     throw Internal(quoted(operation) + " threw something that is no std::exception");
+  }
+}
+
+}  // namespace
+
+void call_servant(Servant& servant, const OperationInfo& operation, const void* in, void* out) {
+  try {
+    servant.dispatch(operation, in, out);
+  } catch (...) {
+    rethrow(operation);
+  }
+}
+
+void throw_for_caller(const OperationInfo& operation, const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (...) {
+    rethrow(operation);
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <exception>
+
 #include "skein/detail/operation.hpp"
 
 namespace skein::rpc {
@@ -8,5 +10,8 @@ namespace skein::rpc {
 /// came by: an Error and an exception that the operation declares as they are; as Internal what is
 /// neither, and an exception that CDR cannot carry.
 void call_servant(Servant& servant, const OperationInfo& operation, const void* in, void* out);
+
+/// Throws what call_servant() throws where the operation throws `error`.
+[[noreturn]] void throw_for_caller(const OperationInfo& operation, const std::exception_ptr& error);
 
 }  // namespace skein::rpc

@@ -4,11 +4,33 @@
 
 #include "common.hpp"
 #include "core/clock_wait.hpp"
+#include "core/log.hpp"
 #include "servant_call.hpp"
+#include "skein/detail/pending_reply.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {
+
+void Invocation::on_cancel(Action action) {
+  {
+    std::lock_guard lock(action_mutex_);
+    if (!cancelled) {
+      action_ = std::move(action);
+      return;
+    }
+  }
+  if (action) action();
+}
+
+void Invocation::tell_cancelled() {
+  Action action;
+  {
+    std::lock_guard lock(action_mutex_);
+    action = std::move(action_);
+  }
+  if (action) action();
+}
 
 /// Notes that an invocation is inside the implementation; none enters a service that is closed.
 class Service::Running {
@@ -78,6 +100,71 @@ class Service::Turn {
   bool waited_ = false;
 };
 
+/// A call that its implementation answers later. It outlives the service where the implementation
+/// keeps it for longer, and refers to it weakly: the service has the implementation.
+class Service::Deferred final : public PendingReply {
+ public:
+  Deferred(Service& service, const std::shared_ptr<Invocation>& invocation)
+      : service_(service.weak_from_this()),
+        name_(service.interface_info().name),
+        keeps_(service.options_.keeps),
+        invocation_(invocation),
+        out_(invocation->operation->out->make(), invocation->operation->out->destroy),
+        call_(service.clock_, invocation->deadline, invocation->caller,
+              {nullptr, invocation->chain, Guid()}, invocation->session.get(),
+              &invocation->cancelled),
+        tap_(service.options_.recorder.get(), service.interface_info(), *invocation->operation,
+             {invocation->connection, invocation->number}, invocation->in.get()) {}
+  ~Deferred() override {
+    if (ending_ != Ending::None) return;
+    finish(std::make_exception_ptr(
+        Internal(quoted(operation()) + " was not answered: its implementation dropped the Reply")));
+  }
+
+  void* out() noexcept override { return out_.get(); }
+  const CallContext& call() const noexcept override { return call_; }
+  void on_cancel(Action action) override {
+    if (ending_ == Ending::None) invocation_->on_cancel(std::move(action));
+  }
+
+  bool claim() override {
+    Ending before = Ending::None;
+    if (ending_.compare_exchange_strong(before, Ending::Answered)) return true;
+    log(LogLevel::Warning, std::string(name_),
+        "an answer to " + quoted(operation()) + " goes nowhere: " +
+            (before == Ending::Answered ? "it was answered before" : "its service was withdrawn"));
+    return false;
+  }
+
+  void finish(std::exception_ptr error) override {
+    if (const auto service = service_.lock()) service->end(*this, std::move(error));
+  }
+
+  /// The service ends before the answer has come.
+  void withdraw(const std::exception_ptr& why) {
+    Ending none = Ending::None;
+    if (!ending_.compare_exchange_strong(none, Ending::Withdrawn)) return;
+    invocation_->cancel();
+    finish(why);
+  }
+
+  Invocation& invocation() const noexcept { return *invocation_; }
+  const OperationInfo& operation() const noexcept { return *invocation_->operation; }
+  CallRecorder::Tap& tap() noexcept { return tap_; }
+
+ private:
+  enum class Ending { None, Answered, Withdrawn };
+
+  const std::weak_ptr<Service> service_;
+  const std::string_view name_;
+  const std::shared_ptr<const void> keeps_;  // the clock of call_
+  const std::shared_ptr<Invocation> invocation_;
+  const std::unique_ptr<void, void (*)(void*)> out_;
+  const CallContext call_;
+  CallRecorder::Tap tap_;
+  std::atomic<Ending> ending_{Ending::None};
+};
+
 Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& clock,
                  Options options)
     : servant_(std::move(servant)),
@@ -93,6 +180,11 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& cl
                           "one call at a time, and to have " +
                           std::to_string(options_.threads) +
                           " threads of its own; give it one, or CallThread::Own");
+  }
+  if (options_.thread == CallThread::Caller && servant_->answers_later()) {
+    throw InvalidArgument(std::string(interface_info().name) +
+                          " answers later, and cannot run on its callers' threads, which would "
+                          "wait all the same; give it CallThread::Own");
   }
 }
 
@@ -143,11 +235,15 @@ void Service::enqueue(std::shared_ptr<Invocation> invocation) {
     throw Overloaded("the queue of " + std::string(interface_info().name) +
                      " is full; the call was not executed");
   }
+  if (is_deferred(*invocation->operation) && !may_owe(invocation->connection)) {
+    throw Overloaded(std::string(interface_info().name) +
+                     " owes as many answers as it may; the call was not executed");
+  }
   queue_.push(std::move(invocation));
 }
 
 void Service::execute_next() {
-  if (const auto next = take_next()) execute(*next);
+  if (const auto next = take_next()) execute(next);
 }
 
 void Service::call_here(const OperationInfo& operation, const void* in, void* out,
@@ -230,12 +326,21 @@ Unavailable Service::being_withdrawn() const {
 }
 
 void Service::close() {
+  std::vector<std::shared_ptr<PendingReply>> owed;
   {
     std::scoped_lock lock(owner_mutex_, mutex_, turn_mutex_);
     closed_ = true;
     for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
+    for (Deferred* const each : deferred_) owed.push_back(each->weak_from_this().lock());
   }
   turn_ended_.notify_all();
+  for (const auto& each : owed) {
+    if (!each) continue;  // its last copy goes just now
+    auto& deferred = static_cast<Deferred&>(*each);
+    deferred.withdraw(std::make_exception_ptr(
+        Disconnected(std::string(interface_info().name) + " was withdrawn; whether " +
+                     quoted(deferred.operation()) + " ran is unknown")));
+  }
   while (const auto waiting = take_next()) withdraw(*waiting);
 }
 
@@ -260,20 +365,28 @@ void Service::stop(Invocation& invocation) const {
   invocation.stop(ErrorCode::Disconnected, std::string(interface_info().name) + " was withdrawn");
 }
 
-void Service::execute(Invocation& invocation) {
-  OperationMeter& meter = meter_.of(*invocation.operation);
-  const Turn turn(*this, invocation.deadline);
-  const Instant now = invocation.begun = clock_.now();
-  meter.waited.record(now - invocation.arrived);
-  if (closed_) return withdraw(invocation);
-  if (!turn.came() || invocation.cancelled || now >= invocation.deadline) {
+bool Service::is_deferred(const OperationInfo& operation) const noexcept {
+  return servant_->answers_later() && !operation.stream && !operation.oneway;
+}
+
+void Service::execute(const std::shared_ptr<Invocation>& invocation) {
+  OperationMeter& meter = meter_.of(*invocation->operation);
+  const Turn turn(*this, invocation->deadline);
+  const Instant now = invocation->begun = clock_.now();
+  meter.waited.record(now - invocation->arrived);
+  if (closed_) return withdraw(*invocation);
+  if (!turn.came() || invocation->cancelled || now >= invocation->deadline) {
     OperationMeter::count(meter.expired);
-    answer(invocation, nullptr,
+    answer(*invocation, nullptr,
            std::make_exception_ptr(TimedOut("the deadline passed before " +
                                             std::string(interface_info().name) +
                                             " could begin; not executed")));
     return;
   }
+  is_deferred(*invocation->operation) ? execute_deferred(invocation) : execute_now(*invocation);
+}
+
+void Service::execute_now(Invocation& invocation) {
   const TypeSupport& type = *invocation.operation->out;
   OutgoingStream* const stream = invocation.stream.get();
   const std::unique_ptr<void, void (*)(void*)> out(stream ? nullptr : type.make(), type.destroy);
@@ -293,26 +406,42 @@ void Service::execute(Invocation& invocation) {
 
 void Service::dispatch(const OperationInfo& operation, const void* in, void* out,
                        Invocation& frame) {
+  enter(operation, frame, [&] {
+    CallRecorder::Tap tap(options_.recorder.get(), interface_info(), operation,
+                          {frame.connection, frame.number}, in);
+    account(operation, out, frame, tap,
+            [&] { call_servant(*servant_, operation, in, tap.passing(out)); });
+  });
+}
+
+// Runs `action`, which is inside the implementation; refuses where the service is closed.
+template <class Action>
+void Service::enter(const OperationInfo& operation, Invocation& frame, Action action) {
   const CallContext context(clock_, frame.deadline, frame.caller,
                             {frame.outer, frame.chain, options_.strand}, frame.session.get(),
                             &frame.cancelled);
   const CallContextScope scope(context);
-  OperationMeter& meter = meter_.of(operation);
   const Running running(*this, frame);
   if (!running.admitted()) {
-    OperationMeter::count(meter.refused);
+    OperationMeter::count(meter_.of(operation).refused);
     throw being_withdrawn();
   }
+  action();
+}
+
+// Runs `action`, which ends the call: meters and recorder hear how.
+template <class Action>
+void Service::account(const OperationInfo& operation, const void* out, Invocation& frame,
+                      CallRecorder::Tap& tap, Action action) {
+  OperationMeter& meter = meter_.of(operation);
   OperationMeter::Counter* outcome = &meter.answered;
   const auto end = [&] {
     frame.ended = clock_.now();
     meter.ran.record(frame.ended - frame.begun);
     OperationMeter::count(*outcome);
   };
-  CallRecorder::Tap tap(options_.recorder.get(), interface_info(), operation,
-                        {frame.connection, frame.number}, in);
   try {
-    call_servant(*servant_, operation, in, tap.passing(out));
+    action();
   } catch (const Cancelled& error) {
     outcome = &meter.failed;
     end();
@@ -334,6 +463,67 @@ void Service::dispatch(const OperationInfo& operation, const void* in, void* out
   tap.returned(out);
 }
 
+// The implementation may answer before it returns, and what it does then is nobody's concern.
+void Service::execute_deferred(const std::shared_ptr<Invocation>& invocation) {
+  try {
+    enter(*invocation->operation, *invocation, [&] {
+      const auto deferred = make_shared_in_call_memory<Deferred>(*this, invocation);
+      if (!owe(*deferred, invocation->connection))
+        return deferred->withdraw(std::make_exception_ptr(being_withdrawn()));
+      try {
+        call_servant(*servant_, *invocation->operation, invocation->in.get(),
+                     static_cast<PendingReply*>(deferred.get()));
+      } catch (...) {
+        if (deferred->claim()) deferred->finish(std::current_exception());
+      }
+    });
+  } catch (const Unavailable&) {
+    answer(*invocation, nullptr, std::current_exception());
+  }
+}
+
+// By the rule of FairQueue: a peer may be owed no more than there is room left.
+bool Service::may_owe(const Guid& connection) const {
+  std::lock_guard lock(mutex_);
+  const auto of_peer = owed_.find(connection.participant());
+  return (of_peer == owed_.end() ? 0 : of_peer->second) <
+         options_.queue - std::min(options_.queue, deferred_.size());
+}
+
+// False once the service is closed: close() would not find it.
+bool Service::owe(Deferred& deferred, const Guid& connection) {
+  std::lock_guard lock(mutex_);
+  if (closed_) return false;
+  deferred_.insert(&deferred);
+  ++owed_[connection.participant()];
+  return true;
+}
+
+void Service::settle(Deferred& deferred, const Guid& connection) {
+  std::lock_guard lock(mutex_);
+  if (deferred_.erase(&deferred) == 0) return;
+  const auto of_peer = owed_.find(connection.participant());
+  if (--of_peer->second == 0) owed_.erase(of_peer);
+}
+
+void Service::end(Deferred& deferred, std::exception_ptr error) {
+  Invocation& invocation = deferred.invocation();
+  const OperationInfo& operation = *invocation.operation;
+  invocation.on_cancel(nullptr);
+  settle(deferred, invocation.connection);
+  const void* result = deferred.out();
+  try {
+    account(operation, result, invocation, deferred.tap(), [&] {
+      if (error) throw_for_caller(operation, error);
+    });
+    refuse_too_late(operation, invocation);
+  } catch (...) {
+    error = std::current_exception();
+    result = nullptr;
+  }
+  answer(invocation, result, std::move(error));
+}
+
 introspection::ServiceStatistics Service::statistics() const {
   introspection::ServiceStatistics statistics;
   statistics.provider = id().bytes;
@@ -344,7 +534,10 @@ introspection::ServiceStatistics Service::statistics() const {
     statistics.waiting = static_cast<std::uint32_t>(queue_.size());
   }
   std::lock_guard lock(mutex_);
-  for (const Running* each = running_; each; each = each->next()) ++statistics.running;
+  statistics.running = static_cast<std::uint32_t>(deferred_.size());
+  for (const Running* each = running_; each; each = each->next()) {
+    if (!is_deferred(*each->invocation().operation)) ++statistics.running;
+  }
   return statistics;
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "rpc/call_journal.hpp"
@@ -15,6 +17,8 @@
 #include "rpc/service_meter.hpp"
 #include "skein/call_context.hpp"
 #include "skein/clock.hpp"
+#include "skein/detail/action.hpp"
+#include "skein/detail/call_memory.hpp"
 #include "skein/detail/operation.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
@@ -59,16 +63,30 @@ struct Invocation {
   std::function<void(const void* out, std::exception_ptr error)> respond;
   std::shared_ptr<Invocation> next;  ///< The FairQueue's.
 
-  /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink).
-  void cancel() { stop(ErrorCode::Cancelled, "its caller waits no longer"); }
+  /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink,
+  /// Reply). Not under a lock.
+  void cancel() {
+    stop(ErrorCode::Cancelled, "its caller waits no longer");
+    tell_cancelled();
+  }
+  /// Without the action of on_cancel().
   void stop(ErrorCode code, const std::string& why) {
     cancelled = true;
     if (stream) stream->stop(code, why);
   }
+
+  /// Runs `action` when the call is cancelled; at once if it already is. An empty one forgets it.
+  void on_cancel(Action action);
+  void tell_cancelled();
+
+ private:
+  std::mutex action_mutex_;
+  Action action_;
 };
 
 /// A provided service, whatever transport its calls come by: the implementation and the threads
-/// that run it. Expired and cancelled invocations are dropped unexecuted.
+/// that run it. Expired and cancelled invocations are dropped unexecuted. An implementation may owe
+/// as many answers as invocations may wait, and a peer its share of them (see FairQueue).
 class Service : public std::enable_shared_from_this<Service> {
  public:
   struct Options {
@@ -130,14 +148,15 @@ class Service : public std::enable_shared_from_this<Service> {
   introspection::ServiceStatistics statistics() const;
 
   /// Invocations that have not begun are refused, now and from now on; those that run are told to
-  /// stop. When it returns, Options::open and name_of are not running and will not run: whoever
-  /// they ask may go.
+  /// stop, and those that are owed an answer end as Disconnected. When it returns, Options::open
+  /// and name_of are not running and will not run: whoever they ask may go.
   void close();
 
   /// Once closed: waits until no invocation is inside the implementation; false at the deadline.
   bool await_end(std::chrono::steady_clock::time_point deadline) const;
 
  private:
+  class Deferred;
   class Running;
   class Turn;
   std::size_t count_overdue() const;
@@ -149,7 +168,14 @@ class Service : public std::enable_shared_from_this<Service> {
   void note_end(const OperationInfo& operation, const Invocation& frame,
                 const std::exception_ptr& error);
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);
-  void execute(Invocation& invocation);
+  void execute(const std::shared_ptr<Invocation>& invocation);
+  void execute_now(Invocation& invocation);
+  void execute_deferred(const std::shared_ptr<Invocation>& invocation);
+  bool is_deferred(const OperationInfo& operation) const noexcept;
+  bool may_owe(const Guid& connection) const;
+  bool owe(Deferred& deferred, const Guid& connection);
+  void settle(Deferred& deferred, const Guid& connection);
+  void end(Deferred& deferred, std::exception_ptr error);
   std::string circle(const std::vector<Guid>& chain) const;
   void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
   void stop(Invocation& invocation) const;
@@ -157,6 +183,11 @@ class Service : public std::enable_shared_from_this<Service> {
   void begin_here(OperationMeter& meter, const Invocation& frame) const;
   [[noreturn]] void refuse_turn(OperationMeter& meter, const OperationInfo& operation) const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
+  template <class Action>
+  void enter(const OperationInfo& operation, Invocation& frame, Action action);
+  template <class Action>
+  void account(const OperationInfo& operation, const void* out, Invocation& frame,
+               CallRecorder::Tap& tap, Action action);
 
   std::shared_ptr<Servant> servant_;
   Executor& executor_;
@@ -173,6 +204,8 @@ class Service : public std::enable_shared_from_this<Service> {
   mutable std::mutex mutex_;
   mutable std::condition_variable all_ended_;
   Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run
+  std::pmr::unordered_set<Deferred*> deferred_{&call_memory()};
+  std::pmr::unordered_map<Guid, std::size_t> owed_{&call_memory()};  // by peer, none is 0
 };
 
 }  // namespace skein::rpc

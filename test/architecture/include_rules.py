@@ -50,7 +50,7 @@ MAX_USERS_HEADERS = 33
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
-    "core": "abi action box bytes call_memory channel operation representation version",
+    "core": "abi action box bytes call_memory channel operation pending_reply representation version",
     "idl": "argument cdr codec declared_exception filled json json_codec key_hash make_type_support malformed_sample plain_layout print"
            " service_reference type_support union_access unknown_operation wide_text",
     "dds": "qos",

@@ -301,6 +301,7 @@ def _check_clashes(builder, report):
         if isinstance(decl, model.Interface) and decl.defined and decl.place.file not in builder.broken:
             claim(decl.cpp + "Proxy", f"the proxy of {decl.idl_name}", decl.place)
             claim(decl.cpp + "Skeleton", f"the skeleton of {decl.idl_name}", decl.place)
+            claim(decl.cpp + "Deferred", f"the deferred form of {decl.idl_name}", decl.place)
             for operation in decl.operations:
                 for struct in (operation.in_struct, operation.out_struct):
                     claim(struct.cpp, f"{struct.cpp_name} of {decl.idl_name}::{operation.name}", operation.place)

@@ -29,7 +29,7 @@ def definition(interface):
     bases = ", ".join(f"public virtual {base.cpp}" for base in interface.bases)
     lines = cpp.documentation(interface.documentation)
     lines += [f"class {name}{' : ' + bases if bases else ''} {{", " public:"]
-    lines += [f"  using Proxy = {interface.cpp}Proxy;", f"  using Skeleton = {interface.cpp}Skeleton;"]
+    lines += [f"  using {part} = {interface.cpp}{part};" for part in ("Proxy", "Skeleton", "Deferred")]
     lines += [types_template.alias(nested, names.NAMESPACE | names.OPERATION) for nested in interface.nested]
     lines += ["", f"  virtual ~{name}();", "  static const ::skein::InterfaceInfo& interface_info();"]
     for operation in interface.operations:

@@ -8,6 +8,7 @@ from . import (
     analysis,
     cdr_template,
     cpp,
+    deferred_template,
     interface_template,
     json_template,
     metadata_template,
@@ -17,7 +18,7 @@ from . import (
     types_template,
 )
 
-VERSION = 4  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 5  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)
@@ -84,7 +85,7 @@ def header(file):
     ]
     announced = cpp.in_namespaces(file.announced, lambda interface: [f"class {interface.cpp_name};"])
     proxies = cpp.in_namespaces(
-        file.interfaces, lambda i: [f"class {i.cpp_name}Proxy;", f"class {i.cpp_name}Skeleton;"]
+        file.interfaces, lambda i: [f"class {i.cpp_name}{part};" for part in ("Proxy", "Skeleton", "Deferred")]
     )
     definitions = cpp.in_namespaces(file.items, _definition)
     if any("::skein::idl::filled<" in line for line in definitions):
@@ -98,7 +99,9 @@ def _definition(item):
     lines = interface_template.definition(item) + [""]
     for struct in _operation_structs(item):
         lines += types_template.definition(struct) + [""]
-    return lines + proxy_template.definition(item) + [""] + skeleton_template.definition(item)
+    for template in (proxy_template, skeleton_template, deferred_template):
+        lines += template.definition(item) + [""]
+    return lines[:-1]
 
 
 def _layouts(file):
@@ -137,7 +140,7 @@ def _implementation(item):
         for struct in _operation_structs(item):
             lines += _type(struct, parameters=True)
         lines += interface_template.source(item) + metadata_template.interface_info(item)
-        return lines + proxy_template.source(item) + skeleton_template.source(item)
+        return lines + proxy_template.source(item) + skeleton_template.source(item) + deferred_template.source(item)
     return _type(item) if isinstance(item, _TYPES) else []
 
 

@@ -6,11 +6,11 @@ from . import cpp
 from .interface_template import parameters, result, sink
 
 
-def _in_parameters(operation):
+def in_parameters(operation):
     return ", ".join(f"{cpp.parameter_type(p.type)} {p.cpp_name}" for p in operation.parameters if p.is_in)
 
 
-def _async_result(operation):
+def async_result(operation):
     if any(p.is_out for p in operation.parameters):
         return operation.out_struct.cpp
     return result(operation)
@@ -36,10 +36,10 @@ def definition(interface):
         lines += ["", *cpp.documentation(operation.documentation, "  ")]
         lines.append(f"  {result(operation)} {operation.cpp_name}({parameters(operation)}) override;")
         if operation.stream:
-            lines.append(f"  {_stream_type(operation)} {operation.cpp_name}({_in_parameters(operation)});")
+            lines.append(f"  {_stream_type(operation)} {operation.cpp_name}({in_parameters(operation)});")
             continue
         lines.append(
-            f"  ::skein::Call<{_async_result(operation)}> {operation.async_name}({_in_parameters(operation)});"
+            f"  ::skein::Call<{async_result(operation)}> {operation.async_name}({in_parameters(operation)});"
         )
     return lines + ["};"]
 
@@ -94,12 +94,12 @@ def _blocking(name, interface, operation, index):
 
 
 def _asynchronous(name, interface, operation, index):
-    kind = _async_result(operation)
+    kind = async_result(operation)
     out = operation.out_struct.cpp
     select = {"void": "static_cast<char*>(nullptr)", out: "&out"}.get(kind, "&out.return_")
     parameter = "" if kind == "void" else " out"
     return [
-        f"::skein::Call<{kind}> {name}::{operation.async_name}({_in_parameters(operation)}) {{",
+        f"::skein::Call<{kind}> {name}::{operation.async_name}({in_parameters(operation)}) {{",
         f"  return ProxyBase::async_call<{kind}, {out}>(",
         f"      {_operation(interface, index)}, {_request(operation)},",
         f"      []({out}&{parameter}) {{ return {select}; }});",
@@ -113,7 +113,7 @@ def _stream(name, interface, operation, index):
     item = cpp.type_name(operation.result)
     arguments = ", ".join(p.cpp_name for p in operation.parameters)
     return [
-        f"::skein::Stream<{item}> {name}::{operation.cpp_name}({_in_parameters(operation)}) {{",
+        f"::skein::Stream<{item}> {name}::{operation.cpp_name}({in_parameters(operation)}) {{",
         f"  return ProxyBase::stream<{item}, {operation.out_struct.cpp}>(",
         f"      {_operation(interface, index)}, {_request(operation)});",
         "}",

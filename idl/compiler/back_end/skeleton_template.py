@@ -44,7 +44,7 @@ def source(interface):
         "  switch (operation.hash) {",
     ]
     for operation in operations:
-        lines += _case(operation)
+        lines += case(operation, "implementation_")
     return lines + [
         f"    default: ::skein::idl::throw_unknown_operation({interface.cpp}::interface_info(), operation);",
         "  }",
@@ -53,7 +53,8 @@ def source(interface):
     ]
 
 
-def _case(operation):
+def case(operation, implementation):
+    """Carries one operation to what `implementation` points to."""
     inputs = iter(operation.in_struct.members)
     outputs = iter(operation.out_struct.members[1:] if operation.result else operation.out_struct.members)
     prepare, arguments = [], []
@@ -68,8 +69,8 @@ def _case(operation):
         else:
             arguments.append(value)
     if operation.stream:
-        return _stream_case(operation, arguments)
-    call = f"implementation_->{operation.cpp_name}({', '.join(arguments)});"
+        return _stream_case(operation, arguments, implementation)
+    call = f"{implementation}->{operation.cpp_name}({', '.join(arguments)});"
     lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
     if operation.in_struct.members:
         lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
@@ -80,14 +81,14 @@ def _case(operation):
     return lines + ["      return;", "    }"]
 
 
-def _stream_case(operation, arguments):
+def _stream_case(operation, arguments, implementation):
     lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
     if operation.in_struct.members:
         lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
     result = cpp.type_name(operation.result)
     return lines + [
         f"      ::skein::WritingSink<{result}, {operation.out_struct.cpp}> results(out);",
-        f"      implementation_->{operation.cpp_name}({', '.join([*arguments, 'results'])});",
+        f"      {implementation}->{operation.cpp_name}({', '.join([*arguments, 'results'])});",
         "      return;",
         "    }",
     ]

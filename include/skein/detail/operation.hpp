@@ -136,9 +136,12 @@ class Servant {
   virtual ~Servant() = default;
   virtual const InterfaceInfo& interface_info() const noexcept = 0;
   /// Runs `operation` on `in` (its in struct) and fills `out` (its out struct; for a stream, the
-  /// StreamWriter that takes its out structs). Throws what the implementation throws. The executor
-  /// decides whether several threads may be inside at once.
+  /// StreamWriter that takes its out structs; for what is answered later, the PendingReply). Throws
+  /// what the implementation throws. The executor decides whether several threads may be inside at
+  /// once.
   virtual void dispatch(const OperationInfo& operation, const void* in, void* out) = 0;
+  /// Whether its operations take a PendingReply, but for streams and those that are oneway.
+  virtual bool answers_later() const noexcept { return false; }
 };
 
 }  // namespace skein
