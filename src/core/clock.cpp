@@ -13,13 +13,16 @@ namespace skein {
 
 struct SystemClock::State {
   std::mutex mutex;
-  std::condition_variable changed;   // a timer was added before the earliest, or the end has come
+  std::condition_variable changed;   // a timer is due before the thread wakes, or the end has come
   std::condition_variable finished;  // the running action has returned
   // A queued call within the process has a timer of its own.
   std::pmr::map<std::pair<Instant, TimerId>, Action> timers{&call_memory()};
   std::pmr::unordered_map<TimerId, Instant> instants{&call_memory()};
   TimerId last = 0;
   TimerId running = 0;
+  // When the thread looks at the timers at the latest. Most are cancelled, and followed by one that
+  // is due later: it sleeps on, and looks once.
+  Instant wakes = Instant::max();
   bool stopping = false;
   std::thread thread;
 
@@ -27,13 +30,17 @@ struct SystemClock::State {
     pthread_setname_np(pthread_self(), "skein-timer");
     std::unique_lock lock(mutex);
     while (!stopping) {
-      if (timers.empty()) {
-        changed.wait(lock);
-      } else if (const Instant due = timers.begin()->first.first;
-                 due > std::chrono::steady_clock::now()) {
-        changed.wait_until(lock, due);
-      } else {
+      const Instant now = std::chrono::steady_clock::now();
+      const Instant due = timers.empty() ? Instant::max() : timers.begin()->first.first;
+      if (due <= now) {
         run_first(lock);
+        continue;
+      }
+      if (due < wakes || wakes <= now) wakes = due;
+      if (wakes == Instant::max()) {
+        changed.wait(lock);
+      } else {
+        changed.wait_until(lock, wakes);
       }
     }
   }
@@ -71,9 +78,12 @@ SystemClock::~SystemClock() {
 TimerId SystemClock::call_at(Instant when, Action action) {
   std::lock_guard lock(state_->mutex);
   const TimerId id = ++state_->last;
-  const auto position = state_->timers.emplace(std::pair(when, id), std::move(action)).first;
+  state_->timers.emplace(std::pair(when, id), std::move(action));
   state_->instants.emplace(id, when);
-  if (position == state_->timers.begin()) state_->changed.notify_one();
+  if (when < state_->wakes) {
+    state_->wakes = when;
+    state_->changed.notify_one();
+  }
   return id;
 }
 

@@ -1,7 +1,11 @@
 #include "skein/clock.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -10,6 +14,26 @@
 using namespace skein;
 using namespace std::chrono_literals;
 using skein::test::eventually;
+
+namespace {
+
+/// Of a thread of this process.
+std::string status_of(pid_t thread, const std::string& name) {
+  std::ifstream status("/proc/self/task/" + std::to_string(thread) + "/status");
+  std::string value;
+  for (std::string word; status >> word;) {
+    if (word == name + ":") status >> value;
+  }
+  return value;
+}
+
+/// How often it has gone to sleep until now, when it sleeps.
+int sleeps_of(pid_t thread) {
+  REQUIRE(eventually([&] { return status_of(thread, "State") == "S"; }));
+  return std::stoi(status_of(thread, "voluntary_ctxt_switches"));
+}
+
+}  // namespace
 
 TEST_CASE("a manual clock stands still until it is told") {
   ManualClock clock;
@@ -51,6 +75,23 @@ TEST_CASE("the system clock runs an earlier timer first even when it was set lat
   clock.call_after(1ms, [&] { soon = true; });
   CHECK(eventually([&] { return soon.load(); }));
   CHECK_FALSE(late);
+}
+
+TEST_CASE("timers that are set and cancelled one after another do not wake the clock's thread") {
+  SystemClock clock;
+  std::atomic<pid_t> thread = 0;
+  clock.call_after(0ms, [&] { thread = ::gettid(); });
+  REQUIRE(eventually([&] { return thread != 0; }));
+  clock.cancel(clock.call_after(10min, [] {}));
+  const int before = sleeps_of(thread);
+  for (int i = 0; i < 10; ++i) {
+    clock.cancel(clock.call_after(10min, [] {}));
+    CHECK(sleeps_of(thread) == before);
+  }
+
+  std::atomic<bool> soon = false;
+  clock.call_after(1ms, [&] { soon = true; });
+  CHECK(eventually([&] { return soon.load(); }));
 }
 
 TEST_CASE("after cancel has returned a timer's action is over, also when it was running") {
