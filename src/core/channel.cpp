@@ -44,8 +44,8 @@ void PendingCall::finish(std::exception_ptr error) {
     finished_ = true;
     action = std::move(action_);
     canceller = std::move(canceller_);
-    changed_.notify_all();
   }
+  changed_.notify_all();  // unlocked: on one processor it may run at once, and needs the lock
   if (action) action();
 }
 
