@@ -228,18 +228,22 @@ void Service::answer(Invocation& invocation, const void* out, std::exception_ptr
 }
 
 void Service::enqueue(std::shared_ptr<Invocation> invocation) {
-  std::lock_guard lock(queue_mutex_);  // until the invocation is there, the task finds nothing
-  if (closed_) throw being_withdrawn();
-  if (!queue_.has_room(invocation->connection) ||
-      !executor_.post([self = shared_from_this()] { self->execute_next(); })) {
-    throw Overloaded("the queue of " + std::string(interface_info().name) +
-                     " is full; the call was not executed");
+  {
+    std::lock_guard lock(queue_mutex_);
+    if (closed_) throw being_withdrawn();
+    if (!queue_.has_room(invocation->connection)) {
+      throw Overloaded("the queue of " + std::string(interface_info().name) +
+                       " is full; the call was not executed");
+    }
+    if (is_deferred(*invocation->operation) && !may_owe(invocation->connection)) {
+      throw Overloaded(std::string(interface_info().name) +
+                       " owes as many answers as it may; the call was not executed");
+    }
+    queue_.push(std::move(invocation));
   }
-  if (is_deferred(*invocation->operation) && !may_owe(invocation->connection)) {
-    throw Overloaded(std::string(interface_info().name) +
-                     " owes as many answers as it may; the call was not executed");
-  }
-  queue_.push(std::move(invocation));
+  // Unlocked: on one processor the thread that it wakes runs at once, and needs the lock. The
+  // executor ends after close(), which leaves nothing in the queue.
+  executor_.post_or_run([self = shared_from_this()] { self->execute_next(); });
 }
 
 void Service::execute_next() {

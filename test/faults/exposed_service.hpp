@@ -27,10 +27,10 @@ class ExposedService {
   template <class Implementation>
   ExposedService(Entity& entity, std::shared_ptr<Implementation> implementation,
                  std::size_t queue = 4096)
-      : executor_("exposed", 1, queue),
+      : executor_("exposed"),
         service_(std::make_shared<rpc::Service>(
             std::make_shared<typename Implementation::Skeleton>(std::move(implementation)),
-            executor_, entity.clock(), service_options(entity.broker().new_provider()))),
+            executor_, entity.clock(), service_options(entity.broker().new_provider(), queue))),
         server_(entity.participant(), control_, entity.clock(), service_, {}),
         registration_(entity.broker().add_service(
             describe(service_->interface_info(), id(), entity.options().name))) {}
@@ -51,9 +51,10 @@ class ExposedService {
   }
 
  private:
-  rpc::Service::Options service_options(const Guid& id) {
+  rpc::Service::Options service_options(const Guid& id, std::size_t queue) {
     rpc::Service::Options options;
     options.id = id;
+    options.queue = queue;
     options.open = [this](const rpc::OpenRequest&) {
       if (full_) throw Overloaded("no room for one more session");
       auto session = std::make_shared<Session>();
