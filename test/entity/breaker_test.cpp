@@ -142,7 +142,7 @@ TEST_CASE("a CSP in the process that does not return is told of when that shows,
   Office office(HeadOptions{.max_stuck = 1});
   office.add("stuck", Place::Inside, hang.script(), declared("1", "0.9"));
   office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
-  for (int i = 0; i < 3; ++i) office.perform(Office::task(), 400ms);
+  for (int i = 0; i < 3; ++i) office.perform(Office::task(), 2s);
   CHECK(log.count("uav-1/office: CSP 'stuck' has not returned from a request whose time is over; "
                   "it is not asked again before it returns") == 1);
   CHECK(log.count("CSPs in this process that do not return: stuck; as many as max_stuck (1)") == 1);
