@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include "harness/load.hpp"
@@ -37,6 +39,19 @@ std::uint64_t allocations() {
   return reinterpret_cast<std::uint64_t (*)()>(counter)();
 }
 
+// Not the switches that the scheduler orders: these depend on who else is there.
+std::uint64_t sleeps() {
+  std::uint64_t sum = 0;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream status(thread.path() / "status");  // empty for a thread that ends just now
+    for (std::string word; status >> word;) {
+      std::uint64_t count = 0;
+      if (word == "voluntary_ctxt_switches:" && status >> count) sum += count;
+    }
+  }
+  return sum;
+}
+
 Commands known_to_all() {
   return {{"place",
            [](const std::string& core) {
@@ -44,7 +59,8 @@ Commands known_to_all() {
              return "placed";
            }},
           {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }},
-          {"allocations", [](const std::string&) { return std::to_string(allocations()); }}};
+          {"allocations", [](const std::string&) { return std::to_string(allocations()); }},
+          {"sleeps", [](const std::string&) { return std::to_string(sleeps()); }}};
 }
 
 const Command& find(const Commands& commands, const std::string& name) {

@@ -56,9 +56,9 @@ struct Client {
 /// which nothing goes |
 ///
 /// Times are in ns. Every peer, server or client, also knows `place CORE` (-1: any; for all its
-/// threads), `cpu` (processor time that it has used, in ns) and, where
-/// harness/allocation_counter.cpp is preloaded, `allocations` (blocks that it has taken from the
-/// heap).
+/// threads), `cpu` (processor time that it has used, in ns), `sleeps` (how often its threads have
+/// gone to sleep) and, where harness/allocation_counter.cpp is preloaded, `allocations` (blocks
+/// that it has taken from the heap).
 void run_client(const Client& client);
 
 /// A server's: says `ready`, obeys until its input ends.
