@@ -37,6 +37,8 @@ TEST_CASE("thirteen on two vendors take off, fly over a point, and land; the ver
   CHECK(run.exit_code() == 0);
   for (const char* phase : {"TakeOff", "Ingress", "Egress", "Landing", "Complete"})
     CHECK_THAT(run.output(), Contains(phase));
+  // What its radar transmits is received, classified by a vote, and placed.
+  CHECK_THAT(run.output(), Contains("threat 1: short-range site at 53.4"));
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
   CHECK(verdict["checks"].size() == 7);

@@ -1,24 +1,43 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "flight.idl.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
-#include "picture.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "threats.idl.hpp"
+#include "threats/air_defence_picture.hpp"
 
 namespace reconnaissance {
 
-/// The air defence picture: will know where threats are, how certainly, and how far they reach. As
-/// yet it takes part in the mission's time, tells its health, and listens.
+/// The air defence picture: knows where threats are, how certainly, and how far they reach. Its
+/// CSPs place emitters by bearings; its Head chooses among them.
 class AdManager {
  public:
   AdManager(skein::Entity& entity, const skein::ParameterValues& values);
   void start() { member_.start(); }
 
  private:
+  void manage(Tick tick);
+  bool hear(const recon::EmitterReports& reports);
+  std::optional<skein::fusion::Estimate> locate(std::span<const Bearing> bearings,
+                                                const Interval& distances_m);
+  void tell(Tick tick);
+
+  skein::Entity& entity_;
+  std::optional<LocalFrame> frame_;  // about the first place of the aircraft
+  AirDefencePicture picture_{WarnerReceiver()};
+  std::vector<Threat> threats_;
+  std::vector<Threat> told_;  // of the present epoch
+  std::uint32_t epoch_ = 0;
+
   Stream<recon::FlightState> flight_;
-  skein::Subscription<recon::EmitterReport> emitters_;
+  Stream<recon::EmitterReports> emitters_;
+  skein::Publisher<recon::ThreatPicture> pictures_;
   Member member_;
 };
 

@@ -2,12 +2,15 @@
 
 #include <vector>
 
+#include "clock/ticks.hpp"
 #include "flight.idl.hpp"
 #include "flight/guidance.hpp"
 #include "flight/pilot.hpp"
 #include "flight/point_mass.hpp"
+#include "geodesy/hills.hpp"
 #include "geodesy/local_frame.hpp"
 #include "mission/places.hpp"
+#include "skein/parameters.hpp"
 
 namespace reconnaissance {
 
@@ -40,6 +43,15 @@ inline std::vector<recon::Position> positions(const LocalFrame& frame,
   for (const Local& each : locals) result.push_back(position(frame, each));
   return result;
 }
+
+/// The ground that a profile names by `Runway` and `Hills`, about the runway's threshold.
+inline Hills ground_of(const skein::ParameterValues& values) {
+  const RunwayText runway = parse_runway(values.get<std::string>("Runway"));
+  return Hills(runway.threshold.height_m, values.find<std::uint64_t>("Hills").value_or(0));
+}
+
+/// Seconds of the mission.
+inline double seconds_of(Tick tick) { return std::chrono::duration<double>(time_of(tick)).count(); }
 
 inline recon::Runway runway(const RunwayText& text) {
   return {position(text.threshold), text.course_rad, text.length_m};

@@ -41,6 +41,7 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
     : entity_(entity),
       runway_(parse_runway(values.get<std::string>("Runway"))),
       frame_(runway_.threshold),
+      ground_(ground_of(values)),
       mean_wind_(wind_from(radians(values.find<double>("Wind from").value_or(0)),
                            values.find<double>("Wind speed").value_or(0))),
       gust_m_s_(values.find<double>("Gusts").value_or(0)),
@@ -103,7 +104,7 @@ void FlightSimulator::simulate(Tick tick) {
   input.wind_north_m_s = wind.north_m_s;
   input.wind_east_m_s = wind.east_m_s;
   input.wind_up_m_s = wind.up_m_s;
-  input.ground_m = runway_.threshold.height_m;
+  input.ground_m = ground_m();
   input.seconds = kTick_s;
   aircraft_ = aircraft(model_->advance(input));
 }
@@ -116,13 +117,13 @@ Wind FlightSimulator::blow() {
            gust_.east_m_s * kept + fresh * random_.normal(),
            gust_.up_m_s * kept + fresh / 2 * random_.normal()};
   // No wind blows into the ground or out of it.
-  const double height_m = aircraft_.position.height_m - runway_.threshold.height_m;
+  const double height_m = aircraft_.position.height_m - ground_m();
   return {mean_wind_.north_m_s + gust_.north_m_s, mean_wind_.east_m_s + gust_.east_m_s,
           gust_.up_m_s * std::min(1.0, height_m / kGustsFrom_m)};
 }
 
 void FlightSimulator::publish(Tick tick) {
-  const double above_ground_m = aircraft_.position.height_m - runway_.threshold.height_m;
+  const double above_ground_m = aircraft_.position.height_m - ground_m();
   recon::Sensors sensors;
   sensors.tick = tick;
   for (std::size_t i = 0; i < sensors.sets.size(); ++i) sensors.sets[i] = measure(i);
@@ -134,7 +135,7 @@ void FlightSimulator::publish(Tick tick) {
   truth_.publish({tick, position(frame_, aircraft_.position), above_ground_m,
                   aircraft_.airspeed_m_s,
                   course(std::atan2(aircraft_.east_m_s, aircraft_.north_m_s)),
-                  std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.climb_rad,
+                  std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.heading_rad, aircraft_.climb_rad,
                   aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground, aircraft_.stalled});
 }
 
@@ -149,6 +150,11 @@ recon::SensorSet FlightSimulator::measure(std::size_t set) {
           measured.heading_rad,
           measured.climb_rad,
           measured.bank_rad};
+}
+
+/// Below the aircraft, above the geoid.
+double FlightSimulator::ground_m() const {
+  return ground_(aircraft_.position.north_m, aircraft_.position.east_m);
 }
 
 }  // namespace reconnaissance

@@ -6,6 +6,7 @@
 
 #include "flight.idl.hpp"
 #include "flight/sensors.hpp"
+#include "geodesy/hills.hpp"
 #include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission/places.hpp"
@@ -38,10 +39,12 @@ class FlightSimulator : public recon::IFlightSimulator {
   Wind blow();
   void publish(Tick tick);
   recon::SensorSet measure(std::size_t set);
+  double ground_m() const;
 
   skein::Entity& entity_;
   RunwayText runway_;
   LocalFrame frame_;
+  Hills ground_;
   Wind mean_wind_;
   double gust_m_s_;
   Wind gust_{};

@@ -92,6 +92,9 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       modes_(entity.subscription<recon::MissionMode>(
           topic::kMode.name, skein::TopicQos::state(),
           [this](const recon::MissionMode& mode) { show(mode); })),
+      pictures_(entity.subscription<recon::ThreatPicture>(
+          topic::kThreats.name, skein::TopicQos::state(),
+          [this](const recon::ThreatPicture& picture) { show(picture); })),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -192,6 +195,19 @@ void GroundStation::show(const recon::MissionMode& mode) {
   }
   fmt::print("{}  mode {}{}\n", clock_of(mode.tick), to_string(mode.mode),
              mode.reason.empty() ? "" : ": " + mode.reason);
+  std::fflush(stdout);
+}
+
+void GroundStation::show(const recon::ThreatPicture& picture) {
+  for (const recon::Threat& threat : picture.threats) {
+    {
+      std::lock_guard lock(mutex_);
+      if (!threats_.insert(threat.number).second) continue;
+    }
+    fmt::print("{}  threat {}: {} at {:.3f} {:.3f} within {:.0f} m\n", clock_of(picture.tick),
+               threat.number, threat.kind, threat.position.latitude_deg,
+               threat.position.longitude_deg, threat.deviation_m);
+  }
   std::fflush(stdout);
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "mission/verdict.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
+#include "threats.idl.hpp"
 
 namespace reconnaissance {
 
@@ -28,6 +30,7 @@ class GroundStation {
   void see(const recon::Truth& truth);
   void show(const recon::MissionStatus& status);
   void show(const recon::MissionMode& mode);
+  void show(const recon::ThreatPicture& picture);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
@@ -46,12 +49,14 @@ class GroundStation {
   Judge judge_;
   std::optional<recon::Phase> phase_;
   recon::Mode mode_ = recon::Mode::Starting;
+  std::set<std::uint32_t> threats_;  // that were shown
   Tick last_tick_ = -1;
   Tick last_moving_tick_ = -1;
 
   skein::Subscription<recon::Truth> truths_;
   skein::Subscription<recon::MissionStatus> statuses_;
   skein::Subscription<recon::MissionMode> modes_;
+  skein::Subscription<recon::ThreatPicture> pictures_;
   Member member_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "ad_manager.hpp"
 #include "collision_manager.hpp"
+#include "emitter_csps.hpp"
 #include "eo_manager.hpp"
 #include "eoi_manager.hpp"
 #include "flight_controller.hpp"
@@ -71,11 +72,16 @@ void add_all(ComponentRegistry& registry) {
   add_activity<Nhp>(registry, "Nhp");
   add_activity<EoManager>(registry, "EoManager");
   add_activity<RadarWarner>(registry, "RadarWarner");
+  add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "TableMatch", &by_table);
+  add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Bayesian", &by_bayes);
+  add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Wideband", &by_means);
   add_activity<CollisionManager>(registry, "CollisionManager");
   add_activity<ObjectTracker>(registry, "ObjectTracker");
   add_activity<ThreatSimulator>(registry, "ThreatSimulator");
   add_activity<EoiManager>(registry, "EoiManager");
   add_activity<AdManager>(registry, "AdManager");
+  add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "BearingFilter", &by_filter);
+  add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "Triangulation", &by_triangulation);
 
   registry.add_activity("GroundStation", [](Entity& entity, const ParameterValues& values,
                                             const std::stop_token& told_to_end) {

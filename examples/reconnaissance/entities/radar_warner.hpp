@@ -1,24 +1,31 @@
 #pragma once
 
-#include "flight.idl.hpp"
+#include <cstdint>
+#include <map>
+
 #include "member.hpp"
-#include "picture.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "threats.idl.hpp"
 
 namespace reconnaissance {
 
-/// The radar warner: will tell emitters and their modes by what it receives. As yet it takes part
-/// in the mission's time, tells its health, and listens.
+/// The radar warner: tells by received pulses which radars transmit in which mode. Its CSPs
+/// classify; its Head has them vote.
 class RadarWarner {
  public:
   RadarWarner(skein::Entity& entity, const skein::ParameterValues& values);
   void start() { member_.start(); }
 
  private:
-  Stream<recon::FlightState> flight_;
-  skein::Subscription<recon::Emission> emissions_;
+  void warn(Tick tick);
+  recon::Identification identify(const recon::PulseTrain& train, std::uint32_t number);
+
+  skein::Entity& entity_;
+  std::map<std::uint32_t, recon::PulseTrain> trains_;  // the last intercepts of each
+  Stream<recon::Intercepts> intercepts_;
+  skein::Publisher<recon::EmitterReports> reports_;
   Member member_;
 };
 

@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "clock/ticks.hpp"
 #include "skein/entity.hpp"
@@ -57,6 +58,19 @@ class Stream {
     return std::nullopt;
   }
 
+  /// All up to that tick that were not taken before, in order; waits for that of the tick as at()
+  /// does. For topics whose samples each say something of their own: published reliably, and taken
+  /// every 25 ticks at least.
+  std::vector<T> take(Tick tick) {
+    at(tick);
+    std::lock_guard lock(mutex_);
+    std::vector<T> taken;
+    for (const T& sample : samples_)
+      if (sample.tick > taken_ && sample.tick <= tick) taken.push_back(sample);
+    if (!taken.empty()) taken_ = taken.back().tick;
+    return taken;
+  }
+
   /// The newest that has arrived.
   std::optional<T> latest() const {
     std::lock_guard lock(mutex_);
@@ -77,6 +91,7 @@ class Stream {
   std::condition_variable arrived_;
   std::deque<T> samples_;
   std::uint64_t lost_ = 0;
+  Tick taken_ = -1;
   skein::Subscription<T> subscription_;
 };
 

@@ -18,14 +18,15 @@ inline constexpr StreamTopic kFlightState{"flight/state", 5};
 inline constexpr StreamTopic kFlightState50Hz{"flight/state_50hz", 1};
 inline constexpr StreamTopic kTruth{"simulation/truth", 5};
 inline constexpr StreamTopic kMode{"mission/mode", 25};
+inline constexpr StreamTopic kIntercepts{"threat/intercepts", 5};
+inline constexpr StreamTopic kEmitters{"threat/emitters", 5};
+inline constexpr StreamTopic kThreats{"threat/picture", 25};
+inline constexpr StreamTopic kThreatTruth{"simulation/threats", 50};
 
 inline constexpr const char* kHealth = "mission/health";
 inline constexpr const char* kStatus = "mission/status";
 
 // What nobody publishes yet.
-inline constexpr const char* kEmission = "threat/emission";
-inline constexpr const char* kEmitter = "threat/emitter";
-inline constexpr const char* kThreats = "threat/picture";
 inline constexpr const char* kImage = "target/image";
 inline constexpr const char* kTrack = "target/track";
 inline constexpr const char* kElements = "target/elements";

@@ -53,6 +53,22 @@ std::vector<Geodetic> parse_points(const std::string& text) {
   return points;
 }
 
+std::vector<SiteText> parse_sites(const std::string& text) {
+  std::vector<SiteText> sites;
+  for (const std::string& part : parts_of(text, ';')) {
+    std::size_t split = 0;  // where the type's last word ends
+    std::istringstream words(part);
+    for (std::string word; words >> word;) {
+      if (word.find_first_not_of("-.0123456789") == std::string::npos) break;
+      split = part.find(word, split) + word.size();
+    }
+    const auto numbers =
+        numbers_in(part.substr(split), 3, "site; write `type latitude longitude active`");
+    sites.push_back({part.substr(0, split), place({numbers[0], numbers[1], 0}, part), numbers[2]});
+  }
+  return sites;
+}
+
 std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }
 
 }  // namespace reconnaissance

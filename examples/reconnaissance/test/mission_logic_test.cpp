@@ -159,6 +159,13 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   const auto points = parse_points(" 53.4 27.5 900; 53.5 27.7 900 ;\n 53.6 27.8 700;");
   REQUIRE(points.size() == 3);
   CHECK(points[2].height_m == 700);
+  const auto sites = parse_sites("short-range site 53.4 27.5 0; coast radar 53.5 -27.7 420;");
+  REQUIRE(sites.size() == 2);
+  CHECK(sites[0].type == "short-range site");
+  CHECK(sites[1].type == "coast radar");
+  CHECK(sites[1].place.longitude_deg == -27.7);
+  CHECK(sites[1].active_from_s == 420);
+  CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7"), skein::InvalidArgument);
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_points("53.4 27.5 900 1"), skein::InvalidArgument);

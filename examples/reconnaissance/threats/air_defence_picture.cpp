@@ -1,5 +1,6 @@
 #include "threats/air_defence_picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +13,8 @@ namespace {
 constexpr double kBearingGate = 0.9999;
 constexpr double kLinkGate = 0.99;
 constexpr double kForgetting_s = 10;
+// A place that moves less is the same to others.
+constexpr double kLeastMove_m = 100;
 // Of the track of an emitter whose power is unknown.
 constexpr Interval kAnywhere_m{1000, 60000};
 
@@ -141,6 +144,21 @@ std::vector<Threat> AirDefencePicture::threats(const Locate& locate) const {
         {kFirstLinkNumber + id, link.emitter, RadarMode::Off, 1, link.position, false, true, 0});
   }
   return threats;
+}
+
+bool differ(const std::vector<Threat>& one, const std::vector<Threat>& other) {
+  return !std::ranges::equal(one, other, [](const Threat& a, const Threat& b) {
+    const double moved_m = std::hypot(a.position.mean[0] - b.position.mean[0],
+                                      a.position.mean[1] - b.position.mean[1]);
+    return a.id == b.id && a.emitter == b.emitter &&
+           moved_m <= std::max(kLeastMove_m, greatest_deviation_m(a.position));
+  });
+}
+
+double greatest_deviation_m(const skein::fusion::Estimate& place) {
+  const double mean = (place.covariance[0] + place.covariance[3]) / 2;
+  const double half = (place.covariance[0] - place.covariance[3]) / 2;
+  return std::sqrt(mean + std::hypot(half, place.covariance[1]));
 }
 
 }  // namespace reconnaissance

@@ -92,4 +92,11 @@ class AirDefencePicture {
   std::map<std::uint32_t, LinkTrack> links_;
 };
 
+/// Whether two pictures differ in what matters to others: in a threat or its type, or by more than
+/// its own standard deviation, 100 m at least, in a threat's place.
+bool differ(const std::vector<Threat>& one, const std::vector<Threat>& other);
+
+/// The standard deviation of a place's error in the direction in which it is greatest.
+double greatest_deviation_m(const skein::fusion::Estimate& place);
+
 }  // namespace reconnaissance

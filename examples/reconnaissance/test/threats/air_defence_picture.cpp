@@ -255,3 +255,20 @@ TEST_CASE("Nor is the picture overconfident if the link has an older report of o
   CHECK(older.picture < bound(0.975));
   CHECK(older.added > bound(0.975));
 }
+
+TEST_CASE(
+    "Pictures differ in threats, their types, and places that moved by more than their error") {
+  const Threat one{
+      1, "mobile gun", RadarMode::Search, 1, {{0, 0}, {250000, 0, 0, 10000}}, true, false, 0};
+  CHECK(greatest_deviation_m(one.position) == Approx(500));
+  CHECK_FALSE(differ({one}, {one}));
+  CHECK(differ({one}, {}));
+  Threat other = one;
+  other.position.mean = {0, 499};
+  CHECK_FALSE(differ({one}, {other}));
+  other.position.mean = {0, 501};
+  CHECK(differ({one}, {other}));
+  other = one;
+  other.emitter = "coast radar";
+  CHECK(differ({one}, {other}));
+}

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "threats.idl.hpp"
+#include "threats/air_defence_picture.hpp"
+
+namespace reconnaissance {
+
+inline recon::RadarMode radar_mode(RadarMode mode) {
+  return static_cast<recon::RadarMode>(static_cast<int>(mode));
+}
+inline RadarMode radar_mode(recon::RadarMode mode) {
+  return static_cast<RadarMode>(static_cast<int>(mode));
+}
+static_assert(static_cast<int>(RadarMode::Guidance) ==
+              static_cast<int>(recon::RadarMode::Guidance));
+
+inline recon::Intercept intercept(const Intercept& heard, std::uint32_t train) {
+  return {train,
+          heard.bearing_rad,
+          heard.bearing_sigma_rad,
+          heard.waveform.radio_frequency_hz,
+          heard.waveform.pulse_interval_s,
+          heard.waveform.scan_s,
+          heard.power_w};
+}
+
+inline Intercept intercept(const recon::Intercept& heard, double time_s) {
+  return {time_s,
+          heard.bearing_rad,
+          heard.bearing_deviation_rad,
+          {heard.frequency_hz, heard.pulse_interval_s, heard.scan_s},
+          heard.power_w};
+}
+
+inline recon::Identification identification(const Identification& found) {
+  return {found.emitter, radar_mode(found.mode), found.confidence};
+}
+
+inline Identification identification(const recon::Identification& found) {
+  return {found.emitter, radar_mode(found.mode), found.confidence, {}};
+}
+
+inline recon::BearingTrack bearing_track(std::span<const Bearing> bearings,
+                                         const Interval& distances_m) {
+  recon::BearingTrack track{{}, distances_m.least, distances_m.greatest};
+  track.bearings.reserve(bearings.size());
+  for (const Bearing& each : bearings)
+    track.bearings.push_back(
+        {each.from.north_m, each.from.east_m, each.bearing_rad, each.sigma_rad});
+  return track;
+}
+
+inline std::vector<Bearing> bearings_of(const recon::BearingTrack& track) {
+  std::vector<Bearing> bearings;
+  bearings.reserve(track.bearings.size());
+  for (const recon::BearingLine& each : track.bearings)
+    bearings.push_back({{each.north_m, each.east_m, 0}, each.bearing_rad, each.deviation_rad});
+  return bearings;
+}
+
+inline recon::PlaceEstimate place_estimate(const skein::fusion::Estimate& place) {
+  return {place.mean[0], place.mean[1], place.covariance[0], place.covariance[1],
+          place.covariance[3]};
+}
+
+inline skein::fusion::Estimate estimate(const recon::PlaceEstimate& place) {
+  return {{place.north_m, place.east_m},
+          {place.north_north_m2, place.north_east_m2, place.north_east_m2, place.east_east_m2}};
+}
+
+}  // namespace reconnaissance
