@@ -14,8 +14,10 @@ namespace {
 
 const std::filesystem::path kMission = project_file("mission_profiles/reconnaissance.xml");
 
-/// One point, near the runway.
-const std::vector<std::string> kShort{"--variable", "points=53.3250 27.3700 500"};
+/// One point, near the runway, and on the way back something to be looked at.
+const std::vector<std::string> kShort{"--variable", "points=53.3250 27.3700 500",
+                                      "--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
+                                      "--variable", "objects=53.3089 27.3226 3 0 0"};
 
 std::vector<std::string> with(std::vector<std::string> arguments,
                               const std::vector<std::string>& more) {
@@ -39,6 +41,8 @@ TEST_CASE("thirteen on two vendors take off, fly over a point, and land; the ver
     CHECK_THAT(run.output(), Contains(phase));
   // What its radar transmits is received, classified by a vote, and placed.
   CHECK_THAT(run.output(), Contains("threat 1: short-range site at 53.4"));
+  // What is to be seen is seen as finely as it was ordered, by a pattern that a Head chose.
+  CHECK_THAT(run.output(), Contains("shed collected: 0."));
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
   CHECK(verdict["checks"].size() == 7);

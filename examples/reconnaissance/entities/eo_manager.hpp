@@ -1,24 +1,74 @@
 #pragma once
 
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "flight.idl.hpp"
+#include "geodesy/hills.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
-#include "picture.idl.hpp"
+#include "mission/elements.hpp"
+#include "random.hpp"
+#include "sensing/camera.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "targets.idl.hpp"
 
 namespace reconnaissance {
 
-/// The electro-optical camera: will point it at what is to be reconnoitred, and report pictures. As
-/// yet it takes part in the mission's time, tells its health, and listens.
+/// The electro-optical camera, which it simulates, too. It looks at the element that is next as
+/// soon as the flight leads past it; its CSPs know patterns by which to do so, and its Head takes
+/// the one that costs least.
 class EoManager {
  public:
   EoManager(skein::Entity& entity, const skein::ParameterValues& values);
   void start() { member_.start(); }
 
  private:
+  /// A plan that is carried out, or waits for its beginning.
+  struct Collection {
+    std::string element;
+    recon::CollectionPlan plan;
+    double begin_s;
+  };
+  /// How well each part of an element has been seen; infinite: not at all.
+  struct Seen {
+    std::vector<Local> parts;
+    std::vector<double> sample_m;
+    double achieved_m() const;
+  };
+  struct TrueObject {
+    Local place;
+    double size_m;
+    double north_m_s;
+    double east_m_s;
+  };
+
+  void work(Tick tick);
+  void prepare(double now_s, const recon::FlightState& state, const recon::Element& element);
+  std::optional<recon::CollectionPlan> ask_plan(const recon::CollectionTask& task,
+                                                const recon::Element& element);
+  std::optional<recon::Image> take(double now_s, const recon::FlightState& state,
+                                   const recon::Truth& truth);
+  void find_objects(double now_s, const CameraPose& pose, recon::Image& image);
+  void look_at_parts(const CameraPose& pose, Seen& seen) const;
+  std::vector<Local> line_of(const recon::Element& element) const;
+
+  skein::Entity& entity_;
+  LocalFrame frame_;
+  Hills ground_;
+  std::vector<TrueObject> objects_;
+  Random random_;
+  std::optional<Collection> collection_;
+  std::map<std::string, Seen> seen_;
+
   Stream<recon::FlightState> flight_;
-  skein::Subscription<recon::ElementOfInterest> elements_;
+  Stream<recon::Truth> truth_;
+  Stream<recon::ElementList> elements_;
+  skein::Publisher<recon::Images> images_;
   Member member_;
 };
 

@@ -135,8 +135,9 @@ void FlightSimulator::publish(Tick tick) {
   truth_.publish({tick, position(frame_, aircraft_.position), above_ground_m,
                   aircraft_.airspeed_m_s,
                   course(std::atan2(aircraft_.east_m_s, aircraft_.north_m_s)),
-                  std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.heading_rad, aircraft_.climb_rad,
-                  aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground, aircraft_.stalled});
+                  std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.heading_rad,
+                  aircraft_.climb_rad, aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground,
+                  aircraft_.stalled});
 }
 
 recon::SensorSet FlightSimulator::measure(std::size_t set) {

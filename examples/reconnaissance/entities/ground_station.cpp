@@ -95,6 +95,9 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       pictures_(entity.subscription<recon::ThreatPicture>(
           topic::kThreats.name, skein::TopicQos::state(),
           [this](const recon::ThreatPicture& picture) { show(picture); })),
+      elements_(entity.subscription<recon::ElementList>(
+          topic::kElements.name, skein::TopicQos::state(),
+          [this](const recon::ElementList& list) { show(list); })),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -207,6 +210,18 @@ void GroundStation::show(const recon::ThreatPicture& picture) {
     fmt::print("{}  threat {}: {} at {:.3f} {:.3f} within {:.0f} m\n", clock_of(picture.tick),
                threat.number, threat.kind, threat.position.latitude_deg,
                threat.position.longitude_deg, threat.deviation_m);
+  }
+  std::fflush(stdout);
+}
+
+void GroundStation::show(const recon::ElementList& list) {
+  for (const recon::Element& element : list.elements) {
+    {
+      std::lock_guard lock(mutex_);
+      if (!element.collected || !collected_.insert(element.name).second) continue;
+    }
+    fmt::print("{}  {} collected: {:.2f} m a pixel, wanted {:.2f}\n", clock_of(list.tick),
+               element.name, element.achieved_ground_sample_m, element.wanted_ground_sample_m);
   }
   std::fflush(stdout);
 }

@@ -14,6 +14,7 @@
 #include "mission/verdict.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
+#include "targets.idl.hpp"
 #include "threats.idl.hpp"
 
 namespace reconnaissance {
@@ -31,6 +32,7 @@ class GroundStation {
   void show(const recon::MissionStatus& status);
   void show(const recon::MissionMode& mode);
   void show(const recon::ThreatPicture& picture);
+  void show(const recon::ElementList& list);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
@@ -49,7 +51,8 @@ class GroundStation {
   Judge judge_;
   std::optional<recon::Phase> phase_;
   recon::Mode mode_ = recon::Mode::Starting;
-  std::set<std::uint32_t> threats_;  // that were shown
+  std::set<std::uint32_t> threats_;  // that were shown, as were
+  std::set<std::string> collected_;
   Tick last_tick_ = -1;
   Tick last_moving_tick_ = -1;
 
@@ -57,6 +60,7 @@ class GroundStation {
   skein::Subscription<recon::MissionStatus> statuses_;
   skein::Subscription<recon::MissionMode> modes_;
   skein::Subscription<recon::ThreatPicture> pictures_;
+  skein::Subscription<recon::ElementList> elements_;
   Member member_;
 };
 

@@ -1,24 +1,28 @@
 #pragma once
 
-#include "flight.idl.hpp"
 #include "member.hpp"
-#include "picture.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "targets.idl.hpp"
 
 namespace reconnaissance {
 
-/// Will make tracks of the objects in the pictures of the camera. As yet it takes part in the
-/// mission's time, tells its health, and listens.
+/// Follows what was found in images. Its CSPs filter; its Head fuses their tracks so that they are
+/// not believed better than they are.
 class ObjectTracker {
  public:
   ObjectTracker(skein::Entity& entity, const skein::ParameterValues& values);
   void start() { member_.start(); }
 
  private:
-  Stream<recon::FlightState> flight_;
-  skein::Subscription<recon::ImageReport> images_;
+  void follow(Tick tick);
+  recon::TrackList ask_trackers(const recon::GroundLook& look);
+
+  skein::Entity& entity_;
+  recon::ObjectTracks told_;
+  Stream<recon::Images> images_;
+  skein::Publisher<recon::ObjectTracks> tracks_;
   Member member_;
 };
 

@@ -17,6 +17,7 @@
 #include "radar_warner.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
+#include "target_csps.hpp"
 #include "threat_simulator.hpp"
 
 using skein::ComponentRegistry;
@@ -71,14 +72,21 @@ void add_all(ComponentRegistry& registry) {
 
   add_activity<Nhp>(registry, "Nhp");
   add_activity<EoManager>(registry, "EoManager");
+  add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "StepStare", &plan_step_stare);
+  add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "LineScan", &plan_line_scan);
+  add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "Spot", &plan_spot);
   add_activity<RadarWarner>(registry, "RadarWarner");
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "TableMatch", &by_table);
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Bayesian", &by_bayes);
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Wideband", &by_means);
   add_activity<CollisionManager>(registry, "CollisionManager");
   add_activity<ObjectTracker>(registry, "ObjectTracker");
+  add_csp<recon::ITargetTracker, TargetTracker<KalmanTrackFilter>>(registry, "KalmanTracker");
+  add_csp<recon::ITargetTracker, TargetTracker<StopMoveTrackFilter>>(registry, "StopMoveTracker");
   add_activity<ThreatSimulator>(registry, "ThreatSimulator");
   add_activity<EoiManager>(registry, "EoiManager");
+  add_csp<recon::IElementPolicy, ElementPolicy>(registry, "ByPriority", &next_by_priority);
+  add_csp<recon::IElementPolicy, ElementPolicy>(registry, "ByValue", &next_by_value);
   add_activity<AdManager>(registry, "AdManager");
   add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "BearingFilter", &by_filter);
   add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "Triangulation", &by_triangulation);

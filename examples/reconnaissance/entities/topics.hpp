@@ -21,15 +21,15 @@ inline constexpr StreamTopic kMode{"mission/mode", 25};
 inline constexpr StreamTopic kIntercepts{"threat/intercepts", 5};
 inline constexpr StreamTopic kEmitters{"threat/emitters", 5};
 inline constexpr StreamTopic kThreats{"threat/picture", 25};
+inline constexpr StreamTopic kElements{"target/elements", 50};
+inline constexpr StreamTopic kImages{"target/images", 5};
+inline constexpr StreamTopic kTracks{"target/tracks", 5};
 inline constexpr StreamTopic kThreatTruth{"simulation/threats", 50};
 
 inline constexpr const char* kHealth = "mission/health";
 inline constexpr const char* kStatus = "mission/status";
 
 // What nobody publishes yet.
-inline constexpr const char* kImage = "target/image";
-inline constexpr const char* kTrack = "target/track";
-inline constexpr const char* kElements = "target/elements";
 inline constexpr const char* kIntruder = "traffic/intruder";
 inline constexpr const char* kAdvisory = "traffic/advisory";
 

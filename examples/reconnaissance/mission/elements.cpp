@@ -1,0 +1,108 @@
+#include "mission/elements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "flight/angles.hpp"
+#include "skein/error.hpp"
+
+namespace reconnaissance {
+namespace {
+
+constexpr const char* kElement =
+    "element; write `name priority size resolution margin latitude longitude ...`";
+constexpr const char* kObject = "object; write `latitude longitude size course speed`";
+
+[[noreturn]] void refuse(const std::string& part, const char* what) {
+  throw skein::InvalidArgument("'" + part + "' is no " + what);
+}
+
+std::vector<double> numbers_of(std::istringstream& words, const std::string& part,
+                               const char* what) {
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  if (!words.eof()) refuse(part, what);
+  return numbers;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream list(text);
+  for (std::string part; std::getline(list, part, ';');)
+    if (part.find_first_not_of(" \t\n") != std::string::npos) parts.push_back(part);
+  return parts;
+}
+
+double length_m(const Local& a, const Local& b) {
+  return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
+}
+
+Local between(const Local& a, const Local& b, double share) {
+  return {std::lerp(a.north_m, b.north_m, share), std::lerp(a.east_m, b.east_m, share),
+          std::lerp(a.height_m, b.height_m, share)};
+}
+
+}  // namespace
+
+std::vector<ElementText> parse_elements(const std::string& text) {
+  std::vector<ElementText> elements;
+  for (const std::string& part : split(text)) {
+    ElementText element;
+    std::istringstream words(part);
+    words >> element.name;
+    const auto numbers = numbers_of(words, part, kElement);
+    if (numbers.size() < 6 || numbers.size() % 2 != 0 || numbers[0] <= 0 || numbers[1] <= 0 ||
+        numbers[2] <= 0 || numbers[3] < 0)
+      refuse(part, kElement);
+    element.priority = numbers[0];
+    element.size_m = numbers[1];
+    element.wanted_sample_m = numbers[2];
+    element.margin_m = numbers[3];
+    for (std::size_t i = 4; i < numbers.size(); i += 2)
+      element.line.push_back({numbers[i], numbers[i + 1], 0});
+    elements.push_back(std::move(element));
+  }
+  return elements;
+}
+
+std::vector<ObjectText> parse_objects(const std::string& text) {
+  std::vector<ObjectText> objects;
+  for (const std::string& part : split(text)) {
+    std::istringstream words(part);
+    const auto numbers = numbers_of(words, part, kObject);
+    if (numbers.size() != 5 || numbers[2] <= 0) refuse(part, kObject);
+    objects.push_back({{numbers[0], numbers[1], 0}, numbers[2], radians(numbers[3]), numbers[4]});
+  }
+  return objects;
+}
+
+Passage passage(const Local& aircraft, double course_rad, const Local& place) {
+  const double north = place.north_m - aircraft.north_m, east = place.east_m - aircraft.east_m;
+  return {north * std::cos(course_rad) + east * std::sin(course_rad),
+          east * std::cos(course_rad) - north * std::sin(course_rad)};
+}
+
+Local middle_of(const std::vector<Local>& line) {
+  double left = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) left += length_m(line[i - 1], line[i]) / 2;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const double length = length_m(line[i - 1], line[i]);
+    if (left <= length && length > 0) return between(line[i - 1], line[i], left / length);
+    left -= length;
+  }
+  return line.front();
+}
+
+std::vector<Local> parts_of_line(const std::vector<Local>& line, double spacing_m) {
+  std::vector<Local> parts{line.front()};
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const double length = length_m(line[i - 1], line[i]);
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
+    for (int step = 1; step <= steps; ++step)
+      parts.push_back(between(line[i - 1], line[i], static_cast<double>(step) / steps));
+  }
+  return parts;
+}
+
+}  // namespace reconnaissance

@@ -1,0 +1,54 @@
+#include "mission/elements.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "skein/error.hpp"
+
+using namespace reconnaissance;
+
+TEST_CASE("elements and objects are what a profile names") {
+  const auto elements =
+      parse_elements("depot 3 5 0.3 30 53.4 27.6; road 2 3 0.25 40 53.40 27.71 53.38 27.73;");
+  REQUIRE(elements.size() == 2);
+  CHECK(elements[0].name == "depot");
+  CHECK(elements[0].margin_m == 30);
+  CHECK(elements[1].wanted_sample_m == 0.25);
+  REQUIRE(elements[1].line.size() == 2);
+  CHECK(elements[1].line[1].longitude_deg == 27.73);
+  CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 53.4 27.6"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 30 53.4"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 30 north 27.6"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_elements("depot 0 5 0.3 30 53.4 27.6"), skein::InvalidArgument);
+
+  const auto objects = parse_objects("53.4 27.6 3 90 2.5");
+  REQUIRE(objects.size() == 1);
+  CHECK(objects[0].course_rad == Approx(std::numbers::pi / 2));
+  CHECK(objects[0].speed_m_s == 2.5);
+  CHECK_THROWS_AS(parse_objects("53.4 27.6 3 90"), skein::InvalidArgument);
+}
+
+TEST_CASE("a place is passed where it is abeam, to the right or to the left") {
+  const Passage east = passage({100, 200, 0}, std::numbers::pi / 2, {50, 1200, 0});
+  CHECK(east.ahead_m == Approx(1000));
+  CHECK(east.offset_m == Approx(50));
+  const Passage south = passage({0, 0, 0}, std::numbers::pi, {500, 30, 0});
+  CHECK(south.ahead_m == Approx(-500));
+  CHECK(south.offset_m == Approx(-30));
+}
+
+TEST_CASE("the middle of a line is half of its length from either end, its parts are all of it") {
+  const std::vector<Local> bend{{0, 0, 10}, {300, 0, 10}, {300, 900, 70}};
+  const Local middle = middle_of(bend);
+  CHECK(middle.north_m == Approx(300));
+  CHECK(middle.east_m == Approx(300));
+  CHECK(middle.height_m == Approx(30));
+  CHECK(middle_of({{7, 8, 9}}).east_m == 8);
+
+  const auto parts = parts_of_line(bend, 100);
+  REQUIRE(parts.size() == 13);
+  CHECK(parts[3].north_m == Approx(300));
+  CHECK(parts[4].east_m == Approx(100));
+  CHECK(parts.back().east_m == Approx(900));
+  CHECK(parts_of_line({{7, 8, 9}}, 50).size() == 1);
+}
