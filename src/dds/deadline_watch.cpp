@@ -82,15 +82,15 @@ void DeadlineTimer::run() {
   schedule();
 }
 
-Clock& deadline_clock() {
-  static auto* clock = new SystemClock;
-  return *clock;
-}
-
 std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed,
-                                                   Clock& clock) {
+                                                   Clock* clock) {
   if (!qos.deadline) return nullptr;
-  return std::make_unique<DeadlineTimer>(clock, *qos.deadline, std::move(missed));
+  if (!clock) {
+    // Never destroyed: participants may be static objects.
+    static auto* const machine = new SystemClock;
+    clock = machine;
+  }
+  return std::make_unique<DeadlineTimer>(*clock, *qos.deadline, std::move(missed));
 }
 
 }  // namespace skein::dds

@@ -57,12 +57,9 @@ class DeadlineTimer {
   bool closed_ = false;
 };
 
-/// The machine's clock; one for all vendors and the whole process. Never destroyed, as participants
-/// may be static objects.
-Clock& deadline_clock();
-
-/// A timer where a deadline is wanted, or nothing.
+/// A timer where a deadline is wanted, or nothing. Without `clock` it is the machine's: one for all
+/// vendors and the whole process, whose thread is started with the first deadline.
 std::unique_ptr<DeadlineTimer> make_deadline_timer(const Qos& qos, DeadlineTimer::Missed missed,
-                                                   Clock& clock = deadline_clock());
+                                                   Clock* clock = nullptr);
 
 }  // namespace skein::dds

@@ -21,17 +21,17 @@ class Owner final : public SampleOwner {
 }  // namespace
 
 ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed)
-    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), deadline_clock(),
+    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), nullptr,
                    [] { return SourceTime(std::chrono::system_clock::now().time_since_epoch()); }) {
 }
 
 ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed,
                            Clock& clock)
-    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), clock,
+    : ReceiveQueue(std::move(topic), qos, std::move(find_key), std::move(missed), &clock,
                    [&clock] { return SourceTime(clock.now().time_since_epoch()); }) {}
 
 ReceiveQueue::ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed,
-                           Clock& deadlines, std::function<SourceTime()> source_time)
+                           Clock* deadlines, std::function<SourceTime()> source_time)
     : topic_(std::move(topic)),
       representation_(qos.representation),
       exclusive_(qos.exclusive),

@@ -93,7 +93,7 @@ class ReceiveQueue {
     SourceTime expiry;
   };
 
-  ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed, Clock& deadlines,
+  ReceiveQueue(std::string topic, const Qos& qos, FindKey find_key, Missed missed, Clock* deadlines,
                std::function<SourceTime()> source_time);
 
   bool put(Arrival& arrival, const WriterOffer* offer);

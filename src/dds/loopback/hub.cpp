@@ -14,8 +14,8 @@ void put_big_endian(std::uint32_t value, std::uint8_t* to) {
 WriterCore::WriterCore(const Qos& qos, Hub& hub)
     : history(qos.history_depth),
       deadline(make_deadline_timer(
-          qos, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); }, hub.clock())) {
-}
+          qos, [this, &hub](const KeyHash& key) { hub.deadline_missed(guid, key); },
+          &hub.clock())) {}
 
 ReaderCore::ReaderCore(const Topic& topic, const Qos& qos, Hub& hub)
     : queue(
