@@ -109,6 +109,22 @@ TEST_CASE("a bounded writer goes on as its readers acknowledge") {
   CHECK(eventually([&] { return inbox.count() == 40; }));
 }
 
+TEST_CASE("a bounded writer waits only for room, not for the acknowledgment of its last samples") {
+  Wire wire;
+  Qos bounded = keep_all();
+  bounded.max_samples = 4;
+  bounded.max_blocking = 0ms;
+  Outbox outbox(*wire.writing, keyless(), bounded);
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(matched(outbox, inbox));
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
+    // Two at most have not been acknowledged when the next is written.
+    if (i % 3 == 2) REQUIRE(outbox.writer().wait_for_acknowledgments(10s));
+  }
+  CHECK(eventually([&] { return inbox.count() == 40; }));
+}
+
 TEST_CASE("a bounded writer without readers never waits") {
   Wire wire;
   Qos bounded = keep_all();

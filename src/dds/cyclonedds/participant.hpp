@@ -36,6 +36,7 @@ class CycloneParticipant final : public Participant {
   Guid guid() const override { return guid_; }
 
   RtpsGuard& guard() const noexcept { return guard_->guard(); }
+  ddsi_domaingv& internals() const noexcept { return *internals_; }
   dds_entity_t handle() const noexcept { return participant_.handle(); }
   TopicHandle acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);

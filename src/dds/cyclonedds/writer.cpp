@@ -3,6 +3,7 @@
 #include "../options_check.hpp"
 #include "../sample_format.hpp"
 #include "blob.hpp"
+#include "held_samples.h"
 #include "identity.hpp"
 
 namespace skein::dds::cyclonedds {
@@ -75,11 +76,18 @@ void CycloneWriter::dispose(const KeyHash& key) {
   if (deadline_) deadline_->ended(key);
 }
 
-/// Cyclone itself bounds only the bytes that wait for acknowledgment, so every max_samples writes
-/// all that was written must have been acknowledged.
+/// Cyclone itself bounds only the bytes that wait for acknowledgment. Where the samples have no
+/// room, all that was written must be acknowledged. How many wait is only looked at when it may be
+/// too many.
 void CycloneWriter::wait_for_room() {
   if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
   if (written_.fetch_add(1) < qos_.max_samples) return;
+  const ddsi_guid_t guid = to_internal(guid_);
+  const std::uint64_t waiting = skein_held_samples(&participant_.internals(), &guid);
+  if (waiting < qos_.max_samples) {
+    written_ = waiting + 1;
+    return;
+  }
   if (!wait_for_acknowledgments(qos_.max_blocking)) check_written(DDS_RETCODE_TIMEOUT);
   written_ = 1;
 }

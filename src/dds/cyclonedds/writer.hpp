@@ -32,7 +32,7 @@ class CycloneWriter final : public Writer {
   Matches matches_;
   std::optional<EndpointWatch> peers_;
   const std::unique_ptr<DeadlineTimer> deadline_;
-  std::atomic<std::uint32_t> written_{0};       // since all was acknowledged
+  std::atomic<std::uint64_t> written_{0};       // so many may wait for acknowledgment, at most
   std::atomic<dds_entity_t> writer_handle_{0};  // 0 for listeners that come before it is made
   Guid guid_;
   Entity writer_;  // goes first: its listeners use the rest
