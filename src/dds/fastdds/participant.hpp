@@ -46,6 +46,9 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   /// To be held while a reader is created or removed: Fast DDS forgets a local reader without a
   /// lock.
   std::mutex& readers() noexcept { return readers_; }
+  /// To be held while a writer is made known: each thread that does so borrows one of four
+  /// descriptions of readers before it waits for the lock of discovery, whose holder may need one.
+  std::mutex& writers() noexcept { return writers_; }
   /// With readers() held.
   void add(FastReader& reader) { all_readers_.insert(&reader); }
   void remove(FastReader& reader);
@@ -90,6 +93,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   TopicTable<int> topics_;
   Endpoints endpoints_;
   std::map<Guid, std::string> names_;  // of participants that are present, under mutex_
+  std::mutex writers_;
   std::mutex readers_;
   std::set<FastReader*> all_readers_;  // under readers_
   std::mutex mutex_;

@@ -58,8 +58,11 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
                    Endpoint{Side::Writer, topic.name, topic.type_name, qos},
                    [events = events_](const Incompatibility& why) { events->incompatible(why); });
   }
-  participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
-                                                  writer_qos(qos));
+  {
+    std::lock_guard lock(participant_.writers());
+    participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
+                                                    writer_qos(qos));
+  }
   if (qos.liveliness_lease) participant_.assert_liveliness_for(*qos.liveliness_lease);
 }
 
