@@ -4,6 +4,8 @@
 #include <string_view>
 
 #include "brokerless_discovery/process_watch.hpp"
+#include "core/interface_name.hpp"
+#include "dds/options_check.hpp"
 #include "skein/discovery.idl.hpp"
 
 namespace skein::brokerless_discovery {
@@ -47,6 +49,14 @@ void check_name(const char* what, const std::string& name) {
   if (!is_name(name)) throw Refused(Refusal::Malformed, std::string(what) + " is no name");
 }
 
+// Its topics' names begin with it.
+void check_interface(const std::string& name) {
+  check_text("its interface", name);
+  if (!dds::is_topic_name(canonical_interface_name(name))) {
+    throw Refused(Refusal::Malformed, "no topic can have the name of its interface");
+  }
+}
+
 void check_owner(const std::string& owner) {
   if (owner.empty()) return;
   const auto slash = owner.find('/');
@@ -80,7 +90,7 @@ void check_description(const discovery::ServiceDescription& description, const G
   check_name("its system", description.system);
   check_name("its entity", description.entity);
   check_owner(description.owner);
-  check_text("its interface", description.service);
+  check_interface(description.service);
   for (const auto& base : description.bases) check_text("a base", base);
   for (const auto& part : description.subcomponents) check_text("a subcomponent", part);
   for (const auto& operation : description.operations) check_text("an operation", operation.name);

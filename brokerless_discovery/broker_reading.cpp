@@ -65,6 +65,14 @@ void Broker::State::refuse(Refusal why, const Guid& writer, const std::string& t
           ": " + text + "; further ones like it are counted and not logged");
 }
 
+// Of an older or a later version, or one that was given a longer lease.
+void Broker::State::tell_unheard(const dds::Incompatibility& why) {
+  if (told_unheard.exchange(true)) return;
+  log(LogLevel::Warning, "broker",
+      "the services of a peer stay unknown here: " + why.explanation +
+          "; further peers like it are not logged");
+}
+
 void Broker::State::on_writer(const Guid& writer, bool matched) {
   if (!matched) {
     apply([&](Table& table) { return table.on_writer_gone(writer); });
@@ -109,6 +117,7 @@ std::unique_ptr<dds::Reader> Broker::State::make_reader() {
   listener.on_liveliness = [this](const Guid& writer, bool alive) {
     apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
   };
+  listener.on_incompatible = [this](const dds::Incompatibility& why) { tell_unheard(why); };
   // A reader that keeps the newest sample of each provider only would let anybody's take the place
   // of the provider's own.
   dds::Qos qos = description_qos({"", owner_partition(asker)}, options.lease);

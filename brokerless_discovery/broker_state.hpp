@@ -53,6 +53,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   Table::Changes untold;
   bool telling = false;                            // a task on `control` will tell them
   std::array<std::uint64_t, kRefusals> refused{};  // by Refusal
+  std::atomic<bool> told_unheard{false};           // of a writer that no reader here hears
 
   std::mutex writing;  // guards what follows; taken before `mutex` where both are
   std::map<Guid, Own> own;
@@ -104,6 +105,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   void on_sample(const dds::Sample& sample);
   static ServiceDescription read(const dds::Sample& sample);
   void refuse(Refusal why, const Guid& writer, const std::string& text);
+  void tell_unheard(const dds::Incompatibility& why);
   void on_writer(const Guid& writer, bool matched);
   void renew_if_due();
   void renew_reader();

@@ -1,6 +1,7 @@
 #include "skein/connector.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 #include "brokerless_discovery/broker.hpp"
@@ -37,7 +38,7 @@ Representation representation_of(const ServiceDescription& provider) {
   return provider.xcdr2 ? Representation::Xcdr2Plain : Representation::Xcdr1;
 }
 
-// How long one provider may take to answer `open` while others are available.
+// How long one provider may take to answer `open`, as there are others, or may soon be.
 constexpr std::chrono::milliseconds kOpenPatience{1000};
 constexpr std::chrono::milliseconds kRetryPause{20};
 
@@ -243,8 +244,9 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
 }
 
 // The first provider that takes the session: in the Broker's order, those to be asked last at the
-// end. Where one has no room, and no other takes it, the caller is to back off: it is not asked
-// again and again.
+// end. Where none answers, all together are given as much time again, so that one that is slow is
+// reached, and one that is not known yet does not wait for one that never answers. Where one has no
+// room, and no other takes it, the caller is to back off: it is not asked again and again.
 ProviderConnection Connector::open_next(const Query& query, const std::string& strategy,
                                         const ProviderQuery& wanted) const {
   const Connections::Opening opening(*connections_);
@@ -253,6 +255,7 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
   };
   std::exception_ptr failure;
   bool overloaded = false;
+  std::optional<Instant> first_asked;
   do {
     if (failure) {
       connections_->pause(*parts_.clock,
@@ -261,11 +264,16 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
     auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
                                  : parts_.broker.find_service(query);
     arrange(providers, wanted, query.preferred_host, parts_.loads);
+    const bool may_try_another = query.provider.is_nil() && (wanted.wait || providers.size() > 1);
+    const Instant now = parts_.clock->now();
+    const Duration spent = now - first_asked.value_or(now);
+    first_asked = first_asked.value_or(now);
     for (const auto& provider : providers) {
       try {
-        const Duration patience =
-            providers.size() > 1 ? std::min<Duration>(left(), kOpenPatience) : left();
-        return open_connection(*provider, strategy, patience);
+        const auto patience =
+            std::max<Duration>(kOpenPatience, spent / static_cast<Duration::rep>(providers.size()));
+        return open_connection(*provider, strategy,
+                               may_try_another ? std::min(left(), patience) : left());
       } catch (const Error& error) {
         if (!is_refusal(error.code())) throw;
         const bool full = error.code() == ErrorCode::Overloaded;

@@ -446,6 +446,10 @@ TEST_CASE("what no participant may say of a service is refused with the reason",
     bad.owner = GENERATE("navigator", "uav-1/", "/navigator", "uav-1/navi*");
     CHECK(refuses(Refusal::Malformed));
   }
+  SECTION("an interface of which there can be no topics") {
+    bad.service = GENERATE("DCPSPublication", "IDL:DCPS/I:1.0");
+    CHECK(refuses(Refusal::Malformed));
+  }
   SECTION("control characters") {
     const std::string control = GENERATE("\x1b[31m", "\n", "\x7f", "\xc2\x9b");
     switch (GENERATE(0, 1, 2, 3, 4)) {

@@ -1,85 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "brokerless_discovery/admission.hpp"
-#include "exposed_service.hpp"
-#include "processes.hpp"
-#include "skein/detail/codec.hpp"
+#include "rogue.hpp"
 
 using namespace skein;
 using namespace skein::test;
 using namespace std::chrono_literals;
-using brokerless_discovery::Refusal;
 using brokerless_discovery::Room;
-using brokerless_discovery::ServiceDescription;
 using ::test::LouderEcho;
-
-namespace {
-
-/// A participant that is no entity and writes descriptions as it likes.
-class Rogue {
- public:
-  explicit Rogue(dds::Vendor& vendor) {
-    dds::ParticipantOptions options;
-    options.domain = 17;
-    options.name = "rogue";
-    participant_ = vendor.create_participant(options);
-    dds::Qos qos;
-    qos.transient_local = true;
-    qos.history_depth = 1;
-    qos.liveliness_lease = 1000ms;
-    qos.partitions = {""};
-    writer_ = participant_->create_writer(
-        {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
-    REQUIRE(eventually([&] { return writer_->matched_readers().size() == 2; }));
-  }
-
-  /// Of its own, under whatever name.
-  ServiceDescription describe(std::uint32_t number, const std::string& entity) const {
-    Guid provider = participant_->guid();
-    for (int i = 0; i < 3; ++i) {
-      provider.bytes[12 + i] = static_cast<std::uint8_t>(number >> 8 * i);
-    }
-    auto description = describe_echo(provider, entity);
-    description.system = "uav-1";
-    return description;
-  }
-
-  void write(const ServiceDescription& description) { write(description, {description.provider}); }
-  void write(const ServiceDescription& description, const Guid& key) {
-    writer_->write(idl::encode_message(description), key);
-  }
-  void withdraw(const Guid& provider) { writer_->dispose(provider); }
-
- private:
-  std::unique_ptr<dds::Participant> participant_;
-  std::unique_ptr<dds::Writer> writer_;
-};
-
-/// A provider and a client that calls it.
-struct Scene {
-  Scene() {
-    REQUIRE(eventually([&] { return client->broker().knows(service.id()); }));
-  }
-
-  bool all(const std::function<bool(brokerless_discovery::Broker&)>& holds) {
-    return eventually([&] { return holds(server->broker()) && holds(client->broker()); });
-  }
-  bool all_know(const ServiceDescription& description, bool known = true) {
-    return all([&](auto& broker) { return broker.knows({description.provider}) == known; });
-  }
-  bool all_refused(Refusal why, std::uint64_t count) {
-    return all([&](auto& broker) { return broker.refused(why) == count; });
-  }
-
-  std::unique_ptr<Entity> server = entity_with_lease("server", Pairing::get().server, 1000ms);
-  std::unique_ptr<Entity> client = entity_with_lease("client", Pairing::get().client, 1000ms);
-  ExposedService service{*server, std::make_shared<EchoService>()};
-  LouderEcho::Proxy echo = client->connect<LouderEcho>({.provider = service.id(), .timeout = 20s});
-};
-
-dds::Vendor& vendor_of_rogue() { return *GENERATE(Pairing::get().server, Pairing::get().client); }
-
-}  // namespace
 
 TEST_CASE("a stranger withdraws nobody else's service, and takes none with him by claiming it",
           "[R23]") {

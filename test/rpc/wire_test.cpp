@@ -1,7 +1,10 @@
 #include "rpc/wire.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
 #include <random>
+#include <vector>
 
 using namespace skein;
 using namespace skein::rpc;
@@ -100,6 +103,40 @@ TEST_CASE("what came later stands at a trailer's end, and older peers do not wri
   message.resize(message.size() - 12);
   shorten(result + 4, 12);
   CHECK(wire::read_reply_trailer(message, result)->part == wire::StreamPart::None);
+}
+
+TEST_CASE("what a later version appends to a trailer is passed over, whatever its numbers are") {
+  constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
+  Bytes message;
+  std::size_t end = 0;
+  const auto append_later_fields = [&] {
+    message.append(std::vector<std::byte>(20, std::byte{0xff}));
+    const auto length = static_cast<std::uint32_t>(message.size() - end - 8);
+    std::memcpy(message.data() + end + 4, &length, 4);
+  };
+  wire::begin_request(message, {kId.client, kMost}, std::uint32_t{0xffffffff});
+  end = message.size();
+  wire::append_trailer(
+      message, wire::RequestTrailer{Duration::max(), kMost, {}, "", 0xffffffff, Duration::min()});
+  append_later_fields();
+  CHECK(wire::read_request_id(message)->number == kMost);
+  CHECK(wire::ends_with_trailer(message));
+  const auto request = wire::read_request_trailer(message, end);
+  REQUIRE(request);
+  CHECK(request->remaining == 24h * 365);
+  CHECK(request->target == kMost);
+  CHECK(request->credit == 0xffffffff);
+  CHECK(request->sent == 0h);
+
+  wire::begin_reply(message, kId, wire::RemoteException{4711}, 7);
+  end = message.size();
+  wire::append_trailer(message, wire::ReplyTrailer{ErrorCode{4711}, "later", {}, kMost});
+  append_later_fields();
+  const auto reply = wire::read_reply_trailer(message, end);
+  REQUIRE(reply);
+  CHECK(reply->text == "later");
+  CHECK(reply->position == kMost);
+  CHECK(wire::error_code_of(wire::read_reply_head(message).exception) == ErrorCode::Internal);
 }
 
 TEST_CASE("a message without a trailer comes from a peer that is not built with Skein") {
