@@ -72,7 +72,7 @@ class InTerminal {
       kill(pid_, SIGKILL);
       waitpid(pid_, nullptr, 0);
     }
-    reader_.join();
+    if (reader_.joinable()) reader_.join();
     close(terminal_);
   }
   InTerminal(const InTerminal&) = delete;
@@ -92,13 +92,15 @@ class InTerminal {
     const winsize size{rows, columns, 0, 0};
     REQUIRE(ioctl(terminal_, TIOCSWINSZ, &size) == 0);
   }
+  /// All that it has written is in output() then.
   int wait() {
     int status = -1;
-    eventually([&] {
+    const bool ended = eventually([&] {
       if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
       pid_ = -1;
       return true;
     });
+    if (ended) reader_.join();  // its last read fails: nobody has the terminal open any more
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
