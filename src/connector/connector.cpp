@@ -264,6 +264,7 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
     auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
                                  : parts_.broker.find_service(query);
     arrange(providers, wanted, query.preferred_host, parts_.loads);
+    // Who is asked for by its identity has all of the time.
     const bool may_try_another = query.provider.is_nil() && (wanted.wait || providers.size() > 1);
     const Instant now = parts_.clock->now();
     const Duration spent = now - first_asked.value_or(now);

@@ -24,7 +24,7 @@ using introspection::Decision;
 using introspection::Outcome;
 
 constexpr std::size_t kKeptDecisions = 64;
-constexpr std::chrono::seconds kPatrol{1};
+constexpr std::chrono::seconds kWatchPeriod{1};
 
 const std::string kOverdue = " has not returned from a request whose time is over";
 
@@ -61,7 +61,7 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
 
 Head::State::~State() {
   std::unique_lock lock(mutex);
-  const TimerId last = patrol;
+  const TimerId last = watch_timer;
   lock.unlock();
   parts.clock.cancel(last);
 }
@@ -184,7 +184,7 @@ Head::State::Watch::Watch(State& state, const InterfaceInfo& interface, const Ca
   if (!candidate.in_process) return;
   std::lock_guard lock(state.mutex);
   state.watches.push_back(this);
-  if (state.patrol == 0) state.arm_patrol(end);
+  if (state.watch_timer == 0) state.arm_watch_timer(end);
 }
 
 Head::State::Watch::~Watch() {
@@ -194,12 +194,12 @@ Head::State::Watch::~Watch() {
 }
 
 // Under the lock. Not one timer a request, which would cost it more than all else that a Head does.
-void Head::State::arm_patrol(Instant next_end) {
-  const Instant latest = parts.clock.now() + kPatrol;
-  patrol = parts.clock.call_at(std::min(next_end, latest), [this] { go_on_patrol(); });
+void Head::State::arm_watch_timer(Instant next_end) {
+  const Instant latest = parts.clock.now() + kWatchPeriod;
+  watch_timer = parts.clock.call_at(std::min(next_end, latest), [this] { look_at_watches(); });
 }
 
-void Head::State::go_on_patrol() {
+void Head::State::look_at_watches() {
   std::lock_guard lock(mutex);
   const Instant now = parts.clock.now();
   auto next_end = Instant::max();
@@ -215,8 +215,8 @@ void Head::State::go_on_patrol() {
              "; it runs on its caller's thread, which waits for it: give it a thread of its "
              "own (CallThread::Own)");
   }
-  patrol = 0;
-  if (next_end != Instant::max()) arm_patrol(next_end);
+  watch_timer = 0;
+  if (next_end != Instant::max()) arm_watch_timer(next_end);
 }
 
 std::size_t Head::State::count_stuck() {

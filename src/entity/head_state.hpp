@@ -123,7 +123,7 @@ struct Head::State {
   std::map<Guid, Hung> hung;
   std::map<std::pair<std::string, std::string>, std::string, ByCsp> told;  // last, of each CSP
   std::vector<const Watch*> watches;
-  TimerId patrol = 0;  // armed while there are watches, and until the next round after them
+  TimerId watch_timer = 0;  // armed while there are watches, and until the next round after them
   std::set<const InterfaceInfo*> told_waiting;
   RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
@@ -150,8 +150,8 @@ struct Head::State {
                 const std::shared_ptr<const Features>& features, const Ending& ending);
   void begin_learning(const std::string& service);
   std::size_t stuck();
-  void arm_patrol(Instant next_end);
-  void go_on_patrol();
+  void arm_watch_timer(Instant next_end);
+  void look_at_watches();
   void tell(std::string_view interface, const std::string& csp, const std::string& text);
   void write_log(const introspection::Decision& record);
 };
