@@ -20,6 +20,7 @@ struct Entry {
   Guid writer;  ///< Nil for this peer's own.
   bool suspect = false;
   std::size_t weight = 0;  ///< What it takes of its participant's room.
+  bool leaving = false;
 };
 
 /// The Table's entries of one name: in the order of R8, and by the values of their attributes, so

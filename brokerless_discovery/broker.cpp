@@ -138,6 +138,13 @@ Broker::Registration Broker::add_service(ServiceDescription description) {
   return state_->registration([provider](State& state) { state.withdraw(provider); });
 }
 
+void Broker::leave(const Guid& provider) { state_->leave(provider); }
+
+bool Broker::is_leaving(const Guid& provider) const {
+  std::lock_guard lock(state_->mutex);
+  return state_->table.is_leaving(provider);
+}
+
 Query Broker::query(const std::string& name) const {
   Query query;
   query.name = name;

@@ -70,6 +70,10 @@ class Broker {
   /// others would refuse: a provider that is not by new_provider() (R23), or too much (R25).
   Registration add_service(ServiceDescription description);
 
+  /// Tells everybody that this service of the peer is about to leave: nobody finds it any more, and
+  /// who is connected to it makes new calls elsewhere (R28). Its registration stays.
+  void leave(const Guid& provider);
+
   /// A query as this entity asks it: own system, own managed services.
   Query query(const std::string& name) const;
 
@@ -88,6 +92,9 @@ class Broker {
 
   /// Whether a description of that provider stands, suspect or not.
   bool knows(const Guid& provider) const;
+
+  /// Whether its description says that it is about to leave.
+  bool is_leaving(const Guid& provider) const;
 
   /// The participant that describes that provider, and so the one that serves it; nothing where no
   /// description stands.

@@ -120,6 +120,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   const std::string& watched_at();
   void publish(ServiceDescription description);
   void write(const Own& mine);
+  void leave(const Guid& provider);
   void withdraw(const Guid& provider);
   void tick();
   void write_again(const Own& mine);

@@ -30,6 +30,20 @@ void Broker::State::write(const Own& mine) {
   writer->write(mine.message, {mine.description.provider});
 }
 
+// R28.
+void Broker::State::leave(const Guid& provider) {
+  ServiceDescription description;
+  {
+    std::lock_guard lock(writing);
+    const auto mine = own.find(provider);
+    if (mine == own.end()) return;
+    description = mine->second.description;
+  }
+  mark_leaving(description);
+  apply([&](Table& table) { return table.on_description(description, Guid{}); });
+  publish(std::move(description));
+}
+
 void Broker::State::withdraw(const Guid& provider) {
   {
     std::lock_guard lock(writing);

@@ -34,6 +34,9 @@ bool wanted(const ServiceDescription& description, const Query& query) {
   return query.provider.is_nil() || query.provider == provider_of(description);
 }
 
+// No component declares an attribute of that name: it would be no name of the dictionary.
+constexpr std::string_view kLeaving = "skein:leaving";
+
 bool is_own(const Entry& entry) { return entry.writer.is_nil(); }
 
 // R23.
@@ -52,6 +55,16 @@ void canonicalise(ServiceDescription& description) {
 
 }  // namespace
 
+bool is_leaving(const ServiceDescription& description) noexcept {
+  return std::any_of(description.attributes.begin(), description.attributes.end(),
+                     [](const auto& attribute) { return attribute.name == kLeaving; });
+}
+
+// Nobody finds it by its attributes any more, so they make room.
+void mark_leaving(ServiceDescription& description) {
+  description.attributes = {{std::string(kLeaving), "true"}};
+}
+
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {
   const Guid provider = provider_of(description);
   check_writer(provider, writer);
@@ -66,7 +79,8 @@ Table::Changes Table::on_description(ServiceDescription description, const Guid&
   auto shared = std::make_shared<const ServiceDescription>(std::move(description));
   if (found == entries_.end()) {
     take_room(writer, weight);
-    Entry& entry = entries_[provider] = {shared, writer, false, weight};
+    Entry& entry = entries_[provider] = {shared, writer, false, weight,
+                                         brokerless_discovery::is_leaving(*shared)};
     index(entry);
     return {{Change::Kind::Added, shared}};
   }
@@ -75,7 +89,7 @@ Table::Changes Table::on_description(ServiceDescription description, const Guid&
   const bool same = *entry.description == *shared;
   exchange_room(entry, writer, weight);
   unindex(entry);
-  entry = {shared, writer, false, weight};
+  entry = {shared, writer, false, weight, brokerless_discovery::is_leaving(*shared)};
   index(entry);
   if (same && change == Change::Kind::Updated) return {};
   return {{change, shared}};
@@ -178,10 +192,15 @@ std::optional<Guid> Table::writer_of(const Guid& provider) const {
   return found->second.writer;
 }
 
+bool Table::is_leaving(const Guid& provider) const {
+  const auto found = entries_.find(provider);
+  return found != entries_.end() && found->second.leaving;
+}
+
 // Of an entry that has the name, in the system, that was asked for.
 bool Table::suits(const Entry& entry, const Query& query) {
   const ServiceDescription& description = *entry.description;
-  return !entry.suspect && visible(description, query) &&
+  return !entry.suspect && !entry.leaving && visible(description, query) &&
          !(query.client && !understands(*query.client, description)) &&
          std::all_of(query.constraints.begin(), query.constraints.end(),
                      [&](const Constraint& constraint) { return meets(description, constraint); });
@@ -222,6 +241,7 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
   if (!in_system(description, query))
     return "only " + who + " offers it; name that system to use it";
   if (entry.suspect) return who + " has not been heard of for its lease";
+  if (entry.leaving) return who + " is about to leave";
   const std::string differing = query.client ? difference(*query.client, description) : "";
   if (!differing.empty()) {
     const std::string wanted = canonical_interface_name(query.client->name);

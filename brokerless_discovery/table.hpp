@@ -45,6 +45,11 @@ struct Query {
   std::string place{};
 };
 
+/// Whether the provider says that it is about to leave (R28).
+bool is_leaving(const ServiceDescription& description) noexcept;
+/// Makes it say so.
+void mark_leaving(ServiceDescription& description);
+
 /// Why a description is no longer in the table.
 enum class Departure { Left, Lost, Died };
 
@@ -89,6 +94,9 @@ class Table {
 
   /// Who wrote the description that stands: nil for one of this peer's own.
   std::optional<Guid> writer_of(const Guid& provider) const;
+
+  /// Whether the description that stands says so.
+  bool is_leaving(const Guid& provider) const;
 
   /// Whether some provider is kept, but not offered.
   bool has_suspects() const;

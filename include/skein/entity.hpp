@@ -139,6 +139,14 @@ class Entity {
   /// service.
   void withdraw(const Guid& provider);
 
+  /// Withdraws all services without loss, so that nobody's call fails if there is another provider,
+  /// or comes one within the call's deadline: tells clients to go elsewhere, serves what they had
+  /// sent until then, Bodies first, and withdraws a service when its clients have left it. After
+  /// `patience` it withdraws the rest as withdraw() does, and returns false. Peers that are not
+  /// built with Skein are not told; their new calls are refused as Unavailable. Blocks; not from a
+  /// call of these services.
+  bool drain(Duration patience);
+
   /// Counters and latencies of each operation of the services that this entity provides, CSPs
   /// included. "skein/introspection.idl.hpp" defines the type; `skein services --statistics` shows
   /// those of all entities.
@@ -208,6 +216,7 @@ class Entity {
 
   struct Provided;
   struct State;
+  bool drain_some(bool managed, Instant deadline);
 
   template <class Interface>
   static std::shared_ptr<Servant> skeleton_of(std::shared_ptr<Interface> implementation) {

@@ -42,6 +42,8 @@ Representation representation_of(const ServiceDescription& provider) {
 constexpr std::chrono::milliseconds kOpenPatience{1000};
 constexpr std::chrono::milliseconds kRetryPause{20};
 
+constexpr const char* kLeaving = "it was about to leave";
+
 const char* ending_of(brokerless_discovery::Departure departure) {
   switch (departure) {
     case brokerless_discovery::Departure::Left:
@@ -62,15 +64,19 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
       broker.observe([weak = std::weak_ptr(channel), provider = connection.provider,
                       suspect = connection.suspect](const Change& change) {
         if (change.description->provider != provider.bytes) return;
-        if (change.kind != Change::Kind::Removed) {
+        const auto followed = weak.lock();
+        if (change.kind == Change::Kind::Removed) {
+          if (followed) followed->lose(ending_of(change.departure));
+        } else if (brokerless_discovery::is_leaving(*change.description)) {
+          if (followed) followed->retire(kLeaving);
+        } else {
           *suspect = change.kind == Change::Kind::Suspect;
-        } else if (const auto gone = weak.lock()) {
-          gone->lose(ending_of(change.departure));
         }
       }));
   channel->attach(registration);
   // It may have gone between the answer to `open` and the first look.
   if (!broker.knows(connection.provider)) channel->lose("it ended while it was being connected");
+  if (broker.is_leaving(connection.provider)) channel->retire(kLeaving);
 }
 
 bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {

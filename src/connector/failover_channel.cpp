@@ -41,11 +41,16 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
     return call->attempt([&] { RetryingCall::start(shared_from_this(), call, in); });
   }
   const ProviderQuery wanted{call->deadline()};
-  if (const auto connection = ready(wanted)) return connection->channel->start(call, in);
+  while (const auto connection = ready(wanted)) {
+    if (sent(*connection->channel, call, in)) return;
+  }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
   const auto copy = copy_of(*operation.in, in);
   const bool posted = continuations_.post([self = shared_from_this(), call, copy, wanted] {
-    call->attempt([&] { self->acquire(wanted).channel->start(call, copy.get()); });
+    call->attempt([&] {
+      while (!self->sent(*self->acquire(wanted).channel, call, copy.get())) {
+      }
+    });
   });
   if (!posted) {
     call->fail(std::make_exception_ptr(Overloaded("too many calls wait for a new provider")));
@@ -58,8 +63,31 @@ void FailoverChannel::call(const OperationInfo& operation, const void* in, void*
     if (hedge_after_) return Channel::call(operation, in, out, time);
     return call_idempotent(operation, in, out, time);
   }
-  const auto main = main_if_trusted();
-  (main ? main : acquire({time.deadline}).channel)->call(operation, in, out, time);
+  for (;;) {
+    const auto main = main_if_trusted();
+    const auto channel = main ? main : acquire({time.deadline}).channel;
+    try {
+      return channel->call(operation, in, out, time);
+    } catch (const NotSent&) {
+      if (is_closed()) throw;
+    }
+  }
+}
+
+bool FailoverChannel::sent(Channel& channel, const std::shared_ptr<PendingCall>& call,
+                           const void* in) const {
+  try {
+    channel.start_here(call, in);
+  } catch (const NotSent&) {
+    if (!is_closed()) return false;
+    call->fail(std::current_exception());
+  }
+  return true;
+}
+
+bool FailoverChannel::is_closed() const {
+  std::lock_guard lock(mutex_);
+  return closed_;
 }
 
 std::shared_ptr<Channel> FailoverChannel::main_if_trusted() const {
@@ -73,19 +101,23 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
   Retries retries(time.deadline);
   std::exception_ptr error;
   std::optional<ProviderConnection> connection;
-  do {
+  for (;;) {
     try {
       connection = acquire(retries.wanted());
     } catch (...) {
-      if (!error) error = std::current_exception();
+      if (!error) throw;
       break;
     }
     try {
       return connection->channel->call(operation, in, out, time);
+    } catch (const NotSent&) {
+      if (is_closed()) throw;
+      continue;
     } catch (...) {
       error = std::current_exception();
     }
-  } while (retries.admit(error, connection->provider, clock_.now()));
+    if (!retries.admit(error, connection->provider, clock_.now())) break;
+  }
   std::rethrow_exception(std::move(error));
 }
 

@@ -17,7 +17,8 @@ namespace skein::connector {
 /// present one is found lost, or when its provider is suspect; a suspect provider has calls only
 /// where no other is available. A call to an idempotent operation whose provider is lost or refuses
 /// it is made again at the next one, within its deadline. Any other that was on its way when its
-/// provider died ends as Disconnected; it is not repeated, since whether it ran is unknown.
+/// provider died ends as Disconnected; it is not repeated, since whether it ran is unknown. One
+/// that was not sent, as its connection had ended, is made elsewhere, whatever it does.
 ///
 /// What that costs an idempotent call whose caller does not wait: one more object, and a copy of
 /// its in struct.
@@ -49,8 +50,13 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   /// throws what `connect` throws.
   ProviderConnection acquire(const ProviderQuery& wanted);
 
+  /// Starts the call there. Returns false, with the call as it was, where that connection has ended
+  /// and another may be had.
+  bool sent(Channel& channel, const std::shared_ptr<PendingCall>& call, const void* in) const;
+
  private:
   std::shared_ptr<Channel> main_if_trusted() const;
+  bool is_closed() const;
   void call_idempotent(const OperationInfo& operation, const void* in, void* out,
                        const CallTime& time);
   void keep(const ProviderConnection& connection);

@@ -14,11 +14,10 @@ void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
   const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
   if (const auto delay = channel->hedge_after()) moving->hedge_later(*delay);
-  if (const auto connection = channel->ready(moving->retries_.wanted())) {
-    moving->try_at(*connection);
-  } else {
-    moving->move(nullptr);
+  while (const auto connection = channel->ready(moving->retries_.wanted())) {
+    if (moving->try_at(*channel, *connection)) return;
   }
+  moving->move(nullptr);
 }
 
 RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
@@ -36,14 +35,15 @@ RetryingCall::~RetryingCall() {
   clock_.cancel(hedge_timer_);
 }
 
-void RetryingCall::try_at(const ProviderConnection& connection) {
+// False where the connection had ended, so that nobody has got the call.
+bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnection& connection) {
   const TypeSupport& type = *call_->operation().out;
   std::shared_ptr<void> own;
   if (hedged_) own = {type.make(), type.destroy, std::pmr::polymorphic_allocator<>(&call_memory())};
   const auto attempt = make_shared_in_call_memory<Attempt>(call_, std::move(own));
   attempt->on_finished([self = shared_from_this(), attempt = attempt.get(),
                         provider = connection.provider] { self->ended(*attempt, provider); });
-  connection.channel->start(attempt, in_.get());
+  if (!channel.sent(*connection.channel, attempt, in_.get())) return false;
   bool cancelled;
   {
     std::lock_guard lock(mutex_);
@@ -51,6 +51,7 @@ void RetryingCall::try_at(const ProviderConnection& connection) {
     cancelled = cancelled_;
   }
   if (cancelled) attempt->cancel();
+  return true;
 }
 
 void RetryingCall::ended(Attempt& attempt, const Guid& provider) {
@@ -101,7 +102,7 @@ void RetryingCall::hedge() {
   }
   wanted.wait = false;
   try {
-    try_at(channel->acquire(wanted));
+    try_at(*channel, channel->acquire(wanted));
   } catch (const Error&) {
   }
 }
@@ -136,7 +137,9 @@ void RetryingCall::go_on(std::exception_ptr why) {
   }
   std::exception_ptr failure;
   try {
-    return try_at(channel->acquire(wanted));
+    while (!try_at(*channel, channel->acquire(wanted))) {
+    }
+    return;
   } catch (...) {
     failure = std::current_exception();
   }

@@ -43,7 +43,7 @@ class RetryingCall final : public std::enable_shared_from_this<RetryingCall> {
  private:
   using Attempts = std::pmr::vector<std::pair<Guid, std::shared_ptr<Attempt>>>;
 
-  void try_at(const ProviderConnection& connection);
+  bool try_at(const FailoverChannel& channel, const ProviderConnection& connection);
   void ended(Attempt& attempt, const Guid& provider);
   bool others_run() const;
   void hedge_later(Duration delay);

@@ -109,7 +109,7 @@ void PendingCall::abandon(std::exception_ptr error) {
 void Channel::call(const OperationInfo& operation, const void* in, void* out,
                    const CallTime& time) {
   const auto pending = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
-  start(pending, in);
+  start_here(pending, in);
   pending->wait();
   if (auto error = pending->take_error()) std::rethrow_exception(std::move(error));
 }

@@ -141,6 +141,12 @@ struct Entity::Provided {
     executor->request_stop();
   }
 
+  /// Clients have been told; false where some have calls, or have not left, at the deadline.
+  bool finish(Instant deadline) {
+    const bool gone = !server || server->await_clients_gone(deadline);
+    return service->finish(deadline) && gone;
+  }
+
   /// Once closed; false where a call did not return in time. The second time it does not wait.
   bool await_end(std::chrono::steady_clock::time_point deadline) {
     if (std::exchange(awaited, true)) return true;
@@ -438,6 +444,38 @@ std::vector<introspection::ServiceStatistics> Entity::statistics() const {
 bool Entity::check_progress(std::function<void(const std::string& stuck)> report) {
   return state_->control.post(
       [&state = *state_, report = std::move(report)] { report(state.stuck()); });
+}
+
+bool Entity::drain(Duration patience) {
+  const Instant deadline = clock().now() + patience;
+  const bool bodies = drain_some(false, deadline);  // which may call the CSPs
+  return drain_some(true, deadline) && bodies;
+}
+
+bool Entity::drain_some(bool managed, Instant deadline) {
+  std::vector<std::unique_ptr<Provided>> leaving;
+  {
+    std::lock_guard lock(state_->mutex);
+    for (auto each = state_->provided.begin(); each != state_->provided.end();) {
+      const auto next = std::next(each);
+      if (each->second->owner.empty() != managed)
+        leaving.push_back(std::move(state_->provided.extract(each).mapped()));
+      each = next;
+    }
+  }
+  for (const auto& provided : leaving) {
+    state_->broker.leave(provided->service->id());
+    provided->service->leave();
+  }
+  bool finished = true;
+  for (const auto& provided : leaving) finished = provided->finish(deadline) && finished;
+  for (const auto& provided : leaving) {
+    state_->process->directory()->remove(provided->service->id());
+    provided->close();
+  }
+  const auto end = std::chrono::steady_clock::now() + kStopPatience;
+  for (const auto& provided : leaving) state_->note_hung(*provided, end);
+  return finished;
 }
 
 void Entity::withdraw(const Guid& provider) {

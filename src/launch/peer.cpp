@@ -323,6 +323,13 @@ class NamesakeQuestion {
   std::jthread asks_;
 };
 
+/// Until the process is told to end, and its calls have ended. The rest of the time until it is
+/// killed is for the entity's own end.
+void serve(Entity& entity, const profile::ProcessRules& rules) {
+  wait_for_signal();
+  entity.drain(rules.stop_timeout / 3);
+}
+
 /// What a peer does that provides nothing.
 int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
                  const ComponentRegistry& registry) {
@@ -361,7 +368,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   provide_csp(entity, peer.system + "/" + peer.name, mission, csp, plugins);
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
-  wait_for_signal();
+  serve(entity, csp.rules);
   tell_unread_parameters(entity, csp.component->name, csp.parameters);
   return 0;
 }
@@ -436,7 +443,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
       const NamesakeQuestion question(entity, silent);
       code = run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); });
     } else {
-      wait_for_signal();
+      serve(entity, peer.rules);
     }
     tell_unneeded_rules(entity, peer, topics);
     tell_unread_parameters(entity, peer.component->name, peer.parameters);

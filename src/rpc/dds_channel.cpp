@@ -15,6 +15,8 @@ namespace {
 // soon at first, since the other side is mostly about to match, then less often.
 constexpr std::chrono::milliseconds kFirstOpenInterval{1};
 constexpr std::chrono::milliseconds kLastOpenInterval{20};
+// How soon it is looked again whether the last requests have arrived: no vendor tells.
+constexpr std::chrono::milliseconds kPartInterval{5};
 
 }  // namespace
 
@@ -128,14 +130,62 @@ void DdsChannel::State::lose(const std::string& how) {
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Lost || phase == Phase::Closed) return;
+    if (retiring) part_later();
     phase = Phase::Lost;
-    lost_how = how;
+    if (!retiring) lost_how = how;
     changed.notify_all();
   }
   fail_all([&](const OperationInfo& operation) {
-    return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + how + "); whether " +
-                                                quoted(operation) + " ran is unknown"));
+    return std::make_exception_ptr(Disconnected(options.peer + " is gone (" + lost_how +
+                                                "); whether " + quoted(operation) +
+                                                " ran is unknown"));
   });
+}
+
+void DdsChannel::State::retire(const std::string& how, std::shared_ptr<DdsChannel> itself) {
+  std::lock_guard lock(mutex);
+  if (phase != Phase::Open || retiring) return;
+  retiring = true;
+  lost_how = how;
+  channel = std::move(itself);
+  part_later();
+}
+
+// Under the lock, and not once closed: `control` may be gone then.
+void DdsChannel::State::part_later() {
+  control.post([state = weak_from_this()] {
+    if (const auto self = state.lock()) self->part();
+  });
+}
+
+// The endpoints go here, and with them the session, once no call is on its way, a oneway one
+// either: the provider waits for that.
+void DdsChannel::State::part() {
+  std::shared_ptr<DdsChannel> itself;  // goes last
+  std::shared_ptr<dds::Writer> writer;
+  std::shared_ptr<dds::Reader> reader;
+  {
+    std::lock_guard lock(mutex);
+    if (phase == Phase::Open) writer = requests;
+  }
+  if (writer && !writer->wait_for_acknowledgments(std::chrono::milliseconds(0))) {
+    clock.call_after(kPartInterval, [state = weak_from_this()] {
+      const auto self = state.lock();
+      if (!self) return;
+      std::lock_guard lock(self->mutex);
+      if (self->phase != Phase::Closed) self->part_later();
+    });
+    return;
+  }
+  writer.reset();
+  std::lock_guard lock(mutex);
+  if (phase == Phase::Open && !entries.empty()) return;
+  itself.swap(channel);
+  if (phase != Phase::Open) return;
+  phase = Phase::Lost;
+  writer.swap(requests);
+  reader.swap(replies);
+  changed.notify_all();
 }
 
 // Nothing of the participant is in use any more when this returns.
@@ -143,6 +193,7 @@ void DdsChannel::State::close() {
   std::shared_ptr<dds::Writer> writer;
   std::shared_ptr<dds::Reader> reader;
   std::shared_ptr<void> follower;
+  std::shared_ptr<DdsChannel> itself;
   TimerId outdated;
   {
     std::lock_guard lock(mutex);
@@ -151,6 +202,7 @@ void DdsChannel::State::close() {
     writer.swap(requests);
     reader.swap(replies);
     follower.swap(companion);
+    itself.swap(channel);
     outdated = std::exchange(timer, 0);
     changed.notify_all();
   }
@@ -182,6 +234,10 @@ void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in)
   state_->start(call, in);
 }
 
+void DdsChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+  state_->start_here(call, in);
+}
+
 Clock& DdsChannel::clock() const noexcept { return state_->clock; }
 Executor& DdsChannel::continuations() const noexcept { return *state_->continuations; }
 std::string DdsChannel::peer() const { return state_->options.peer; }
@@ -193,10 +249,11 @@ std::optional<ConnectionInfo> DdsChannel::info() const {
 }
 void DdsChannel::disconnect() { state_->close(); }
 void DdsChannel::lose(const std::string& how) { state_->lose(how); }
+void DdsChannel::retire(const std::string& how) { state_->retire(how, shared_from_this()); }
 
 bool DdsChannel::connected() const {
   std::lock_guard lock(state_->mutex);
-  return state_->phase == State::Phase::Open;
+  return state_->phase == State::Phase::Open && !state_->retiring;
 }
 
 void DdsChannel::attach(std::shared_ptr<void> companion) {

@@ -15,7 +15,7 @@ namespace skein::rpc {
 /// The transport over DDS: one request writer into the provider's partition, one reply reader in a
 /// partition of its own. Replies are decoded on the vendor's thread straight into the caller's
 /// result.
-class DdsChannel final : public Channel {
+class DdsChannel final : public Channel, public std::enable_shared_from_this<DdsChannel> {
  public:
   struct Options {
     std::string strategy;  ///< See OpenRequest.
@@ -47,6 +47,7 @@ class DdsChannel final : public Channel {
   ~DdsChannel() override;
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void start_here(const std::shared_ptr<PendingCall>& call, const void* in) override;
   Clock& clock() const noexcept override;
   Executor& continuations() const noexcept override;
   std::string peer() const override;
@@ -54,6 +55,10 @@ class DdsChannel final : public Channel {
   bool connected() const override;
   void disconnect() override;
   void lose(const std::string& how) override;
+
+  /// The provider is about to leave: connected() is false from now on. Calls on their way end as
+  /// they would, and the session with the last of them, also where nobody else holds the channel.
+  void retire(const std::string& how);
 
   /// Keeps something alive for as long as the connection (what calls lose(), say).
   void attach(std::shared_ptr<void> companion);

@@ -12,11 +12,27 @@
 namespace skein::rpc {
 
 void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  try {
+    start_here(call, in);
+  } catch (...) {
+    call->fail(std::current_exception());
+  }
+}
+
+void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
   if (options.spin.count() > 0) call->set_spin(options.spin);
   std::uint64_t number = 0;
   bool sent = false;
+  std::shared_ptr<dds::Writer> writer;
+  try {
+    writer = enter(call, number);
+  } catch (const NotSent&) {
+    throw;
+  } catch (...) {
+    call->fail(std::current_exception());
+    return;
+  }
   call->attempt([&] {
-    const auto writer = enter(call, number);
     send(*writer, *call, number, in);
     sent = true;
   });
@@ -30,7 +46,7 @@ void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const vo
 std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
                                                       std::uint64_t& number) {
   std::unique_lock lock(mutex);
-  if (phase == Phase::Lost) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
+  if (phase == Phase::Lost) throw NotSent("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
     throw Unavailable("no connection to " + options.peer +
                       ": it was disconnected, or the entity that had connected has ended");
@@ -143,6 +159,7 @@ std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Kee
   if (keep == Keep::Streams && found->second->operation().stream) return found->second;
   auto call = std::move(found->second);
   entries.erase(found);
+  if (retiring && entries.empty() && phase == Phase::Open) part_later();
   return call;
 }
 

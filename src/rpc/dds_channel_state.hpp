@@ -46,6 +46,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   std::condition_variable changed;
   Phase phase = Phase::Opening;
   std::string lost_how;
+  bool retiring = false;                // the session ends with the last call on its way
+  std::shared_ptr<DdsChannel> channel;  // itself, as long as it retires
   std::exception_ptr refusal;
   std::vector<Guid> servers;  // their request readers
   std::uint64_t last_number = 0;
@@ -88,6 +90,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   // ---- calls
   void start(const std::shared_ptr<PendingCall>& call, const void* in);
+  void start_here(const std::shared_ptr<PendingCall>& call, const void* in);
   std::shared_ptr<dds::Writer> enter(const std::shared_ptr<PendingCall>& call,
                                      std::uint64_t& number);
   TimerId look_at(Instant deadline);
@@ -104,6 +107,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   // ---- ending
   void lose(const std::string& how);
+  void retire(const std::string& how, std::shared_ptr<DdsChannel> itself);
+  void part_later();
+  void part();
   void close();
   template <class MakeError>
   void fail_all(MakeError make_error);

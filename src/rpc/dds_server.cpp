@@ -1,10 +1,12 @@
 #include "rpc/dds_server.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "common.hpp"
+#include "core/clock_wait.hpp"
 #include "core/interface_name.hpp"
 #include "core/log.hpp"
 #include "core/sole_owner.hpp"
@@ -165,6 +167,7 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
       ++counters.unconnected;
       return;
     }
+    if (leaving && client == foreign) throw Unavailable(address.service + " is being withdrawn");
     active.emplace(head.id, invocation);
   }
   if (options.on_load) options.on_load();
@@ -277,10 +280,23 @@ DdsServer::~DdsServer() {
   await_sole_owner(state_);
 }
 
+// Under the lock.
+std::size_t DdsServer::State::connected() const {
+  return static_cast<std::size_t>(std::count_if(
+      clients.begin(), clients.end(), [](const auto& each) { return !each.second->refusal; }));
+}
+
+bool DdsServer::await_clients_gone(Instant deadline) {
+  std::unique_lock lock(state_->mutex);
+  state_->leaving = true;
+  return wait_until(state_->clock, deadline, lock, state_->less_to_do,
+                    [&] { return state_->connected() == 0 && state_->active.empty(); });
+}
+
 DdsServer::Counters DdsServer::counters() const {
   std::lock_guard lock(state_->mutex);
   Counters counters = state_->counters;
-  for (const auto& [key, client] : state_->clients) counters.clients += client->refusal ? 0 : 1;
+  counters.clients = state_->connected();
   counters.active = state_->active.size();
   return counters;
 }

@@ -71,6 +71,11 @@ class DdsServer {
 
   Counters counters() const;
 
+  /// The service is about to end, and its clients have been told: requests of foreign ones, who do
+  /// not hear of it, are refused. Waits until no client is connected and no request waits or runs;
+  /// false at the deadline.
+  bool await_clients_gone(Instant deadline);
+
  private:
   struct State;
   std::shared_ptr<State> state_;

@@ -341,11 +341,15 @@ void DdsServer::State::drop(const Guid& key) {
     patience = client->patience;
     retry = client->retry;
     clients.erase(found);
+    if (leaving) less_to_do.notify_all();
     forgotten.insert(key);
     discount_unsent(*client, client->unsent_size);
     client->unsent.clear();
   }
-  cancel_if([&](const RequestId& id, const Invocation&) { return id.client == key; });
+  // For a oneway call nobody has waited anyway.
+  cancel_if([&](const RequestId& id, const Invocation& call) {
+    return id.client == key && !call.operation->oneway;
+  });
   clock.cancel(patience);
   clock.cancel(retry);
 }

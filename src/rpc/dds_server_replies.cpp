@@ -88,6 +88,7 @@ void DdsServer::State::forget(const RequestId& id) {
   {
     std::lock_guard lock(mutex);
     active.erase(id);
+    if (leaving) less_to_do.notify_all();
   }
   if (options.on_load) options.on_load();
 }

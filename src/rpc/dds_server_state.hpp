@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -95,10 +96,13 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   std::size_t unsent_size = 0;  // of all clients
   Counters counters;
   bool closed = false;
+  bool leaving = false;
+  std::condition_variable less_to_do;  // once it is leaving
   SharedWriters writers;
   std::unique_ptr<dds::Reader> requests;  // last: goes first, and no listener runs after that
 
   std::shared_ptr<Client> make_client();
+  std::size_t connected() const;
 
   // ---- on the vendor's thread
   void on_sample(const dds::Sample& sample);

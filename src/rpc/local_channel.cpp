@@ -111,6 +111,7 @@ std::shared_ptr<LocalChannel> LocalChannel::open(const std::weak_ptr<Service>& s
   if (!target) throw Unavailable("the service has been withdrawn");
   channel->peer_ = std::make_shared<std::string>(std::string(target->interface_info().name) +
                                                  " in this process");
+  channel->leaving_ = target->leaving();
   channel->session_ = target->open({Guid{}, strategy});
   return channel;
 }
@@ -127,7 +128,7 @@ std::shared_ptr<Service> LocalChannel::service() const {
   auto service = service_.lock();
   if (service && !closed_) return service;
   if (service) refuse_closed(*peer_);
-  throw Unavailable("no connection to " + *peer_ + ": it was withdrawn");
+  throw NotSent("no connection to " + *peer_ + ": it was withdrawn");
 }
 
 std::optional<ConnectionInfo> LocalChannel::info() const {
@@ -143,7 +144,17 @@ std::optional<ConnectionInfo> LocalChannel::info() const {
 }
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
-  call->attempt([&] { enqueue(*service(), call, in); });
+  call->attempt([&] { start_here(call, in); });
+}
+
+void LocalChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+  try {
+    enqueue(*service(), call, in);
+  } catch (const NotSent&) {
+    throw;
+  } catch (...) {
+    call->fail(std::current_exception());
+  }
 }
 
 void LocalChannel::call(const OperationInfo& operation, const void* in, void* out,
@@ -252,6 +263,11 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
       invocation->give_up(too_late(*peer, *invocation->operation));
     });
     service.submit(invocation);
+  } catch (const NotSent&) {
+    clock_->cancel(invocation->timer);
+    call->set_canceller(nullptr);
+    invocation->note_end(std::current_exception());
+    throw;
   } catch (...) {
     clock_->cancel(invocation->timer);
     invocation->give_up(std::current_exception());

@@ -27,13 +27,14 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
                                             std::shared_ptr<CallJournal> journal);
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void start_here(const std::shared_ptr<PendingCall>& call, const void* in) override;
   void call(const OperationInfo& operation, const void* in, void* out,
             const CallTime& time) override;
   Clock& clock() const noexcept override { return *clock_; }
   Executor& continuations() const noexcept override { return *continuations_; }
   std::string peer() const override { return *peer_; }
   std::optional<ConnectionInfo> info() const override;
-  bool connected() const override { return !closed_ && !service_.expired(); }
+  bool connected() const override { return !closed_ && !*leaving_; }
   void disconnect() override;
   void lose(const std::string& how) override;
 
@@ -56,6 +57,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   const std::shared_ptr<CallJournal> journal_;
   std::shared_ptr<const std::string> peer_;  // shared with calls on their way
   std::shared_ptr<Session> session_;
+  std::shared_ptr<const std::atomic<bool>> leaving_;  // the service
   std::atomic<bool> closed_{false};
   std::atomic<std::uint64_t> calls_{0};
   mutable std::mutex mutex_;

@@ -48,7 +48,7 @@ class Service::Running {
     std::lock_guard lock(service_.mutex_);
     (before_ ? before_->next_ : service_.running_) = next_;
     if (next_) next_->before_ = before_;
-    if (service_.closed_ && !service_.running_) service_.all_ended_.notify_all();
+    if (*service_.leaving_ && !service_.running_) service_.less_to_do_.notify_all();
   }
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
@@ -188,9 +188,11 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& cl
   }
 }
 
+Service::~Service() { *leaving_ = true; }
+
 std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
   std::lock_guard lock(owner_mutex_);
-  if (closed_) throw being_withdrawn();
+  if (*leaving_) throw being_withdrawn();
   return options_.open ? options_.open(request) : nullptr;
 }
 
@@ -240,6 +242,7 @@ void Service::enqueue(std::shared_ptr<Invocation> invocation) {
                        " owes as many answers as it may; the call was not executed");
     }
     queue_.push(std::move(invocation));
+    ++accepted_;
   }
   // Unlocked: on one processor the thread that it wakes runs at once, and needs the lock. The
   // executor ends after close(), which leaves nothing in the queue.
@@ -247,7 +250,34 @@ void Service::enqueue(std::shared_ptr<Invocation> invocation) {
 }
 
 void Service::execute_next() {
-  if (const auto next = take_next()) execute(next);
+  const auto next = take_next();
+  if (!next) return;
+  execute(next);
+  note_done();
+}
+
+void Service::note_done() {
+  --accepted_;
+  if (!*leaving_) return;
+  std::lock_guard lock(mutex_);
+  less_to_do_.notify_all();
+}
+
+void Service::leave() { *leaving_ = true; }
+
+// Between the look and the end no invocation slips in, neither by the queue nor on its caller's
+// thread.
+bool Service::finish(Instant deadline) {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!wait_until(clock_, deadline, lock, less_to_do_, [&] { return is_idle(); })) return false;
+    }
+    std::scoped_lock lock(mutex_, queue_mutex_);
+    if (!is_idle()) continue;
+    closed_ = true;
+    return true;
+  }
 }
 
 void Service::call_here(const OperationInfo& operation, const void* in, void* out,
@@ -325,15 +355,15 @@ std::string Service::circle(const std::vector<Guid>& chain) const {
   return text + "the first again";
 }
 
-Unavailable Service::being_withdrawn() const {
-  return Unavailable(std::string(interface_info().name) + " is being withdrawn");
+NotSent Service::being_withdrawn() const {
+  return NotSent(std::string(interface_info().name) + " is being withdrawn");
 }
 
 void Service::close() {
   std::vector<std::shared_ptr<PendingReply>> owed;
   {
     std::scoped_lock lock(owner_mutex_, mutex_, turn_mutex_);
-    closed_ = true;
+    *leaving_ = closed_ = true;
     for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
     for (Deferred* const each : deferred_) owed.push_back(each->weak_from_this().lock());
   }
@@ -345,12 +375,15 @@ void Service::close() {
         Disconnected(std::string(interface_info().name) + " was withdrawn; whether " +
                      quoted(deferred.operation()) + " ran is unknown")));
   }
-  while (const auto waiting = take_next()) withdraw(*waiting);
+  while (const auto waiting = take_next()) {
+    withdraw(*waiting);
+    --accepted_;
+  }
 }
 
 bool Service::await_end(std::chrono::steady_clock::time_point deadline) const {
   std::unique_lock lock(mutex_);
-  return all_ended_.wait_until(lock, deadline, [&] { return running_ == nullptr; });
+  return less_to_do_.wait_until(lock, deadline, [&] { return running_ == nullptr; });
 }
 
 // Under the queue's lock an invocation is queued or refused: none comes after those that close()
@@ -514,6 +547,7 @@ void Service::end(Deferred& deferred, std::exception_ptr error) {
   Invocation& invocation = deferred.invocation();
   const OperationInfo& operation = *invocation.operation;
   invocation.on_cancel(nullptr);
+  ++accepted_;  // until the answer has left
   settle(deferred, invocation.connection);
   const void* result = deferred.out();
   try {
@@ -526,6 +560,7 @@ void Service::end(Deferred& deferred, std::exception_ptr error) {
     result = nullptr;
   }
   answer(invocation, result, std::move(error));
+  note_done();
 }
 
 introspection::ServiceStatistics Service::statistics() const {

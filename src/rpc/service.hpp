@@ -19,6 +19,7 @@
 #include "skein/clock.hpp"
 #include "skein/detail/action.hpp"
 #include "skein/detail/call_memory.hpp"
+#include "skein/detail/channel.hpp"
 #include "skein/detail/operation.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
@@ -112,6 +113,7 @@ class Service : public std::enable_shared_from_this<Service> {
 
   /// `executor` and `clock` outlive the service.
   Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& clock, Options options);
+  ~Service();
 
   const InterfaceInfo& interface_info() const noexcept { return servant_->interface_info(); }
   const Guid& id() const noexcept { return options_.id; }
@@ -119,6 +121,9 @@ class Service : public std::enable_shared_from_this<Service> {
   const Clock& clock() const noexcept { return clock_; }
   /// Where blocking calls from the same process run.
   CallThread thread() const noexcept { return options_.thread; }
+
+  /// Whether it is about to leave, or has left, also after it is gone: new calls go elsewhere.
+  std::shared_ptr<const std::atomic<bool>> leaving() const noexcept { return leaving_; }
 
   /// A session for a new client (nullptr where the service has no Head). Throws Unavailable once
   /// the service is closed.
@@ -146,6 +151,14 @@ class Service : public std::enable_shared_from_this<Service> {
 
   /// What it has done and does; entity and system are left empty.
   introspection::ServiceStatistics statistics() const;
+
+  /// The service is about to end: no new session is opened, and whoever asks leaving() calls
+  /// elsewhere. What comes all the same is executed.
+  void leave();
+
+  /// After leave(): waits until no invocation waits, runs or is owed an answer, and refuses those
+  /// that come later; false, and refuses none, at the deadline.
+  bool finish(Instant deadline);
 
   /// Invocations that have not begun are refused, now and from now on; those that run are told to
   /// stop, and those that are owed an answer end as Disconnected. When it returns, Options::open
@@ -179,7 +192,9 @@ class Service : public std::enable_shared_from_this<Service> {
   std::string circle(const std::vector<Guid>& chain) const;
   void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
   void stop(Invocation& invocation) const;
-  Unavailable being_withdrawn() const;
+  NotSent being_withdrawn() const;
+  bool is_idle() const noexcept { return accepted_ == 0 && !running_ && deferred_.empty(); }
+  void note_done();
   void begin_here(OperationMeter& meter, const Invocation& frame) const;
   [[noreturn]] void refuse_turn(OperationMeter& meter, const OperationInfo& operation) const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
@@ -194,6 +209,9 @@ class Service : public std::enable_shared_from_this<Service> {
   Clock& clock_;
   Options options_;
   std::atomic<bool> closed_{false};
+  const std::shared_ptr<std::atomic<bool>> leaving_ = std::make_shared<std::atomic<bool>>(false);
+  /// That wait in the queue, are on a thread, or are just being answered.
+  std::atomic<std::size_t> accepted_{0};
   mutable std::mutex owner_mutex_;  // held while `open` or `name_of` runs
   ServiceMeter meter_;
   mutable std::mutex queue_mutex_;
@@ -202,7 +220,7 @@ class Service : public std::enable_shared_from_this<Service> {
   std::condition_variable turn_ended_;
   bool turn_taken_ = false;
   mutable std::mutex mutex_;
-  mutable std::condition_variable all_ended_;
+  mutable std::condition_variable less_to_do_;  // once it is leaving
   Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run
   std::pmr::unordered_set<Deferred*> deferred_{&call_memory()};
   std::pmr::unordered_map<Guid, std::size_t> owed_{&call_memory()};  // by peer, none is 0

@@ -232,6 +232,26 @@ TEST_CASE("a provider whose lease expired is kept but not offered", "[R11]") {
   CHECK(table.on_writer_alive(kWriter, false).empty());
 }
 
+TEST_CASE("a provider that is about to leave is kept but not offered, and look-ups say why",
+          "[R28]") {
+  Table table;
+  auto leaving = description(1, "A/I", "one");
+  leaving.attributes = {{"latency", "3"}};
+  table.on_description(leaving, kWriter);
+  mark_leaving(leaving);
+  const auto changes = table.on_description(leaving, kWriter);
+  CHECK(changes.at(0).kind == Change::Kind::Updated);
+  CHECK(is_leaving(*changes.at(0).description));
+  CHECK(table.is_leaving(guid(1)));
+  CHECK(table.find(query("A/I")).empty());
+  CHECK_THAT(table.explain(query("A/I")), Catch::Contains("one (uav-1) is about to leave"));
+  CHECK(table.all().size() == 1);
+  SECTION("until it says otherwise") {
+    table.on_description(description(1, "A/I", "one"), kWriter);
+    CHECK(entities(table, query("A/I")) == Names{"one"});
+  }
+}
+
 TEST_CASE("a suspect provider that is heard of again is offered again", "[R12]") {
   Table table;
   table.on_description(description(1, "A/I", "one"), kWriter);

@@ -2,11 +2,13 @@
 #include <catch2/catch.hpp>
 #include <deque>
 #include <functional>
+#include <future>
 #include <thread>
 
 #include "../tools/eventually.hpp"
 #include "../tools/invariant.hpp"
 #include "../tools/log.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "skein/introspection.idl.hpp"
@@ -251,11 +253,34 @@ TEST_CASE("when its service is withdrawn, a call that has no answer ends", "[wir
   reply.on_cancel([&] { told = true; });
   SECTION("with the service") { office.server->withdraw(office.id); }
   SECTION("with the entity") { office.server.reset(); }
+  SECTION("as it was drained, and the patience is over") {
+    CHECK_FALSE(office.server->drain(0s));
+    office.server.reset();
+  }
   CHECK(told);
   CHECK_THROWS_AS(call.get(), Disconnected);
   CHECK(reply.call().cancelled());
   CHECK_FALSE(reply.answer("too late"));
   CHECK(log.count("'ask' goes nowhere: its service was withdrawn") == 1);
+}
+
+TEST_CASE("a provider that is drained waits for the answers that it owes", "[wire]") {
+  const Log log;
+  const bool same_process = GENERATE(false, true);
+  Office office(same_process);
+  auto call = office.proxy->within(10min).async_ask("what?");
+  auto [question, reply] = office.take();
+  const auto copy = reply;
+  auto drained = std::async(std::launch::async, [&] { return office.server->drain(10min); });
+  auto& broker = (same_process ? office.server : office.client)->broker();
+  REQUIRE(eventually([&] { return broker.find_service(broker.query("test::Desk")).empty(); }));
+  CHECK(drained.wait_for(0s) == std::future_status::timeout);
+  CHECK(reply.answer("that"));
+  CHECK(call.get() == "that");
+  CHECK(drained.get());
+  office.server.reset();
+  CHECK_FALSE(copy.answer("this"));
+  CHECK(log.count("'ask' goes nowhere: it was answered before") == 1);
 }
 
 TEST_CASE("an entity ends at once, whatever answers its implementations owe", "[wire]") {

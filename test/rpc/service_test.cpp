@@ -37,6 +37,29 @@ std::shared_ptr<rpc::Service> make_service(const rpc::Service::Options& options)
       executor, clock, options);
 }
 
+/// Answers within the operation.
+class PromptDesk : public ::test::Desk::Deferred {
+  void ask(const std::string& question, Reply<std::string> reply) override {
+    reply.answer(question);
+  }
+  void divide(std::int32_t, std::int32_t, const std::string&,
+              Reply<::test::Desk_divide_Out> reply) override {
+    reply.answer({});
+  }
+  void touch(Reply<void> reply) override { reply.answer(); }
+  void note(const std::string&) override {}
+  void count_up(std::int32_t, StreamSink<std::int32_t>&) override {}
+  void label(Reply<std::string> reply) override { reply.answer("desk"); }
+  void label(const std::string&, Reply<void> reply) override { reply.answer(); }
+};
+
+const OperationInfo* operation_of(const rpc::Service& service, std::string_view name) {
+  for (const OperationInfo& operation : service.interface_info().operations) {
+    if (operation.name == name) return &operation;
+  }
+  return nullptr;
+}
+
 void refuse_self_wait(const rpc::Service& service) {
   rpc::Invocation invocation;
   invocation.chain = {service.id()};
@@ -86,4 +109,28 @@ TEST_CASE("a closed service asks its owner nothing") {
   service->close();
   CHECK_THROWS_AS(service->open({}), Unavailable);
   refuse_self_wait(*service);
+}
+
+TEST_CASE("a service that is to finish waits for each answer, and then refuses what comes") {
+  ManualClock clock;
+  ManualExecutor executor;
+  const auto service = std::make_shared<rpc::Service>(std::make_shared<PromptDesk>(), executor,
+                                                      clock, rpc::Service::Options{});
+  const auto finished = [&] { return service->finish(clock.now()); };
+  int answers = 0;
+  const auto invocation = std::make_shared<rpc::Invocation>();
+  invocation->operation = operation_of(*service, GENERATE("touch", "note"));
+  invocation->in = {invocation->operation->in->make(), invocation->operation->in->destroy};
+  invocation->deadline = clock.now() + 1s;
+  invocation->respond = [&](const void*, const std::exception_ptr&) {
+    ++answers;
+    CHECK_FALSE(finished());
+  };
+  service->leave();
+  service->submit(invocation);
+  CHECK_FALSE(finished());
+  executor.run_all();
+  CHECK(answers == 1);
+  CHECK(finished());
+  CHECK_THROWS_AS(service->submit(invocation), NotSent);
 }

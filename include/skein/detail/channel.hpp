@@ -11,6 +11,7 @@
 #include "skein/clock.hpp"
 #include "skein/detail/action.hpp"
 #include "skein/detail/operation.hpp"
+#include "skein/error.hpp"
 #include "skein/executor.hpp"
 #include "skein/guid.hpp"
 
@@ -111,6 +112,13 @@ struct CallTime {
   Instant deadline;
 };
 
+/// Unavailable, as the connection has ended before anything of the call was sent: it may be made on
+/// another connection, whatever it does.
+class NotSent : public Unavailable {
+ public:
+  using Unavailable::Unavailable;
+};
+
 /// Carries a proxy's requests and replies: within the process as typed pointers, over a network as
 /// bytes. Thread-safe.
 class Channel {
@@ -121,8 +129,13 @@ class Channel {
   /// an error finishes `call`. A oneway call is finished when the request has been sent.
   virtual void start(const std::shared_ptr<PendingCall>& call, const void* in) = 0;
 
+  /// As start(), but throws NotSent, with the call as it was, where the connection has ended.
+  virtual void start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+    start(call, in);
+  }
+
   /// Blocking call: fills `out`, the operation's out struct, or throws the error that ended the
-  /// call. By default it uses start(). Not for streams.
+  /// call; NotSent as start_here(), which it uses by default. Not for streams.
   virtual void call(const OperationInfo& operation, const void* in, void* out,
                     const CallTime& time);
 
