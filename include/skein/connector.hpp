@@ -66,7 +66,9 @@ struct ConnectOptions {
   std::string strategy{};
   /// Hedging: a call of an idempotent operation that has no answer after this time is also made at
   /// a second provider, if one is available. The first answer is used, the other call cancelled.
-  /// Unset: no hedging. Each such call copies its in struct and its result.
+  /// Unset: no hedging. Each such call copies its in struct and its result. Hedges, and repeats of
+  /// calls that a full provider refused, are at most 5 for a connection, and one for 16 of its
+  /// calls; a repeat that another provider answers does not count.
   std::optional<Duration> hedge_after{};
   /// Timeout for finding a provider and opening the connection. Calls have their own timeout.
   Duration timeout = std::chrono::seconds(5);

@@ -98,7 +98,7 @@ std::shared_ptr<Channel> FailoverChannel::main_if_trusted() const {
 // The caller waits anyway, so its own thread tries one provider after the other, without a copy.
 void FailoverChannel::call_idempotent(const OperationInfo& operation, const void* in, void* out,
                                       const CallTime& time) {
-  Retries retries(time.deadline);
+  Retries retries(time.deadline, budget_);
   std::exception_ptr error;
   std::optional<ProviderConnection> connection;
   for (;;) {
@@ -106,10 +106,12 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
       connection = acquire(retries.wanted());
     } catch (...) {
       if (!error) throw;
+      retries.not_made();
       break;
     }
     try {
-      return connection->channel->call(operation, in, out, time);
+      connection->channel->call(operation, in, out, time);
+      return retries.answered();
     } catch (const NotSent&) {
       if (is_closed()) throw;
       continue;

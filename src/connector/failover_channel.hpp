@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "provider_connection.hpp"
+#include "retry_budget.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/channel.hpp"
 #include "skein/executor.hpp"
@@ -40,6 +41,9 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   void disconnect() override;
   void lose(const std::string& how) override;
 
+  /// Of all its calls to idempotent operations.
+  const std::shared_ptr<RetryBudget>& budget() const noexcept { return budget_; }
+
   /// See ConnectOptions.
   const std::optional<Duration>& hedge_after() const noexcept { return hedge_after_; }
 
@@ -64,6 +68,7 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
 
   Connect connect_;
   const std::optional<Duration> hedge_after_;
+  const std::shared_ptr<RetryBudget> budget_ = std::make_shared<RetryBudget>();
   Clock& clock_;
   Executor& continuations_;
   std::mutex connecting_;

@@ -23,7 +23,8 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
 
 }  // namespace
 
-bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Instant now) {
+bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Instant now,
+                    bool others_run) {
   const auto code = code_of(error);
   if (!code) return false;
   const bool refused = is_refusal(*code);
@@ -32,7 +33,16 @@ bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Insta
   const bool lost_before =
       std::find(wanted_.last.begin(), wanted_.last.end(), provider) != wanted_.last.end();
   (refused || lost_before ? wanted_.excluded : wanted_.last).push_back(provider);
-  return ++failures_ < kMaxFailures && now < wanted_.deadline;
+  if (++failures_ >= kMaxFailures || now >= wanted_.deadline) return false;
+  if (others_run) return true;
+  if (repeats_ == 0 && *code != ErrorCode::Overloaded) {
+    budget_->owe();
+  } else if (!budget_->take()) {
+    return false;
+  }
+  ++repeats_;
+  if (refused) ++refused_;
+  return true;
 }
 
 }  // namespace skein::connector

@@ -13,7 +13,10 @@ void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                          const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
-  if (const auto delay = channel->hedge_after()) moving->hedge_later(*delay);
+  if (const auto delay = channel->hedge_after()) {
+    std::lock_guard lock(moving->mutex_);
+    moving->hedge_later(*delay);
+  }
   while (const auto connection = channel->ready(moving->retries_.wanted())) {
     if (moving->try_at(*channel, *connection)) return;
   }
@@ -28,7 +31,7 @@ RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
       call_(std::move(call)),
       in_(copy_of(*call_->operation().in, in)),
       hedged_(channel->hedge_after().has_value()),
-      retries_(call_->deadline()) {}
+      retries_(call_->deadline(), channel->budget()) {}
 
 RetryingCall::~RetryingCall() {
   clock_.cancel(deadline_timer_);
@@ -57,6 +60,7 @@ bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnecti
 void RetryingCall::ended(Attempt& attempt, const Guid& provider) {
   auto error = attempt.take_error();
   if (!error) {
+    retries_.answered();
     if (!call_->claim()) return;
     if (hedged_) call_->operation().out->assign(call_->out(), attempt.out());
     call_->finish();
@@ -67,8 +71,9 @@ void RetryingCall::ended(Attempt& attempt, const Guid& provider) {
   {
     std::lock_guard lock(mutex_);
     if (cancelled_) return;
-    again = retries_.admit(error, provider, clock_.now());
-    if (again && others_run()) return;
+    const bool others = others_run();
+    again = retries_.admit(error, provider, clock_.now(), others);
+    if (again && others) return;
   }
   if (again) {
     move(error);
@@ -83,6 +88,7 @@ bool RetryingCall::others_run() const {
                      [](const auto& attempt) { return !attempt.second->finished(); });
 }
 
+// Under the lock: the timer may find nobody who has the call, and is set again then.
 void RetryingCall::hedge_later(Duration delay) {
   hedge_timer_ = clock_.call_after(delay, [weak = weak_from_this()] {
     const auto self = weak.lock();
@@ -97,14 +103,18 @@ void RetryingCall::hedge() {
   ProviderQuery wanted;
   {
     std::lock_guard lock(mutex_);
+    // Nobody has it yet, as far as is known here: whoever gets it could be asked twice.
+    if (attempts_.empty()) return hedge_later(*channel->hedge_after());
+    if (!retries_.hedge()) return;
     wanted = retries_.wanted();
     for (const auto& [provider, attempt] : attempts_) wanted.excluded.push_back(provider);
   }
   wanted.wait = false;
   try {
-    try_at(*channel, channel->acquire(wanted));
+    if (try_at(*channel, channel->acquire(wanted))) return;
   } catch (const Error&) {
   }
+  retries_.not_made();
 }
 
 // `why` is what the last provider failed with, null where there was none.
@@ -143,6 +153,7 @@ void RetryingCall::go_on(std::exception_ptr why) {
   } catch (...) {
     failure = std::current_exception();
   }
+  if (why) retries_.not_made();
   call_->fail(why ? std::move(why) : std::move(failure));
 }
 

@@ -87,6 +87,77 @@ TEST_CASE(
   CHECK(call->value == 5);
 }
 
+TEST_CASE("hedges add no more than the budget to a connection's calls") {
+  World world(2, 10ms);
+  for (int i = 0; i < 160; ++i) {
+    const auto call = world.call(kIdempotent);
+    world.clock.advance(10ms);
+    world.continuations.run_all();
+    world.provider(1).answer(static_cast<std::size_t>(i), 5);
+    CHECK(call->value == 5);
+  }
+  CHECK(world.provider(1).calls.size() == 160);
+  CHECK(world.provider(2).calls.size() == 14);  // 5 from the start, then one for 16 calls
+}
+
+TEST_CASE("calls that all providers refuse are repeated no more than the budget allows") {
+  World world(2);
+  world.provider(1).refuses = world.provider(2).refuses = true;
+  for (int i = 0; i < 160; ++i) {
+    const auto call = world.call(kIdempotent);
+    world.continuations.run_all();
+    CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Overloaded);
+  }
+  CHECK(world.provider(1).calls.size() == 160);
+  CHECK(world.provider(2).calls.size() == 14);
+}
+
+TEST_CASE("calls that one provider refuses and another answers cost no budget") {
+  World world(2);
+  world.provider(1).refuses = true;
+  for (int i = 0; i < 100; ++i) {
+    const auto call = world.call(kIdempotent);
+    world.continuations.run_all();
+    REQUIRE(world.provider(2).calls.size() == static_cast<std::size_t>(i + 1));
+    world.provider(2).answer(static_cast<std::size_t>(i), 5);
+    CHECK(call->take_error() == nullptr);
+  }
+}
+
+TEST_CASE("calls that were lost with their provider are repeated, and later ones pay for it") {
+  World world(3, 10ms);
+  std::vector<std::shared_ptr<NumberCall>> calls;
+  for (int i = 0; i < 100; ++i) calls.push_back(world.call(kIdempotent));
+  world.provider(1).lose();
+  world.continuations.run_all();
+  CHECK(world.provider(2).calls.size() == 100);
+  SECTION("they have no second hedge") {
+    world.clock.advance(10ms);
+    world.continuations.run_all();
+    CHECK(world.provider(3).calls.empty());
+  }
+  SECTION("they are not repeated again") {
+    world.provider(2).lose();
+    world.continuations.run_all();
+    CHECK(world.provider(3).calls.empty());
+    for (const auto& call : calls)
+      CHECK_THROWS_AS(std::rethrow_exception(call->take_error()), Disconnected);
+  }
+}
+
+TEST_CASE("calls that were refused as their provider went are repeated, which costs no budget") {
+  World world(3);
+  for (int i = 0; i < 100; ++i) world.call(kIdempotent);
+  world.provider(1).withdraw();
+  world.continuations.run_all();
+  REQUIRE(world.provider(2).calls.size() == 100);
+  for (std::size_t i = 0; i < 100; ++i) world.provider(2).answer(i, 5);
+  world.provider(2).refuses = true;
+  world.call(kIdempotent);
+  world.continuations.run_all();
+  CHECK(world.provider(3).calls.size() == 1);
+}
+
 TEST_CASE("a call that is not idempotent does not move") {
   World world(2);
   const auto call = world.call(kOther);
@@ -250,6 +321,42 @@ TEST_CASE(
     world.provider(3).answer(0, 5);
   }
   CHECK(call->take_error() == nullptr);
+  CHECK(call->value == 5);
+}
+
+TEST_CASE("a hedged call that both providers lose is repeated once in any case") {
+  World world(3, 10ms);
+  std::shared_ptr<NumberCall> call;
+  for (std::size_t i = 0; i < RetryBudget::kReserve; ++i) {
+    call = world.call(kIdempotent);
+    world.clock.advance(10ms);
+    world.continuations.run_all();
+    REQUIRE(world.provider(2).calls.size() == i + 1);
+    if (i + 1 < RetryBudget::kReserve) world.provider(1).answer(i, 5);
+  }
+  for (const int number : {1, 2}) {
+    world.provider(number).lose();
+    world.continuations.run_all();
+  }
+  REQUIRE(world.provider(3).calls.size() == 1);
+  world.provider(3).answer(0, 5);
+  CHECK(call->take_error() == nullptr);
+}
+
+TEST_CASE("a hedged call whose time comes before its provider is known is not made there twice") {
+  World world(2, 50ms);
+  const auto wait = [&] {
+    world.clock.advance(50ms);
+    world.continuations.run_all();
+  };
+  world.provider(1).while_it_starts = wait;
+  const auto call = world.call(kIdempotent);
+  CHECK(world.provider(1).calls.size() == 1);
+  CHECK(world.provider(2).calls.empty());
+  wait();
+  CHECK(world.provider(1).calls.size() == 1);
+  CHECK(world.provider(2).calls.size() == 1);
+  world.provider(1).answer(0, 5);
   CHECK(call->value == 5);
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <deque>
+#include <functional>
 
 #include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
@@ -43,6 +44,7 @@ struct FakeChannel final : Channel {
     calls.push_back(call);
     call->set_canceller([this] { ++cancelled; });
     arguments.push_back(*static_cast<const int*>(in));
+    if (while_it_starts) while_it_starts();
     if (refuses) call->fail(std::make_exception_ptr(Overloaded("full")));
   }
   Clock& clock() const noexcept override { return clock_; }
@@ -61,6 +63,13 @@ struct FakeChannel final : Channel {
     for (const auto& call : calls) call->fail(std::make_exception_ptr(Disconnected("gone")));
   }
 
+  /// Ends, and refuses what it has not begun.
+  void withdraw() {
+    stands = false;
+    for (const auto& call : calls)
+      call->fail(std::make_exception_ptr(Unavailable("it is being withdrawn")));
+  }
+
   Clock& clock_;
   Executor& continuations_;
   std::deque<std::shared_ptr<PendingCall>> calls;
@@ -68,6 +77,7 @@ struct FakeChannel final : Channel {
   bool stands = true;
   bool refuses = false;
   int cancelled = 0;
+  std::function<void()> while_it_starts;
   std::shared_ptr<std::atomic<bool>> suspect = std::make_shared<std::atomic<bool>>(false);
 };
 
