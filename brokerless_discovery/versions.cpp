@@ -25,7 +25,7 @@ template <class Provider>
 const OperationInfo* differing_operation(const InterfaceInfo& client, const Provider& provider) {
   for (const OperationInfo& operation : client.operations) {
     const auto* const there = find_operation(provider, operation.hash);
-    if (!there || there->signature != operation.signature) return &operation;
+    if (there ? there->signature != operation.signature : !operation.optional) return &operation;
   }
   return nullptr;
 }
@@ -57,6 +57,12 @@ bool understands(const InterfaceInfo& client, const ServiceDescription& provider
 
 bool understands(const InterfaceInfo& client, const InterfaceInfo& provider) {
   return !differing_operation(client, provider) && !differing_member(client, provider);
+}
+
+bool has_all_operations(const InterfaceInfo& client, const ServiceDescription& provider) {
+  return std::ranges::all_of(client.operations, [&](const OperationInfo& operation) {
+    return find_operation(provider, operation.hash) != nullptr;
+  });
 }
 
 std::string difference(const InterfaceInfo& client, const ServiceDescription& provider) {

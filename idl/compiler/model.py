@@ -300,6 +300,7 @@ class Operation:
     oneway: bool
     idempotent: bool
     stream: bool
+    optional: bool  # a provider may lack it
     documentation: list
     place: object
     interface: object

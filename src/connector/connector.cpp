@@ -7,6 +7,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "brokerless_discovery/load_board.hpp"
 #include "brokerless_discovery/process_watch.hpp"
+#include "brokerless_discovery/versions.hpp"
 #include "connections.hpp"
 #include "core/interface_name.hpp"
 #include "failover_channel.hpp"
@@ -102,14 +103,22 @@ void put_less_loaded_first(Table::Found& providers, std::size_t equals,
   std::rotate(providers.begin(), chosen, chosen + 1);
 }
 
-void arrange(Table::Found& providers, const ProviderQuery& wanted,
-             const std::string& preferred_host, const brokerless_discovery::LoadBoard& loads) {
+// Those that lack operations stand behind those that lack none, and before those that are to be
+// asked last.
+void arrange(Table::Found& providers, const ProviderQuery& wanted, const Query& query,
+             const brokerless_discovery::LoadBoard& loads) {
   std::erase_if(providers,
                 [&](const auto& provider) { return contains(wanted.excluded, *provider); });
-  const auto last = std::stable_partition(
-      providers.begin(), providers.end(),
-      [&](const auto& provider) { return !contains(wanted.last, *provider); });
-  const auto preferred = [&](const auto& provider) { return provider->host == preferred_host; };
+  auto last = std::stable_partition(providers.begin(), providers.end(), [&](const auto& provider) {
+    return !contains(wanted.last, *provider);
+  });
+  const auto complete = std::stable_partition(providers.begin(), last, [&](const auto& provider) {
+    return brokerless_discovery::has_all_operations(*query.client, *provider);
+  });
+  if (complete != providers.begin()) last = complete;
+  const auto preferred = [&](const auto& provider) {
+    return provider->host == query.preferred_host;
+  };
   auto equals = std::find_if_not(providers.begin(), last, preferred);
   if (equals == providers.begin()) equals = last;
   put_less_loaded_first(providers, static_cast<std::size_t>(equals - providers.begin()), loads);
@@ -269,7 +278,7 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
     }
     auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
                                  : parts_.broker.find_service(query);
-    arrange(providers, wanted, query.preferred_host, parts_.loads);
+    arrange(providers, wanted, query, parts_.loads);
     // Who is asked for by its identity has all of the time.
     const bool may_try_another = query.provider.is_nil() && (wanted.wait || providers.size() > 1);
     const Instant now = parts_.clock->now();

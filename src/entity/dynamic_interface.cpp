@@ -88,10 +88,11 @@ void DynamicInterface::add_operation(const types::Interface& interface,
       types_.add_struct(place + " (result)", idl::out_struct(interface, described).members));
   auto& raised = raises_.emplace_back();
   for (const std::string& name : described.raises) raised.push_back(exception(name));
-  operations_.push_back(
-      {described.name, digest.hash, digest.signature, has(described.flags, OperationFlags::one_way),
-       has(described.flags, OperationFlags::idempotent),
-       has(described.flags, OperationFlags::stream), &in, &out, raised, std::string_view()});
+  operations_.push_back({described.name, digest.hash, digest.signature,
+                         has(described.flags, OperationFlags::one_way),
+                         has(described.flags, OperationFlags::idempotent),
+                         has(described.flags, OperationFlags::stream), &in, &out, raised,
+                         std::string_view(), has(described.flags, OperationFlags::optional)});
   described_.push_back(&described);
 }
 

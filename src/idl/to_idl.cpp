@@ -444,7 +444,8 @@ class Writer {
 
   static std::string marks(const Operation& operation) {
     return std::string(has(operation.flags, OperationFlags::idempotent) ? "@idempotent " : "") +
-           (has(operation.flags, OperationFlags::stream) ? "@stream " : "");
+           (has(operation.flags, OperationFlags::stream) ? "@stream " : "") +
+           (has(operation.flags, OperationFlags::optional) ? "@optional " : "");
   }
 
   std::string raises(const std::string& keyword, const Operation& operation) {

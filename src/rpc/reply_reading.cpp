@@ -54,7 +54,9 @@ std::exception_ptr error_in(std::span<const std::byte> message, const wire::Repl
   ErrorCode code = wire::error_code_of(head.exception);
   std::string text = std::string(operation) + " ended with remote exception " +
                      std::to_string(static_cast<int>(head.exception));
-  if (const auto trailer = wire::read_reply_trailer(message, head.result + 1)) {
+  if (head.exception == wire::RemoteException::UnknownOperation) {
+    text = "it has no operation '" + std::string(operation) + "'; its IDL is another version";
+  } else if (const auto trailer = wire::read_reply_trailer(message, head.result + 1)) {
     code = trailer->code;
     text = trailer->text;
   }

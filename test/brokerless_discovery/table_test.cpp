@@ -141,6 +141,26 @@ TEST_CASE("a provider that lacks one of the client's operations is not offered",
   CHECK(entities(table, asked) == Names{"planner"});
 }
 
+TEST_CASE("a provider may lack an @optional operation, and may not have another one of its name",
+          "[R7]") {
+  const OperationInfo wanted[] = {
+      {"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""},
+      {"improve", 12, 2000, false, false, false, nullptr, nullptr, {}, "", true}};
+  const InterfaceInfo client{"A/IPlanner", {}, wanted, ""};
+  Query asked = query("A/IPlanner");
+  asked.client = &client;
+  Table table;
+  auto provider = description(1, "A/IPlanner", "planner");
+  provider.operations = {{"plan", 11, 1000}};
+  table.on_description(provider, kWriter);
+  CHECK(entities(table, asked) == Names{"planner"});
+
+  provider.operations = {{"plan", 11, 1000}, {"improve", 12, 2001}};
+  table.on_description(provider, kWriter);
+  CHECK(entities(table, asked).empty());
+  CHECK_THAT(table.explain(asked), Catch::Contains("operation 'improve' has another signature"));
+}
+
 TEST_CASE("types that may grow may differ by what has grown, and by nothing else", "[R7]") {
   constexpr std::uint32_t kProblem = 5;
   const OperationInfo wanted[] = {

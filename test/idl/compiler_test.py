@@ -696,6 +696,14 @@ class Signatures(CompilerTest):
         self.assertEqual(base, self.signature(re.sub(r"\bS\b", "Renamed", self.BASE)))
         self.assertEqual(base, self.signature("// A comment.\n" + self.BASE))
 
+    def test_whether_an_operation_may_be_missing_does_not_change_the_signature(self):
+        optional = self.BASE.replace("S f(", "@optional S f(")
+        self.assertEqual(self.signature(self.BASE), self.signature(optional))
+        told = re.compile(r'"f", 0x.*?"", (true|false)\}', re.DOTALL)
+        self.assertEqual(told.search(self.output("x.idl.cpp"))[1], "true")
+        self.signature(self.BASE)
+        self.assertEqual(told.search(self.output("x.idl.cpp"))[1], "false")
+
     def test_a_recursive_type_has_a_signature(self):
         text = "struct T; typedef sequence<T> Ts; struct T { Ts c; }; interface I { T f(in T a); };"
         self.assertNotEqual(self.signature(text), self.signature(text.replace("Ts c;", "Ts c; long x;")))

@@ -154,7 +154,7 @@ class Generator:
         raises = f" raises ({dice.choice(self.exceptions)})" if self.exceptions and dice.random() < 0.3 else ""
         if dice.random() < 0.1:
             return f"  oneway void {self.name()}(in {self.type()} {self.name()});\n"
-        note = dice.choice(["", "", "@idempotent "])
+        note = dice.choice(["", "", "@idempotent ", "@optional "])
         return f"  {note}{dice.choice(['void', self.type()])} {self.name()}({', '.join(kinds)}){raises};\n"
 
     def type_or_reference(self):

@@ -4,9 +4,11 @@
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
 #include "../topics/heard.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "sea_1.idl.hpp"
 #include "sea_2.idl.hpp"
 #include "sea_3.idl.hpp"
+#include "skein/describe.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -55,16 +57,88 @@ struct GrownBuoy : grown::Buoy {
     for (std::uint32_t i = 0; i < count; ++i) sink.push({static_cast<double>(i), 5, "wave"});
   }
   std::string station() override { return "north"; }
+  void tail(std::uint32_t, StreamSink<grown::Swell>&) override {}
 };
+
+struct ChangedBuoy : changed::Buoy {
+  changed::Swell higher(const changed::Swell& swell, const std::vector<changed::Swell>&,
+                        changed::Tide&) override {
+    return swell;
+  }
+  changed::Weather weather(bool) override { return {}; }
+  void waves(std::uint32_t, StreamSink<changed::Swell>&) override {}
+};
+
+struct OldHorn : old::Horn {
+  std::uint32_t blow(std::uint32_t times) override { return times; }
+};
+struct GrownHorn : grown::Horn {
+  std::uint32_t blow(std::uint32_t times) override { return times; }
+  grown::Swell heard(const grown::Swell& swell) override { return swell; }
+};
+
+struct OldLight : old::Light {
+  old::Colour colour() override { return old::Colour::Green; }
+};
+struct WhiteLight : grown::Light {
+  grown::Colour colour() override { return grown::Colour::White; }
+};
+
+struct OldMast : old::Mast {
+  double height_m() override { return 12; }
+  void paint(const std::string&) override {}
+};
+struct PaintedMast : grown::Mast {
+  double height_m() override { return 12; }
+  void paint(const std::string&, std::int32_t) override {}
+};
+struct LeaningMast : changed::Mast {
+  double height_m() override { return 12; }
+  double lean_deg() override { return 1; }
+};
+
+/// Two entities, or one that calls itself.
+struct Sea {
+  explicit Sea(bool same_process = false) : client(same_process ? nullptr : make_client()) {}
+  template <class Interface>
+  typename Interface::Proxy connect() {
+    return (client ? *client : *server).template connect<Interface>();
+  }
+  std::unique_ptr<Entity> server = make_server();
+  std::unique_ptr<Entity> client;
+};
+
+/// Why a client of `Interface` is not connected to the only provider there is.
+template <class Interface, class Provided>
+std::string refusal(std::shared_ptr<Provided> provider) {
+  Sea sea;
+  const Guid id = sea.server->provide<Provided>(std::move(provider));
+  REQUIRE(eventually([&] { return sea.client->broker().knows(id); }));
+  try {
+    sea.client->connect<Interface>({.timeout = std::chrono::milliseconds(1)});
+  } catch (const Unavailable& refused) {
+    return refused.what();
+  }
+  return "it was connected";
+}
+
+/// What is thrown where an operation is called that the provider lacks.
+template <class Call>
+std::string lacking(const Call& call) {
+  try {
+    call();
+  } catch (const Unimplemented& error) {
+    return error.what();
+  }
+  return "it was not refused";
+}
 
 }  // namespace
 
 TEST_CASE("a client of the old version calls a provider of the grown one") {
-  const auto server = make_server();
-  server->provide<grown::Buoy>(std::make_shared<GrownBuoy>());
-  const bool same_process = GENERATE(false, true);
-  const auto client = same_process ? nullptr : make_client();
-  auto buoy = (client ? *client : *server).connect<old::Buoy>();
+  Sea sea(GENERATE(false, true));
+  sea.server->provide<grown::Buoy>(std::make_shared<GrownBuoy>());
+  auto buoy = sea.connect<old::Buoy>();
 
   old::Tide tide{1, 2};
   CHECK(buoy.higher({1}, {{2}, {3}}, tide) == old::Swell{2});
@@ -84,22 +158,93 @@ TEST_CASE("a client of the old version calls a provider of the grown one") {
   }
 }
 
-TEST_CASE("a client of the grown version is told that the old one lacks an operation") {
-  const auto server = make_server();
-  server->provide<old::Buoy>(std::make_shared<OldBuoy>());
-  const auto client = make_client();
-  CHECK_THROWS_WITH(client->connect<grown::Buoy>({.timeout = std::chrono::milliseconds(500)}),
-                    Catch::Contains("operation 'station' is missing there"));
+TEST_CASE("a client of the grown version calls a provider of the old one") {
+  Sea sea(GENERATE(false, true));
+  sea.server->provide<old::Buoy>(std::make_shared<OldBuoy>());
+  auto buoy = sea.connect<grown::Buoy>();
+
+  grown::Tide tide{3, 1};
+  CHECK(buoy.higher({1, 5, "low"}, {{2, 6, "high"}}, tide) == grown::Swell{2, 8, {}});
+  CHECK(tide == grown::Tide{2, 1});  // the old version has no moons, and so sends none
+  CHECK(buoy.weather(true).swell() == grown::Swell{3.5, 8, {}});
+  double expected = 0;
+  for (const grown::Swell& wave : buoy.waves(20)) CHECK(wave == grown::Swell{expected++, 8, {}});
+  CHECK(expected == 20);
+  try {
+    buoy.higher({6, 1, "six"}, {}, tide);
+    FAIL("nothing was thrown");
+  } catch (const grown::Adrift& adrift) {
+    CHECK(adrift.last == grown::Swell{6, 8, {}});
+  }
 }
 
-TEST_CASE("any other change is refused, and both versions are named") {
-  const auto server = make_server();
-  server->provide<old::Buoy>(std::make_shared<OldBuoy>());
-  const auto client = make_client();
-  CHECK_THROWS_WITH(client->connect<changed::Buoy>({.timeout = std::chrono::milliseconds(500)}),
-                    Catch::Contains("another version of it: the member sea::Swell.height_m has "
-                                    "another name or type there (") &&
-                        Catch::Contains(", here "));
+TEST_CASE("an @optional operation that the provider lacks ends as Unimplemented, by name") {
+  Sea sea(GENERATE(false, true));
+  sea.server->provide<old::Buoy>(std::make_shared<OldBuoy>());
+  auto buoy = sea.connect<grown::Buoy>();
+
+  const auto names_station = Catch::Contains("has no operation 'station'");
+  CHECK_THAT(lacking([&] { buoy.station(); }), names_station);
+  CHECK_THAT(lacking([&] { buoy.async_station().get(); }), names_station);
+  CHECK_THAT(lacking([&] { buoy.tail(2).next(); }), Catch::Contains("has no operation 'tail'"));
+  CHECK(buoy.weather(false).swell().height_m == 3.5);  // nothing of the connection was lost
+}
+
+TEST_CASE("what describes an interface says which operations a provider may lack") {
+  CHECK_THAT(to_idl(describe(grown::Buoy::interface_info())),
+             Catch::Contains("  @optional string station();") &&
+                 Catch::Contains("  Weather weather(in boolean storm);"));
+}
+
+TEST_CASE("a provider that has all operations is taken before one that lacks an @optional one") {
+  Sea sea;
+  sea.server->provide<old::Horn>(std::make_shared<OldHorn>());
+  REQUIRE(sea.connect<grown::Horn>().blow(3) == 3);
+  const auto other = make_entity("younger", Pairing::get().server);  // behind "server" by name
+  other->provide<grown::Horn>(std::make_shared<GrownHorn>());
+  REQUIRE(eventually([&] { return sea.client->connect_all<grown::Horn>().size() == 2; }));
+  CHECK(sea.connect<grown::Horn>().heard({2, 3, "far"}) == grown::Swell{2, 3, "far"});
+}
+
+TEST_CASE("an interface whose types cannot grow takes an operation of a type that can") {
+  Sea sea(GENERATE(false, true));
+  SECTION("the provider is the younger one") {
+    sea.server->provide<grown::Horn>(std::make_shared<GrownHorn>());
+    CHECK(sea.connect<old::Horn>().blow(7) == 7);
+    CHECK(sea.connect<grown::Horn>().heard({1, 2, "near"}) == grown::Swell{1, 2, "near"});
+  }
+  SECTION("the client is the younger one") {
+    sea.server->provide<old::Horn>(std::make_shared<OldHorn>());
+    auto horn = sea.connect<grown::Horn>();
+    CHECK(horn.blow(7) == 7);
+    CHECK_THAT(lacking([&] {
+                 horn.heard({1, 2, "near"});
+               }),
+               Catch::Contains("has no operation 'heard'"));
+    CHECK(horn.blow(8) == 8);
+  }
+}
+
+TEST_CASE("any other change is refused when connecting, with the operation or member") {
+  const std::string of_member =
+      "another version of it: the member sea::Swell.height_m has another name or type there (";
+  CHECK_THAT(refusal<changed::Buoy>(std::make_shared<OldBuoy>()),
+             Catch::Contains(of_member) && Catch::Contains(", here "));
+  CHECK_THAT(refusal<old::Buoy>(std::make_shared<ChangedBuoy>()), Catch::Contains(of_member));
+
+  // One went, and another, which is not @optional, came.
+  CHECK_THAT(refusal<old::Mast>(std::make_shared<LeaningMast>()),
+             Catch::Contains("operation 'paint' is missing there"));
+  CHECK_THAT(refusal<changed::Mast>(std::make_shared<OldMast>()),
+             Catch::Contains("operation 'lean_deg' is missing there"));
+  // Another parameter.
+  const std::string of_paint = "operation 'paint' has another signature there (";
+  CHECK_THAT(refusal<old::Mast>(std::make_shared<PaintedMast>()), Catch::Contains(of_paint));
+  CHECK_THAT(refusal<grown::Mast>(std::make_shared<OldMast>()), Catch::Contains(of_paint));
+  // An enumerator more: whoever does not know it has no value for it.
+  const std::string of_colour = "operation 'colour' has another signature there (";
+  CHECK_THAT(refusal<old::Light>(std::make_shared<WhiteLight>()), Catch::Contains(of_colour));
+  CHECK_THAT(refusal<grown::Light>(std::make_shared<OldLight>()), Catch::Contains(of_colour));
 }
 
 TEST_CASE("a reader takes nothing from a writer of a version that it would misread") {
@@ -128,7 +273,7 @@ TEST_CASE("readers of either version of a type take what writers of the other on
   auto from_old = ship->publisher<old::Swell>("old", TopicQos::state());
   auto from_grown = ship->publisher<grown::Swell>("grown", TopicQos::state());
   from_old.publish({1.5});
-  from_grown.publish({2.5, 6, {}});
+  from_grown.publish({2.5, 6, "far"});
   Heard<grown::Swell> heard_old;
   Heard<old::Swell> heard_grown;
   const auto first =
@@ -162,6 +307,25 @@ TEST_CASE("members that were swapped are told on both sides, and nothing is take
   CHECK(heard.values().empty());
   CHECK(subscription.publishers() == 0);
   CHECK(publisher.subscribers() == 1);
+}
+
+TEST_CASE("an enumerator that one side lacks is told on both sides, and nothing is taken") {
+  const auto ship = make_server("ship");
+  const auto shore = make_client("shore");
+  const Log log;
+  auto publisher = ship->publisher<grown::Lamp>("lamp", TopicQos::state());
+  publisher.publish({grown::Colour::White});
+  Heard<old::Lamp> heard;
+  const auto subscription =
+      shore->subscription<old::Lamp>("lamp", TopicQos::state(), heard.callback());
+  const bool told = eventually([&] { return log.count("do not match in type") == 2; });
+  CAPTURE(log.text());
+  CHECK(told);
+  CHECK(log.count("White") == 2);
+  Heard<grown::Lamp> right;
+  const auto other = shore->subscription<grown::Lamp>("lamp", TopicQos::state(), right.callback());
+  REQUIRE(eventually([&] { return !right.values().empty(); }));
+  CHECK(heard.values().empty());
 }
 
 TEST_CASE("another type of the same topic is told by name") {

@@ -8,7 +8,7 @@ _KINDS = ("boolean", "char", "wchar", "int8", "octet", "short", "unsigned short"
           "unsigned long long", "float", "double", "long double")  # fmt: skip
 _STRING, _WSTRING, _SEQUENCE, _ARRAY, _MAP, _OPTIONAL, _DECLARED, _REFERENCE = range(len(_KINDS), len(_KINDS) + 8)
 _KEY, _MUST_UNDERSTAND, _BY_DEFAULT, _EXTERNAL = 1, 2, 4, 8
-_ONEWAY, _IDEMPOTENT, _STREAM = 1, 2, 4
+_ONEWAY, _IDEMPOTENT, _STREAM, _MAY_LACK = 1, 2, 4, 8
 _DECLARATIONS = {model.Struct: 0, model.Exception_: 1, model.Union: 2, model.Enum: 3, model.Bitmask: 4, model.Bitset: 5}
 _EXTENSIBILITIES = ("final", "appendable", "mutable")
 _DIRECTIONS = ("in", "out", "inout")
@@ -153,7 +153,12 @@ def _field(cdr, field):
 
 def _operation(cdr, operation):
     cdr.text(operation.name)
-    flags = ((operation.oneway, _ONEWAY), (operation.idempotent, _IDEMPOTENT), (operation.stream, _STREAM))
+    flags = (
+        (operation.oneway, _ONEWAY),
+        (operation.idempotent, _IDEMPOTENT),
+        (operation.stream, _STREAM),
+        (operation.optional, _MAY_LACK),
+    )
     cdr.number("B", sum(flag for said, flag in flags if said))
     cdr.sequence([operation.result] if operation.result else [], lambda kind: _type(cdr, kind))
     cdr.sequence(operation.parameters, lambda parameter: _parameter(cdr, parameter))

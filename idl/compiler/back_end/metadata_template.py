@@ -86,7 +86,7 @@ def _operation(operation, raises):
         f"{_bool(operation.oneway)}, {_bool(operation.idempotent)}, {_bool(operation.stream)},",
         f"       &{_support_of(operation.in_struct)},",
         f"       &{_support_of(operation.out_struct)},",
-        f"       {listed}, {cpp.string_literal(operation.documentation)}}},",
+        f"       {listed}, {cpp.string_literal(operation.documentation)}, {_bool(operation.optional)}}},",
     ]
 
 

@@ -18,7 +18,7 @@ from . import (
     types_template,
 )
 
-VERSION = 5  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 6  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)

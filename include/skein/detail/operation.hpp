@@ -93,6 +93,9 @@ struct OperationInfo {
       out;  ///< The struct of result, out and inout parameters (`IPlanner_plan_Out`).
   std::span<const ExceptionInfo* const> raises;
   std::string_view documentation;  ///< The comment in the IDL.
+  /// Declared by `@optional`: a client connects to a provider that lacks it, too; where it is
+  /// called there, the call ends as Unimplemented.
+  bool optional = false;
 
   /// Whether it carries a type that travels as XCDR2.
   bool uses_xcdr2() const noexcept {
