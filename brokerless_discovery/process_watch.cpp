@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "abstract_socket.hpp"
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "skein/error.hpp"
 
@@ -103,9 +104,10 @@ struct ProcessWatch::State {
 
   void run() {
     pthread_setname_np(pthread_self(), "skein-watch");
+    std::chrono::milliseconds until_look{0};
     while (true) {
       epoll_event events[32];
-      const int count = epoll_wait(epoll.get(), events, 32, -1);
+      const int count = epoll_wait(epoll.get(), events, 32, static_cast<int>(until_look.count()));
       Actions ended;
       {
         std::lock_guard lock(mutex);
@@ -113,6 +115,7 @@ struct ProcessWatch::State {
         for (int i = 0; i < count; ++i) handle(events[i].data.u64, events[i].events, ended);
       }
       for (const auto& action : ended) action();
+      until_look = StallWatch::of_this_process().look(std::chrono::steady_clock::now());
     }
   }
 

@@ -56,10 +56,15 @@ class Executor {
 /// is a strand: no two tasks run at once.
 class ThreadExecutor final : public Executor {
  public:
+  /// How long its tasks take. Of one of the Short ones that takes a second the log tells, with the
+  /// thread's stack, while there is a Process.
+  enum class Tasks { Any, Short };
+
   /// `name` is the threads' name in a debugger (15 characters are kept). Throws InvalidArgument for
   /// settings that can never work; see ThreadSettings.
   explicit ThreadExecutor(std::string name, std::size_t threads = 1, std::size_t capacity = 4096,
-                          const ThreadSettings& settings = {});
+                          const ThreadSettings& settings = {}, Tasks tasks = Tasks::Any);
+  ThreadExecutor(std::string name, Tasks tasks);
   /// Waits for running tasks; drops the others.
   ~ThreadExecutor() override;
 

@@ -6,6 +6,7 @@
 #include <thread>
 #include <unordered_map>
 
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "skein/detail/call_memory.hpp"
 
@@ -28,12 +29,13 @@ struct SystemClock::State {
 
   void run() {
     pthread_setname_np(pthread_self(), "skein-timer");
+    WatchedThread watched("skein-timer");
     std::unique_lock lock(mutex);
     while (!stopping) {
       const Instant now = std::chrono::steady_clock::now();
       const Instant due = timers.empty() ? Instant::max() : timers.begin()->first.first;
       if (due <= now) {
-        run_first(lock);
+        run_first(lock, watched);
         continue;
       }
       if (due < wakes || wakes <= now) wakes = due;
@@ -45,13 +47,15 @@ struct SystemClock::State {
     }
   }
 
-  void run_first(std::unique_lock<std::mutex>& lock) {
+  void run_first(std::unique_lock<std::mutex>& lock, WatchedThread& watched) {
     auto node = timers.extract(timers.begin());
     running = node.key().second;
     instants.erase(running);
     lock.unlock();
+    watched.begin();
     node.mapped()();
     node.mapped() = nullptr;
+    watched.end();
     lock.lock();
     running = 0;
     finished.notify_all();

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "core/leave_behind.hpp"
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "core/thread_settings.hpp"
 #include "skein/detail/call_memory.hpp"
@@ -24,12 +26,13 @@ void leave_behind(std::shared_ptr<const void> used) {
 
 // Shared with the threads, so that one of them can be left behind.
 struct ThreadExecutor::State {
-  State(std::string name_, std::size_t capacity_, const ThreadSettings& settings_)
-      : name(std::move(name_)), capacity(capacity_), settings(settings_) {}
+  State(std::string name_, std::size_t capacity_, const ThreadSettings& settings_, Tasks length_)
+      : name(std::move(name_)), capacity(capacity_), settings(settings_), length(length_) {}
 
   const std::string name;
   const std::size_t capacity;
   const ThreadSettings settings;
+  const Tasks length;
   std::mutex mutex;
   std::condition_variable changed;
   std::pmr::deque<Action> tasks{&call_memory()};
@@ -60,6 +63,8 @@ struct ThreadExecutor::State {
   void work() {
     pthread_setname_np(pthread_self(), name.c_str());
     apply(settings, name);
+    std::optional<WatchedThread> watched;
+    if (length == Tasks::Short) watched.emplace(name);
     std::unique_lock lock(mutex);
     while (true) {
       await_task(lock);
@@ -69,8 +74,10 @@ struct ThreadExecutor::State {
       note_change();
       ++running;
       lock.unlock();
+      if (watched) watched->begin();
       task();
       task = nullptr;
+      if (watched) watched->end();
       lock.lock();
       --running;
       if (finishing) changed.notify_all();
@@ -81,10 +88,10 @@ struct ThreadExecutor::State {
 };
 
 ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_t capacity,
-                               const ThreadSettings& settings) {
+                               const ThreadSettings& settings, Tasks tasks) {
   check(settings, name);
   name.resize(std::min<std::size_t>(name.size(), 15));
-  state_ = std::make_shared<State>(std::move(name), capacity, settings);
+  state_ = std::make_shared<State>(std::move(name), capacity, settings, tasks);
   try {
     std::lock_guard lock(state_->mutex);
     for (std::size_t i = 0; i < std::max<std::size_t>(threads, 1); ++i) {
@@ -96,6 +103,9 @@ ThreadExecutor::ThreadExecutor(std::string name, std::size_t threads, std::size_
     throw;
   }
 }
+
+ThreadExecutor::ThreadExecutor(std::string name, Tasks tasks)
+    : ThreadExecutor(std::move(name), 1, 4096, {}, tasks) {}
 
 ThreadExecutor::~ThreadExecutor() { stop(); }
 

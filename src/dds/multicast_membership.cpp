@@ -18,6 +18,7 @@
 #include <system_error>
 
 #include "core/log.hpp"
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "options_check.hpp"
 
@@ -96,6 +97,7 @@ MulticastMembership::~MulticastMembership() {
 }
 
 void MulticastMembership::run() {
+  WatchedThread watched("skein-dds-group");
   std::array<pollfd, 2> events{pollfd{changes_.get(), POLLIN, 0}, pollfd{end_.get(), POLLIN, 0}};
   while (::poll(events.data(), events.size(), -1) >= 0 || errno == EINTR) {
     if (events[1].revents != 0) return;
@@ -103,7 +105,9 @@ void MulticastMembership::run() {
     // What the messages say does not matter, nor that some were lost.
     while (::recv(changes_.get(), message.data(), message.size(), 0) > 0 || errno == ENOBUFS) {
     }
+    watched.begin();
     join_again();
+    watched.end();
   }
 }
 

@@ -206,8 +206,8 @@ struct Entity::State {
   std::unique_ptr<dds::Participant> participant;
   // Shared with connections, which may outlive the entity.
   const std::shared_ptr<ThreadExecutor> continuations =
-      std::make_shared<ThreadExecutor>("skein-continue");
-  ThreadExecutor control{"skein-control"};
+      std::make_shared<ThreadExecutor>("skein-continue", ThreadExecutor::Tasks::Short);
+  ThreadExecutor control{"skein-control", ThreadExecutor::Tasks::Short};
   std::shared_ptr<rpc::CallJournal> journal;
   std::shared_ptr<rpc::CallRecorder> recorder;
   Broker broker;
@@ -352,7 +352,9 @@ topics::Register& Entity::topic_register() noexcept { return state_->topic_regis
 
 Executor& Entity::topic_executor() {
   std::lock_guard lock(state_->mutex);
-  if (!state_->topics) state_->topics = std::make_unique<ThreadExecutor>("skein-topics");
+  if (!state_->topics) {
+    state_->topics = std::make_unique<ThreadExecutor>("skein-topics", ThreadExecutor::Tasks::Short);
+  }
   return *state_->topics;
 }
 

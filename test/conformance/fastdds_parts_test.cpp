@@ -10,7 +10,9 @@
 #include "../../src/dds/fastdds/received_payloads.hpp"
 #include "../../src/dds/fastdds/suspend_detector.hpp"
 #include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
 #include "../tools/rtps_packet.hpp"
+#include "core/stall_watch.hpp"
 
 using namespace skein;
 using namespace skein::dds::fastdds;
@@ -398,6 +400,24 @@ TEST_CASE("a payload has room for Fast DDS's list of fragments, whatever their s
       CHECK(payloads.take(change).capacity() >= end);
     }
   }
+}
+
+TEST_CASE("an event that does not end is told of, with the thread's name") {
+  const test::Log log;
+  std::atomic<bool> inside{false};
+  std::atomic<bool> may_end{false};
+  EventThread thread([] {});
+  thread.post([&] {
+    inside = true;
+    test::eventually([&] { return may_end.load(); });
+  });
+  REQUIRE(test::eventually([&] { return inside.load(); }));
+  Instant now = std::chrono::steady_clock::now();
+  for (int i = 0; i < 4; ++i) {
+    StallWatch::of_this_process().look(now += StallWatch::kPeriod);
+  }
+  CHECK(log.count("the thread 'skein-dds-event' (") == 1);
+  may_end = true;
 }
 
 TEST_CASE("events are told although each tick takes longer than the time to the next one") {

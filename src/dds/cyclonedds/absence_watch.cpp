@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "identity.hpp"
 #include "proxy_leases.h"
@@ -108,12 +109,15 @@ void AbsenceWatch::delete_left_over() {
 }
 
 void AbsenceWatch::run() {
+  WatchedThread watched("skein-dds-lease");
   nanoseconds late{};
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     lock.unlock();
+    watched.begin();
     const nanoseconds sleep = check(kForgiveness * late);
     delete_left_over();
+    watched.end();
     const auto due = Clock::now() + sleep;
     lock.lock();
     changed_.wait_until(lock, due, [this] { return stopping_; });

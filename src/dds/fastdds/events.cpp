@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 
 namespace skein::dds::fastdds {
@@ -45,6 +46,7 @@ std::chrono::steady_clock::time_point EventThread::next_tick() const {
 }
 
 void EventThread::run() {
+  WatchedThread watched("skein-dds-event");
   std::unique_lock lock(mutex_);
   for (;;) {
     const auto next = next_tick();
@@ -60,15 +62,19 @@ void EventThread::run() {
     if (const auto now = std::chrono::steady_clock::now(); now >= next_tick()) {
       last_tick_ = now;
       lock.unlock();
+      watched.begin();
       tick_();
+      watched.end();
       lock.lock();
     }
     if (stopping_ || events_.empty()) continue;
     auto event = std::move(events_.front());
     events_.pop_front();
     lock.unlock();
+    watched.begin();
     event();
     event = nullptr;
+    watched.end();
     lock.lock();
   }
 }

@@ -1,0 +1,36 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+
+#include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
+#include "echo_service.hpp"
+#include "pairing.hpp"
+#include "skein/process.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+
+TEST_CASE("of threads of an entity that are held up the log tells within seconds, with the stack",
+          "[wire]") {
+  const auto server = make_server();
+  server->provide<::test::Echo>(std::make_shared<EchoService>());
+  const Log log;
+  std::atomic<bool> may_return = false;
+  const auto hold_up = [&] { eventually([&] { return may_return.load(); }); };
+  {
+    const auto client = make_client();
+    auto echo = client->connect<::test::Echo>();
+    client->check_progress([&](const std::string&) { hold_up(); });
+    echo.async_echo("x").then([&](Call<std::string>) { hold_up(); });
+    SystemClock clock;  // not the entity's, so that this timer holds up nothing else
+    clock.call_after(0s, hold_up);
+    for (const char* thread : {"skein-control", "skein-continue", "skein-timer"}) {
+      CAPTURE(thread, log.text());
+      CHECK(eventually(
+          [&] { return log.count("watchdog: the thread '" + std::string(thread) + "' (") == 1; }));
+    }
+    CHECK(log.count("waits: it is in ") == 3);
+    may_return = true;
+  }
+}
