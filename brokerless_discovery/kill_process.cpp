@@ -6,8 +6,8 @@
 #include <csignal>
 #include <fstream>
 
-#include "abstract_socket.hpp"
 #include "brokerless_discovery/process_watch.hpp"
+#include "core/abstract_socket.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "abstract_socket.hpp"
+#include "core/abstract_socket.hpp"
 #include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
 #include "skein/error.hpp"
@@ -138,7 +138,7 @@ struct ProcessWatch::State {
                        Guid::random().hex().substr(kParticipantDigits);
     listener.socket = local_socket();
     sockaddr_un name;
-    const socklen_t length = fill(name, listener.address);
+    const socklen_t length = fill_address(name, listener.address);
     std::lock_guard lock(mutex);
     const std::uint64_t id = ++last_id;
     if (!listener.socket ||

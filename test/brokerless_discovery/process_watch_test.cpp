@@ -16,12 +16,16 @@
 #include <memory>
 #include <vector>
 
-#include "../../brokerless_discovery/abstract_socket.hpp"
 #include "../tools/eventually.hpp"
 #include "brokerless_discovery/kill_process.hpp"
+#include "core/abstract_socket.hpp"
 
 using namespace skein::brokerless_discovery;
+using skein::connect_to;
+using skein::Connected;
 using skein::FileDescriptor;
+using skein::fill_address;
+using skein::local_socket;
 using skein::test::eventually;
 
 namespace {
@@ -108,7 +112,7 @@ struct Doorman {
 
   Doorman() {
     sockaddr_un name;
-    const socklen_t length = fill(name, address);
+    const socklen_t length = fill_address(name, address);
     REQUIRE(bind(socket.get(), reinterpret_cast<sockaddr*>(&name), length) == 0);
     REQUIRE(listen(socket.get(), 8) == 0);
   }

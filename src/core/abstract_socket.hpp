@@ -10,17 +10,18 @@
 #include <optional>
 #include <string>
 
-#include "../src/core/file_descriptor.hpp"
+#include "file_descriptor.hpp"
 
-namespace skein::brokerless_discovery {
+namespace skein {
 
-inline FileDescriptor local_socket() {
-  return FileDescriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+/// SOCK_STREAM or SOCK_SEQPACKET.
+inline FileDescriptor local_socket(int type = SOCK_STREAM) {
+  return FileDescriptor(socket(AF_UNIX, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
 // An abstract socket: its name begins with NUL, it lives in the network namespace, and the kernel
 // removes it with the process.
-inline socklen_t fill(sockaddr_un& address, const std::string& name) {
+inline socklen_t fill_address(sockaddr_un& address, const std::string& name) {
   address = {};
   address.sun_family = AF_UNIX;
   const std::size_t length = std::min(name.size(), sizeof(address.sun_path) - 1);
@@ -33,7 +34,7 @@ enum class Connected { Yes, Nobody, Unknown };
 
 inline Connected connect_to(const FileDescriptor& socket, const std::string& name) {
   sockaddr_un address;
-  const socklen_t length = fill(address, name);
+  const socklen_t length = fill_address(address, name);
   if (!socket) return Connected::Unknown;
   if (connect(socket.get(), reinterpret_cast<sockaddr*>(&address), length) == 0) {
     return Connected::Yes;
@@ -49,4 +50,4 @@ inline std::optional<ucred> other_end(const FileDescriptor& socket) {
   return owner;
 }
 
-}  // namespace skein::brokerless_discovery
+}  // namespace skein
