@@ -10,6 +10,7 @@ FLOORS = {
     "core": 0,
     "idl": 1,
     "dds": 2,
+    "same_host": 2.5,
     "rpc": 3,
     "topics": 3,
     "brokerless_discovery": 4,

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <optional>
+#include <span>
+
+#include "skein/clock.hpp"
+
+/// Sleeping on words in memory that processes share.
+namespace skein::same_host {
+
+using Word = std::atomic<std::uint32_t>;
+static_assert(Word::is_always_lock_free && sizeof(Word) == sizeof(std::uint32_t));
+
+/// Instant is CLOCK_MONOTONIC's; nothing for one that never comes.
+inline std::optional<timespec> to_timespec(Instant when) {
+  if (when == Instant::max()) return std::nullopt;
+  const auto since = std::max(when.time_since_epoch(), Duration::zero());
+  const auto whole = std::chrono::floor<std::chrono::seconds>(since);
+  return timespec{whole.count(), std::chrono::nanoseconds(since - whole).count()};
+}
+
+/// Sleeps while the word has this value, until somebody wakes it or the deadline has come. It may
+/// return early.
+inline void futex_wait(const Word& word, std::uint32_t value, Instant deadline) {
+  const auto until = to_timespec(deadline);
+  syscall(SYS_futex, &word, FUTEX_WAIT_BITSET, value, until ? &*until : nullptr, nullptr,
+          FUTEX_BITSET_MATCH_ANY);
+}
+
+inline void futex_wake(const Word& word) {
+  syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+}
+
+/// One of several words to sleep on.
+inline futex_waitv while_it_is(const Word& word, std::uint32_t value) {
+  futex_waitv waiter{};
+  waiter.val = value;
+  waiter.uaddr = reinterpret_cast<std::uintptr_t>(&word);
+  waiter.flags = FUTEX_32;
+  return waiter;
+}
+
+/// As many words as the kernel lets a thread sleep on at once.
+inline constexpr std::size_t kMostWords = FUTEX_WAITV_MAX;
+
+/// Sleeps while all words have their values, until somebody wakes one; kMostWords at most. It may
+/// return early.
+inline void futex_wait(std::span<futex_waitv> words) {
+  syscall(SYS_futex_waitv, words.data(), words.size(), 0, nullptr, CLOCK_MONOTONIC);
+}
+
+/// Whether the kernel has that: Linux 5.16 and later do.
+inline bool can_wait_for_several() {
+  Word word{1};
+  futex_waitv other = while_it_is(word, 0);  // so that it returns at once
+  return syscall(SYS_futex_waitv, &other, 1, 0, nullptr, CLOCK_MONOTONIC) == 0 || errno == EAGAIN;
+}
+
+}  // namespace skein::same_host

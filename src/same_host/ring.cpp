@@ -1,0 +1,210 @@
+#include "ring.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace skein::same_host {
+namespace {
+
+constexpr std::size_t kHeader = 8;
+// Flags of a frame: the first and the last of its message.
+constexpr std::uint32_t kFirst = 1;
+constexpr std::uint32_t kLast = 2;
+// Not of a message: nothing comes before the ring's end.
+constexpr std::uint32_t kSkip = 4;
+// A longer message is published in parts, so that the reader copies while the writer does.
+constexpr std::size_t kLargestFrame = 32 << 10;
+// Where there is less room, the reader is waited for: a message is not cut into crumbs.
+constexpr std::size_t kWorthwhile = 1 << 10;
+// From here on an empty ring is used from its beginning again: one whose messages are small touches
+// few pages.
+constexpr std::size_t kRestart = 16 << 10;
+
+constexpr std::uint64_t frame_size(std::uint64_t content) {
+  return kHeader + ((content + kHeader - 1) & ~std::uint64_t{kHeader - 1});
+}
+
+std::atomic_ref<std::uint64_t> header_at(std::byte* place) {
+  return std::atomic_ref(*reinterpret_cast<std::uint64_t*>(place));
+}
+
+std::uint64_t make_header(std::uint32_t kind, std::size_t size) {
+  return std::uint64_t{kind} << 32 | size;
+}
+
+void check_distance(std::uint64_t distance, std::size_t capacity, const char* whose) {
+  if (distance <= capacity && distance % kHeader == 0) return;
+  throw BrokenRing(std::string("the ") + whose + " position is " +
+                   std::to_string(static_cast<std::int64_t>(distance)) +
+                   " octets from this side's, in a ring of " + std::to_string(capacity));
+}
+
+}  // namespace
+
+// ---- writing
+
+std::uint64_t RingWriter::in_flight() {
+  const std::uint64_t read = place_.state->read.load();
+  check_distance(written_ - read, place_.capacity, "reader's");
+  read_ = read;
+  return written_ - read;
+}
+
+bool RingWriter::may_restart(std::size_t offset, std::size_t size) {
+  return offset >= kRestart && size <= offset && in_flight() == 0;
+}
+
+void RingWriter::put_frame(std::uint32_t kind, std::span<const std::byte> content) {
+  std::byte* const at = place_.content + written_ % place_.capacity;
+  if (!content.empty()) std::memcpy(at + kHeader, content.data(), content.size());
+  header_at(at).store(make_header(kind, content.size()), std::memory_order_relaxed);
+  written_ += frame_size(content.size());
+}
+
+bool RingWriter::put(Part& part) {
+  while (true) {
+    std::size_t offset = written_ % place_.capacity;
+    if (!part.begun && may_restart(offset, frame_size(part.rest.size()))) {
+      header_at(place_.content + offset).store(make_header(kSkip, 0), std::memory_order_relaxed);
+      written_ += place_.capacity - offset;
+      offset = 0;
+    }
+    const std::size_t to_end = place_.capacity - offset;
+    const std::size_t wanted =
+        std::min({frame_size(part.rest.size()), frame_size(kLargestFrame), std::uint64_t{to_end}});
+    const std::size_t enough = std::min(wanted, kWorthwhile);
+    if (place_.capacity - (written_ - read_) < enough) in_flight();
+    const std::size_t room = std::min(wanted, place_.capacity - (written_ - read_));
+    if (room < enough) {
+      publish();
+      return false;
+    }
+    if (to_end == kHeader) {
+      put_frame(kSkip, {});
+      continue;
+    }
+    const auto content = part.rest.first(std::min(part.rest.size(), room - kHeader));
+    part.rest = part.rest.subspan(content.size());
+    const bool last = part.rest.empty();
+    put_frame((part.begun ? 0 : kFirst) | (last ? kLast : 0), content);
+    part.begun = true;
+    if (last || content.size() == kLargestFrame) publish();
+    if (last) return true;
+  }
+}
+
+// In one order with what the reader does before it sleeps: either it sees this, or this sees it.
+void RingWriter::publish() {
+  place_.state->written.store(written_);
+  if (wake(place_.state->reader_sleeps)) ++wakes_;
+}
+
+bool RingWriter::wake(Word& sleeps) {
+  if (sleeps.load() == 0 || sleeps.exchange(0) == 0) return false;
+  futex_wake(sleeps);
+  return true;
+}
+
+bool RingWriter::prepare_to_sleep() {
+  place_.state->writer_sleeps.store(1);
+  const std::uint64_t before = read_;
+  if (in_flight() != 0 && read_ == before) return true;
+  stay_awake();
+  return false;
+}
+
+// False at the end; the reader may have taken something otherwise.
+bool RingWriter::await_change(Instant deadline, const std::function<bool()>& ended) {
+  if (!prepare_to_sleep()) return true;
+  const bool over = ended() || std::chrono::steady_clock::now() >= deadline;
+  if (!over) futex_wait(place_.state->writer_sleeps, 1, deadline);
+  stay_awake();
+  return !over;
+}
+
+bool RingWriter::write(std::span<const std::byte> message, Duration patience,
+                       const std::function<bool()>& ended) {
+  Part part{message};
+  while (!put(part)) {
+    const std::uint64_t taken = read_;
+    const Instant deadline = std::chrono::steady_clock::now() + patience;
+    while (read_ == taken) {
+      if (!await_change(deadline, ended)) return false;
+      in_flight();
+    }
+  }
+  return true;
+}
+
+bool RingWriter::await_empty(Instant deadline, const std::function<bool()>& ended) {
+  while (in_flight() != 0) {
+    if (!await_change(deadline, ended)) return false;
+  }
+  return true;
+}
+
+// ---- reading
+
+std::uint64_t RingReader::available() {
+  if (written_ == read_) {
+    const std::uint64_t written = place_.state->written.load(std::memory_order_acquire);
+    check_distance(written - read_, place_.capacity, "writer's");
+    written_ = written;
+  }
+  return written_ - read_;
+}
+
+bool RingReader::take(Bytes& message) {
+  // No more at a time than the ring holds: a writer that never ends must not keep this thread.
+  for (std::uint64_t taken = 0; taken < place_.capacity;) {
+    const std::uint64_t waiting = available();
+    if (waiting == 0) return false;
+    const std::size_t offset = read_ % place_.capacity;
+    const std::uint64_t to_end = place_.capacity - offset;
+    std::byte* const at = place_.content + offset;
+    const std::uint64_t header = header_at(at).load(std::memory_order_relaxed);
+    const std::uint64_t size = header & 0xFFFF'FFFF;
+    const auto kind = static_cast<std::uint32_t>(header >> 32);
+    const std::uint64_t frame = kind == kSkip ? to_end : frame_size(size);
+    if (kind > kSkip || (kind == kSkip && size != 0)) {
+      throw BrokenRing("a frame of an unknown kind, " + std::to_string(kind));
+    }
+    if (frame > waiting || frame > to_end) {
+      throw BrokenRing("a frame of " + std::to_string(frame) + " octets, of which " +
+                       std::to_string(std::min(waiting, to_end)) + " can be there");
+    }
+    if (kind != kSkip) {
+      if ((kind & kFirst) != 0) {
+        message.clear();
+      } else if (!begun_) {
+        throw BrokenRing("a message that goes on without having begun");
+      }
+      begun_ = (kind & kLast) == 0;
+      if (size > largest_ - message.size()) {
+        throw BrokenRing("a message of more than " + std::to_string(largest_) + " octets");
+      }
+      message.append({at + kHeader, static_cast<std::size_t>(size)});
+    }
+    release(frame);
+    taken += frame;
+    if ((kind & kLast) != 0) return true;
+  }
+  return false;
+}
+
+void RingReader::release(std::uint64_t size) {
+  read_ += size;
+  place_.state->read.store(read_);
+  Word& sleeps = place_.state->writer_sleeps;
+  if (sleeps.load() != 0 && sleeps.exchange(0) != 0) futex_wake(sleeps);
+}
+
+bool RingReader::prepare_to_sleep() {
+  place_.state->reader_sleeps.store(1);
+  if (place_.state->written.load() == read_) return true;
+  stay_awake();
+  return false;
+}
+
+}  // namespace skein::same_host

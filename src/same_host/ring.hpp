@@ -1,0 +1,128 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "futex.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/bytes.hpp"
+#include "skein/error.hpp"
+
+/// One direction of a connection: messages from one writer to one reader, through a ring of octets
+/// that both processes map. Each side trusts what it keeps itself, and nothing that the other one
+/// can write: what it reads there it copies, checks, and then uses.
+///
+/// A message lies in the ring as one frame or several, each with a header of eight octets: how
+/// many octets of the message follow, and what the frame is. Frames begin at multiples of eight and
+/// do not go beyond the ring's end.
+namespace skein::same_host {
+
+/// What both sides of a ring change, apart from its content: how far they are, and whether they
+/// sleep. All zero at first. Each member is written by one side in the main, and has a cache line
+/// of its own.
+struct RingState {
+  alignas(64) std::atomic<std::uint64_t> written{0};  ///< Octets, ever.
+  alignas(64) std::atomic<std::uint64_t> read{0};     ///< Of those.
+  alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep on this word.
+  alignas(64) Word writer_sleeps{0};
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free && sizeof(RingState) == 256);
+
+/// Where a ring lies.
+struct RingPlace {
+  RingState* state = nullptr;
+  std::byte* content = nullptr;
+  std::size_t capacity = 0;  ///< Octets; a multiple of 8.
+};
+
+/// The other side has written what no sound peer writes; the ring is not to be used any more. Which
+/// calls ran is unknown.
+class BrokenRing : public Disconnected {
+ public:
+  explicit BrokenRing(const std::string& why)
+      : Disconnected("the other side has damaged the memory that it shares: " + why) {}
+};
+
+/// Puts messages in. Not thread-safe.
+class RingWriter {
+ public:
+  explicit RingWriter(const RingPlace& place) : place_(place) {}
+
+  /// A message on its way.
+  struct Part {
+    std::span<const std::byte> rest;
+    bool begun = false;
+  };
+
+  /// Puts in what there is room for, and wakes the reader if it sleeps; whether that was all. A
+  /// message that is never finished is passed over by the reader once the next one begins. Throws
+  /// BrokenRing.
+  bool put(Part& part);
+
+  /// Puts all of it in. Where the reader takes nothing for as long as `patience`, or `ended` is so
+  /// (which wake() makes it look at), it gives up; false then. Throws BrokenRing.
+  bool write(std::span<const std::byte> message, Duration patience,
+             const std::function<bool()>& ended);
+
+  /// Waits until the reader has taken everything; false at the deadline, or once `ended` is so.
+  bool await_empty(Instant deadline, const std::function<bool()>& ended);
+
+  /// Lets a thread that waits here look whether it is over. From any thread.
+  void wake() { wake(place_.state->writer_sleeps); }
+
+  /// How often it had to ask the kernel to wake the reader.
+  std::uint64_t wakes() const noexcept { return wakes_; }
+
+  /// False where there is room already, or the ring is empty: else the reader wakes who sleeps
+  /// while `state.writer_sleeps` is 1. With stay_awake() after it, what waiting is made of.
+  bool prepare_to_sleep();
+  void stay_awake() { place_.state->writer_sleeps.store(0); }
+
+ private:
+  static bool wake(Word& sleeps);
+  std::uint64_t in_flight();
+  bool may_restart(std::size_t offset, std::size_t size);
+  void put_frame(std::uint32_t kind, std::span<const std::byte> content);
+  void publish();
+  bool await_change(Instant deadline, const std::function<bool()>& ended);
+
+  const RingPlace place_;
+  std::uint64_t written_ = 0;  // some of it not published yet
+  std::uint64_t read_ = 0;     // as last seen
+  std::uint64_t wakes_ = 0;
+};
+
+/// Takes messages out. Not thread-safe.
+class RingReader {
+ public:
+  /// A message that takes more than `largest` octets breaks the ring.
+  RingReader(const RingPlace& place, std::size_t largest) : place_(place), largest_(largest) {}
+
+  /// Appends to `message`, which is this ring's alone, and is cleared when the next message begins,
+  /// what has come; whether the message is whole. Throws BrokenRing.
+  bool take(Bytes& message);
+
+  /// Whether something has come.
+  bool ready() const { return place_.state->written.load(std::memory_order_acquire) != read_; }
+
+  /// False where something has come already: else the writer wakes who sleeps while `word()` is 1.
+  bool prepare_to_sleep();
+  void stay_awake() { place_.state->reader_sleeps.store(0); }
+  const Word& word() const noexcept { return place_.state->reader_sleeps; }
+
+ private:
+  std::uint64_t available();
+  void release(std::uint64_t size);
+
+  const RingPlace place_;
+  const std::size_t largest_;
+  std::uint64_t read_ = 0;
+  std::uint64_t written_ = 0;  // as last seen
+  bool begun_ = false;
+};
+
+}  // namespace skein::same_host
