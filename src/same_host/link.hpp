@@ -1,0 +1,96 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+
+#include "core/file_descriptor.hpp"
+#include "ring.hpp"
+#include "shared_memory.hpp"
+#include "skein/guid.hpp"
+
+namespace skein::same_host {
+
+/// Runs an action once, when something ends. Thread-safe.
+class Ending {
+ public:
+  /// False where it is over already: the action will not run.
+  bool set(std::function<void()> action);
+  /// The action is not running, and will not run. Not from the action.
+  void forget();
+  void run();
+
+ private:
+  std::mutex mutex_;  // held while the action runs
+  bool over_ = false;
+  std::function<void()> action_;
+};
+
+/// One connection as one side sees it: a ring each way, and the socket that the kernel hangs up
+/// when the other process ends, whatever ends it. Thread-safe, but for receive().
+class Link {
+ public:
+  enum class Side { Provider, Client };
+  enum class Sent { Yes, NoRoom, Ended };
+
+  /// Octets of each ring.
+  static constexpr std::size_t kCapacity = 256 << 10;
+  /// Of the memory of both, which the provider makes.
+  static constexpr std::size_t kMemory = 4096 + 2 * kCapacity;
+
+  /// `own` and `peer` are the endpoints' identities on this side and the other. `notify` is called
+  /// when the link has ended, from any thread: there may be something for receive(), and then
+  /// nothing any more.
+  Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory memory,
+       const Guid& own, const Guid& peer, std::function<void()> notify);
+  ~Link() { close(); }
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  const Guid& own() const noexcept { return own_; }
+  const Guid& peer() const noexcept { return peer_; }
+
+  /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. A ring
+  /// that is found broken ends the link; throws BrokenRing then.
+  Sent send(std::span<const std::byte> message, Duration patience);
+  /// Waits until the other side has taken everything; false at the deadline and at the end.
+  bool await_taken(Instant deadline);
+
+  /// The reader's thread: the next whole message, which is valid until release(), after which the
+  /// next one may be asked for; or nothing. Throws BrokenRing.
+  std::optional<std::span<const std::byte>> receive();
+  void release();
+  RingReader& in() noexcept { return in_; }
+
+  /// Both sides learn of the end. Twice is no error.
+  void close();
+  /// Nothing more is sent. What the other side has sent before can still be received.
+  void note_end();
+  bool ended() const noexcept { return ended_; }
+  /// Whether it ended because the other side was found to damage it.
+  bool broken() const noexcept { return broken_; }
+
+  /// For who writes: runs once the reader's thread has taken what had come before the end.
+  Ending& ending() noexcept { return ending_; }
+
+ private:
+  void break_off();
+
+  const std::shared_ptr<const FileDescriptor> socket_;
+  const SharedMemory memory_;
+  const Guid own_;
+  const Guid peer_;
+  RingReader in_;
+  Bytes message_;
+  std::atomic<bool> ended_{false};
+  std::atomic<bool> broken_{false};
+  const std::function<void()> notify_;
+  Ending ending_;
+  std::mutex out_mutex_;
+  RingWriter out_;
+};
+
+}  // namespace skein::same_host

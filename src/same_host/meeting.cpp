@@ -1,0 +1,449 @@
+#include "meeting.hpp"
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <unordered_map>
+#include <utility>
+
+#include "core/abstract_socket.hpp"
+#include "core/start_thread.hpp"
+#include "skein/error.hpp"
+
+namespace skein::same_host {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How long nobody is let in after somebody was turned away, or the kernel had no descriptor.
+constexpr std::chrono::milliseconds kAfterRefusal{10};
+constexpr std::chrono::milliseconds kAfterShortage{100};
+constexpr std::size_t kAcceptedInARow = 16;
+constexpr std::uint64_t kWake = 0;
+
+// What both sides say to each other once; each is a packet. A change of the memory's layout is
+// another version.
+constexpr char kVersion[8] = "skein1";
+
+struct Hello {
+  char version[8];
+  Guid client;
+};
+
+struct Answer {
+  char version[8];
+  Guid server;
+  char refusal[104];  // empty where the memory comes with it
+};
+
+std::string address_of(const Guid& provider) { return "skein-call/" + provider.hex(); }
+
+template <class Packet>
+Packet make_packet() {
+  Packet packet{};
+  std::memcpy(packet.version, kVersion, sizeof kVersion);
+  return packet;
+}
+
+template <class Packet>
+bool has_our_version(const Packet& packet) {
+  return std::memcmp(packet.version, kVersion, sizeof kVersion) == 0;
+}
+
+bool send_answer(int socket, const Answer& answer, int descriptor) {
+  iovec content{const_cast<Answer*>(&answer), sizeof answer};
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
+  msghdr message{};
+  message.msg_iov = &content;
+  message.msg_iovlen = 1;
+  if (descriptor >= 0) {
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    cmsghdr* const header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(sizeof descriptor);
+    std::memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
+  }
+  return sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof answer;
+}
+
+// Whether it is an answer; what the kernel has put in is owned at once, whatever it is.
+bool receive_answer(int socket, Answer& answer, FileDescriptor& descriptor) {
+  iovec content{&answer, sizeof answer};
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+  msghdr message{};
+  message.msg_iov = &content;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  const auto size = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  if (size < 0) return false;
+  for (auto* header = CMSG_FIRSTHDR(&message); header; header = CMSG_NXTHDR(&message, header)) {
+    if (header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_RIGHTS ||
+        header->cmsg_len != CMSG_LEN(sizeof(int)))
+      continue;
+    int number = -1;
+    std::memcpy(&number, CMSG_DATA(header), sizeof number);
+    descriptor = FileDescriptor(number);
+  }
+  return size == sizeof answer && (message.msg_flags & MSG_TRUNC) == 0 && has_our_version(answer);
+}
+
+}  // namespace
+
+struct Meeting::State {
+  struct Offer {
+    Guid provider;
+    Guid server;
+    FileDescriptor socket;
+    std::function<void()> notify;
+    Welcome welcome;
+    std::mutex mutex;  // held while `welcome` runs
+    bool withdrawn = false;
+  };
+  struct Newcomer {
+    std::shared_ptr<Offer> offer;
+    std::shared_ptr<const FileDescriptor> socket;
+    Clock::time_point deadline;
+  };
+  struct Watched {
+    std::shared_ptr<const FileDescriptor> socket;
+    std::weak_ptr<Link> link;
+    bool guest = false;
+  };
+  struct Admitted {
+    std::shared_ptr<Offer> offer;
+    std::shared_ptr<Link> link;
+    std::shared_ptr<const FileDescriptor> socket;
+    FileDescriptor memory;
+  };
+
+  const Rules rules;
+  FileDescriptor epoll{epoll_create1(EPOLL_CLOEXEC)};
+  FileDescriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  mutable std::mutex mutex;
+  bool stopping = false;
+  std::uint64_t last_id = kWake;  // never used again, as descriptors are
+  std::map<std::uint64_t, std::shared_ptr<Offer>> offers;
+  std::map<std::uint64_t, Newcomer> newcomers;
+  std::unordered_map<std::uint64_t, Watched> watched;
+  std::size_t guests = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t wake_ups = 0;
+  std::optional<Clock::time_point> closed_until;  // nobody is let in
+  std::thread thread;
+
+  explicit State(Rules rules_) : rules(std::move(rules_)) {
+    if (!epoll || !wake || !control(EPOLL_CTL_ADD, wake, kWake, EPOLLIN)) refuse();
+    thread = start_thread("skein-meeting", [this] { run(); });
+  }
+
+  ~State() {
+    {
+      std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    eventfd_write(wake.get(), 1);
+    thread.join();
+  }
+
+  [[noreturn]] static void refuse() {
+    throw Unavailable(std::string("cannot open the socket by which callers on this host come: ") +
+                      std::strerror(errno));
+  }
+
+  bool control(int operation, const FileDescriptor& of, std::uint64_t id, std::uint32_t events) {
+    epoll_event event{};
+    event.events = events;
+    event.data.u64 = id;
+    return epoll_ctl(epoll.get(), operation, of.get(), &event) == 0;
+  }
+
+  bool knows(uid_t user) const { return std::ranges::find(rules.users, user) != rules.users.end(); }
+
+  // ---- the thread
+
+  void run() {
+    pthread_setname_np(pthread_self(), "skein-meeting");
+    while (true) {
+      epoll_event events[32];
+      const int count = epoll_wait(epoll.get(), events, 32, time_left());
+      std::vector<Admitted> admitted;
+      std::vector<std::shared_ptr<Link>> gone;
+      {
+        std::lock_guard lock(mutex);
+        if (stopping) return;
+        ++wake_ups;
+        // Those who are let in come last: who has spoken leaves his place to them.
+        const auto listening = std::stable_partition(events, events + count, [&](const auto& each) {
+          return !offers.contains(each.data.u64);
+        });
+        for (auto event = events; event != listening; ++event) {
+          handle(event->data.u64, admitted, gone);
+        }
+        for (auto event = listening; event != events + count; ++event) {
+          let_in(offers.at(event->data.u64));
+        }
+        expire();
+      }
+      for (const auto& link : gone) link->note_end();
+      for (const auto& guest : admitted) welcome(guest);
+    }
+  }
+
+  // Milliseconds, or -1: until the next newcomer's time is over, or somebody may come in again.
+  int time_left() const {
+    std::lock_guard lock(mutex);
+    auto next = closed_until;
+    for (const auto& [id, newcomer] : newcomers) {
+      if (!next || newcomer.deadline < *next) next = newcomer.deadline;
+    }
+    if (!next) return -1;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(*next - Clock::now());
+    return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
+  }
+
+  void handle(std::uint64_t id, std::vector<Admitted>& admitted,
+              std::vector<std::shared_ptr<Link>>& gone) {
+    if (const auto node = newcomers.extract(id)) {
+      control(EPOLL_CTL_DEL, *node.mapped().socket, id, 0);
+      hear(node.mapped(), admitted);
+    } else if (const auto hung_up = watched.extract(id)) {
+      // A copy of the descriptor, in a child, must not tell of it for ever.
+      control(EPOLL_CTL_DEL, *hung_up.mapped().socket, id, 0);
+      if (hung_up.mapped().guest) --guests;
+      if (auto link = hung_up.mapped().link.lock()) gone.push_back(std::move(link));
+    }
+  }
+
+  void let_in(const std::shared_ptr<Offer>& offer) {
+    const std::uint64_t before = refused;
+    const std::size_t room = rules.newcomers - std::min(rules.newcomers, newcomers.size());
+    for (std::size_t i = 0; i < std::clamp<std::size_t>(room, 1, kAcceptedInARow); ++i) {
+      FileDescriptor accepted(
+          accept4(offer->socket.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+      if (!accepted) {
+        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) {
+          return let_nobody_in(kAfterShortage);
+        }
+        break;
+      }
+      const auto owner = other_end(accepted);
+      const std::uint64_t id = ++last_id;
+      const auto socket = std::make_shared<const FileDescriptor>(std::move(accepted));
+      if (!owner || !knows(owner->uid) || newcomers.size() >= rules.newcomers ||
+          !control(EPOLL_CTL_ADD, *socket, id, EPOLLIN)) {
+        ++refused;
+        continue;
+      }
+      newcomers.emplace(id, Newcomer{offer, socket, Clock::now() + rules.patience});
+    }
+    if (refused > before) let_nobody_in(kAfterRefusal);
+  }
+
+  // Who waits meanwhile costs nothing.
+  void let_nobody_in(std::chrono::milliseconds time) {
+    for (const auto& [id, offer] : offers) control(EPOLL_CTL_MOD, offer->socket, id, 0);
+    closed_until = Clock::now() + time;
+  }
+
+  void expire() {
+    const auto now = Clock::now();
+    refused += std::erase_if(newcomers, [&](const auto& each) {
+      if (each.second.deadline > now) return false;
+      control(EPOLL_CTL_DEL, *each.second.socket, each.first, 0);
+      return true;
+    });
+    if (!closed_until || now < *closed_until) return;
+    closed_until.reset();
+    for (const auto& [id, offer] : offers) control(EPOLL_CTL_MOD, offer->socket, id, EPOLLIN);
+  }
+
+  void hear(const Newcomer& newcomer, std::vector<Admitted>& admitted) {
+    Hello hello{};
+    const auto size = recv(newcomer.socket->get(), &hello, sizeof hello, MSG_DONTWAIT | MSG_TRUNC);
+    if (size != sizeof hello) {
+      ++refused;
+      return let_nobody_in(kAfterRefusal);
+    }
+    try {
+      admit(newcomer, hello, admitted);
+    } catch (const Unavailable& why) {
+      ++refused;
+      auto answer = make_packet<Answer>();
+      std::strncpy(answer.refusal, why.what(), sizeof answer.refusal - 1);
+      send_answer(newcomer.socket->get(), answer, -1);
+      let_nobody_in(kAfterRefusal);
+    }
+  }
+
+  void admit(const Newcomer& newcomer, const Hello& hello, std::vector<Admitted>& admitted) {
+    if (!has_our_version(hello)) throw Unavailable("the two sides are of different versions");
+    if (guests >= rules.guests) {
+      throw Unavailable("it has " + std::to_string(guests) + " connections of this kind already");
+    }
+    for (const auto& [id, other] : watched) {
+      const auto link = other.guest ? other.link.lock() : nullptr;
+      if (link && link->peer() == hello.client) throw Unavailable("that client is here already");
+    }
+    auto memory = SharedMemory::make(Link::kMemory);
+    FileDescriptor descriptor = memory.take_descriptor();
+    const auto link =
+        std::make_shared<Link>(Link::Side::Provider, newcomer.socket, std::move(memory),
+                               newcomer.offer->server, hello.client, newcomer.offer->notify);
+    watch(link, newcomer.socket, true);
+    ++guests;
+    admitted.push_back({newcomer.offer, link, newcomer.socket, std::move(descriptor)});
+  }
+
+  // Unlocked. Who reads the link is there before the client can write.
+  static void welcome(const Admitted& guest) {
+    std::lock_guard lock(guest.offer->mutex);
+    auto answer = make_packet<Answer>();
+    answer.server = guest.offer->server;
+    try {
+      if (guest.offer->withdrawn) throw Unavailable("the service has been withdrawn");
+      guest.offer->welcome(guest.link);
+      if (send_answer(guest.socket->get(), answer, guest.memory.get())) return;
+    } catch (const Unavailable& why) {
+      std::strncpy(answer.refusal, why.what(), sizeof answer.refusal - 1);
+      send_answer(guest.socket->get(), answer, -1);
+    }
+    guest.link->close();
+  }
+
+  /// Under the lock.
+  void watch(const std::shared_ptr<Link>& link, const std::shared_ptr<const FileDescriptor>& socket,
+             bool guest) {
+    const std::uint64_t id = ++last_id;
+    if (!control(EPOLL_CTL_ADD, *socket, id, EPOLLRDHUP)) refuse();
+    watched.emplace(id, Watched{socket, link, guest});
+  }
+
+  // ---- for others
+
+  void offer(std::shared_ptr<Offer> offer) {
+    sockaddr_un name;
+    const socklen_t length = fill_address(name, address_of(offer->provider));
+    std::lock_guard lock(mutex);
+    const std::uint64_t id = ++last_id;
+    if (!offer->socket ||
+        bind(offer->socket.get(), reinterpret_cast<sockaddr*>(&name), length) != 0 ||
+        listen(offer->socket.get(), SOMAXCONN) != 0 ||
+        !control(EPOLL_CTL_ADD, offer->socket, id, closed_until ? 0u : std::uint32_t{EPOLLIN})) {
+      refuse();
+    }
+    offers.emplace(id, std::move(offer));
+  }
+
+  void withdraw(const Guid& provider) {
+    std::shared_ptr<Offer> withdrawn;
+    {
+      std::lock_guard lock(mutex);
+      const auto found = std::ranges::find_if(
+          offers, [&](const auto& each) { return each.second->provider == provider; });
+      if (found == offers.end()) return;
+      withdrawn = found->second;
+      control(EPOLL_CTL_DEL, withdrawn->socket, found->first, 0);
+      offers.erase(found);
+      std::erase_if(newcomers, [&](const auto& each) {
+        if (each.second.offer != withdrawn) return false;
+        control(EPOLL_CTL_DEL, *each.second.socket, each.first, 0);
+        return true;
+      });
+    }
+    std::lock_guard lock(withdrawn->mutex);
+    withdrawn->withdrawn = true;
+    withdrawn->socket.reset();
+  }
+
+  [[noreturn]] static void refuse_to_join(const std::string& why) {
+    throw Unavailable("no connection through shared memory: " + why);
+  }
+
+  std::shared_ptr<Link> join(const Guid& provider, const Guid& client,
+                             std::function<void()> notify) {
+    FileDescriptor connected = local_socket(SOCK_SEQPACKET);
+    switch (connect_to(connected, address_of(provider))) {
+      case Connected::Nobody:
+        refuse_to_join("nobody offers one");
+      case Connected::Unknown:
+        refuse_to_join(std::strerror(errno));
+      case Connected::Yes:
+        break;
+    }
+    const auto owner = other_end(connected);
+    if (!owner || !knows(owner->uid)) {
+      refuse_to_join("another user offers it, who is not among those that are spoken to");
+    }
+    auto hello = make_packet<Hello>();
+    hello.client = client;
+    if (send(connected.get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello) {
+      refuse_to_join(std::strerror(errno));
+    }
+    pollfd answered{connected.get(), POLLIN, 0};
+    const auto deadline = Clock::now() + rules.patience;
+    while (true) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      const int count =
+          poll(&answered, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+      if (count > 0) break;
+      if (count == 0) refuse_to_join("the provider does not answer");
+      if (errno != EINTR) refuse_to_join(std::strerror(errno));
+    }
+    Answer answer{};
+    FileDescriptor descriptor;
+    if (!receive_answer(connected.get(), answer, descriptor)) {
+      refuse_to_join("the provider turned it away");
+    }
+    if (!descriptor) {
+      answer.refusal[sizeof answer.refusal - 1] = '\0';
+      refuse_to_join(answer.refusal);
+    }
+    auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
+    memory.take_descriptor();
+    const auto socket = std::make_shared<const FileDescriptor>(std::move(connected));
+    const auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
+                                             answer.server, std::move(notify));
+    std::lock_guard lock(mutex);
+    watch(link, socket, false);
+    return link;
+  }
+};
+
+Meeting::Meeting(Rules rules) : state_(std::make_unique<State>(std::move(rules))) {}
+Meeting::~Meeting() = default;
+
+void Meeting::offer(const Guid& provider, const Guid& server, std::function<void()> notify,
+                    Welcome welcome) {
+  auto offer = std::make_shared<State::Offer>();
+  offer->provider = provider;
+  offer->server = server;
+  offer->socket = local_socket(SOCK_SEQPACKET);
+  offer->notify = std::move(notify);
+  offer->welcome = std::move(welcome);
+  state_->offer(std::move(offer));
+}
+
+void Meeting::withdraw(const Guid& provider) { state_->withdraw(provider); }
+
+std::shared_ptr<Link> Meeting::join(const Guid& provider, const Guid& client,
+                                    std::function<void()> notify) {
+  return state_->join(provider, client, std::move(notify));
+}
+
+Meeting::Counters Meeting::counters() const {
+  std::lock_guard lock(state_->mutex);
+  return {state_->guests, state_->newcomers.size(), state_->refused, state_->wake_ups};
+}
+
+}  // namespace skein::same_host

@@ -1,0 +1,181 @@
+#include "receiver.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/log.hpp"
+#include "core/start_thread.hpp"
+
+namespace skein::same_host {
+namespace {
+
+// Then the others have their turn.
+constexpr int kMessagesInARow = 16;
+// More than a ring holds: who goes on after the end is not listened to.
+constexpr int kTurnsAfterEnd = 2048;
+
+}  // namespace
+
+void SpinPolicy::note(Duration waited) {
+  score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
+}
+
+struct Receiver::Entry {
+  Entry(std::shared_ptr<Link> link_, Inbox& inbox_) : link(std::move(link_)), inbox(inbox_) {}
+
+  const std::shared_ptr<Link> link;
+  Inbox& inbox;
+  std::mutex mutex;  // held while a function of the inbox runs
+  bool begun = false;
+  int turns_after_end = 0;
+  std::atomic<bool> over{false};
+};
+
+Receiver::Receiver(std::string name, Duration spin)
+    : name_(std::move(name)), spin_limit_(spin), spin_(spin) {}
+
+Receiver::~Receiver() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  notify();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::function<void()> Receiver::notifier() const {
+  return [notified = notified_] {
+    if (notified->exchange(1) == 0) futex_wake(*notified);
+  };
+}
+
+void Receiver::notify() const { notifier()(); }
+
+void Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
+  {
+    std::lock_guard lock(mutex_);
+    if (entries_.size() >= kMostLinks) {
+      throw Unavailable("this entity has " + std::to_string(kMostLinks) +
+                        " connections through shared memory already");
+    }
+    if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(); });
+    entries_.push_back(std::make_shared<Entry>(std::move(link), inbox));
+  }
+  notify();
+}
+
+void Receiver::remove(Inbox& inbox) {
+  Entries removed;
+  {
+    std::lock_guard lock(mutex_);
+    const auto first = std::stable_partition(
+        entries_.begin(), entries_.end(), [&](const auto& each) { return &each->inbox != &inbox; });
+    removed.assign(first, entries_.end());
+    entries_.erase(first, entries_.end());
+  }
+  for (const auto& entry : removed) {
+    std::lock_guard lock(entry->mutex);
+    entry->over = true;
+  }
+  notify();
+}
+
+std::size_t Receiver::links() const {
+  std::lock_guard lock(mutex_);
+  return entries_.size();
+}
+
+void Receiver::run() {
+  pthread_setname_np(pthread_self(), name_.c_str());
+  while (true) {
+    notified_->store(0);
+    Entries entries;
+    {
+      std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      entries = entries_;
+    }
+    while (notified_->load() == 0) {
+      if (!look_at_all(entries)) await(entries);
+    }
+    drop_ended();
+  }
+}
+
+bool Receiver::look_at_all(const Entries& entries) {
+  bool any = false;
+  for (const auto& entry : entries) any |= look_at(*entry);
+  return any;
+}
+
+// Whether there was something to do.
+bool Receiver::look_at(Entry& entry) {
+  Link& link = *entry.link;
+  if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return false;
+  std::lock_guard lock(entry.mutex);
+  if (entry.over) return false;
+  if (!std::exchange(entry.begun, true)) entry.inbox.on_begin(link);
+  const bool ended = link.ended();  // looked at first: what came before the end is taken
+  int taken = 0;
+  try {
+    for (; taken < kMessagesInARow; ++taken) {
+      const auto message = link.receive();
+      if (!message) break;
+      entry.inbox.on_message(link, *message);
+      link.release();
+    }
+  } catch (const BrokenRing& error) {
+    log(LogLevel::Warning, "same host", error.what());
+  }
+  const bool drained = taken == 0 && !link.in().ready();
+  if (link.broken() || (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
+    entry.inbox.on_end(link);
+    link.ending().run();
+    entry.over = true;
+    notify();
+  }
+  return true;
+}
+
+void Receiver::drop_ended() {
+  std::lock_guard lock(mutex_);
+  std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
+}
+
+void Receiver::await(const Entries& entries) {
+  const auto ready = [&] {
+    return notified_->load() != 0 || std::ranges::any_of(entries, [](const auto& entry) {
+             return !entry->over && entry->link->in().ready();
+           });
+  };
+  const Instant begin =
+      spin_limit_ > Duration::zero() ? std::chrono::steady_clock::now() : Instant();
+  const Instant give_up = begin + spin_.budget();
+  bool come = false;
+  while (!come && spin_.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
+    come = ready();
+  }
+  if (!come) sleep(entries);
+  if (spin_limit_ > Duration::zero()) spin_.note(std::chrono::steady_clock::now() - begin);
+}
+
+// Until a link has something, or somebody notifies.
+void Receiver::sleep(const Entries& entries) {
+  futex_waitv words[kMostWords];
+  std::size_t count = 0;
+  words[count++] = while_it_is(*notified_, 0);
+  bool idle = true;
+  for (const auto& entry : entries) {
+    if (entry->over) continue;
+    idle = entry->link->in().prepare_to_sleep() && idle;
+    words[count++] = while_it_is(entry->link->in().word(), 1);
+  }
+  if (idle) futex_wait(std::span(words, count));
+  for (const auto& entry : entries) {
+    if (!entry->over) entry->link->in().stay_awake();
+  }
+}
+
+}  // namespace skein::same_host

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "futex.hpp"
+#include "link.hpp"
+#include "skein/clock.hpp"
+
+namespace skein::same_host {
+
+/// Who gets what comes through links. Called on the receiver's thread, one at a time; must return
+/// soon.
+class Inbox {
+ public:
+  virtual ~Inbox() = default;
+  virtual void on_begin(Link& link) = 0;
+  virtual void on_message(Link& link, std::span<const std::byte> message) = 0;
+  /// Nothing more comes through this one.
+  virtual void on_end(Link& link) = 0;
+};
+
+/// Whether it pays to look for the next message for a while before sleeping: it does while most
+/// came soon. Costs nothing once they come late.
+class SpinPolicy {
+ public:
+  /// `limit`: how long to look at most; 0: never.
+  explicit SpinPolicy(Duration limit) : limit_(limit) {}
+
+  /// How long to look now.
+  Duration budget() const { return score_ >= kEnough ? limit_ : Duration::zero(); }
+  /// Something came this long after the wait for it had begun.
+  void note(Duration waited);
+
+ private:
+  static constexpr int kMost = 16;
+  static constexpr int kEnough = 8;
+
+  Duration limit_;
+  int score_ = 0;
+};
+
+/// One thread that takes messages from many links, and sleeps while none has any. Thread-safe.
+class Receiver {
+ public:
+  /// How many links one thread can wait for.
+  static constexpr std::size_t kMostLinks = kMostWords - 1;
+
+  /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
+  Receiver(std::string name, Duration spin);
+  /// No function of an inbox runs any more.
+  ~Receiver();
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  /// For Link: makes the thread look at all of them. It may outlive the receiver.
+  std::function<void()> notifier() const;
+
+  /// Throws Unavailable where there is no room, or no thread.
+  void add(std::shared_ptr<Link> link, Inbox& inbox);
+  /// None of its functions runs, or will run. Not from one of them.
+  void remove(Inbox& inbox);
+  std::size_t links() const;
+
+ private:
+  struct Entry;
+  using Entries = std::vector<std::shared_ptr<Entry>>;
+
+  void run();
+  bool look_at(Entry& entry);
+  bool look_at_all(const Entries& entries);
+  void drop_ended();
+  void await(const Entries& entries);
+  void sleep(const Entries& entries);
+  void notify() const;
+
+  const std::string name_;
+  const Duration spin_limit_;
+  const std::shared_ptr<Word> notified_ = std::make_shared<Word>(0);
+  mutable std::mutex mutex_;
+  Entries entries_;
+  bool stopping_ = false;
+  std::thread thread_;
+  SpinPolicy spin_;  // the thread's
+};
+
+}  // namespace skein::same_host

@@ -1,0 +1,323 @@
+#include "same_host/meeting.hpp"
+
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "../tools/eventually.hpp"
+#include "core/abstract_socket.hpp"
+#include "skein/error.hpp"
+
+using namespace skein;
+using namespace skein::same_host;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A provider that keeps its guests.
+struct Host {
+  explicit Host(Meeting::Rules rules = {}, const Guid& id = Guid::random())
+      : provider(id), meeting(std::move(rules)) {
+    meeting.offer(
+        provider, server, [] {},
+        [this](std::shared_ptr<Link> link) {
+          std::lock_guard lock(mutex);
+          guests.push_back(std::move(link));
+        });
+  }
+  ~Host() { meeting.withdraw(provider); }
+
+  std::shared_ptr<Link> guest(std::size_t which) {
+    std::lock_guard lock(mutex);
+    return which < guests.size() ? guests[which] : nullptr;
+  }
+  std::string address() const { return "skein-call/" + provider.hex(); }
+
+  const Guid provider;
+  const Guid server = Guid::random();
+  std::mutex mutex;
+  std::vector<std::shared_ptr<Link>> guests;
+  Meeting meeting;  // last: its thread goes first
+};
+
+Instant soon() { return std::chrono::steady_clock::now() + 20s; }
+
+std::vector<std::byte> octets(std::size_t size) {
+  return std::vector<std::byte>(size, std::byte{7});
+}
+
+std::size_t open_descriptors() {
+  return static_cast<std::size_t>(std::distance(
+      std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator{}));
+}
+
+/// One who connects and does not keep to what is said there.
+FileDescriptor stranger(const Host& host) {
+  FileDescriptor socket = local_socket(SOCK_SEQPACKET);
+  connect_to(socket, host.address());
+  return socket;
+}
+
+bool hung_up(const FileDescriptor& socket) {
+  char octet;
+  return eventually([&] {
+    const auto size = recv(socket.get(), &octet, 1, MSG_DONTWAIT);
+    return size == 0 || (size < 0 && errno == ECONNRESET);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("a client that joins a provider exchanges messages with it both ways") {
+  Host host;
+  Meeting meeting;
+  const Guid client = Guid::random();
+  const auto link = meeting.join(host.provider, client, [] {});
+  CHECK(link->own() == client);
+  CHECK(link->peer() == host.server);
+  REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+  const auto guest = host.guest(0);
+  CHECK(guest->peer() == client);
+  for (const auto& [from, to] : {std::pair(link, guest), std::pair(guest, link)}) {
+    REQUIRE(from->send(octets(1000), 20s) == Link::Sent::Yes);
+    const auto message = to->receive();
+    REQUIRE(message);
+    CHECK(message->size() == 1000);
+    to->release();
+    CHECK(from->await_taken(soon()));
+  }
+}
+
+TEST_CASE(
+    "whichever side closes a link, the other one is told, and can take what was sent before") {
+  Host host;
+  Meeting meeting;
+  std::atomic<int> told = 0;
+  auto link = meeting.join(host.provider, Guid::random(), [&] { ++told; });
+  REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+  const auto guest = host.guest(0);
+  const bool by_client = GENERATE(false, true);
+  auto& closing = by_client ? link : guest;
+  auto& other = by_client ? guest : link;
+  REQUIRE(closing->send(octets(10), 20s) == Link::Sent::Yes);
+  closing->close();
+  CHECK(eventually([&] { return other->ended(); }));
+  CHECK(told == 1);
+  CHECK(other->receive());
+  CHECK(other->send(octets(10), 20s) == Link::Sent::Ended);
+  CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+}
+
+TEST_CASE("a link ends with the process at its other end, also one that is killed") {
+  const Guid provider = Guid::random();
+  const pid_t child = fork();  // before this process has threads
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    Meeting meeting;
+    std::shared_ptr<Link> link;
+    eventually([&] {
+      try {
+        link = meeting.join(provider, Guid::random(), [] {});
+      } catch (const Unavailable&) {
+      }
+      return link != nullptr;
+    });
+    pause();
+    _exit(0);
+  }
+  Host host({}, provider);
+  REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+  CHECK_FALSE(host.guest(0)->ended());
+  kill(child, SIGKILL);
+  CHECK(eventually([&] { return host.guest(0)->ended(); }));
+  waitpid(child, nullptr, 0);
+}
+
+TEST_CASE("who waits for room is let go when the other side ends") {
+  Host host;
+  Meeting meeting;
+  const auto link = meeting.join(host.provider, Guid::random(), [] {});
+  REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+  std::atomic<bool> waits = false;
+  std::thread writer([&] {
+    waits = true;
+    CHECK(link->send(octets(4 * Link::kCapacity), 1h) == Link::Sent::Ended);
+  });
+  REQUIRE(eventually([&] { return waits.load(); }));
+  host.guest(0)->close();
+  writer.join();
+}
+
+TEST_CASE("nobody, another user, and another version are refused with the reason") {
+  Meeting meeting;
+  const auto refused = [&](Meeting& by, const Guid& provider, const std::string& why) {
+    CHECK_THROWS_AS(by.join(provider, Guid::random(), [] {}), Unavailable);
+    CHECK_THROWS_WITH(by.join(provider, Guid::random(), [] {}), Catch::Contains(why));
+  };
+  refused(meeting, Guid::random(), "nobody offers one");
+  Host host;
+  Meeting::Rules of_others;
+  of_others.users = {geteuid() + 1};
+  Meeting wary(of_others);
+  refused(wary, host.provider, "another user offers it");
+  Host closed(of_others);
+  refused(meeting, closed.provider, "the provider turned it away");
+  CHECK(closed.meeting.counters().guests == 0);
+  CHECK(closed.meeting.counters().refused >= 2);
+}
+
+TEST_CASE("there is room for so many connections, and the next one is told so") {
+  Meeting::Rules rules;
+  rules.guests = 2;
+  Host host(rules);
+  Meeting meeting;
+  const auto join = [&] { return meeting.join(host.provider, Guid::random(), [] {}); };
+  auto one = join();
+  const auto other = join();
+  CHECK_THROWS_WITH(join(), Catch::Contains("it has 2 connections of this kind already"));
+  one->close();
+  CHECK(eventually([&] { return host.meeting.counters().guests == 1; }));
+  CHECK_NOTHROW(join());
+}
+
+TEST_CASE("many clients that come at once are all let in") {
+  Host host;
+  Meeting meeting;
+  std::atomic<int> joined = 0;
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 40; ++i) {
+    clients.emplace_back([&] {
+      const auto link = meeting.join(host.provider, Guid::random(), [] {});
+      ++joined;
+    });
+  }
+  for (auto& client : clients) client.join();
+  CHECK(joined == 40);
+  CHECK(host.meeting.counters().refused == 0);
+}
+
+TEST_CASE("a client's identity is let in once") {
+  Host host;
+  Meeting meeting;
+  const Guid client = Guid::random();
+  const auto link = meeting.join(host.provider, client, [] {});
+  CHECK_THROWS_WITH(meeting.join(host.provider, client, [] {}),
+                    Catch::Contains("that client is here already"));
+}
+
+TEST_CASE("a stranger who says nothing is put out after a while, and few may wait so") {
+  Meeting::Rules rules;
+  rules.newcomers = 4;
+  rules.patience = 200ms;
+  Host host(rules);
+  std::vector<FileDescriptor> silent;
+  for (int i = 0; i < 20; ++i) silent.push_back(stranger(host));
+  CHECK(eventually([&] { return host.meeting.counters().newcomers > 0; }));
+  CHECK(host.meeting.counters().newcomers <= 4);
+  CHECK(hung_up(silent.front()));
+  CHECK(eventually([&] { return host.meeting.counters().refused >= 20; }));
+  silent.clear();
+  Meeting meeting;
+  CHECK_NOTHROW(meeting.join(host.provider, Guid::random(), [] {}));
+}
+
+TEST_CASE("a stranger who says what nobody says is put out") {
+  Host host;
+  const std::string said = GENERATE(as<std::string>(), "x", std::string(23, 'a'),
+                                    std::string(24, 'a'), std::string(4000, 'b'));
+  const auto socket = stranger(host);
+  REQUIRE(send(socket.get(), said.data(), said.size(), MSG_NOSIGNAL) ==
+          static_cast<ssize_t>(said.size()));
+  char answer[256];
+  if (eventually([&] { return recv(socket.get(), answer, sizeof answer, MSG_DONTWAIT) > 24; },
+                 50ms)) {
+    CHECK(std::string(answer + 24) == "the two sides are of different versions");
+  }
+  CHECK(hung_up(socket));
+  CHECK(host.meeting.counters().guests == 0);
+  Meeting meeting;
+  CHECK_NOTHROW(meeting.join(host.provider, Guid::random(), [] {}));
+}
+
+// What a loaded machine makes slower only makes it wake up less often.
+TEST_CASE("a stranger who comes again and again costs some wake-ups a second, whatever it does") {
+  Meeting::Rules rules;
+  rules.users = {};
+  Host host(rules);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto before = host.meeting.counters();
+  std::size_t attempts = 0;
+  while (host.meeting.counters().refused < before.refused + 100) {
+    stranger(host);
+    ++attempts;
+  }
+  const auto pauses = (std::chrono::steady_clock::now() - begin) / 10ms + 1;
+  CHECK(attempts >= 100);
+  CHECK(host.meeting.counters().wake_ups - before.wake_ups <=
+        static_cast<std::uint64_t>(3 * pauses + 3));
+}
+
+TEST_CASE("a provider that hands over what can be taken away again is refused") {
+  const Guid provider = Guid::random();
+  FileDescriptor listening = local_socket(SOCK_SEQPACKET);
+  sockaddr_un name;
+  const socklen_t length = fill_address(name, "skein-call/" + provider.hex());
+  REQUIRE(bind(listening.get(), reinterpret_cast<sockaddr*>(&name), length) == 0);
+  REQUIRE(listen(listening.get(), 1) == 0);
+  std::thread liar([&] {
+    FileDescriptor accepted;
+    eventually([&] {
+      accepted = FileDescriptor(accept(listening.get(), nullptr, nullptr));
+      return static_cast<bool>(accepted);
+    });
+    const FileDescriptor memory(memfd_create("test", MFD_CLOEXEC));
+    const int number = memory.get();
+    char packet[128];
+    eventually([&] { return recv(accepted.get(), packet, sizeof packet, MSG_DONTWAIT) > 0; });
+    std::memset(packet, 0, sizeof packet);
+    std::strcpy(packet, "skein1");
+    iovec content{packet, sizeof packet};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof number)] = {};
+    msghdr message{};
+    message.msg_iov = &content;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    cmsghdr* const header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(sizeof number);
+    std::memcpy(CMSG_DATA(header), &number, sizeof number);
+    sendmsg(accepted.get(), &message, MSG_NOSIGNAL);
+  });
+  Meeting meeting;
+  CHECK_THROWS_WITH(meeting.join(provider, Guid::random(), [] {}),
+                    Catch::Contains("is not sealed"));
+  liar.join();
+}
+
+TEST_CASE("nothing is left of links that have ended") {
+  Host host;
+  Meeting meeting;
+  const std::size_t before = open_descriptors();
+  for (std::size_t i = 0; i < 30; ++i) {
+    const auto link = meeting.join(host.provider, Guid::random(), [] {});
+    REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+    std::lock_guard lock(host.mutex);
+    host.guests.clear();
+  }
+  CHECK(eventually([&] { return open_descriptors() == before; }));
+  CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+}

@@ -1,0 +1,147 @@
+#include "same_host/receiver.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
+#include "core/abstract_socket.hpp"
+#include "same_host/meeting.hpp"
+
+using namespace skein;
+using namespace skein::same_host;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Writes down what comes.
+struct Notes final : Inbox {
+  void on_begin(Link& link) override { note(link, "begin"); }
+  void on_message(Link& link, std::span<const std::byte> message) override {
+    note(link, std::string(reinterpret_cast<const char*>(message.data()), message.size()));
+  }
+  void on_end(Link& link) override { note(link, "end"); }
+
+  void note(Link& link, std::string what) {
+    std::lock_guard lock(mutex);
+    of[link.peer()].push_back(std::move(what));
+  }
+  std::vector<std::string> about(const Guid& peer) {
+    std::lock_guard lock(mutex);
+    return of[peer];
+  }
+
+  std::mutex mutex;
+  std::map<Guid, std::vector<std::string>> of;
+};
+
+/// A provider whose receiver takes what its guests send.
+struct Host {
+  Host() {
+    meeting.offer(provider, Guid::random(), receiver.notifier(),
+                  [this](std::shared_ptr<Link> link) { receiver.add(std::move(link), notes); });
+  }
+  ~Host() { meeting.withdraw(provider); }
+
+  const Guid provider = Guid::random();
+  Notes notes;
+  Receiver receiver{"test-requests", 0us};
+  Meeting meeting;
+};
+
+struct Client {
+  explicit Client(Host& host) : link(meeting.join(host.provider, id, [] {})) {}
+  void send(const std::string& text) {
+    REQUIRE(link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
+  }
+
+  const Guid id = Guid::random();
+  Meeting meeting;
+  std::shared_ptr<Link> link;
+};
+
+}  // namespace
+
+TEST_CASE("one thread takes what many links bring, each in its order, the end after all the rest") {
+  Host host;
+  std::vector<std::unique_ptr<Client>> clients;
+  for (int i = 0; i < 5; ++i) clients.push_back(std::make_unique<Client>(host));
+  std::vector<std::string> expected{"begin"};
+  for (int i = 0; i < 200; ++i) {
+    for (const auto& client : clients) client->send(std::to_string(i));
+    expected.push_back(std::to_string(i));
+  }
+  expected.emplace_back("end");
+  for (const auto& client : clients) client->link->close();
+  for (const auto& client : clients) {
+    CHECK(eventually([&] { return host.notes.about(client->id) == expected; }));
+  }
+  CHECK(eventually([&] { return host.receiver.links() == 0; }));
+}
+
+TEST_CASE("a receiver that sleeps is woken by each message") {
+  Host host;
+  Client client(host);
+  for (std::size_t i = 0; i < 200; ++i) {
+    client.send("x");
+    REQUIRE(eventually([&] { return host.notes.about(client.id).size() == i + 2; }));
+  }
+}
+
+TEST_CASE("a link that is found broken ends, is told of, and the others go on") {
+  Host host;
+  const test::Log log;
+  Client sound(host);
+  sound.send("before");
+  const Guid hostile = Guid::random();
+  auto memory = SharedMemory::make(Link::kMemory);
+  const auto theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
+  const auto link = std::make_shared<Link>(
+      Link::Side::Provider, std::make_shared<const FileDescriptor>(local_socket()),
+      std::move(memory), Guid::random(), hostile, host.receiver.notifier());
+  reinterpret_cast<RingState*>(theirs.data())->written = 12;
+  host.receiver.add(link, host.notes);
+  CHECK(eventually([&] {
+    return host.notes.about(hostile) == std::vector<std::string>{"begin", "end"};
+  }));
+  CHECK(link->ended());
+  CHECK(log.count("the writer's position is 12 octets from this side's") == 1);
+  sound.send("after");
+  CHECK(eventually([&] {
+    return host.notes.about(sound.id) == std::vector<std::string>{"begin", "before", "after"};
+  }));
+}
+
+TEST_CASE("once an inbox is removed, nothing more is put in") {
+  Host host;
+  Client client(host);
+  client.send("1");
+  REQUIRE(eventually([&] { return host.notes.about(client.id).size() == 2; }));
+  host.receiver.remove(host.notes);
+  client.link->send(std::as_bytes(std::span("2", 1)), 1h);
+  CHECK(host.receiver.links() == 0);
+  CHECK(host.notes.about(client.id).size() == 2);
+}
+
+TEST_CASE(
+    "looking before sleeping begins once most messages come soon, and ends once they do not") {
+  SpinPolicy policy(20us);
+  CHECK(policy.budget() == 0us);
+  for (int i = 0; i < 8; ++i) policy.note(5us);
+  CHECK(policy.budget() == 20us);
+  policy.note(1ms);
+  CHECK(policy.budget() == 0us);
+  for (int i = 0; i < 100; ++i) policy.note(5us);
+  policy.note(1ms);
+  CHECK(policy.budget() == 20us);
+  for (int i = 0; i < 3; ++i) policy.note(1ms);
+  CHECK(policy.budget() == 0us);
+  SpinPolicy never(0us);
+  for (int i = 0; i < 100; ++i) never.note(0us);
+  CHECK(never.budget() == 0us);
+}
