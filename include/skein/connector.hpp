@@ -105,6 +105,7 @@ class Connector {
     std::shared_ptr<Clock> clock;
     std::chrono::microseconds spin{0};            ///< As EntityOptions::spin.
     std::shared_ptr<rpc::CallJournal> journal{};  ///< May be null.
+    dds::Participant* same_host = nullptr;        ///< same_host::ClientPort; may be null.
   };
 
   /// The parts must exist until close() has returned.

@@ -46,6 +46,9 @@ struct EntityOptions {
   /// Changes what publishers and subscriptions of the topic `name` ask for. Called for each of them
   /// on the thread that makes it; what it throws goes to who makes it.
   std::function<void(const std::string& name, TopicQos& qos)> adjust_topic{};
+  /// Calls between entities on one host that all set this go through shared memory; all others, and
+  /// those that find no way there, go over DDS.
+  bool shared_memory_calls = false;
 };
 
 struct ServiceAttribute {

@@ -10,6 +10,7 @@
 #include "brokerless_discovery/versions.hpp"
 #include "connections.hpp"
 #include "core/interface_name.hpp"
+#include "core/log.hpp"
 #include "failover_channel.hpp"
 #include "rpc/call_journal.hpp"
 #include "rpc/dds_channel.hpp"
@@ -124,6 +125,37 @@ void arrange(Table::Found& providers, const ProviderQuery& wanted, const Query& 
   put_less_loaded_first(providers, static_cast<std::size_t>(equals - providers.begin()), loads);
 }
 
+// Through shared memory where both sides have it; otherwise, and where the provider is not reached
+// in that way, over DDS. Who has answered there is not asked again.
+std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
+                                             const ServiceDescription& provider,
+                                             rpc::DdsChannel::Options options) {
+  const rpc::DdsAddress address{provider.service, Guid{provider.provider},
+                                representation_of(provider)};
+  const auto open = [&](dds::Participant& participant, rpc::DdsChannel::Options how) {
+    return rpc::DdsChannel::open(participant, parts.control, parts.continuations, parts.clock,
+                                 address, std::move(how));
+  };
+  if (parts.same_host && provider.host == brokerless_discovery::ProcessWatch::host()) {
+    const Instant begin = parts.clock->now();
+    auto shared = options;
+    shared.transport = "shared memory";
+    const auto reached = std::make_shared<bool>(false);
+    shared.begun = [reached, begun = options.begun](const auto& channel) {
+      *reached = true;
+      begun(channel);
+    };
+    try {
+      return open(*parts.same_host, std::move(shared));
+    } catch (const Unavailable& why) {
+      if (*reached) throw;
+      log(LogLevel::Debug, "connector", options.peer + " is called over DDS: " + why.what());
+    }
+    options.timeout -= std::min(options.timeout, parts.clock->now() - begin);
+  }
+  return open(parts.participant, std::move(options));
+}
+
 }  // namespace
 
 Connector::Connector(const Parts& parts)
@@ -168,9 +200,7 @@ ProviderConnection Connector::open_connection(const ServiceDescription& provider
   const auto participant = parts_.broker.participant_of(id);
   if (!participant) throw Unavailable(options.peer + " left before it was connected");
   options.participant = *participant;
-  auto channel = rpc::DdsChannel::open(
-      parts_.participant, parts_.control, parts_.continuations, parts_.clock,
-      {provider.service, id, representation_of(provider)}, std::move(options));
+  auto channel = open_remote(parts_, provider, std::move(options));
   ProviderConnection connection{id, channel};
   follow(parts_.broker, channel, connection);
   return connection;

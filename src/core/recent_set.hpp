@@ -21,6 +21,8 @@ class RecentSet {
     places_.emplace(value, order_.insert(order_.end(), value));
   }
 
+  bool contains(const Value& value) const { return places_.contains(value); }
+
   /// Whether it was there.
   bool erase(const Value& value) {
     const auto found = places_.find(value);

@@ -25,6 +25,7 @@
 #include "rpc/dds_server.hpp"
 #include "rpc/local_directory.hpp"
 #include "rpc/service.hpp"
+#include "same_host/call_ports.hpp"
 #include "skein/describe.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
@@ -122,6 +123,7 @@ struct Entity::Provided {
   std::shared_ptr<ThreadExecutor> executor;
   std::shared_ptr<rpc::Service> service;  // keeps the executor, and the clock
   std::unique_ptr<rpc::DdsServer> server;
+  std::unique_ptr<rpc::DdsServer> same_host_server;
   Broker::Registration load;
   Broker::Registration registration;
   std::string owner;  // empty for a Body
@@ -136,6 +138,7 @@ struct Entity::Provided {
   void close() {
     registration.withdraw();
     load.withdraw();
+    same_host_server.reset();
     server.reset();
     if (service) service->close();
     executor->request_stop();
@@ -144,7 +147,13 @@ struct Entity::Provided {
   /// Clients have been told; false where some have calls, or have not left, at the deadline.
   bool finish(Instant deadline) {
     const bool gone = !server || server->await_clients_gone(deadline);
-    return service->finish(deadline) && gone;
+    const bool gone_here = !same_host_server || same_host_server->await_clients_gone(deadline);
+    return service->finish(deadline) && gone && gone_here;
+  }
+
+  /// Requests that wait or run.
+  std::size_t active() const {
+    return server->counters().active + (same_host_server ? same_host_server->counters().active : 0);
   }
 
   /// Once closed; false where a call did not return in time. The second time it does not wait.
@@ -164,6 +173,9 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
+        same_host(options.shared_memory_calls
+                      ? same_host::make_call_ports({participant->guid(), options.spin})
+                      : nullptr),
         journal(std::make_shared<rpc::CallJournal>(*participant, process->clock(), control,
                                                    options.system + "/" + options.name)),
         recorder(std::make_shared<rpc::CallRecorder>(*participant, process->clock(), control,
@@ -172,7 +184,8 @@ struct Entity::State {
                {options.system, options.name, options.vendor->name(), options.lease, place()}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
-                   process->shared_clock(), options.spin, journal}),
+                   process->shared_clock(), options.spin, journal,
+                   same_host ? &same_host->clients : nullptr}),
         head({connector, broker, process->directory(), process->clock(), *participant, control,
               options.system + "/" + options.name},
              options.head) {}
@@ -204,6 +217,7 @@ struct Entity::State {
   const std::shared_ptr<Process> process;
   topics::Register topic_register;
   std::unique_ptr<dds::Participant> participant;
+  const std::unique_ptr<same_host::CallPorts> same_host;
   // Shared with connections, which may outlive the entity.
   const std::shared_ptr<ThreadExecutor> continuations =
       std::make_shared<ThreadExecutor>("skein-continue", ThreadExecutor::Tasks::Short);
@@ -411,9 +425,13 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
         rpc::DdsServer::Options{.foreign_clients = owner.empty(),
                                 .on_load = state_->loads.notifier()});
   }
+  if (provided->server && state_->same_host) {
+    provided->same_host_server = std::make_unique<rpc::DdsServer>(
+        state_->same_host->providers, state_->control, state_->process->clock(), provided->service,
+        rpc::DdsServer::Options{.foreign_clients = false, .on_load = state_->loads.notifier()});
+  }
   if (owner.empty()) {
-    provided->load =
-        state_->loads.tell(id, [&server = *provided->server] { return server.counters().active; });
+    provided->load = state_->loads.tell(id, [&provided = *provided] { return provided.active(); });
   }
   state_->process->directory()->add(provided->service);
   ServiceDescription description = describe(interface, id, options);

@@ -242,7 +242,8 @@ Clock& DdsChannel::clock() const noexcept { return state_->clock; }
 Executor& DdsChannel::continuations() const noexcept { return *state_->continuations; }
 std::string DdsChannel::peer() const { return state_->options.peer; }
 std::optional<ConnectionInfo> DdsChannel::info() const {
-  ConnectionInfo info{state_->address.service, state_->address.provider, "DDS", pending()};
+  ConnectionInfo info{state_->address.service, state_->address.provider, state_->options.transport,
+                      pending()};
   std::lock_guard lock(state_->mutex);
   info.calls = state_->last_number;
   return info;

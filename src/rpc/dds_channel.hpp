@@ -18,8 +18,9 @@ namespace skein::rpc {
 class DdsChannel final : public Channel, public std::enable_shared_from_this<DdsChannel> {
  public:
   struct Options {
-    std::string strategy;  ///< See OpenRequest.
-    std::string peer;      ///< For messages.
+    std::string strategy;           ///< See OpenRequest.
+    std::string peer;               ///< For messages.
+    std::string transport = "DDS";  ///< See ConnectionInfo.
     /// The provider's participant, which alone is believed. Nil: whoever serves the address is.
     Guid participant;
     Duration timeout = std::chrono::seconds(5);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/abstract_socket.hpp"
+#include "core/printable.hpp"
 #include "core/start_thread.hpp"
 #include "skein/error.hpp"
 
@@ -407,7 +408,7 @@ struct Meeting::State {
     }
     if (!descriptor) {
       answer.refusal[sizeof answer.refusal - 1] = '\0';
-      refuse_to_join(answer.refusal);
+      refuse_to_join(printable(answer.refusal));
     }
     auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
     memory.take_descriptor();

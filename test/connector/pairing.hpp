@@ -50,6 +50,7 @@ inline std::unique_ptr<Entity> make_entity(const std::string& name,
   options.domain = 17;
   options.process = std::move(process);
   options.head = std::move(head);
+  options.shared_memory_calls = std::getenv("SKEIN_SHARED_MEMORY_CALLS") != nullptr;
   return std::make_unique<Entity>(std::move(options));
 }
 

@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <mutex>
+#include <string>
+
+#include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
+#include "echo_service.hpp"
+#include "same_host/ring.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+
+using namespace skein;
+using namespace skein::test;
+using namespace std::chrono_literals;
+using ::test::Echo;
+using ::test::LouderEcho;
+
+namespace {
+
+std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory) {
+  EntityOptions options;
+  options.name = name;
+  options.vendor = dds::load_vendor("loopback");
+  options.domain = 18;
+  options.shared_memory_calls = shared_memory;
+  return std::make_unique<Entity>(std::move(options));
+}
+
+std::vector<std::string> transports(const Entity& entity) {
+  std::vector<std::string> names;
+  for (const auto& each : const_cast<Entity&>(entity).connector().connections()) {
+    names.push_back(each.transport);
+  }
+  return names;
+}
+
+/// Writes where a hostile process would, in all memory that this one shares.
+void damage_all_rings() {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find("memfd:skein") == std::string::npos) continue;
+    auto* const states = reinterpret_cast<same_host::RingState*>(std::stoull(line, nullptr, 16));
+    for (auto* state : {states, states + 1}) {
+      state->written = 12;
+      state->reader_sleeps = 0;
+      same_host::futex_wake(state->reader_sleeps);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("calls go through shared memory where both sides are told to, and over DDS otherwise") {
+  const bool by_server = GENERATE(false, true);
+  const bool by_client = GENERATE(false, true);
+  const auto server = make_entity("server", by_server);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_entity("client", by_client);
+  auto echo = client->connect<Echo>();
+  CHECK(echo.echo("hello") == "hello");
+  CHECK(transports(*client) ==
+        std::vector<std::string>{by_server && by_client ? "shared memory" : "DDS"});
+}
+
+TEST_CASE("a provider that damages the memory ends the call, and is called over DDS from then on") {
+  const Log log;
+  const auto server = make_entity("server", true);
+  const auto service = std::make_shared<EchoService>();
+  server->provide<LouderEcho>(service);
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  auto pending = echo.within(60s).async_wait(600'000);
+  REQUIRE(eventually([&] { return service->inside == 1; }));
+  damage_all_rings();
+  CHECK_THROWS_AS(pending.get(), Disconnected);
+  CHECK(eventually([&] { return service->saw_cancellation.load(); }));
+  CHECK(echo.within(20s).echo("again") == "again");
+  CHECK(transports(*client) == std::vector<std::string>{"DDS"});
+  CHECK(log.count("has damaged the memory that it shares") > 0);
+}
+
+TEST_CASE("a service that is withdrawn and provided again is found through shared memory again") {
+  const auto server = make_entity("server", true);
+  const auto client = make_entity("client", true);
+  std::optional<Echo::Proxy> echo;
+  for (int i = 0; i < 3; ++i) {
+    const auto id = server->provide<LouderEcho>(std::make_shared<EchoService>());
+    if (!echo) echo.emplace(client->connect<Echo>());
+    CHECK(eventually([&] {
+      try {
+        return echo->echo("hello") == "hello";
+      } catch (const Unavailable&) {
+        return false;
+      } catch (const Disconnected&) {
+        return false;
+      }
+    }));
+    CHECK(transports(*client) == std::vector<std::string>{"shared memory"});
+    server->withdraw(id);
+  }
+}
