@@ -428,7 +428,8 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   if (provided->server && state_->same_host) {
     provided->same_host_server = std::make_unique<rpc::DdsServer>(
         state_->same_host->providers, state_->control, state_->process->clock(), provided->service,
-        rpc::DdsServer::Options{.foreign_clients = false, .on_load = state_->loads.notifier()});
+        rpc::DdsServer::Options{
+            .foreign_clients = false, .may_run = true, .on_load = state_->loads.notifier()});
   }
   if (owner.empty()) {
     provided->load = state_->loads.tell(id, [&provided = *provided] { return provided.active(); });

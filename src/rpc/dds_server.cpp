@@ -172,7 +172,7 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   }
   if (options.on_load) options.on_load();
   try {
-    service->submit(invocation);
+    service->submit(invocation, options.may_run);
   } catch (...) {
     forget(head.id);
     throw;

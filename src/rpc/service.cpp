@@ -1,6 +1,7 @@
 #include "rpc/service.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "common.hpp"
 #include "core/clock_wait.hpp"
@@ -196,19 +197,25 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
   return options_.open ? options_.open(request) : nullptr;
 }
 
-void Service::submit(const std::shared_ptr<Invocation>& invocation) {
+void Service::submit(const std::shared_ptr<Invocation>& invocation, bool may_run) {
   OperationMeter& meter = meter_.of(*invocation->operation);
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();
   note_begin(*invocation->operation, *invocation);
+  std::optional<Turn> turn;
+  if (may_run && options_.thread == CallThread::Caller && !invocation->operation->stream) {
+    turn.emplace(*this, Instant::min());  // who would have to wait for it queues
+  }
+  const bool here = turn && turn->came();
   try {
     refuse_self_wait(*invocation);
-    enqueue(invocation);
+    if (!here) enqueue(invocation);
   } catch (const Error&) {
     OperationMeter::count(meter.refused);
     note_end(*invocation->operation, *invocation, std::current_exception());
     throw;
   }
+  if (here) execute_in_turn(invocation, true);
 }
 
 void Service::note_begin(const OperationInfo& operation, const Invocation& frame) {
@@ -407,12 +414,16 @@ bool Service::is_deferred(const OperationInfo& operation) const noexcept {
 }
 
 void Service::execute(const std::shared_ptr<Invocation>& invocation) {
-  OperationMeter& meter = meter_.of(*invocation->operation);
   const Turn turn(*this, invocation->deadline);
+  execute_in_turn(invocation, turn.came());
+}
+
+void Service::execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came) {
+  OperationMeter& meter = meter_.of(*invocation->operation);
   const Instant now = invocation->begun = clock_.now();
   meter.waited.record(now - invocation->arrived);
   if (closed_) return withdraw(*invocation);
-  if (!turn.came() || invocation->cancelled || now >= invocation->deadline) {
+  if (!turn_came || invocation->cancelled || now >= invocation->deadline) {
     OperationMeter::count(meter.expired);
     answer(*invocation, nullptr,
            std::make_exception_ptr(TimedOut("the deadline passed before " +

@@ -131,8 +131,10 @@ class Service : public std::enable_shared_from_this<Service> {
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
   /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
-  /// for itself; respond() is not called then.
-  void submit(const std::shared_ptr<Invocation>& invocation);
+  /// for itself; respond() is not called then. Where `may_run` says that this thread may run the
+  /// implementation, calls that are no streams run on it with CallThread::Caller where their turn
+  /// has come, and have ended when it returns.
+  void submit(const std::shared_ptr<Invocation>& invocation, bool may_run = false);
 
   /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
   /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too
@@ -182,6 +184,7 @@ class Service : public std::enable_shared_from_this<Service> {
                 const std::exception_ptr& error);
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);
   void execute(const std::shared_ptr<Invocation>& invocation);
+  void execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came);
   void execute_now(Invocation& invocation);
   void execute_deferred(const std::shared_ptr<Invocation>& invocation);
   bool is_deferred(const OperationInfo& operation) const noexcept;

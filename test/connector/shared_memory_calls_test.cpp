@@ -1,3 +1,7 @@
+#include <fcntl.h>
+#include <pthread.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -6,6 +10,7 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
+#include "core/file_descriptor.hpp"
 #include "echo_service.hpp"
 #include "same_host/ring.hpp"
 #include "skein/entity.hpp"
@@ -28,6 +33,21 @@ std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory)
   return std::make_unique<Entity>(std::move(options));
 }
 
+std::string thread_name() {
+  char name[16] = {};
+  pthread_getname_np(pthread_self(), name, sizeof name);
+  return name;
+}
+
+/// Says on which thread it runs.
+struct Placed final : EchoService {
+  std::string echo(const std::string&) override { return thread_name(); }
+  void burst(std::uint32_t, StreamSink<std::vector<std::uint8_t>>& sink) override {
+    const std::string name = thread_name();
+    sink.push({name.begin(), name.end()});
+  }
+};
+
 std::vector<std::string> transports(const Entity& entity) {
   std::vector<std::string> names;
   for (const auto& each : const_cast<Entity&>(entity).connector().connections()) {
@@ -36,18 +56,24 @@ std::vector<std::string> transports(const Entity& entity) {
   return names;
 }
 
-/// Writes where a hostile process would, in all memory that this one shares.
-void damage_all_rings() {
+/// Writes what a hostile provider would into all rings for replies of this process. By the kernel:
+/// who finds the damage ends its mapping meanwhile.
+void damage_replies() {
   std::ifstream maps("/proc/self/maps");
+  const FileDescriptor memory(open("/proc/self/mem", O_RDWR | O_CLOEXEC));
+  const auto write = [&](auto& word, auto value) {
+    return pwrite(memory.get(), &value, sizeof value,
+                  static_cast<off_t>(reinterpret_cast<std::uintptr_t>(&word))) == sizeof value;
+  };
+  int damaged = 0;
   for (std::string line; std::getline(maps, line);) {
     if (line.find("memfd:skein") == std::string::npos) continue;
-    auto* const states = reinterpret_cast<same_host::RingState*>(std::stoull(line, nullptr, 16));
-    for (auto* state : {states, states + 1}) {
-      state->written = 12;
-      state->reader_sleeps = 0;
-      same_host::futex_wake(state->reader_sleeps);
-    }
+    auto& replies = reinterpret_cast<same_host::RingState*>(std::stoull(line, nullptr, 16))[1];
+    if (write(replies.written, std::uint64_t{12})) ++damaged;
+    write(replies.reader_sleeps, std::uint32_t{0});
+    same_host::futex_wake(replies.reader_sleeps);
   }
+  REQUIRE(damaged > 0);
 }
 
 }  // namespace
@@ -64,6 +90,21 @@ TEST_CASE("calls go through shared memory where both sides are told to, and over
         std::vector<std::string>{by_server && by_client ? "shared memory" : "DDS"});
 }
 
+TEST_CASE("a call runs on the thread that takes it where the service says so, a stream never") {
+  const auto server = make_entity("server", true);
+  ServiceOptions options;
+  const bool on_caller = GENERATE(false, true);
+  if (on_caller) options.thread = CallThread::Caller;
+  server->provide<LouderEcho>(std::make_shared<Placed>(), options);
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  CHECK(echo.echo("") == (on_caller ? "skein-requests" : "server"));
+  auto stream = echo.burst(1);
+  const auto name = stream.next();
+  REQUIRE(name);
+  CHECK(std::string(name->begin(), name->end()) == "server");
+}
+
 TEST_CASE("a provider that damages the memory ends the call, and is called over DDS from then on") {
   const Log log;
   const auto server = make_entity("server", true);
@@ -73,7 +114,7 @@ TEST_CASE("a provider that damages the memory ends the call, and is called over 
   auto echo = client->connect<Echo>();
   auto pending = echo.within(60s).async_wait(600'000);
   REQUIRE(eventually([&] { return service->inside == 1; }));
-  damage_all_rings();
+  damage_replies();
   CHECK_THROWS_AS(pending.get(), Disconnected);
   CHECK(eventually([&] { return service->saw_cancellation.load(); }));
   CHECK(echo.within(20s).echo("again") == "again");
