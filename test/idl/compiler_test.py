@@ -161,7 +161,7 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_finding("struct S { long x; }; enum S { A };", "'S' is declared twice in one scope, first at x.idl:1")
         self.assert_finding("struct S { long x; short x; };", "there is a member 'x' already, at x.idl:1")
         self.assert_finding("interface I { void f(in long x, in long x); };", "there is a parameter 'x' already")
-        self.assert_finding("interface I { void f(); long f(); };", "'f' is declared already, as I::f at x.idl:1")
+        self.assert_finding("interface I { void f(); long f(); };", "'f' is declared already, as I::f at x.idl:1; IDL has no overloading, name it otherwise")
         self.assert_finding("module M { }; struct S { M x; };", "'M' is a module, no type")
         self.assert_finding("struct S; struct T { S x; }; struct S { long x; };",
                             "S is not defined yet: make the member @external or @optional, or use a sequence of it")  # fmt: skip
@@ -290,6 +290,12 @@ class WhatMakesNoSense(CompilerTest):
 
     def test_what_idl_says_by_other_means(self):
         self.assert_finding("struct S { double x = 3; };", "a member has no value in IDL; its default is told by @default(3) double x;")
+        self.assert_finding("interface I { double f(in long a, in double x = 3); };", "a parameter has no default in IDL; leave '= 3' out")
+        self.assert_finding("interface I { double x; };",
+                            "an interface has operations and attributes; write double x(); or attribute double x;")
+        self.assert_finding("struct S { long a; double f(); };", "members are data; operations stand in an interface")
+        self.assert_finding("interface I { double f() const; };", "IDL has no const operations; leave 'const' out")
+        self.assert_finding("module m { double f(in double x); };", "operations stand in an interface: interface NAME { ... };")
         self.assert_finding("struct S { sequence<long> x = {}; };", "a member has no value in IDL; its default is told by @default(VALUE) sequence<long> x;")
         self.assert_finding("interface I { async double f(); };",
                             "IDL has no 'async'; leave it out: every operation can also be called asynchronously, by async_NAME in C++")

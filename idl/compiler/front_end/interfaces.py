@@ -81,7 +81,7 @@ class Interfaces:
                 plain = operation.name.removeprefix("_get_").removeprefix("_set_")
                 mine = other if other.interface is interface else interface
                 known = f"{operation.interface.idl_name}::{plain}"
-                self.report.error(mine.place, f"'{plain}' is declared already, as {known} at {operation.place}")
+                self.report.error(mine.place, f"'{plain}' is declared already, as {known} at {operation.place}; IDL has no overloading, name it otherwise")
 
     def _operation(self, interface, tree, export, noted, taken, plain):
         oneway, kind, token, given, raises, context = tree.children

@@ -103,6 +103,18 @@ def _reason(error, source, text, offset):
 def _misplaced(token, before, behind):
     """What is said in IDL by other means; empty for what is not known."""
     declared = re.split(r"[;{}()]", before)[-1]  # what is being declared, as far as it was read
+    block = re.search(r"\b(interface|struct|exception|union)\b[^;{}]*$", before[: _opening(before, len(before))])
+    within = block[1] if block else ""
+    if token == "=" and re.match(r"\s*(in|out|inout)\s", declared):
+        return f"a parameter has no default in IDL; leave '{re.match(r'=[^;,)]*', behind)[0].strip()}' out"
+    if token == ";" and within == "interface" and (field := re.fullmatch(r"\s*(\w[\w:<>, ]*?)\s+(\w+)\s*", declared)):
+        return f"an interface has operations and attributes; write {field[1]} {field[2]}(); or attribute {field[1]} {field[2]};"
+    if token == "(" and within in ("struct", "exception") and re.fullmatch(r"\s*\w[\w:<>, ]*?\s+\w+\s*", declared):
+        return "members are data; operations stand in an interface"
+    if token == "const" and before.rstrip().endswith(")"):
+        return "IDL has no const operations; leave 'const' out"
+    if not declared.strip() and re.match(r"[\w:<>]+\s+\w+\s*\(", behind):
+        return "operations stand in an interface: interface NAME { ... };"
     if token == "=" and (member := re.fullmatch(r"\s*(?!const\b)([\w:<>, ]+?)\s+(\w+)\s*", declared)):
         value = re.match(r"=\s*([^;,{}]*)", behind)[1].strip() or "VALUE"
         return f"a member has no value in IDL; its default is told by @default({value}) {member[1]} {member[2]};"
