@@ -22,9 +22,9 @@
 #include "core/run_user_code.hpp"
 #include "core/suggestion.hpp"
 #include "core/thread_settings.hpp"
+#include "crash_report.hpp"
 #include "entity/asked_parameters.hpp"
 #include "hung_csp.hpp"
-#include "last_words.hpp"
 #include "launch/address_space.hpp"
 #include "launch/child_state.hpp"
 #include "launch/exit_codes.hpp"
@@ -485,7 +485,7 @@ EntityOptions entity_options(const MissionProfile& mission, const PeerProfile& p
 int run_process(const MissionProfile& mission, const std::string& process,
                 ComponentRegistry& registry) {
   const auto begun = std::chrono::steady_clock::now();
-  leave_last_words();
+  report_crashes();
   demand_address_space();
   const std::size_t slash = process.find('/');
   const PeerProfile* peer = mission.find_peer(process.substr(0, slash));

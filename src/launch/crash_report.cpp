@@ -1,4 +1,4 @@
-#include "last_words.hpp"
+#include "crash_report.hpp"
 
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -90,7 +90,7 @@ StartStep::~StartStep() {
   report_waiting("");
 }
 
-void leave_last_words() {
+void report_crashes() {
   struct sigaction action {};
   action.sa_sigaction = tell_death;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;

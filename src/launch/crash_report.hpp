@@ -5,7 +5,7 @@
 namespace skein::launch {
 
 /// While it lives, the launcher knows what this process does before it is ready, and so does
-/// whoever reads what it says when it dies of that (see leave_last_words()). Only the main thread
+/// whoever reads what it says when it dies of that (see report_crashes()). Only the main thread
 /// makes one, and one at a time.
 class StartStep {
  public:
@@ -19,6 +19,6 @@ class StartStep {
 /// From now on, when code in this process makes it die of a signal, the process tells on stderr,
 /// and the launcher, in which thread, or in which StartStep; then it dies as it would have. One
 /// that ends by exit() within a StartStep says so, too, and ends with kStartFailed.
-void leave_last_words();
+void report_crashes();
 
 }  // namespace skein::launch
