@@ -16,6 +16,7 @@ struct NetworkInterface {
   std::string name;
   std::vector<std::string> addresses;  ///< IPv4, in dotted form.
   bool up = false;
+  bool running = true;  ///< Whether it has a carrier: a cable, say, with another end that is up.
   bool multicast = false;
 };
 
@@ -29,14 +30,20 @@ struct InterfaceObstacle {
   std::string remedy;  ///< A command.
 };
 
-/// That the interface of that name or address is down. For 127.0.0.1, and for an empty name, which
-/// means it, the loopback interface. Nothing where it is up, or not among `interfaces`.
+/// Whether an interface may be without a carrier at first: Fast DDS does not use one that is.
+enum class Carrier { MayComeLater, Needed };
+
+/// That the interface of that name or address is down, or lacks a carrier that it needs. For
+/// 127.0.0.1, and for an empty name, which means it, the loopback interface. Nothing where there is
+/// no obstacle, or no such interface among `interfaces`.
 std::optional<InterfaceObstacle> find_obstacle(const std::vector<NetworkInterface>& interfaces,
-                                               const std::string& wanted);
+                                               const std::string& wanted,
+                                               Carrier carrier = Carrier::MayComeLater);
 
 /// For an error's text: the first such obstacle of this host and its remedy, `problem; remedy`, of
 /// the interfaces that are named, or of loopback where none is. Empty where there is none, or where
 /// the system does not tell.
-std::string obstacle_of_this_host(const std::vector<std::string>& wanted);
+std::string obstacle_of_this_host(const std::vector<std::string>& wanted,
+                                  Carrier carrier = Carrier::MayComeLater);
 
 }  // namespace skein

@@ -96,6 +96,14 @@ TEST_CASE("an interface that is down, has no address or takes no multicast keeps
   CHECK_THAT(symptom.cause, Contains(cause));
 }
 
+TEST_CASE("an interface without a carrier is a warning: a peer on Cyclone DDS may wait for it") {
+  Facts facts = sound_machine();
+  facts.interfaces[1].running = false;
+  const Symptom symptom = only(diagnose_network(on_eth0(), facts), "interface");
+  CHECK(symptom.severity == Severity::Warning);
+  CHECK_THAT(symptom.cause, Contains("eth0 has no carrier") && Contains("Fast DDS"));
+}
+
 TEST_CASE("an interface without multicast is fine where hosts are named") {
   Facts facts = sound_machine();
   facts.interfaces[1].multicast = false;

@@ -34,6 +34,9 @@ struct TwoHosts {
     there.run(
         "ip link set other name skein0 && ip address add 10.77.0.2/24 dev skein0 && "
         "ip link set skein0 up");
+    // Fast DDS uses none without a carrier, which the kernel gives it later.
+    for (const NetworkSpace* space : {&here, &there})
+      space->run("until ip link show skein0 | grep -q 'state UP'; do sleep 0.01; done");
   }
   void take_devices() const { here.run("ip link delete skein0"); }
 

@@ -72,6 +72,19 @@ TEST_CASE("an interface that is down is told by all that would speak on it, with
   }
 }
 
+TEST_CASE("Fast DDS starts on no interface without a carrier, and says that this is the reason") {
+  if (!installed("fastdds")) return;
+  const NetworkSpace space;
+  space.run(
+      "ip link add near type veth peer name far && ip address add 10.1.1.1/24 dev near && "
+      "ip link set near up");
+  CommandRun run({"peers", "--interface", "near", "--vendor", "fastdds"},
+                 {.network = space.descriptor()});
+  CHECK(run.wait() != 0);
+  CHECK_THAT(run.output(), Contains("the interface near has no carrier") &&
+                               Contains("ip link show dev near") && !Contains("port"));
+}
+
 TEST_CASE("an interface without an address is an error with its remedy") {
   const NetworkSpace space;
   space.run("ip link add near type veth peer name far && ip link set near up");

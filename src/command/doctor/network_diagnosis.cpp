@@ -85,6 +85,9 @@ Symptom interface(const std::string& wanted, bool by_multicast, const Facts& fac
                 " multicast on; or name the hosts instead: peers=\"...\" "
                 "in the profile, --peers of commands"};
   }
+  if (const auto cut = find_obstacle(facts.interfaces, wanted, Carrier::Needed))
+    return {Severity::Warning, "interface", cut->problem + "; no peer on Fast DDS starts on it",
+            "its flags lack RUNNING", cut->remedy};
   return {Severity::Fine, "interface",
           name + " is up, with " + found->addresses.front() +
               (found->multicast ? "" : "; it takes no multicast, so that hosts must be named"),

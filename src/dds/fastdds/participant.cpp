@@ -25,7 +25,7 @@ namespace {
 constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
 
 [[noreturn]] void throw_no_participant(const ParticipantOptions& options) {
-  const std::string down = obstacle_of_this_host(options.network.interfaces);
+  const std::string down = obstacle_of_this_host(options.network.interfaces, Carrier::Needed);
   throw Unavailable("no participant in domain " + std::to_string(options.domain) + ": " +
                     (down.empty() ? "Fast DDS found no free port; end other participants or use "
                                     "another domain"
