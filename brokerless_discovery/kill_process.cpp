@@ -23,7 +23,7 @@ bool send_kill(const FileDescriptor& process) {
 // 0 where nobody listens.
 pid_t listening_at(const std::string& address) {
   const FileDescriptor socket = local_socket();
-  if (connect_to(socket, address) != Connected::Yes) return 0;
+  if (connect_to(socket, address) != Reached::Yes) return 0;
   const auto owner = other_end(socket);
   return owner ? owner->pid : 0;
 }

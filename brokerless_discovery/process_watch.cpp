@@ -215,31 +215,31 @@ struct ProcessWatch::State {
     }
     if (watched.size() >= kMaxWatched) return;
     Watched other;
-    const Connected connected = join(other, address);
-    if (connected == Connected::Nobody) {
+    const Reached connected = join(other, address);
+    if (connected == Reached::Nobody) {
       lock.unlock();
       action();
     }
-    if (connected != Connected::Yes) return;
+    if (connected != Reached::Yes) return;
     other.actions.emplace(watcher, std::move(action));
     watched.emplace(address, std::move(other));
   }
 
   /// Unknown, too, where another user listens.
-  Connected join(Watched& other, const std::string& address) {
+  Reached join(Watched& other, const std::string& address) {
     FileDescriptor socket = local_socket();
-    const Connected connected = connect_to(socket, address);
-    if (connected != Connected::Yes) return connected;
+    const Reached connected = connect_to(socket, address);
+    if (connected != Reached::Yes) return connected;
     const auto owner = other_end(socket);
     const std::uint64_t id = ++last_id;
     if (!owner || owner->uid != geteuid() ||
         !control(EPOLL_CTL_ADD, socket, id, EPOLLIN | EPOLLRDHUP)) {
-      return Connected::Unknown;
+      return Reached::Unknown;
     }
     other.id = id;
     other.socket = std::move(socket);
     watched_addresses.emplace(id, address);
-    return Connected::Yes;
+    return Reached::Yes;
   }
 
   bool is_own(const std::string& address) const {
@@ -266,10 +266,10 @@ struct ProcessWatch::State {
       // and this connection's may be the last.
       other.socket = {};
       const bool first = !std::exchange(other.second, true);
-      const Connected again =
+      const Reached again =
           first ? join(other, position->first) : connect_to(local_socket(), position->first);
-      if (first && again == Connected::Yes) return;
-      if (again != Connected::Nobody) {
+      if (first && again == Reached::Yes) return;
+      if (again != Reached::Nobody) {
         watched.erase(position);
         return;
       }

@@ -30,16 +30,16 @@ inline socklen_t fill_address(sockaddr_un& address, const std::string& name) {
 }
 
 /// Nobody listens, or nothing is known, with the socket not connected.
-enum class Connected { Yes, Nobody, Unknown };
+enum class Reached { Yes, Nobody, Unknown };
 
-inline Connected connect_to(const FileDescriptor& socket, const std::string& name) {
+inline Reached connect_to(const FileDescriptor& socket, const std::string& name) {
   sockaddr_un address;
   const socklen_t length = fill_address(address, name);
-  if (!socket) return Connected::Unknown;
+  if (!socket) return Reached::Unknown;
   if (connect(socket.get(), reinterpret_cast<sockaddr*>(&address), length) == 0) {
-    return Connected::Yes;
+    return Reached::Yes;
   }
-  return errno == ECONNREFUSED ? Connected::Nobody : Connected::Unknown;
+  return errno == ECONNREFUSED ? Reached::Nobody : Reached::Unknown;
 }
 
 /// Who is at the other end, by the kernel's word.

@@ -375,11 +375,11 @@ struct Meeting::State {
                              std::function<void()> notify) {
     FileDescriptor connected = local_socket(SOCK_SEQPACKET);
     switch (connect_to(connected, address_of(provider))) {
-      case Connected::Nobody:
+      case Reached::Nobody:
         refuse_to_join("nobody offers one");
-      case Connected::Unknown:
+      case Reached::Unknown:
         refuse_to_join(std::strerror(errno));
-      case Connected::Yes:
+      case Reached::Yes:
         break;
     }
     const auto owner = other_end(connected);

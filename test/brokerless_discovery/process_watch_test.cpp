@@ -22,7 +22,7 @@
 
 using namespace skein::brokerless_discovery;
 using skein::connect_to;
-using skein::Connected;
+using skein::Reached;
 using skein::FileDescriptor;
 using skein::fill_address;
 using skein::local_socket;
@@ -100,7 +100,7 @@ std::vector<FileDescriptor> connections_to(const std::string& address, std::size
   std::vector<FileDescriptor> connections;
   for (std::size_t i = 0; i < count; ++i) {
     connections.push_back(local_socket());
-    if (connect_to(connections.back(), address) != Connected::Yes) break;
+    if (connect_to(connections.back(), address) != Reached::Yes) break;
   }
   return connections;
 }
