@@ -13,10 +13,6 @@ void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                          const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
-  if (const auto delay = channel->hedge_after()) {
-    std::lock_guard lock(moving->mutex_);
-    moving->hedge_later(*delay);
-  }
   while (const auto connection = channel->ready(moving->retries_.wanted())) {
     if (moving->try_at(*channel, *connection)) return;
   }
@@ -51,6 +47,7 @@ bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnecti
   {
     std::lock_guard lock(mutex_);
     attempts_.emplace_back(connection.provider, attempt);
+    if (hedged_ && attempts_.size() == 1) hedge_later(*channel.hedge_after());
     cancelled = cancelled_;
   }
   if (cancelled) attempt->cancel();
@@ -88,7 +85,7 @@ bool RetryingCall::others_run() const {
                      [](const auto& attempt) { return !attempt.second->finished(); });
 }
 
-// Under the lock: the timer may find nobody who has the call, and is set again then.
+// Under the lock, once the first provider has it: the second is to be another one.
 void RetryingCall::hedge_later(Duration delay) {
   hedge_timer_ = clock_.call_after(delay, [weak = weak_from_this()] {
     const auto self = weak.lock();
@@ -103,8 +100,6 @@ void RetryingCall::hedge() {
   ProviderQuery wanted;
   {
     std::lock_guard lock(mutex_);
-    // Nobody has it yet, as far as is known here: whoever gets it could be asked twice.
-    if (attempts_.empty()) return hedge_later(*channel->hedge_after());
     if (!retries_.hedge()) return;
     wanted = retries_.wanted();
     for (const auto& [provider, attempt] : attempts_) wanted.excluded.push_back(provider);
