@@ -10,10 +10,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
+#include <iterator>
 #include <memory>
 #include <mutex>
 
@@ -94,11 +96,8 @@ std::string readable(const char* symbol) {
 }
 
 std::string hexadecimal(std::uintptr_t number) {
-  std::string text;
-  do {
-    text.insert(0, 1, "0123456789abcdef"[number % 16]);
-  } while ((number /= 16) != 0);
-  return "0x" + text;
+  char digits[2 * sizeof number];
+  return "0x" + std::string(digits, std::to_chars(digits, std::end(digits), number, 16).ptr);
 }
 
 /// `address` is where the call stands, or one byte behind its beginning.
