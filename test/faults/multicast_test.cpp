@@ -1,8 +1,10 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "../tools/network_space.hpp"
+#include "core/network_interface.hpp"
 #include "processes.hpp"
 
 using namespace skein::test;
@@ -35,8 +37,14 @@ struct TwoHosts {
         "ip link set other name skein0 && ip address add 10.77.0.2/24 dev skein0 && "
         "ip link set skein0 up");
     // Fast DDS uses none without a carrier, which the kernel gives it later.
-    for (const NetworkSpace* space : {&here, &there})
-      space->run("until ip link show skein0 | grep -q 'state UP'; do sleep 0.01; done");
+    REQUIRE(eventually([&] { return has_carrier(here) && has_carrier(there); }));
+  }
+  static bool has_carrier(const NetworkSpace& space) {
+    const Inside inside(space);
+    const auto interfaces = skein::network_interfaces();
+    return std::ranges::any_of(interfaces, [](const skein::NetworkInterface& interface) {
+      return interface.name == "skein0" && interface.running;
+    });
   }
   void take_devices() const { here.run("ip link delete skein0"); }
 
