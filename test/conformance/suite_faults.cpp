@@ -125,6 +125,21 @@ TEST_CASE("a bounded writer waits only for room, not for the acknowledgment of i
   CHECK(eventually([&] { return inbox.count() == 40; }));
 }
 
+TEST_CASE("a bounded writer that never pauses finds room when its reader has all it wrote") {
+  Wire wire;
+  Qos bounded = keep_all();
+  bounded.max_samples = 128;
+  // Less than a writer is silent before it asks by itself.
+  bounded.max_blocking = 10ms;
+  Outbox outbox(*wire.writing, keyless(), bounded);
+  Inbox inbox(*wire.reading, keyless(), keep_all());
+  REQUIRE(connected(outbox, inbox));
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
+    REQUIRE(eventually([&] { return inbox.count() > i; }));
+  }
+}
+
 TEST_CASE("a bounded writer without readers never waits") {
   Wire wire;
   Qos bounded = keep_all();

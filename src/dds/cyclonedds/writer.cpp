@@ -1,8 +1,11 @@
 #include "writer.hpp"
 
+#include <algorithm>
+
 #include "../options_check.hpp"
 #include "../sample_format.hpp"
 #include "blob.hpp"
+#include "heartbeats.h"
 #include "held_samples.h"
 #include "identity.hpp"
 
@@ -78,11 +81,15 @@ void CycloneWriter::dispose(const KeyHash& key) {
 
 /// Cyclone itself bounds only the bytes that wait for acknowledgment. Where the samples have no
 /// room, all that was written must be acknowledged. How many wait is only looked at when it may be
-/// too many.
+/// too many; readers are asked before.
 void CycloneWriter::wait_for_room() {
   if (!qos_.reliable || qos_.history_depth || qos_.max_samples == 0) return;
-  if (written_.fetch_add(1) < qos_.max_samples) return;
   const ddsi_guid_t guid = to_internal(guid_);
+  const std::uint64_t written = written_.fetch_add(1);
+  const std::uint64_t quarter = std::max(1u, qos_.max_samples / 4);
+  if (written > 0 && written % quarter == 0)
+    skein_ask_for_acknowledgment(&participant_.internals(), &guid);
+  if (written < qos_.max_samples) return;
   const std::uint64_t waiting = skein_held_samples(&participant_.internals(), &guid);
   if (waiting < qos_.max_samples) {
     written_ = waiting + 1;
