@@ -1,6 +1,7 @@
 #include "threats/emitter_location.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +12,9 @@ namespace {
 using Eigen::Matrix2d, Eigen::RowVector2d, Eigen::Vector2d;
 
 constexpr int kSteps = 20;
+// Of the first distance, what is left where a bearing changes too much with the place for a filter
+// that takes it as linear: it would be sure that the emitter is where the aircraft is.
+constexpr double kNear = 0.1;
 constexpr double kKilometres_per_metre = 1e-3;  // The filter's numbers are of similar size.
 
 Vector2d place(const Local& local) { return {local.north_m, local.east_m}; }
@@ -45,6 +49,14 @@ std::optional<Vector2d> nearest_to_lines(std::span<const Bearing> bearings) {
   const Eigen::LDLT<Matrix2d> solver(normal);
   if (solver.rcond() < 1e-9) return std::nullopt;
   return solver.solve(right);
+}
+
+/// Whether a place is, with that standard deviation, from where the emitter was heard first and
+/// last: what seems to be just ahead may be far ahead.
+bool is_known(const Vector2d& emitter, double sigma_m, std::span<const Bearing> bearings) {
+  const double first_m = (emitter - place(bearings.front().from)).norm();
+  const double last_m = (emitter - place(bearings.back().from)).norm();
+  return last_m >= kNear * first_m && sigma_m <= kPlacedSigma * std::min(first_m, last_m);
 }
 
 }  // namespace
@@ -82,7 +94,7 @@ std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bear
   }
   const Matrix2d covariance = information.inverse();
   const double greatest = Eigen::SelfAdjointEigenSolver<Matrix2d>(covariance).eigenvalues().y();
-  if (!(std::sqrt(greatest) <= kPlacedSigma * distance)) return std::nullopt;
+  if (!is_known(emitter, std::sqrt(greatest), bearings)) return std::nullopt;
   return estimate(emitter, covariance);
 }
 
@@ -90,6 +102,7 @@ std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bear
 struct BearingFilter::Expectation {
   double innovation;
   RowVector2d by_state;
+  double share_of_distance;  // that is left from where it is measured
 };
 
 BearingFilter::BearingFilter(const Bearing& first, double least_range_m, double greatest_range_m)
@@ -112,7 +125,7 @@ BearingFilter::Expectation BearingFilter::expect(const Bearing& bearing,
   Matrix2d way_by_state;
   way_by_state << across(state.x()), -moved_km;
   return {wrapped(bearing.bearing_rad - expected_bearing(way)),
-          bearing_by_position(way) * way_by_state};
+          bearing_by_position(way) * way_by_state, way.norm()};
 }
 
 void BearingFilter::update(const Bearing& bearing) {
@@ -129,6 +142,7 @@ void BearingFilter::update(const Bearing& bearing) {
     updated = next;
     if (moved < 1e-9) break;
   }
+  if (expectation.share_of_distance < kNear) return;
   state_ = updated;
   // Joseph's form keeps it positive definite.
   const Matrix2d rest = Matrix2d::Identity() - gain * expectation.by_state;
@@ -162,8 +176,13 @@ std::optional<skein::fusion::Estimate> filter_bearings(std::span<const Bearing> 
                                                        double greatest_range_m) {
   BearingFilter filter(bearings.front(), least_range_m, greatest_range_m);
   for (const Bearing& bearing : bearings.subspan(1)) filter.update(bearing);
-  if (filter.relative_range_sigma() > kPlacedSigma) return std::nullopt;
-  return filter.position();
+  const double share = filter.relative_range_sigma();
+  if (share > kPlacedSigma) return std::nullopt;
+  const skein::fusion::Estimate found = filter.position();
+  const Vector2d emitter{found.mean[0], found.mean[1]};
+  const double sigma_m = share * (emitter - place(bearings.front().from)).norm();
+  if (!is_known(emitter, sigma_m, bearings)) return std::nullopt;
+  return found;
 }
 
 }  // namespace reconnaissance

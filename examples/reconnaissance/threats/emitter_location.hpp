@@ -23,7 +23,8 @@ struct Bearing {
 /// (Torrieri, "Statistical theory of passive location systems", IEEE Trans. AES 20(2), 1984).
 ///
 /// nullopt while the bearings do not say enough: fewer than two, lines that hardly cross (a
-/// standard deviation of more than 0.3 of the distance), or that meet behind the observer.
+/// standard deviation of more than 0.3 of the distance from the first or the last place), or that
+/// meet behind the observer or just ahead of him.
 std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bearings);
 
 /// The greatest standard deviation of a place, as a share of its distance, that counts as known.
@@ -46,6 +47,8 @@ class BearingFilter {
   /// octave of distances is equally probable.
   BearingFilter(const Bearing& first, double least_range_m, double greatest_range_m);
 
+  /// Not from a place so near to where the emitter is held to be that the bearing says nothing of
+  /// it.
   void update(const Bearing& bearing);
 
   /// How a bearing differs from the expected one.
@@ -79,7 +82,8 @@ class BearingFilter {
 };
 
 /// The place by a BearingFilter over all bearings (at least one), for a CSP that keeps nothing
-/// between calls. nullopt while a standard deviation of the distance is more than 0.3 of it.
+/// between calls. nullopt while a standard deviation of the distance is more than 0.3 of it, from
+/// the first place or from the last: what seems to be just ahead may be far ahead.
 std::optional<skein::fusion::Estimate> filter_bearings(std::span<const Bearing> bearings,
                                                        double least_range_m,
                                                        double greatest_range_m);

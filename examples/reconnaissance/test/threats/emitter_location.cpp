@@ -141,6 +141,27 @@ TEST_CASE("Where the filter knows the place its north and east are consistent, t
   CHECK(sum / kRuns < bound(0.975));
 }
 
+TEST_CASE("An emitter that is flown towards is not placed where the aircraft is") {
+  Random random(26);
+  int placed = 0;
+  for (int run = 0; run < 30; ++run) {
+    const Local emitter{31'000, 3000 * random.uniform(), 0};
+    const auto bearings = fly(300, emitter, random);
+    for (std::size_t count = 20; count <= bearings.size(); count += 20) {
+      const std::span heard = std::span(bearings).first(count);
+      const double here_m = heard.back().from.north_m;
+      for (const auto& found : {filter_bearings(heard, 17'000, 57'000), triangulate(heard)}) {
+        if (!found) continue;
+        ++placed;
+        INFO("run " << run << " from " << here_m << ": " << found->mean[0] << ' '
+                    << found->mean[1]);
+        REQUIRE(std::hypot(found->mean[0] - here_m, found->mean[1]) > 0.2 * (31'000 - here_m));
+      }
+    }
+  }
+  CHECK(placed > 200);
+}
+
 TEST_CASE("A filter in Cartesian coordinates would be overconfident on the same bearings") {
   Random random(22 + 60);
   double sum = 0;
