@@ -22,8 +22,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kParts_m = 50;
 // So long before an element is abeam its collection is planned, once a second, until it begins.
 constexpr double kAhead_s = 60;
-// Further aside it is not collected; nor from a road that crosses the track, nor in a turn.
-constexpr double kAside_m = 2500;
+// It is not planned for a road that crosses the track, nor in a turn.
 constexpr double kAlong_rad = 0.35;
 constexpr double kLevel_rad = 0.1;
 // Of a pattern that is worth beginning.
@@ -92,9 +91,11 @@ void EoManager::work(Tick tick) {
   if (collection_ && now_s > collection_->begin_s + collection_->plan.seconds) collection_.reset();
   const bool waits = !collection_ || now_s < collection_->begin_s;
   if (state && list && waits && is_due(topic::kElements.period, tick)) {
-    collection_.reset();
-    if (list->next >= 0)
-      prepare(now_s, *state, list->elements.at(static_cast<std::size_t>(list->next)));
+    const recon::Element* next =
+        list->next < 0 ? nullptr : &list->elements.at(static_cast<std::size_t>(list->next));
+    // What is planned stays in a gust, and when it is too late to plan it anew.
+    if (collection_ && (!next || next->name != collection_->element)) collection_.reset();
+    if (next) prepare(now_s, *state, *next);
   }
   if (state && truth && collection_) {
     if (auto image = take(now_s, *state, *truth)) taken.images.push_back(std::move(*image));
@@ -112,8 +113,8 @@ void EoManager::prepare(double now_s, const recon::FlightState& state,
   const Local middle = middle_of(line);
   const Passage pass = passage(aircraft, course_rad, middle);
   const double abeam_s = pass.ahead_m / std::max(speed_m_s, 1.0);
-  if (std::abs(state.bank_rad) > kLevel_rad || abeam_s <= 0 || abeam_s > kAhead_s ||
-      std::abs(pass.offset_m) > kAside_m || !put_along(line, course_rad))
+  if (std::abs(state.bank_rad) > kLevel_rad || !is_ahead(pass) || abeam_s > kAhead_s ||
+      !put_along(line, course_rad))
     return;
   recon::CollectionTask task;
   for (const Local& each : line) task.line.push_back(local_place(each));
@@ -166,8 +167,9 @@ std::optional<recon::Image> EoManager::take(double now_s, const recon::FlightSta
   if (!pointing) return std::nullopt;
   const Attitude believed{state.bank_rad, std::atan2(state.up_m_s, state.airspeed_m_s),
                           state.heading_rad};
-  const GimbalAngles gimbal =
-      point_at(local(frame_, state.position), believed, aim_of(*pointing, time_s));
+  // Between the ends of a road there may be hills.
+  const Local aim = on_ground(ground_, aim_of(*pointing, time_s));
+  const GimbalAngles gimbal = point_at(local(frame_, state.position), believed, aim);
   const CameraPose pose{
       local(frame_, truth.position), {truth.bank_rad, truth.climb_rad, truth.heading_rad}, gimbal};
   const auto shown = footprint(pose, kCamera, ground_);

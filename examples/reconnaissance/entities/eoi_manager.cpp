@@ -19,8 +19,6 @@ namespace {
 constexpr double kOrderedDeviation_m = 50;
 // What was found so near belongs to the element.
 constexpr double kBelongs_m = 200;
-// Further off the course an element is not reached without a turn.
-constexpr double kAhead_rad = 1.2;
 
 double greatest_deviation_m(const Track& track) {
   const Eigen::Matrix2d place = track.estimate.covariance.topLeftCorner<2, 2>();
@@ -91,11 +89,10 @@ std::int32_t EoiManager::choose(Tick tick, const recon::FlightState& state) {
   const double speed_m_s = std::max(1.0, std::hypot(state.north_m_s, state.east_m_s));
   for (const recon::Element& each : elements_) {
     const Passage pass = passage({}, course_rad, middle_of(locals(frame, each.line)));
-    const bool ahead = std::abs(std::atan2(pass.offset_m, pass.ahead_m)) < kAhead_rad;
     choice.elements.push_back({each.priority, each.size_m, each.wanted_ground_sample_m,
                                each.achieved_ground_sample_m,
                                each.deviation_m > 0 ? each.deviation_m : kOrderedDeviation_m,
-                               !each.collected && ahead, pass.ahead_m / speed_m_s});
+                               !each.collected && is_ahead(pass), pass.ahead_m / speed_m_s});
   }
   const bool any = std::ranges::any_of(choice.elements, &recon::ElementOutlook::reachable);
   return any ? ask_policy(choice) : -1;

@@ -34,6 +34,9 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
+// Further aside an element is too coarse in images from the heights that are flown.
+constexpr double kAside_m = 2500;
+
 double length_m(const Local& a, const Local& b) {
   return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
 }
@@ -81,6 +84,10 @@ Passage passage(const Local& aircraft, double course_rad, const Local& place) {
   const double north = place.north_m - aircraft.north_m, east = place.east_m - aircraft.east_m;
   return {north * std::cos(course_rad) + east * std::sin(course_rad),
           east * std::cos(course_rad) - north * std::sin(course_rad)};
+}
+
+bool is_ahead(const Passage& passage) {
+  return passage.ahead_m > 0 && std::abs(passage.offset_m) <= kAside_m;
 }
 
 Local middle_of(const std::vector<Local>& line) {

@@ -39,6 +39,9 @@ struct Passage {
 };
 Passage passage(const Local& aircraft, double course_rad, const Local& place);
 
+/// Whether that is still to come, and near enough for a camera.
+bool is_ahead(const Passage& passage);
+
 /// The middle of a line by its length.
 Local middle_of(const std::vector<Local>& line);
 

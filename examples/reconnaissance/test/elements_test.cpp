@@ -37,6 +37,15 @@ TEST_CASE("a place is passed where it is abeam, to the right or to the left") {
   CHECK(south.offset_m == Approx(-30));
 }
 
+TEST_CASE("an element is ahead until it is abeam, however far aside a camera sees it") {
+  CHECK(is_ahead({20'000, 700}));
+  CHECK(is_ahead({1, 700}));
+  CHECK(is_ahead({1, -2400}));
+  CHECK_FALSE(is_ahead({-1, 700}));
+  CHECK_FALSE(is_ahead({5000, 2600}));
+  CHECK_FALSE(is_ahead({5000, -2600}));
+}
+
 TEST_CASE("the middle of a line is half of its length from either end, its parts are all of it") {
   const std::vector<Local> bend{{0, 0, 10}, {300, 0, 10}, {300, 900, 70}};
   const Local middle = middle_of(bend);
