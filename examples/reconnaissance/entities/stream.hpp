@@ -60,7 +60,7 @@ class Stream {
 
   /// All up to that tick that were not taken before, in order; waits for that of the tick as at()
   /// does. For topics whose samples each say something of their own: published reliably, and taken
-  /// every 25 ticks at least.
+  /// before 16 more have come.
   std::vector<T> take(Tick tick) {
     at(tick);
     std::lock_guard lock(mutex_);
@@ -84,7 +84,8 @@ class Stream {
   }
 
  private:
-  static constexpr std::size_t kKept = 8;
+  // Those of a second where there are ten, and of who is a little ahead.
+  static constexpr std::size_t kKept = 16;
 
   int period_;
   mutable std::mutex mutex_;

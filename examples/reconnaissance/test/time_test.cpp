@@ -180,6 +180,21 @@ TEST_CASE("a stream that lost a sample says so, and has the one before") {
   CHECK(truth.lost() >= 2);
 }
 
+TEST_CASE("who reads a stream of ten samples a second once a second has all of them") {
+  constexpr StreamTopic kTenASecond{"often", 5};
+  Notes notes;
+  const auto entity = make_entity("source");
+  auto samples = entity->publisher<recon::Truth>(kTenASecond.name);
+  const auto other = make_entity("sink");
+  Stream<recon::Truth> truth(*other, kTenASecond, {});
+  REQUIRE(notes.eventually([&] { return samples.subscribers() == 1; }));
+  recon::Truth sample;
+  for (sample.tick = 5; sample.tick <= 60; sample.tick += 5) samples.publish(sample);
+  REQUIRE(truth.at(60, kLimit));
+  CHECK(truth.take(50).size() == 10);
+  CHECK(truth.take(100).size() == 2);
+}
+
 TEST_CASE("time waits for one that works, and goes on without one that leaves") {
   Notes notes;
   std::mutex working;
