@@ -249,9 +249,16 @@ std::vector<Call> calls_of_reconnaissance() {
   const Json route{
       {"number", 1}, {"planner", "nobody"}, {"points", {from, to}}, {"length_m", 13000}};
   const auto request = [&](const Json& through) -> Json {
-    return {{"request", {{"from", from}, {"through", through}, {"limits", limits}}}};
+    return {{"request",
+             {{"tick", 0},
+              {"from", from},
+              {"course_rad", 0.5},
+              {"through", through},
+              {"limits", limits},
+              {"least_survival", 0}}}};
   };
-  const Json order{{"order", {{"runway", runway}, {"points", Json::array({to})}}}, {"tick", 0}};
+  const Json next{{"position", to}, {"straight", false}};
+  const Json order{{"order", {{"runway", runway}}}, {"tick", 0}};
   return {{simulator, "status", nothing, status, ""},
           {simulator, "pause", nothing, nothing, ""},
           {simulator, "step", 50, nothing, ""},
@@ -262,7 +269,7 @@ std::vector<Call> calls_of_reconnaissance() {
           {controller, "take_off", {{"from", runway}, {"tick", 0}}, nothing, ""},
           {controller, "follow", {{"route", route}, {"tick", 0}}, nothing, ""},
           {controller, "land", {{"route", route}, {"to", runway}, {"tick", 0}}, nothing, ""},
-          {navigator, "plan", request(Json::array({to})), route, ""},
+          {navigator, "plan", request(Json::array({next})), route, ""},
           {navigator, "plan", request(Json::array()), {}, "recon::NoRoute"},
           {manager, "begin", order, nothing, ""},
           {manager, "begin", order, {}, refused}};

@@ -14,9 +14,8 @@ namespace {
 
 const std::filesystem::path kMission = project_file("mission_profiles/reconnaissance.xml");
 
-/// One point, near the runway, and on the way back something to be looked at.
-const std::vector<std::string> kShort{"--variable", "points=53.3250 27.3700 500",
-                                      "--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
+/// One element of interest, near the runway.
+const std::vector<std::string> kShort{"--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
                                       "--variable", "objects=53.3089 27.3226 3 0 0"};
 
 std::vector<std::string> with(std::vector<std::string> arguments,
@@ -33,19 +32,22 @@ std::string text_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("thirteen on two vendors take off, fly over a point, and land; the verdict is written") {
+TEST_CASE(
+    "thirteen on two vendors take off, collect an element, and land; the verdict is written") {
   const MissionRun run(kMission, kShort);
   INFO(run.output());
   CHECK(run.exit_code() == 0);
-  for (const char* phase : {"TakeOff", "Ingress", "Egress", "Landing", "Complete"})
+  for (const char* phase : {"TakeOff", "Ingress", "Collection", "Egress", "Landing", "Complete"})
     CHECK_THAT(run.output(), Contains(phase));
   // What its radar transmits is received, classified by a vote, and placed.
-  CHECK_THAT(run.output(), Contains("threat 1: short-range site at 53.4"));
+  CHECK_THAT(run.output(), Contains(": short-range site at 53."));
+  // What is flown is what the mission manager's Head chose.
+  CHECK_THAT(run.output(), Contains("planned: shed"));
   // What is to be seen is seen as finely as it was ordered, by a pattern that a Head chose.
   CHECK_THAT(run.output(), Contains("shed collected: 0."));
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
-  CHECK(verdict["checks"].size() == 7);
+  CHECK(verdict["checks"].size() == 8);
   CHECK_THAT(text_of(run.file("reconnaissance.junit.xml")), Contains("failures=\"0\""));
 }
 

@@ -14,6 +14,8 @@ namespace reconnaissance {
 namespace {
 
 constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
+// Of winds in which turns that were planned are flown as tightly as that.
+constexpr double kTailWind_m_s = 7;
 
 FlightRules rules_of(const skein::ParameterValues& values) {
   FlightRules rules;
@@ -69,7 +71,7 @@ void FlightController::start() {
 
 recon::FlightLimits FlightController::limits() {
   return {rules_.cruise_m_s, rules_.greatest_bank_rad, rules_.greatest_climb_rad,
-          turn_radius_m(rules_.cruise_m_s, rules_.greatest_bank_rad)};
+          turn_radius_m(rules_.cruise_m_s + kTailWind_m_s, rules_.greatest_bank_rad)};
 }
 
 void FlightController::take_off(const recon::Runway& from, std::int64_t tick) {

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
@@ -20,16 +21,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatience = 20s;
 
-recon::MissionOrder order_of(const skein::ParameterValues& values) {
-  recon::MissionOrder order;
-  order.runway = runway(parse_runway(values.get<std::string>("Runway")));
-  for (const Geodetic& point : parse_points(values.get<std::string>("Points")))
-    order.points.push_back(position(point));
-  if (order.points.empty())
-    throw skein::InvalidArgument("parameter 'Points' has no point to fly over");
-  return order;
-}
-
 PassConditions conditions_of(const skein::ParameterValues& values) {
   PassConditions conditions;
   if (const auto longest = values.find<std::chrono::duration<double>>("Longest flight"))
@@ -38,16 +29,16 @@ PassConditions conditions_of(const skein::ParameterValues& values) {
     condition = values.find<double>(name).value_or(condition);
   };
   set(conditions.least_clearance_m, "Least clearance");
-  set(conditions.points_within_m, "Points within");
+  set(conditions.least_survival, "Least survival");
   set(conditions.landed_within_m, "Landed within");
   set(conditions.least_fuel_kg, "Least fuel");
   return conditions;
 }
 
-Judge judge_of(const LocalFrame& frame, const recon::MissionOrder& order,
+Judge judge_of(const LocalFrame& frame, const recon::Runway& runway,
                const skein::ParameterValues& values) {
-  const Local aim = on_centre_line(strip(frame, order.runway), ApproachRules{}.aim_m, 0);
-  return Judge(conditions_of(values), locals(frame, order.points), aim);
+  return Judge(conditions_of(values),
+               on_centre_line(strip(frame, runway), ApproachRules{}.aim_m, 0));
 }
 
 /// Minutes and seconds of the mission.
@@ -79,11 +70,11 @@ void try_writing(const std::filesystem::path& file) {
 
 GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
-      order_(order_of(values)),
+      order_{runway(parse_runway(values.get<std::string>("Runway")))},
       frame_(geodetic(order_.runway.threshold)),
       results_(values.find<std::string>("Results").value_or("reconnaissance")),
       patience_(values.find<skein::Duration>("Patience").value_or(60s)),
-      judge_(judge_of(frame_, order_, values)),
+      judge_(judge_of(frame_, order_.runway, values)),
       truths_(entity.subscription<recon::Truth>(topic::kTruth.name, stream_qos(),
                                                 [this](const recon::Truth& truth) { see(truth); })),
       statuses_(entity.subscription<recon::MissionStatus>(
@@ -98,6 +89,8 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       elements_(entity.subscription<recon::ElementList>(
           topic::kElements.name, skein::TopicQos::state(),
           [this](const recon::ElementList& list) { show(list); })),
+      threat_truths_(entity.subscription<recon::ThreatTruth>(
+          topic::kThreatTruth.name, {}, [this](const recon::ThreatTruth& truth) { see(truth); })),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -182,8 +175,9 @@ void GroundStation::see(const recon::Truth& truth) {
 void GroundStation::show(const recon::MissionStatus& status) {
   {
     std::lock_guard lock(mutex_);
-    if (phase_ == status.phase) return;
+    if (phase_ == status.phase && reason_ == status.reason) return;
     phase_ = status.phase;
+    reason_ = status.reason;
   }
   changed_.notify_all();
   fmt::print("{}  {}: {}\n", clock_of(status.tick), to_string(status.phase), status.reason);
@@ -214,7 +208,17 @@ void GroundStation::show(const recon::ThreatPicture& picture) {
   std::fflush(stdout);
 }
 
+void GroundStation::see(const recon::ThreatTruth& truth) {
+  std::lock_guard lock(mutex_);
+  if (!judge_.standing()) judge_.suffer(truth.survival, truth.tracked_s);
+}
+
 void GroundStation::show(const recon::ElementList& list) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto collected = std::ranges::count_if(list.elements, &recon::Element::collected);
+    judge_.count(static_cast<std::size_t>(collected), list.elements.size());
+  }
   for (const recon::Element& element : list.elements) {
     {
       std::lock_guard lock(mutex_);

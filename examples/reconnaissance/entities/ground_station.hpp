@@ -33,6 +33,7 @@ class GroundStation {
   void show(const recon::MissionMode& mode);
   void show(const recon::ThreatPicture& picture);
   void show(const recon::ElementList& list);
+  void see(const recon::ThreatTruth& truth);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
@@ -50,6 +51,7 @@ class GroundStation {
   std::condition_variable_any changed_;
   Judge judge_;
   std::optional<recon::Phase> phase_;
+  std::string reason_;  // that was shown
   recon::Mode mode_ = recon::Mode::Starting;
   std::set<std::uint32_t> threats_;  // that were shown, as were
   std::set<std::string> collected_;
@@ -61,6 +63,7 @@ class GroundStation {
   skein::Subscription<recon::MissionMode> modes_;
   skein::Subscription<recon::ThreatPicture> pictures_;
   skein::Subscription<recon::ElementList> elements_;
+  skein::Subscription<recon::ThreatTruth> threat_truths_;
   Member member_;
 };
 

@@ -1,8 +1,15 @@
 #include "mission_manager.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "convert.hpp"
+#include "deciding.hpp"
 #include "skein/error.hpp"
 #include "topics.hpp"
+#include "tour_csps.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -11,6 +18,18 @@ using namespace std::chrono_literals;
 
 // Its providers have reported that they are ready.
 constexpr auto kPatience = 20s;
+// Above the runway: higher than any hill, by as much as the camera likes.
+constexpr double kCollectionHeight_m = 750;
+constexpr double kLeastSurvival = 0.97;
+constexpr double kEndurance_s = 3600;
+// Of a site, within as much more as its place is uncertain.
+constexpr double kKills_per_s = 0.02;
+constexpr double kDeviations = 2;
+constexpr double kFurthestOff_m = 1500;
+// What bars a way: less is the uncertainty of a place that moves.
+constexpr double kBarringHazard = 0.03;
+// An element that is missed is passed once more.
+constexpr int kTries = 2;
 
 recon::Phase phase_of(MissionPhase phase) {
   switch (phase) {
@@ -20,8 +39,8 @@ recon::Phase phase_of(MissionPhase phase) {
       return recon::Phase::TakeOff;
     case MissionPhase::Ingress:
       return recon::Phase::Ingress;
-    case MissionPhase::Legs:
-      return recon::Phase::Legs;
+    case MissionPhase::Collection:
+      return recon::Phase::Collection;
     case MissionPhase::Egress:
       return recon::Phase::Egress;
     case MissionPhase::Landing:
@@ -54,19 +73,40 @@ Pilot::Mode mode_of(recon::FlightMode mode) {
   return Pilot::Mode::Landed;
 }
 
+std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const LocalFrame& frame) {
+  std::vector<ThreatDisc> discs;
+  for (const recon::Threat& threat : picture.threats) {
+    if (threat.lethal_range_m == 0) continue;
+    const Local site = local(frame, threat.position);
+    const double off_m = std::min(kDeviations * threat.deviation_m, kFurthestOff_m);
+    discs.push_back({site.north_m, site.east_m, threat.lethal_range_m + off_m, kKills_per_s});
+  }
+  return discs;
+}
+
+recon::TourPass tour_pass(const CollectionPass& pass) {
+  return {route_pose(pass.begin), route_pose(pass.end), pass.cost.seconds, pass.cost.fuel_kg,
+          pass.cost.hazard};
+}
+
 }  // namespace
 
 MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
+      fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
       flight_(entity, topic::kFlightState),
       mode_(entity, topic::kMode, skein::TopicQos::state()),
+      pictures_(entity, topic::kThreats, skein::TopicQos::state()),
+      elements_(entity, topic::kElements, skein::TopicQos::state()),
       status_(entity.publisher<recon::MissionStatus>(topic::kStatus, skein::TopicQos::state())),
       member_(entity, values, [this](Tick tick) { manage(tick); }) {}
 
 void MissionManager::start() {
-  navigator_ = entity_.connect<recon::INavigator>({.timeout = kPatience});
+  navigator_ = entity_.connect<recon::INavigator>({.timeout = kUnlessItHangs});
   controller_ = entity_.connect<recon::IFlightController>({.timeout = kPatience});
   limits_ = controller_->limits();
+  cruise_.speed_m_s = limits_.speed_m_s;
+  cruise_.turn_radius_m = limits_.turn_radius_m;
   member_.start();
 }
 
@@ -77,28 +117,145 @@ void MissionManager::begin(const recon::MissionOrder& order, std::int64_t tick) 
   begins_ = tick + 1;
 }
 
+bool MissionManager::take_order(Tick tick) {
+  if (conduct_) return true;
+  std::lock_guard lock(mutex_);
+  if (!order_ || tick < begins_) return false;
+  runway_ = order_->runway;
+  frame_.emplace(geodetic(runway_.threshold));
+  conduct_.emplace(strip(*frame_, runway_));
+  return true;
+}
+
 void MissionManager::manage(Tick tick) {
-  if (!conduct_) {
-    std::lock_guard lock(mutex_);
-    if (!order_ || tick < begins_) return;
-    runway_ = order_->runway;
-    points_ = order_->points.size();
-    frame_.emplace(geodetic(runway_.threshold));
-    conduct_.emplace(strip(*frame_, runway_), locals(*frame_, order_->points));
-  }
+  if (!take_order(tick)) return;
   const auto state = flight_.at(tick);
   if (!state) return;
+  const Conduct::Situation now = situation(tick, *state);
+  if (const auto elements = elements_.at(tick)) {
+    if (const Order order = reconsider(*state, *elements, now)) {
+      carry_out(*order, tick, *state);
+      return tell(tick);
+    }
+  }
+  if (const Order order = conduct_->decide(now)) carry_out(*order, tick, *state);
+  tell(tick);
+}
+
+Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState& state) {
+  if (const auto picture = pictures_.at(tick)) threats_ = discs_of(*picture, *frame_);
   const auto mode = mode_.at(tick);
   Conduct::Situation now;
   now.all_fine = mode && mode->mode == recon::Mode::Normal;
-  now.mode = mode_of(state->mode);
-  now.height_m = state->position.height_m;
-  if (state->route == route_) {
-    now.leg = state->leg;
-    now.legs = state->legs;
+  now.mode = mode_of(state.mode);
+  now.height_m = state.position.height_m;
+  if (state.route != route_.number) return now;
+  now.leg = state.leg;
+  now.legs = state.legs;
+  // The points that were asked for stand in the route among those that lead to them.
+  for (std::size_t i = 1; i <= state.leg && i < route_.points.size(); ++i) {
+    const bool asked = now.reached < through_.size() &&
+                       route_.points[i] == position(*frame_, through_[now.reached].place);
+    if (asked) ++now.reached;
   }
-  if (const auto order = conduct_->decide(now)) carry_out(*order, tick, *state);
-  tell(tick);
+  // Two points for each element; on the way home there are none.
+  while (passed_ < tour_.size() && now.reached >= 2 * (passed_ + 1)) ++tries_[tour_[passed_++]];
+  return now;
+}
+
+MissionManager::Order MissionManager::reconsider(const recon::FlightState& state,
+                                                 const recon::ElementList& elements,
+                                                 const Conduct::Situation& now) {
+  const MissionPhase phase = conduct_->phase();
+  if (phase == MissionPhase::BuiltInTest)
+    return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
+  const bool barred = now.legs > 0 && is_barred(state);
+  if (phase == MissionPhase::Egress)
+    return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
+  if (phase != MissionPhase::Ingress && phase != MissionPhase::Collection) return {};
+  if (barred) return tour(state, elements, "a threat bars the way");
+  const bool flown = now.legs > 0 && now.leg >= now.legs;
+  const bool missed = std::ranges::any_of(elements.elements, [&](const recon::Element& each) {
+    return !each.collected && tries_[each.name] < kTries;
+  });
+  return flown && missed ? tour(state, elements, "an element was missed") : Order{};
+}
+
+/// Whether the rest of the route leads through what a weapon reaches, where a way around would be
+/// another one than was taken with what was known then.
+bool MissionManager::is_barred(const recon::FlightState& state) const {
+  std::vector<Local> rest{local(*frame_, state.position)};
+  for (std::size_t i = state.leg + 1; i < route_.points.size(); ++i)
+    rest.push_back(local(*frame_, route_.points[i]));
+  return hazard_of_way(rest, threats_, cruise_.speed_m_s) > barring_hazard_;
+}
+
+MissionManager::Order MissionManager::tour(const recon::FlightState& state,
+                                           const recon::ElementList& elements,
+                                           const std::string& why) {
+  recon::TourProblem problem;
+  const Local here = local(*frame_, state.position);
+  const WayPoint home = approach(strip(*frame_, runway_), {}).front();
+  problem.start = {here.north_m, here.east_m, state.heading_rad};
+  problem.landing = {home.place.north_m, home.place.east_m, runway_.course_rad};
+  // At both ends of a pass there has to be room for a turn.
+  std::vector<ThreatDisc> wide = threats_;
+  for (ThreatDisc& each : wide) each.radius_m += cruise_.turn_radius_m;
+  for (const recon::Element& each : elements.elements) {
+    if (each.collected || tries_[each.name] >= kTries) continue;
+    recon::TourTask& task = problem.tasks.emplace_back(each.name, each.priority);
+    for (const CollectionPass& pass : passes_by(locals(*frame_, each.line), wide, cruise_))
+      task.passes.push_back(tour_pass(pass));
+  }
+  for (const ThreatDisc& each : threats_)
+    problem.weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
+  problem.speed_m_s = cruise_.speed_m_s;
+  problem.turn_radius_m = cruise_.turn_radius_m;
+  problem.fuel_kg_s = cruise_.fuel_kg_s;
+  problem.endurance_s = kEndurance_s;
+  problem.fuel_kg = state.fuel_kg - fuel_reserve_kg_;
+  problem.least_survival = kLeastSurvival;
+
+  const auto found = problem.tasks.empty() ? std::nullopt : ask_tour(problem);
+  std::vector<WayPoint> points;
+  tour_.clear();
+  passed_ = 0;
+  const double height_m = runway_.threshold.height_m + kCollectionHeight_m;
+  for (const recon::TourStop& stop : found ? found->stops : std::vector<recon::TourStop>{}) {
+    const recon::TourTask& task = problem.tasks.at(stop.task);
+    const recon::TourPass& pass = task.passes.at(stop.pass);
+    points.push_back({{pass.begin.north_m, pass.begin.east_m, height_m}, false});
+    points.push_back({{pass.end.north_m, pass.end.east_m, height_m}, true});
+    tour_.push_back(task.element);
+  }
+  return conduct_->fly(
+      points, fmt::format("{}: {}", why,
+                          tour_.empty() ? "home" : fmt::format("{}", fmt::join(tour_, ", "))));
+}
+
+std::optional<recon::Tour> MissionManager::ask_tour(const recon::TourProblem& problem) {
+  skein::Task<recon::ITourPlanner, recon::Tour> task;
+  task.request = "tour";
+  task.features = {{"elements", static_cast<double>(problem.tasks.size())},
+                   {"weapons", static_cast<double>(problem.weapons.size())}};
+  task.run = [&](recon::ITourPlanner::Proxy& planner, skein::Duration) {
+    return planner.plan(problem);
+  };
+  task.evaluate.check("is a tour", [&](const recon::Tour& tour) -> std::optional<std::string> {
+    for (const recon::TourStop& stop : tour.stops) {
+      if (stop.task >= problem.tasks.size() || stop.pass >= problem.tasks[stop.task].passes.size())
+        return "it has a stop that nobody asked for";
+    }
+    return std::nullopt;
+  });
+  task.evaluate.check(
+      "keeps the limits", [&](const recon::Tour& tour) -> std::optional<std::string> {
+        if (tour.fuel_kg <= problem.fuel_kg && tour.seconds <= problem.endurance_s &&
+            std::exp(-tour.hazard) >= problem.least_survival - 1e-9)
+          return std::nullopt;
+        return "it takes more fuel, time or risk than there is";
+      });
+  return decide(entity_, task);
 }
 
 void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
@@ -108,9 +265,10 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
     if (std::holds_alternative<Conduct::TakeOff>(order)) {
       controller_->take_off(runway_, tick);
     } else if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
-      controller_->follow(ask_route(follow->through, state), tick);
+      controller_->follow(ask_route(follow->through, tick, state, kLeastSurvival), tick);
     } else {
-      controller_->land(ask_route(std::get<Conduct::Land>(order).through, state), runway_, tick);
+      controller_->land(ask_route(std::get<Conduct::Land>(order).through, tick, state, 0), runway_,
+                        tick);
     }
     return;
   } catch (const recon::NoRoute& error) {
@@ -123,18 +281,27 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
   if (const auto instead = conduct_->refused(refusal)) carry_out(*instead, tick, state);
 }
 
-recon::Route MissionManager::ask_route(const std::vector<Local>& through,
-                                       const recon::FlightState& state) {
-  const auto route = navigator_->plan({state.position, positions(*frame_, through), limits_});
-  route_ = route.number;
-  return route;
+recon::Route MissionManager::ask_route(const std::vector<WayPoint>& through, Tick tick,
+                                       const recon::FlightState& state, double least_survival) {
+  recon::RouteRequest request{tick, state.position, std::atan2(state.east_m_s, state.north_m_s),
+                              {},   limits_,        least_survival};
+  for (const WayPoint& each : through)
+    request.through.push_back({position(*frame_, each.place), each.straight});
+  if (conduct_->phase() == MissionPhase::Egress) tour_.clear();
+  route_ = navigator_->plan(request);
+  through_ = through;
+  // What remains of a way that leads around as well as it can bars nothing.
+  std::vector<Local> way = locals(*frame_, route_.points);
+  barring_hazard_ = hazard_of_way(way, threats_, cruise_.speed_m_s) + kBarringHazard;
+  return route_;
 }
 
 void MissionManager::tell(Tick tick) {
   recon::MissionStatus status{tick, phase_of(conduct_->phase()), conduct_->reason(),
-                              static_cast<std::uint32_t>(conduct_->points_reached()),
-                              static_cast<std::uint32_t>(points_)};
-  if (told_ && told_->phase == status.phase && told_->points_reached == status.points_reached)
+                              static_cast<std::uint32_t>(conduct_->points_reached() / 2),
+                              static_cast<std::uint32_t>(conduct_->tour().size() / 2)};
+  if (told_ && told_->phase == status.phase && told_->passed == status.passed &&
+      told_->reason == status.reason)
     return;
   told_ = status;
   status_.publish(status);

@@ -1,20 +1,29 @@
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
 #include "mission/conduct.hpp"
+#include "planning/threat_discs.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "targets.idl.hpp"
+#include "threats.idl.hpp"
+#include "tour.idl.hpp"
 
 namespace reconnaissance {
 
-/// Leads the mission through its phases: asks the navigator for routes, and orders the flight
-/// controller to fly them.
+/// Leads the mission through its phases. Which elements are collected, in which order and past
+/// which side, its CSPs plan and its Head chooses; again when a threat bars the way, and when an
+/// element was missed. The navigator makes routes of it, which the flight controller is ordered to
+/// fly.
 class MissionManager : public recon::IMissionManager {
  public:
   MissionManager(skein::Entity& entity, const skein::ParameterValues& values);
@@ -23,16 +32,29 @@ class MissionManager : public recon::IMissionManager {
   void begin(const recon::MissionOrder& order, std::int64_t tick) override;
 
  private:
+  using Order = std::optional<Conduct::Order>;
+
   void manage(Tick tick);
+  bool take_order(Tick tick);
+  Conduct::Situation situation(Tick tick, const recon::FlightState& state);
+  /// What is to be flown in place of what was, if anything.
+  Order reconsider(const recon::FlightState& state, const recon::ElementList& elements,
+                   const Conduct::Situation& now);
+  Order tour(const recon::FlightState& state, const recon::ElementList& elements,
+             const std::string& why);
+  std::optional<recon::Tour> ask_tour(const recon::TourProblem& problem);
+  bool is_barred(const recon::FlightState& state) const;
   void carry_out(const Conduct::Order& order, Tick tick, const recon::FlightState& state);
-  recon::Route ask_route(const std::vector<Local>& through, const recon::FlightState& state);
+  recon::Route ask_route(const std::vector<WayPoint>& through, Tick tick,
+                         const recon::FlightState& state, double least_survival);
   void tell(Tick tick);
 
   skein::Entity& entity_;
   std::optional<recon::INavigator::Proxy> navigator_;
   std::optional<recon::IFlightController::Proxy> controller_;
   recon::FlightLimits limits_;
-  std::uint32_t route_ = 0;  // that was ordered last
+  CruiseFigures cruise_;
+  double fuel_reserve_kg_;
 
   std::mutex mutex_;
   std::optional<recon::MissionOrder> order_;
@@ -42,11 +64,19 @@ class MissionManager : public recon::IMissionManager {
   std::optional<LocalFrame> frame_;
   std::optional<Conduct> conduct_;
   recon::Runway runway_;
-  std::size_t points_ = 0;
+  recon::Route route_;                // that was ordered last
+  std::vector<WayPoint> through_;     // what it was to lead over
+  std::vector<ThreatDisc> threats_;   // as last seen
+  double barring_hazard_ = 0;         // of the rest of the route, from which on it is barred
+  std::vector<std::string> tour_;     // the elements that it passes,
+  std::size_t passed_ = 0;            // of which so many were passed
+  std::map<std::string, int> tries_;  // and how often, each
   std::optional<recon::MissionStatus> told_;
 
   Stream<recon::FlightState> flight_;
   Stream<recon::MissionMode> mode_;
+  Stream<recon::ThreatPicture> pictures_;
+  Stream<recon::ElementList> elements_;
   skein::Publisher<recon::MissionStatus> status_;
   Member member_;
 };

@@ -1,79 +1,236 @@
 #include "navigator.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "convert.hpp"
+#include "deciding.hpp"
 #include "flight/angles.hpp"
+#include "planning/threat_discs.hpp"
+#include "planning/turns.hpp"
 #include "skein/error.hpp"
-#include "skein/head.hpp"
+#include "topics.hpp"
 
 namespace reconnaissance {
 namespace {
 
-/// Why a route does not do what was asked for; nothing if it does.
-std::optional<std::string> misses_points(const recon::RouteRequest& request,
-                                         const recon::Route& route) {
-  std::size_t found = 0;
-  for (const recon::Position& point : route.points)
-    if (found < request.through.size() && point == request.through[found]) ++found;
-  if (found == request.through.size()) return std::nullopt;
-  return fmt::format("it does not lead over point {} of {}", found + 1, request.through.size());
+// Above the ground, but for straight ways.
+constexpr double kLeastHeight_m = 250;
+constexpr double kHighest_m = 4000;
+constexpr double kShareOfClimb = 0.9;
+// Of a site that stands where it is thought to be.
+constexpr double kMast_m = 10;
+constexpr double kKills_per_s = 0.02;
+// Metres of detour that an expected kill is worth: more than any way around.
+constexpr double kKillWeight_m = 1e6;
+// Expected kills, by which turns that are flown may be worse than the way that a planner found.
+constexpr double kTurnHazard = 1e-3;
+// A site that is badly placed may be anywhere within that of its error, up to a limit.
+constexpr double kDeviations = 2;
+constexpr double kFurthestOff_m = 1500;
+
+AE_navigator::Position in_tile(const Tile& tile, const recon::Position& place) {
+  const Local at = tile.to_tile(geodetic(place));
+  return {at.north_m, at.east_m, at.height_m};
 }
 
-std::optional<std::string> climbs_too_steeply(const recon::RouteRequest& request,
-                                              const recon::Route& route) {
-  const LocalFrame frame(geodetic(request.from));
-  for (std::size_t i = 1; i < route.points.size(); ++i) {
-    const Local from = local(frame, route.points[i - 1]), to = local(frame, route.points[i]);
+/// Why a route does not lead from end to end of a problem; nothing if it does.
+std::optional<std::string> misses_an_end(const AE_navigator::Problem& problem,
+                                         const AE_navigator::Route& route) {
+  if (route.waypoints.size() >= 2 && route.waypoints.front() == problem.start &&
+      route.waypoints.back() == problem.goal)
+    return std::nullopt;
+  return "it does not lead from the start to the goal";
+}
+
+std::optional<std::string> climbs_too_steeply(const AE_navigator::Problem& problem,
+                                              const AE_navigator::Route& route) {
+  for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
+    const auto &from = route.waypoints[i - 1], &to = route.waypoints[i];
     const double level = std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
-    const double climb = std::atan2(to.height_m - from.height_m, level);
-    if (std::abs(climb) > request.limits.greatest_climb_rad)
-      return fmt::format("leg {} climbs {:.1f} degrees, more than the aircraft can", i,
-                         degrees(climb));
+    const double climb_deg = degrees(std::atan2(to.altitude_m - from.altitude_m, level));
+    if (!(std::abs(climb_deg) <= problem.limits.maximum_climb_angle_deg + 0.1))
+      return fmt::format("leg {} climbs {:.1f} degrees, more than the aircraft can", i, climb_deg);
   }
   return std::nullopt;
+}
+
+/// By the discs on the map, not by what the planner says of its route; both in the tile.
+double hazard_of(const AE_navigator::Problem& problem, const std::vector<Local>& way) {
+  std::vector<ThreatDisc> discs;
+  for (const AE_navigator::MissileSite& site : problem.missile_sites)
+    discs.push_back({site.site.north_m, site.site.east_m, site.range_m, site.kills_per_second});
+  return hazard_of_way(way, discs, problem.limits.speed_m_s);
+}
+
+Local place(const AE_navigator::Position& in_tile) {
+  return {in_tile.north_m, in_tile.east_m, in_tile.altitude_m};
+}
+
+double course_rad(const Local& from, const Local& to) {
+  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
 }
 
 }  // namespace
 
 Navigator::Navigator(skein::Entity& entity, const skein::ParameterValues& values)
-    : entity_(entity), member_(entity, values) {}
+    : entity_(entity),
+      frame_(parse_runway(values.get<std::string>("Runway")).threshold),
+      ground_(ground_of(values)),
+      tile_(parse_runway(values.get<std::string>("Runway")).threshold),
+      threats_(entity, topic::kThreats, skein::TopicQos::state()),
+      member_(entity, values) {
+  // Planners read terrain from files: beside the mission's results, and for this process alone.
+  const auto folder = std::filesystem::absolute(fmt::format("ground-{}", getpid()));
+  std::filesystem::create_directories(folder);
+  terrain_ = folder / tile_.file_name();
+  tile_.write(terrain_, frame_, ground_);
+}
+
+Navigator::~Navigator() {
+  std::error_code ignored;
+  std::filesystem::remove_all(std::filesystem::path(terrain_).parent_path(), ignored);
+}
 
 recon::Route Navigator::plan(const recon::RouteRequest& request) {
-  skein::Task<recon::IRoutePlanner, recon::Route> task;
-  task.request = fmt::format("route {}", routes_ + 1);
-  task.features = {{"points", static_cast<double>(request.through.size())}};
-  task.run = [&](recon::IRoutePlanner::Proxy& planner, skein::Duration) {
-    return planner.plan(request);
+  if (request.through.empty()) throw recon::NoRoute("there is no point to fly over");
+  AE_navigator::Problem problem = problem_of(request);
+  recon::Route route;
+  route.points = {request.from};
+  double course = request.course_rad;
+  for (std::size_t i = 0; i < request.through.size(); ++i) {
+    const recon::WayPoint& next = request.through[i];
+    if (!next.straight) {
+      pose(problem, route.points.back(), next.position);
+      const AE_navigator::Route found = ask_planner(problem, request.least_survival);
+      std::vector<Local> way{local(frame_, route.points.back())};
+      for (std::size_t j = 1; j + 1 < found.waypoints.size(); ++j)
+        way.push_back(frame_.to_local(tile_.to_geodetic(place(found.waypoints[j]))));
+      way.push_back(local(frame_, next.position));
+      if (i + 1 < request.through.size() && request.through[i + 1].straight) {
+        const Local onto = local(frame_, request.through[i + 1].position);
+        way = onto_course(problem, way, course, course_rad(way.back(), onto),
+                          request.limits.turn_radius_m);
+      }
+      for (std::size_t j = 1; j + 1 < way.size(); ++j)
+        route.points.push_back(position(frame_, way[j]));
+      route.planner = found.planner;
+    }
+    route.points.push_back(next.position);
+    const auto last = route.points.end();
+    course = course_rad(local(frame_, last[-2]), local(frame_, last[-1]));
+  }
+  const auto points = locals(frame_, route.points);
+  for (std::size_t i = 1; i < points.size(); ++i)
+    route.length_m += std::hypot(points[i].north_m - points[i - 1].north_m,
+                                 points[i].east_m - points[i - 1].east_m);
+  route.number = ++routes_;
+  return route;
+}
+
+/// With its turns, unless they lead into what the planner's way leads around.
+std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
+                                          const std::vector<Local>& way, double begin_course_rad,
+                                          double end_course_rad, double radius_m) const {
+  std::vector<Local> turned = with_turns(way, begin_course_rad, end_course_rad, radius_m);
+  for (std::size_t i = 1; i + 1 < turned.size(); ++i)
+    turned[i].height_m =
+        std::max(turned[i].height_m, ground_(turned[i].north_m, turned[i].east_m) + kLeastHeight_m);
+  const auto hazard = [&](const std::vector<Local>& of) {
+    std::vector<Local> in_tile;
+    for (const Local& each : of) in_tile.push_back(tile_.to_tile(frame_.to_geodetic(each)));
+    return hazard_of(problem, in_tile);
   };
-  task.evaluate.check("leads over all points",
-                      [&](const recon::Route& route) { return misses_points(request, route); });
-  task.evaluate.check("can be climbed", [&](const recon::Route& route) {
-    return climbs_too_steeply(request, route);
+  return hazard(turned) > hazard(way) + kTurnHazard ? way : turned;
+}
+
+/// From end to end: as high as it wants to be there, or as the aircraft can be. It goes on climbing
+/// then.
+void Navigator::pose(AE_navigator::Problem& problem, const recon::Position& from,
+                     const recon::Position& to) const {
+  problem.start = in_tile(tile_, from);
+  problem.goal = in_tile(tile_, to);
+  const Local at = local(frame_, from);
+  problem.start.altitude_m =
+      std::max(problem.start.altitude_m, ground_(at.north_m, at.east_m) + kLeastHeight_m + 1);
+  const double level_m = std::hypot(problem.goal.north_m - problem.start.north_m,
+                                    problem.goal.east_m - problem.start.east_m);
+  const double most_m =
+      kShareOfClimb * level_m * std::tan(radians(problem.limits.maximum_climb_angle_deg));
+  problem.goal.altitude_m = std::clamp(problem.goal.altitude_m, problem.start.altitude_m - most_m,
+                                       problem.start.altitude_m + most_m);
+}
+
+/// Without its ends.
+AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) {
+  AE_navigator::Problem problem;
+  problem.terrain = terrain_;
+  problem.minimum_height_above_ground_m = kLeastHeight_m;
+  problem.limits = {request.limits.speed_m_s, degrees(request.limits.greatest_climb_rad) * 0.9,
+                    degrees(request.limits.greatest_bank_rad), kHighest_m};
+  problem.kill_weight_m = kKillWeight_m;
+  const auto picture = threats_.at(request.tick);
+  if (!picture) return problem;
+  for (const recon::Threat& threat : picture->threats) {
+    if (threat.lethal_range_m == 0) continue;
+    const auto site = in_tile(tile_, threat.position);
+    const double off_m = std::min(kDeviations * threat.deviation_m, kFurthestOff_m);
+    problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
+                                     {site.north_m, site.east_m},
+                                     kMast_m,
+                                     (threat.lethal_range_m + off_m) * (1 + Tile::kLargestError),
+                                     kKills_per_s});
+  }
+  return problem;
+}
+
+AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
+                                           double least_survival) {
+  skein::Task<AE_navigator::IPlanner, AE_navigator::Route> task;
+  task.request = fmt::format("route {}", routes_ + 1);
+  task.features = {{"threats", static_cast<double>(problem.missile_sites.size())},
+                   {"length_m", std::hypot(problem.goal.north_m - problem.start.north_m,
+                                           problem.goal.east_m - problem.start.east_m)}};
+  task.run = [&](AE_navigator::IPlanner::Proxy& planner, skein::Duration) {
+    return planner.plan(problem);
+  };
+  task.evaluate.check("leads from end to end", [&](const AE_navigator::Route& route) {
+    return misses_an_end(problem, route);
   });
+  task.evaluate.check("can be climbed", [&](const AE_navigator::Route& route) {
+    return climbs_too_steeply(problem, route);
+  });
+  // That no way leads around is no planner's fault.
+  task.evaluate.admitted("survives",
+                         [&](const AE_navigator::Route& route) -> std::optional<std::string> {
+                           std::vector<Local> way;
+                           for (const AE_navigator::Position& each : route.waypoints)
+                             way.push_back(place(each));
+                           const double survival = std::exp(-hazard_of(problem, way));
+                           if (survival >= least_survival) return std::nullopt;
+                           return fmt::format("it survives with {:.2f}", survival);
+                         });
   try {
-    recon::Route route = entity_.head().perform(task);
-    route.number = ++routes_;
-    return route;
+    return entity_.head().perform(task, nullptr, kUnlessItHangs);
+  } catch (const AE_navigator::NoRoute& refusal) {
+    throw recon::NoRoute(refusal.reason);
+  } catch (const AE_navigator::InvalidProblem& refusal) {
+    throw recon::NoRoute(refusal.reason);
   } catch (const skein::Error& error) {
     throw recon::NoRoute(error.what());
   }
 }
 
-recon::Route FixedLegs::plan(const recon::RouteRequest& request) {
-  if (request.through.empty()) throw recon::NoRoute("there is no point to fly over");
-  const LocalFrame frame(geodetic(request.from));
-  recon::Route route;
-  route.planner = "FixedLegs";
-  route.points = {request.from};
-  route.points.insert(route.points.end(), request.through.begin(), request.through.end());
-  const auto points = locals(frame, route.points);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    route.length_m += std::hypot(points[i].north_m - points[i - 1].north_m,
-                                 points[i].east_m - points[i - 1].east_m);
-  }
+AE_navigator::Route StraightAhead::plan(const AE_navigator::Problem& problem) {
+  AE_navigator::Route route;
+  route.planner = "StraightAhead";
+  route.waypoints = {problem.start, problem.goal};
+  route.length_m = std::hypot(problem.goal.north_m - problem.start.north_m,
+                              problem.goal.east_m - problem.start.east_m);
   return route;
 }
 

@@ -1,33 +1,56 @@
 #pragma once
 
 #include <atomic>
+#include <string>
+#include <vector>
 
+#include "geodesy/hills.hpp"
+#include "geodesy/local_frame.hpp"
+#include "geodesy/tile.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
+#include "navigator.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
+#include "stream.hpp"
+#include "threats.idl.hpp"
 
 namespace reconnaissance {
 
-/// Plans routes. Holds no planner itself: its CSPs plan, and its Head chooses among them and checks
-/// what they make.
+/// Plans routes around what the threat picture shows. Holds no planner itself: its CSPs plan, and
+/// its Head chooses among them and checks what they make.
 class Navigator : public recon::INavigator {
  public:
   Navigator(skein::Entity& entity, const skein::ParameterValues& values);
+  ~Navigator();
   void start() { member_.start(); }
 
   recon::Route plan(const recon::RouteRequest& request) override;
 
  private:
+  AE_navigator::Problem problem_of(const recon::RouteRequest& request);
+  void pose(AE_navigator::Problem& problem, const recon::Position& from,
+            const recon::Position& to) const;
+  AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
+  std::vector<Local> onto_course(const AE_navigator::Problem& problem,
+                                 const std::vector<Local>& way, double begin_course_rad,
+                                 double end_course_rad, double radius_m) const;
+
   skein::Entity& entity_;
+  LocalFrame frame_;
+  Hills ground_;
+  Tile tile_;
+  std::string terrain_;
   std::atomic<std::uint32_t> routes_{0};
+
+  Stream<recon::ThreatPicture> threats_;
   Member member_;
 };
 
-/// The straight legs from point to point, as they are ordered: a CSP of the navigator.
-class FixedLegs : public recon::IRoutePlanner {
+/// Straight ahead, whatever is there: the navigator's CSP for want of a better one.
+class StraightAhead : public AE_navigator::IPlanner {
  public:
-  recon::Route plan(const recon::RouteRequest& request) override;
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override;
 };
 
 }  // namespace reconnaissance

@@ -19,6 +19,7 @@
 #include "skein/entity.hpp"
 #include "target_csps.hpp"
 #include "threat_simulator.hpp"
+#include "tour_csps.hpp"
 
 using skein::ComponentRegistry;
 using skein::Entity;
@@ -66,9 +67,12 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::IGuidance, CarrotGuidance>(registry, "Carrot");
 
   add_body<recon::INavigator, Navigator>(registry, "Navigator");
-  add_csp<recon::IRoutePlanner, FixedLegs>(registry, "FixedLegs");
+  add_csp<AE_navigator::IPlanner, StraightAhead>(registry, "StraightAhead");
 
   add_body<recon::IMissionManager, MissionManager>(registry, "MissionManager");
+  add_csp<recon::ITourPlanner, TourPlanner>(registry, "Exact", &exact_plan);
+  add_csp<recon::ITourPlanner, TourPlanner>(registry, "BranchAndBound", &bounded_search);
+  add_csp<recon::ITourPlanner, TourPlanner>(registry, "Heuristic", &heuristic_plan);
 
   add_activity<Nhp>(registry, "Nhp");
   add_activity<EoManager>(registry, "EoManager");

@@ -12,10 +12,11 @@ constexpr double kClimbedOut_m = 150;
 
 }  // namespace
 
-std::vector<Local> approach(const Strip& strip, const ApproachRules& rules) {
+std::vector<WayPoint> approach(const Strip& strip, const ApproachRules& rules) {
   const double height = (rules.final_m + rules.aim_m) * std::tan(rules.slope_rad);
-  return {on_centre_line(strip, -rules.intercept_m, height),
-          on_centre_line(strip, -rules.final_m, height), on_centre_line(strip, rules.aim_m, 0)};
+  return {{on_centre_line(strip, -rules.intercept_m, height), false},
+          {on_centre_line(strip, -rules.final_m, height), true},
+          {on_centre_line(strip, rules.aim_m, 0), true}};
 }
 
 std::optional<Conduct::Order> Conduct::decide(const Situation& situation) {
@@ -29,19 +30,18 @@ std::optional<Conduct::Order> Conduct::decide(const Situation& situation) {
       if (situation.mode != Pilot::Mode::TakingOff ||
           situation.height_m < strip_.threshold.height_m + kClimbedOut_m)
         return std::nullopt;
-      if (points_.empty()) return go_home("there is no point to fly over");
-      enter(MissionPhase::Ingress, "the aircraft has climbed out");
-      return Follow{{points_.front()}};
+      if (tour_.empty()) return go_home("there is nothing to collect");
+      enter(MissionPhase::Ingress, why_this_tour_);
+      return Follow{tour_};
     case MissionPhase::Ingress:
+      reached_ = situation.reached;
+      if (reached_ == 0 && !flown) return std::nullopt;
+      enter(MissionPhase::Collection, "the first element is near");
+      return std::nullopt;
+    case MissionPhase::Collection:
+      reached_ = situation.reached;
       if (!flown) return std::nullopt;
-      reached_ = 1;
-      if (points_.size() == 1) return go_home("the only point is reached");
-      enter(MissionPhase::Legs, "the first point is reached");
-      return Follow{{points_.begin() + 1, points_.end()}};
-    case MissionPhase::Legs:
-      reached_ = std::max(reached_, std::min(1 + situation.leg, points_.size()));
-      if (!flown) return std::nullopt;
-      return go_home("the last point is reached");
+      return go_home("the tour is flown");
     case MissionPhase::Egress:
       if (situation.legs > 0 && situation.leg + 1 >= situation.legs)
         enter(MissionPhase::Landing, "the aircraft descends to the runway");
@@ -57,8 +57,22 @@ std::optional<Conduct::Order> Conduct::decide(const Situation& situation) {
   return std::nullopt;
 }
 
+std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std::string& reason) {
+  tour_ = std::move(tour);
+  why_this_tour_ = reason;
+  reached_ = 0;
+  if (phase_ != MissionPhase::Ingress && phase_ != MissionPhase::Collection) return std::nullopt;
+  if (tour_.empty()) return go_home(reason);
+  enter(MissionPhase::Ingress, reason);
+  return Follow{tour_};
+}
+
+std::optional<Conduct::Order> Conduct::go_home_another_way(const std::string& reason) {
+  return phase_ == MissionPhase::Egress ? go_home(reason) : std::nullopt;
+}
+
 std::optional<Conduct::Order> Conduct::refused(const std::string& reason) {
-  const bool on_the_way = phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Legs;
+  const bool on_the_way = phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection;
   if (on_the_way) return go_home(reason);
   enter(MissionPhase::Aborted, reason);
   return std::nullopt;

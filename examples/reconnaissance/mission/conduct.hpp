@@ -10,7 +10,22 @@
 
 namespace reconnaissance {
 
-enum class MissionPhase { BuiltInTest, TakeOff, Ingress, Legs, Egress, Landing, Complete, Aborted };
+enum class MissionPhase {
+  BuiltInTest,
+  TakeOff,
+  Ingress,
+  Collection,
+  Egress,
+  Landing,
+  Complete,
+  Aborted
+};
+
+/// A point to be flown over; straight: led to in a straight line from the point before.
+struct WayPoint {
+  Local place{};
+  bool straight = false;
+};
 
 /// How the last part of a mission is flown: down to the runway along its extended centre line.
 struct ApproachRules {
@@ -21,19 +36,20 @@ struct ApproachRules {
 };
 
 /// The points that lead down to a strip, the last one the aiming point on it.
-std::vector<Local> approach(const Strip& strip, const ApproachRules& rules);
+std::vector<WayPoint> approach(const Strip& strip, const ApproachRules& rules);
 
-/// Conducts a mission through its phases: test, take-off, to the first point, over the other ones,
-/// back, landing. A pure object: it is told what is so, and says what is to be ordered.
+/// Conducts a mission through its phases: test, take-off, to the first point of a tour, over the
+/// other ones, back, landing. The tour may be another one at any time. A pure object: it is told
+/// what is so, and says what is to be ordered.
 class Conduct {
  public:
   /// What it wants done. A route begins where the aircraft is.
   struct TakeOff {};
   struct Follow {
-    std::vector<Local> through;
+    std::vector<WayPoint> through;
   };
   struct Land {
-    std::vector<Local> through;
+    std::vector<WayPoint> through;
   };
   using Order = std::variant<TakeOff, Follow, Land>;
 
@@ -41,13 +57,20 @@ class Conduct {
   struct Situation {
     bool all_fine = false;  ///< The built-in tests are passed.
     Pilot::Mode mode{};
-    double height_m = 0;   ///< Above the geoid.
-    std::size_t leg = 0;   ///< Of the route that was ordered last; 0 until it is flown.
-    std::size_t legs = 0;  ///< 0 until it is flown.
+    double height_m = 0;      ///< Above the geoid.
+    std::size_t leg = 0;      ///< Of the route that was ordered last; 0 until it is flown.
+    std::size_t legs = 0;     ///< 0 until it is flown.
+    std::size_t reached = 0;  ///< Points of the order that the route has led over so far.
   };
 
-  Conduct(const Strip& strip, std::vector<Local> points, const ApproachRules& rules = {})
-      : strip_(strip), points_(std::move(points)), rules_(rules) {}
+  explicit Conduct(const Strip& strip, const ApproachRules& rules = {})
+      : strip_(strip), rules_(rules) {}
+
+  /// What is flown from now on, in place of what was: at once, where that is under way.
+  std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
+
+  /// The way home is to be planned anew, if it is under way and the aircraft does not yet descend.
+  std::optional<Order> go_home_another_way(const std::string& reason);
 
   /// The order that is to be given now, if any. Its phase begins with it.
   std::optional<Order> decide(const Situation& situation);
@@ -58,14 +81,16 @@ class Conduct {
   MissionPhase phase() const { return phase_; }
   const std::string& reason() const { return reason_; }
   std::size_t points_reached() const { return reached_; }
+  const std::vector<WayPoint>& tour() const { return tour_; }
 
  private:
   std::optional<Order> go_home(const std::string& reason);
   void enter(MissionPhase phase, std::string reason);
 
   Strip strip_;
-  std::vector<Local> points_;
   ApproachRules rules_;
+  std::vector<WayPoint> tour_;
+  std::string why_this_tour_;
   MissionPhase phase_ = MissionPhase::BuiltInTest;
   std::string reason_ = "waits until everybody is fine";
   std::size_t reached_ = 0;

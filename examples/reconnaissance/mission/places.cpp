@@ -46,13 +46,6 @@ RunwayText parse_runway(const std::string& text) {
   return {place(numbers, text), course(radians(numbers[3])), numbers[4]};
 }
 
-std::vector<Geodetic> parse_points(const std::string& text) {
-  std::vector<Geodetic> points;
-  for (const std::string& part : parts_of(text, ';'))
-    points.push_back(place(numbers_in(part, 3, "point; write `latitude longitude height`"), part));
-  return points;
-}
-
 std::vector<SiteText> parse_sites(const std::string& text) {
   std::vector<SiteText> sites;
   for (const std::string& part : parts_of(text, ';')) {

@@ -17,10 +17,6 @@ struct RunwayText {
 };
 RunwayText parse_runway(const std::string& text);
 
-/// Points as a profile names them: `latitude longitude height`, in degrees and metres above the
-/// geoid, separated by semicolons. Throws likewise.
-std::vector<Geodetic> parse_points(const std::string& text);
-
 /// Sites of the air defence as a profile names them: `type latitude longitude active`, in degrees,
 /// and from how many seconds of the mission on it transmits; separated by semicolons. Their height
 /// is 0. Throws likewise.

@@ -42,16 +42,22 @@ std::string xml(const std::string& text) { return '"' + escaped(text, true) + '"
 
 }  // namespace
 
-Judge::Judge(const PassConditions& conditions, std::vector<Local> points, const Local& aim)
-    : conditions_(conditions),
-      points_(std::move(points)),
-      aim_(aim),
-      nearest_m_(points_.size(), std::numeric_limits<double>::infinity()) {}
+Judge::Judge(const PassConditions& conditions, const Local& aim)
+    : conditions_(conditions), aim_(aim) {}
+
+void Judge::count(std::size_t collected, std::size_t wanted) {
+  collected_ = collected;
+  wanted_ = wanted;
+}
+
+void Judge::suffer(double survival, double tracked_s) {
+  survival_ = survival;
+  tracked_s_ = tracked_s;
+}
 
 void Judge::see(const Sample& sample) {
   if (!took_off_s_ && !sample.on_ground) took_off_s_ = sample.time_s;
   if (took_off_s_ && !touched_) {
-    measure_points(sample);
     measure_clearance(sample);
     distance_m_ += sample.ground_speed_m_s * std::max(0.0, sample.time_s - last_.time_s);
     stalled_ = stalled_ || sample.stalled;
@@ -59,11 +65,6 @@ void Judge::see(const Sample& sample) {
   }
   if (touched_ && !stood_s_ && sample.ground_speed_m_s < kStanding_m_s) stood_s_ = sample.time_s;
   if (!stood_s_ || *stood_s_ == sample.time_s) last_ = sample;
-}
-
-void Judge::measure_points(const Sample& sample) {
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    nearest_m_[i] = std::min(nearest_m_[i], level_m(sample.position, points_[i]));
 }
 
 void Judge::measure_clearance(const Sample& sample) {
@@ -85,12 +86,13 @@ Verdict Judge::conclude(const std::string& ended) const {
   check("duration", took_off_s_ && !too_long(),
         fmt::format("{:.0f} s in the air and on the runway, at most {:.0f}", verdict.duration_s,
                     conditions_.longest_s));
-  const auto reached = std::count_if(nearest_m_.begin(), nearest_m_.end(), [&](double nearest_m) {
-    return nearest_m <= conditions_.points_within_m;
-  });
-  check("points", static_cast<std::size_t>(reached) == points_.size(),
-        fmt::format("{} of {} points passed within {:.0f} m", reached, points_.size(),
-                    conditions_.points_within_m));
+  check("targets", collected_ >= wanted_,
+        fmt::format("{} of {} elements collected as finely as they were ordered", collected_,
+                    wanted_));
+  check("survival", survival_ >= conditions_.least_survival,
+        fmt::format("survived the air defence with a probability of {:.3f}, at least {:.3f}; "
+                    "tracked for {:.0f} s",
+                    survival_, conditions_.least_survival, tracked_s_));
   check("clearance", clearance_m_ >= conditions_.least_clearance_m,
         std::isinf(clearance_m_)
             ? "it was never more than 5 km from the runway"

@@ -13,7 +13,7 @@ namespace reconnaissance {
 struct PassConditions {
   double longest_s = 3600;         ///< From take-off to standing.
   double least_clearance_m = 100;  ///< Above ground, where it is more than 5 km from the runway.
-  double points_within_m = 400;    ///< How near each point must be passed, on the map.
+  double least_survival = 0.95;    ///< Of the air defence, by its simulation.
   double landed_within_m = 400;    ///< Between aiming point and touch-down.
   double least_fuel_kg = 5;        ///< When it stands.
 };
@@ -48,9 +48,16 @@ class Judge {
     bool stalled = false;
   };
 
-  Judge(const PassConditions& conditions, std::vector<Local> points, const Local& aim);
+  Judge(const PassConditions& conditions, const Local& aim);
 
   void see(const Sample& sample);
+
+  /// So many elements of interest are to be collected, and have been.
+  void count(std::size_t collected, std::size_t wanted);
+
+  /// The probability to have survived until now, and for how long a site that can shoot has
+  /// followed the aircraft.
+  void suffer(double survival, double tracked_s);
 
   bool airborne() const { return took_off_s_ && !touched_; }
   /// Whether it has landed, and stands.
@@ -62,13 +69,14 @@ class Judge {
   Verdict conclude(const std::string& ended = "") const;
 
  private:
-  void measure_points(const Sample& sample);
   void measure_clearance(const Sample& sample);
 
   PassConditions conditions_;
-  std::vector<Local> points_;
   Local aim_;
-  std::vector<double> nearest_m_;
+  std::size_t collected_ = 0;
+  std::size_t wanted_ = 0;
+  double survival_ = 1;
+  double tracked_s_ = 0;
   Sample last_{};
   std::optional<double> took_off_s_;
   std::optional<double> stood_s_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geodesy/local_frame.hpp"
+#include <vector>
 
 namespace reconnaissance {
 
@@ -16,5 +16,10 @@ struct RoutePose {
 /// LSL, RSR, LSR, RSL, LRL and RLR in closed form (Shkel and Lumelsky, "Classification of the
 /// Dubins set", 2001).
 double dubins_length_m(const RoutePose& from, const RoutePose& to, double radius_m);
+
+/// The corners of that way, without its ends: its turns are the arcs of the radius that touch the
+/// straight lines from corner to corner, an arc of more than 60 degrees those of several corners.
+/// The course of each is the one after its turn.
+std::vector<RoutePose> dubins_corners(const RoutePose& from, const RoutePose& to, double radius_m);
 
 }  // namespace reconnaissance

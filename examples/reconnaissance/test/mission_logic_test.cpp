@@ -14,22 +14,26 @@ namespace {
 
 const Strip kStrip{{0, 0, 180}, radians(90), 1500};
 
-Conduct::Situation flying(std::size_t leg, std::size_t legs) {
-  return {true, Pilot::Mode::Following, 900, leg, legs};
+Conduct::Situation flying(std::size_t leg, std::size_t legs, std::size_t reached) {
+  return {true, Pilot::Mode::Following, 900, leg, legs, reached};
 }
 
-/// A flight over one point, 20 km north and back.
-struct Flown {
-  explicit Flown(const PassConditions& conditions = {})
-      : judge(conditions, {{20'000, 0, 900}}, {0, 150, 180}) {}
+const std::vector<WayPoint> kTour{
+    {{5000, 0, 900}, false}, {{9000, 0, 900}, true}, {{9000, 4000, 900}, false}};
 
-  void fly(double lowest_m = 500, double nearest_m = 0, double touched_m = 200) {
+/// A flight 20 km north and back, on which one element of one is collected.
+struct Flown {
+  explicit Flown(const PassConditions& conditions = {}) : judge(conditions, {0, 150, 180}) {
+    judge.count(1, 1);
+  }
+
+  void fly(double lowest_m = 500, double touched_m = 200) {
     see(0, {0, 0, 180}, 0, 0, true);
     see(30, {0, 500, 190}, 10, 60, false);
     for (double north = 0; north <= 20'000; north += 1000)
-      see(time_s + 10, {north, nearest_m, 0}, north > 9000 ? lowest_m : 500, 60, false);
+      see(time_s + 10, {north, 0, 0}, north > 9000 ? lowest_m : 500, 60, false);
     for (double north = 20'000; north >= 0; north -= 1000)
-      see(time_s + 10, {north, nearest_m, 0}, 500, 60, false);
+      see(time_s + 10, {north, 0, 0}, 500, 60, false);
     see(time_s + 30, {0, 150 + touched_m, 180}, 0, 40, true);
     see(time_s + 15, {0, 700, 180}, 0, 0.1, true);
   }
@@ -46,7 +50,8 @@ struct Flown {
 }  // namespace
 
 TEST_CASE("a mission goes through its phases, each begun by what has been reached") {
-  Conduct conduct(kStrip, {{5000, 0, 900}, {9000, 0, 900}, {9000, 4000, 900}});
+  Conduct conduct(kStrip);
+  CHECK_FALSE(conduct.fly(kTour, "planned"));
   CHECK_FALSE(conduct.decide({}));
   CHECK(conduct.phase() == MissionPhase::BuiltInTest);
   CHECK(std::holds_alternative<Conduct::TakeOff>(*conduct.decide({.all_fine = true})));
@@ -54,17 +59,18 @@ TEST_CASE("a mission goes through its phases, each begun by what has been reache
   CHECK_FALSE(conduct.decide({true, Pilot::Mode::TakingOff, 200}));
   auto order = conduct.decide({true, Pilot::Mode::TakingOff, 340});
   REQUIRE(order);
-  CHECK(std::get<Conduct::Follow>(*order).through.size() == 1);
+  CHECK(std::get<Conduct::Follow>(*order).through.size() == 3);
   CHECK(conduct.phase() == MissionPhase::Ingress);
-  CHECK_FALSE(conduct.decide(flying(0, 0)));  // it is not flown yet
-  CHECK_FALSE(conduct.decide(flying(0, 1)));
-  order = conduct.decide(flying(1, 1));
-  REQUIRE(order);
-  CHECK(std::get<Conduct::Follow>(*order).through.size() == 2);
+  CHECK(conduct.reason() == "planned");
+  CHECK_FALSE(conduct.decide(flying(0, 0, 0)));  // it is not flown yet
+  CHECK_FALSE(conduct.decide(flying(2, 5, 0)));
+  CHECK(conduct.phase() == MissionPhase::Ingress);
+  CHECK_FALSE(conduct.decide(flying(3, 5, 1)));
+  CHECK(conduct.phase() == MissionPhase::Collection);
   CHECK(conduct.points_reached() == 1);
-  CHECK_FALSE(conduct.decide(flying(1, 2)));
+  CHECK_FALSE(conduct.decide(flying(4, 5, 2)));
   CHECK(conduct.points_reached() == 2);
-  order = conduct.decide(flying(2, 2));
+  order = conduct.decide(flying(5, 5, 3));
   REQUIRE(order);
   CHECK(conduct.points_reached() == 3);
   CHECK(conduct.phase() == MissionPhase::Egress);
@@ -78,8 +84,30 @@ TEST_CASE("a mission goes through its phases, each begun by what has been reache
   CHECK(conduct.phase() == MissionPhase::Complete);
 }
 
+TEST_CASE("another tour is flown at once where one is under way, and none leads home") {
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
+  conduct.decide({.all_fine = true});
+  CHECK_FALSE(conduct.go_home_another_way("threat"));
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  conduct.decide(flying(1, 3, 1));
+  auto order = conduct.fly({kTour[2]}, "a threat is new");
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Follow>(*order).through.size() == 1);
+  CHECK(conduct.reason() == "a threat is new");
+  CHECK(conduct.phase() == MissionPhase::Ingress);
+  order = conduct.fly({}, "nothing can be collected");
+  REQUIRE(order);
+  CHECK(std::holds_alternative<Conduct::Land>(*order));
+  order = conduct.go_home_another_way("a threat is on the way");
+  REQUIRE(order);
+  CHECK(std::holds_alternative<Conduct::Land>(*order));
+  CHECK_FALSE(conduct.fly(kTour, "too late"));
+}
+
 TEST_CASE("where a route is refused the mission goes home, and says why") {
-  Conduct conduct(kStrip, {{5000, 0, 900}});
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
   conduct.decide({.all_fine = true});
   conduct.decide({true, Pilot::Mode::TakingOff, 340});
   const auto order = conduct.refused("no route to the point");
@@ -93,11 +121,13 @@ TEST_CASE("where a route is refused the mission goes home, and says why") {
 TEST_CASE("the way down leads along the centre line to the aiming point") {
   const auto way = approach(kStrip, {});
   REQUIRE(way.size() == 3);
-  for (const Local& point : way) CHECK(point.north_m == Approx(0).margin(1e-6));
-  CHECK(way[1].east_m == Approx(-4000));
-  CHECK(way[1].height_m - 180 == Approx(4150 * std::tan(radians(4))).epsilon(1e-3));
-  CHECK(way[2].east_m == Approx(150));
-  CHECK(way[2].height_m == 180);
+  for (const WayPoint& point : way) CHECK(point.place.north_m == Approx(0).margin(1e-6));
+  CHECK_FALSE(way[0].straight);
+  CHECK((way[1].straight && way[2].straight));
+  CHECK(way[1].place.east_m == Approx(-4000));
+  CHECK(way[1].place.height_m - 180 == Approx(4150 * std::tan(radians(4))).epsilon(1e-3));
+  CHECK(way[2].place.east_m == Approx(150));
+  CHECK(way[2].place.height_m == 180);
 }
 
 TEST_CASE("a flight that keeps all conditions passes") {
@@ -123,9 +153,17 @@ TEST_CASE("each condition that is not kept fails the flight, and is named") {
     return verdict.reason;
   };
   CHECK_THAT(reason_of([](Flown& f) { f.fly(50); }), Contains("clearance: 50 m"));
-  CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 900); }), Contains("points: 0 of 1"));
-  CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 0, 900); }),
-             Contains("landing: touched down 900"));
+  CHECK_THAT(reason_of([](Flown& f) {
+               f.fly();
+               f.judge.count(1, 2);
+             }),
+             Contains("targets: 1 of 2"));
+  CHECK_THAT(reason_of([](Flown& f) {
+               f.fly();
+               f.judge.suffer(0.9, 12);
+             }),
+             Contains("survival: survived the air defence with a probability of 0.900"));
+  CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 900); }), Contains("landing: touched down 900"));
   CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.longest_s = 100}), Contains("duration"));
   CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.least_fuel_kg = 50}),
              Contains("fuel: 40.0 kg"));
@@ -156,9 +194,6 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   const auto runway = parse_runway("53.3 27.6 180 450 1500");
   CHECK(runway.threshold.latitude_deg == 53.3);
   CHECK(runway.course_rad == Approx(radians(90)));
-  const auto points = parse_points(" 53.4 27.5 900; 53.5 27.7 900 ;\n 53.6 27.8 700;");
-  REQUIRE(points.size() == 3);
-  CHECK(points[2].height_m == 700);
   const auto sites = parse_sites("short-range site 53.4 27.5 0; coast radar 53.5 -27.7 420;");
   REQUIRE(sites.size() == 2);
   CHECK(sites[0].type == "short-range site");
@@ -168,7 +203,5 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7"), skein::InvalidArgument);
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
-  CHECK_THROWS_AS(parse_points("53.4 27.5 900 1"), skein::InvalidArgument);
-  CHECK_THROWS_AS(parse_points("93.4 27.5 900"), skein::InvalidArgument);
-  CHECK_THROWS_AS(parse_points("53.4 east 900"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_sites("coast radar 93.5 27.7 0"), skein::InvalidArgument);
 }
