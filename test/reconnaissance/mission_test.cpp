@@ -14,9 +14,11 @@ namespace {
 
 const std::filesystem::path kMission = project_file("mission_profiles/reconnaissance.xml");
 
-/// One element of interest, near the runway.
+/// One element of interest, near the runway; an intruder comes soon.
 const std::vector<std::string> kShort{"--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
-                                      "--variable", "objects=53.3089 27.3226 3 0 0"};
+                                      "--variable", "objects=53.3089 27.3226 3 0 0",
+                                      "--variable", "intruders=70 30 7000 60",
+                                      "--variable", "failures=2 wrong 40 300"};
 
 std::vector<std::string> with(std::vector<std::string> arguments,
                               const std::vector<std::string>& more) {
@@ -41,13 +43,16 @@ TEST_CASE(
     CHECK_THAT(run.output(), Contains(phase));
   // What its radar transmits is received, classified by a vote, and placed.
   CHECK_THAT(run.output(), Contains(": short-range site at 53."));
+  // One that comes is avoided, one that lies is not heard.
+  CHECK_THAT(run.output(), Contains("another aircraft is avoided"));
+  CHECK_THAT(run.output(), Contains("2 of 3 sets of sensors are heard"));
   // What is flown is what the mission manager's Head chose.
   CHECK_THAT(run.output(), Contains("planned: shed"));
   // What is to be seen is seen as finely as it was ordered, by a pattern that a Head chose.
   CHECK_THAT(run.output(), Contains("shed collected: 0."));
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
-  CHECK(verdict["checks"].size() == 8);
+  CHECK(verdict["checks"].size() == 9);
   CHECK_THAT(text_of(run.file("reconnaissance.junit.xml")), Contains("failures=\"0\""));
 }
 

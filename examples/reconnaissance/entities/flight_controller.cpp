@@ -59,6 +59,7 @@ FlightController::FlightController(skein::Entity& entity, const skein::Parameter
                                             circle.clockwise ? circle.radius_m : -circle.radius_m);
                       }}),
       sensors_(entity, topic::kSensors),
+      advisories_(entity, topic::kAdvisory, skein::TopicQos::state()),
       command_(entity.publisher<recon::FlightCommand>(topic::kFlightCommand.name, stream_qos())),
       state_(entity.publisher<recon::FlightState>(topic::kFlightState.name, stream_qos())),
       state_50hz_(entity.publisher<recon::FlightState>(topic::kFlightState50Hz.name, stream_qos())),
@@ -127,7 +128,24 @@ void FlightController::fly(Tick tick) {
   if (!sensors) return;
   if (const auto sight = look(*sensors)) last_sight_ = sight;
   if (!last_sight_) return;
-  publish(tick, pilot_.fly(*last_sight_), *last_sight_, *sensors);
+  publish(tick, avoid(tick, pilot_.fly(*last_sight_)), *last_sight_, *sensors);
+}
+
+/// An advisory goes before the route, but not before a take-off or a landing.
+Demand FlightController::avoid(Tick tick, const Demand& demand) {
+  // Of a tick before: who advises waits for the state of this one.
+  const auto advisory = advisories_.at(tick - 1);
+  const bool free = pilot_.mode() == Pilot::Mode::Following ||
+                    pilot_.mode() == Pilot::Mode::Waiting ||
+                    (pilot_.mode() == Pilot::Mode::Approaching && pilot_.leg() == 0);
+  // Who advised last may be gone.
+  const bool fresh = advisory && advisory->tick >= tick - 2 * topic::kAdvisory.period;
+  avoiding_ = free && fresh && (advisory->avoidance.turns || advisory->avoidance.climbs);
+  if (!avoiding_) return demand;
+  const recon::Avoidance& wanted = advisory->avoidance;
+  return advised(rules_, demand, last_sight_->measured,
+                 wanted.turns ? std::optional(wanted.course_rad) : std::nullopt,
+                 wanted.climbs ? std::optional(wanted.climb_m_s) : std::nullopt);
 }
 
 std::optional<Pilot::Sight> FlightController::look(const recon::Sensors& sensors) {
@@ -172,6 +190,8 @@ void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sig
   state.route = route_;
   state.leg = static_cast<std::uint32_t>(pilot_.leg());
   state.legs = static_cast<std::uint32_t>(pilot_.legs());
+  state.route_course_rad = pilot_.route_course_rad(measured.position);
+  state.avoiding = avoiding_;
   for (std::size_t i = 0; i < 3; ++i) state.sets_heard += voter_.out(i) ? 0 : 1;
   state.lost_samples = static_cast<std::uint32_t>(sensors_.lost());
   if (often) state_50hz_.publish(state);

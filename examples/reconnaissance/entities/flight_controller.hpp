@@ -13,6 +13,7 @@
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "traffic.idl.hpp"
 
 namespace reconnaissance {
 
@@ -42,6 +43,7 @@ class FlightController : public recon::IFlightController {
   void obey(Tick tick);
   std::optional<Pilot::Sight> look(const recon::Sensors& sensors);
   double ask_guidance(const Motion& motion, const Line& leg, double circle_radius_m);
+  Demand avoid(Tick tick, const Demand& demand);
   void publish(Tick tick, const Demand& demand, const Pilot::Sight& sight,
                const recon::Sensors& sensors);
 
@@ -57,7 +59,10 @@ class FlightController : public recon::IFlightController {
   std::mutex mutex_;
   std::vector<Order> orders_;
 
+  bool avoiding_ = false;
+
   Stream<recon::Sensors> sensors_;
+  Stream<recon::ResolutionAdvisory> advisories_;
   skein::Publisher<recon::FlightCommand> command_;
   skein::Publisher<recon::FlightState> state_;
   skein::Publisher<recon::FlightState> state_50hz_;

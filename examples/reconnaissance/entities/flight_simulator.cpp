@@ -10,6 +10,7 @@
 #include "skein/error.hpp"
 #include "skein/head.hpp"
 #include "topics.hpp"
+#include "traffic/encounter.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -25,6 +26,24 @@ constexpr double kRadarHeightError_m = 0.3;
 /// A wind blows from where it is named after.
 Wind wind_from(double from_rad, double speed_m_s) {
   return {-speed_m_s * std::cos(from_rad), -speed_m_s * std::sin(from_rad), 0};
+}
+
+// Of the sensor that sees other aircraft: as of one that receives what they broadcast.
+constexpr double kTrafficPlaceError_m = 15;
+constexpr double kTrafficSpeedError_m_s = 0.5;
+
+/// What a set says that has lost its wits, and one that lies: half a kilometre to the north.
+Measurement garbage(Random& random) {
+  Measurement measurement;
+  measurement.position = {1e4 * random.normal(), 1e4 * random.normal(), 1e3 * random.normal()};
+  measurement.airspeed_m_s = 100 * random.uniform();
+  measurement.heading_rad = 6 * random.uniform();
+  return measurement;
+}
+
+Measurement falsified(Measurement truth) {
+  truth.position.north_m += 500;
+  return truth;
 }
 
 Aircraft parked(const RunwayText& runway, double fuel_kg) {
@@ -46,13 +65,19 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
                            values.find<double>("Wind speed").value_or(0))),
       gust_m_s_(values.find<double>("Gusts").value_or(0)),
       random_(values.find<std::uint64_t>("Seed").value_or(1)),
+      failures_(parse_failures(values.find<std::string>("Sensor failures").value_or(""))),
+      intruders_(parse_intruders(values.find<std::string>("Intruders").value_or(""))),
+      others_(intruders_.size()),
+      traffic_random_(values.find<std::uint64_t>("Seed").value_or(1)),
       aircraft_(parked(runway_, values.find<double>("Fuel").value_or(80))),
       health_(entity),
       time_(entity, values.get<std::size_t>("Participants"),
             values.find<double>("Speed limit").value_or(0)),
       commands_(entity, topic::kFlightCommand),
       sensors_out_(entity.publisher<recon::Sensors>(topic::kSensors.name, stream_qos())),
-      truth_(entity.publisher<recon::Truth>(topic::kTruth.name, stream_qos())) {}
+      truth_(entity.publisher<recon::Truth>(topic::kTruth.name, stream_qos())),
+      traffic_(entity.publisher<recon::Traffic>(topic::kTraffic.name)),
+      traffic_truth_(entity.publisher<recon::Traffic>(topic::kTrafficTruth.name)) {}
 
 void FlightSimulator::start() {
   model_ = entity_.head().preselect<recon::IFlightModel>();
@@ -126,11 +151,12 @@ void FlightSimulator::publish(Tick tick) {
   const double above_ground_m = aircraft_.position.height_m - ground_m();
   recon::Sensors sensors;
   sensors.tick = tick;
-  for (std::size_t i = 0; i < sensors.sets.size(); ++i) sensors.sets[i] = measure(i);
+  for (std::size_t i = 0; i < sensors.sets.size(); ++i) sensors.sets[i] = measure(i, tick);
   sensors.fuel_kg = aircraft_.fuel_kg;
   sensors.radar_height_m = above_ground_m + kRadarHeightError_m * random_.normal();
   sensors.on_ground = aircraft_.on_ground;
   sensors_out_.publish(sensors);
+  fly_others(tick);
   if (!is_due(topic::kTruth.period, tick)) return;
   truth_.publish({tick, position(frame_, aircraft_.position), above_ground_m,
                   aircraft_.airspeed_m_s,
@@ -140,17 +166,57 @@ void FlightSimulator::publish(Tick tick) {
                   aircraft_.stalled});
 }
 
-recon::SensorSet FlightSimulator::measure(std::size_t set) {
-  const Measurement measured = sensors_[set].measure(aircraft_, kTick_s, random_);
+recon::SensorSet FlightSimulator::measure(std::size_t set, Tick tick) {
+  const double now_s = seconds_of(tick);
+  SensorFailure failure = SensorFailure::None;
+  for (const FailureText& each : failures_)
+    if (each.set == set && now_s >= each.from_s && now_s < each.until_s) failure = each.kind;
+  const auto told = failing_[set].pass(sensors_[set].measure(aircraft_, kTick_s, random_), failure,
+                                       kTick_s, random_, garbage, falsified);
+  if (!told) return {};
   return {true,
-          position(frame_, measured.position),
-          measured.north_m_s,
-          measured.east_m_s,
-          measured.up_m_s,
-          measured.airspeed_m_s,
-          measured.heading_rad,
-          measured.climb_rad,
-          measured.bank_rad};
+          position(frame_, told->position),
+          told->north_m_s,
+          told->east_m_s,
+          told->up_m_s,
+          told->airspeed_m_s,
+          told->heading_rad,
+          told->climb_rad,
+          told->bank_rad};
+}
+
+/// Others appear, and fly straight on.
+void FlightSimulator::fly_others(Tick tick) {
+  const TrafficState own{aircraft_.position, aircraft_.north_m_s, aircraft_.east_m_s,
+                         aircraft_.up_m_s};
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    const IntruderText& intruder = intruders_[i];
+    if (others_[i]) {
+      others_[i] = straight_on(*others_[i], kTick_s);
+    } else if (seconds_of(tick) >= intruder.from_s && !aircraft_.on_ground) {
+      others_[i] = on_collision_course(own, own.course_rad() + intruder.direction_rad,
+                                       intruder.distance_m, intruder.speed_m_s);
+    }
+  }
+  if (!is_due(topic::kTraffic.period, tick)) return;
+  recon::Traffic seen{tick, {}}, truth{tick, {}};
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    if (!others_[i]) continue;
+    const auto tell = [&](recon::Traffic& traffic, double place_m, double speed_m_s) {
+      TrafficState told = *others_[i];
+      told.place.north_m += place_m * traffic_random_.normal();
+      told.place.east_m += place_m * traffic_random_.normal();
+      told.place.height_m += place_m * traffic_random_.normal();
+      told.north_m_s += speed_m_s * traffic_random_.normal();
+      told.east_m_s += speed_m_s * traffic_random_.normal();
+      traffic.others.push_back({static_cast<std::uint32_t>(i + 1), position(frame_, told.place),
+                                told.north_m_s, told.east_m_s, told.up_m_s});
+    };
+    tell(seen, kTrafficPlaceError_m, kTrafficSpeedError_m_s);
+    tell(truth, 0, 0);
+  }
+  traffic_.publish(seen);
+  traffic_truth_.publish(truth);
 }
 
 /// Below the aircraft, above the geoid.

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "flight.idl.hpp"
 #include "flight/sensors.hpp"
@@ -14,6 +16,8 @@
 #include "skein/parameters.hpp"
 #include "stream.hpp"
 #include "time_keeper.hpp"
+#include "traffic.idl.hpp"
+#include "traffic/well_clear.hpp"
 
 namespace reconnaissance {
 
@@ -38,8 +42,9 @@ class FlightSimulator : public recon::IFlightSimulator {
   void simulate(Tick tick);
   Wind blow();
   void publish(Tick tick);
-  recon::SensorSet measure(std::size_t set);
+  recon::SensorSet measure(std::size_t set, Tick tick);
   double ground_m() const;
+  void fly_others(Tick tick);
 
   skein::Entity& entity_;
   RunwayText runway_;
@@ -50,6 +55,11 @@ class FlightSimulator : public recon::IFlightSimulator {
   Wind gust_{};
   Random random_;
   std::array<SensorModel, 3> sensors_;
+  std::array<FailingSensor<Measurement>, 3> failing_;
+  std::vector<FailureText> failures_;
+  std::vector<IntruderText> intruders_;
+  std::vector<std::optional<TrafficState>> others_;  // of each intruder, once it is there
+  Random traffic_random_;
   Aircraft aircraft_;
   std::optional<recon::IFlightModel::Proxy> model_;
 
@@ -58,6 +68,8 @@ class FlightSimulator : public recon::IFlightSimulator {
   Stream<recon::FlightCommand> commands_;
   skein::Publisher<recon::Sensors> sensors_out_;
   skein::Publisher<recon::Truth> truth_;
+  skein::Publisher<recon::Traffic> traffic_;
+  skein::Publisher<recon::Traffic> traffic_truth_;
   std::jthread thread_;
 };
 

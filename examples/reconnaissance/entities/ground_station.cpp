@@ -91,6 +91,14 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
           [this](const recon::ElementList& list) { show(list); })),
       threat_truths_(entity.subscription<recon::ThreatTruth>(
           topic::kThreatTruth.name, {}, [this](const recon::ThreatTruth& truth) { see(truth); })),
+      traffic_truths_(entity.subscription<recon::Traffic>(
+          topic::kTrafficTruth.name, {}, [this](const recon::Traffic& traffic) { see(traffic); })),
+      advisories_(entity.subscription<recon::ResolutionAdvisory>(
+          topic::kAdvisory.name, skein::TopicQos::state(),
+          [this](const recon::ResolutionAdvisory& advisory) { show(advisory); })),
+      states_(entity.subscription<recon::FlightState>(
+          topic::kFlightState.name, stream_qos(),
+          [this](const recon::FlightState& state) { show(state); })),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -211,6 +219,34 @@ void GroundStation::show(const recon::ThreatPicture& picture) {
 void GroundStation::see(const recon::ThreatTruth& truth) {
   std::lock_guard lock(mutex_);
   if (!judge_.standing()) judge_.suffer(truth.survival, truth.tracked_s);
+}
+
+void GroundStation::see(const recon::Traffic& traffic) {
+  std::lock_guard lock(mutex_);
+  for (const recon::OtherAircraft& each : traffic.others) judge_.meet(local(frame_, each.position));
+}
+
+void GroundStation::show(const recon::ResolutionAdvisory& advisory) {
+  const bool avoiding = advisory.avoidance.turns || advisory.avoidance.climbs;
+  {
+    std::lock_guard lock(mutex_);
+    if (avoiding == avoiding_) return;
+    avoiding_ = avoiding;
+  }
+  fmt::print("{}  {}\n", clock_of(advisory.tick),
+             avoiding ? fmt::format("another aircraft is avoided ({})", to_string(advisory.alert))
+                      : "clear of other aircraft");
+  std::fflush(stdout);
+}
+
+void GroundStation::show(const recon::FlightState& state) {
+  {
+    std::lock_guard lock(mutex_);
+    if (sets_heard_ == state.sets_heard) return;
+    sets_heard_ = state.sets_heard;
+  }
+  fmt::print("{}  {} of 3 sets of sensors are heard\n", clock_of(state.tick), state.sets_heard);
+  std::fflush(stdout);
 }
 
 void GroundStation::show(const recon::ElementList& list) {

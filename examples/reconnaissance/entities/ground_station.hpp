@@ -16,6 +16,7 @@
 #include "skein/parameters.hpp"
 #include "targets.idl.hpp"
 #include "threats.idl.hpp"
+#include "traffic.idl.hpp"
 
 namespace reconnaissance {
 
@@ -34,6 +35,9 @@ class GroundStation {
   void show(const recon::ThreatPicture& picture);
   void show(const recon::ElementList& list);
   void see(const recon::ThreatTruth& truth);
+  void see(const recon::Traffic& traffic);
+  void show(const recon::ResolutionAdvisory& advisory);
+  void show(const recon::FlightState& state);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
@@ -51,7 +55,9 @@ class GroundStation {
   std::condition_variable_any changed_;
   Judge judge_;
   std::optional<recon::Phase> phase_;
-  std::string reason_;  // that was shown
+  std::string reason_;  // that was shown, as were
+  bool avoiding_ = false;
+  int sets_heard_ = 3;
   recon::Mode mode_ = recon::Mode::Starting;
   std::set<std::uint32_t> threats_;  // that were shown, as were
   std::set<std::string> collected_;
@@ -64,6 +70,9 @@ class GroundStation {
   skein::Subscription<recon::ThreatPicture> pictures_;
   skein::Subscription<recon::ElementList> elements_;
   skein::Subscription<recon::ThreatTruth> threat_truths_;
+  skein::Subscription<recon::Traffic> traffic_truths_;
+  skein::Subscription<recon::ResolutionAdvisory> advisories_;
+  skein::Subscription<recon::FlightState> states_;
   Member member_;
 };
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "ad_manager.hpp"
+#include "avoider_csps.hpp"
 #include "collision_manager.hpp"
 #include "emitter_csps.hpp"
 #include "eo_manager.hpp"
@@ -84,6 +85,8 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Bayesian", &by_bayes);
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Wideband", &by_means);
   add_activity<CollisionManager>(registry, "CollisionManager");
+  add_csp<recon::IAvoider, Bands>(registry, "Bands");
+  add_csp<recon::IAvoider, PotentialField>(registry, "PotentialField");
   add_activity<ObjectTracker>(registry, "ObjectTracker");
   add_csp<recon::ITargetTracker, TargetTracker<KalmanTrackFilter>>(registry, "KalmanTracker");
   add_csp<recon::ITargetTracker, TargetTracker<StopMoveTrackFilter>>(registry, "StopMoveTracker");

@@ -24,14 +24,13 @@ inline constexpr StreamTopic kThreats{"threat/picture", 25};
 inline constexpr StreamTopic kElements{"target/elements", 50};
 inline constexpr StreamTopic kImages{"target/images", 5};
 inline constexpr StreamTopic kTracks{"target/tracks", 5};
+inline constexpr StreamTopic kTraffic{"traffic/others", 5};
+inline constexpr StreamTopic kTrafficTruth{"simulation/traffic", 5};
+inline constexpr StreamTopic kAdvisory{"traffic/advisory", 50};
 inline constexpr StreamTopic kThreatTruth{"simulation/threats", 50};
 
 inline constexpr const char* kHealth = "mission/health";
 inline constexpr const char* kStatus = "mission/status";
-
-// What nobody publishes yet.
-inline constexpr const char* kIntruder = "traffic/intruder";
-inline constexpr const char* kAdvisory = "traffic/advisory";
 
 }  // namespace topic
 }  // namespace reconnaissance

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "angles.hpp"
+
 namespace reconnaissance {
 namespace {
 
@@ -150,6 +152,30 @@ Demand Pilot::limited(double bank_rad, double climb_rad, double airspeed_m_s) co
   return {std::clamp(bank_rad, -rules_.greatest_bank_rad, rules_.greatest_bank_rad),
           std::clamp(climb_rad, -rules_.greatest_climb_rad, rules_.greatest_climb_rad),
           airspeed_m_s};
+}
+
+double Pilot::route_course_rad(const Local& from) const {
+  if (route_.empty()) return strip_.course_rad;
+  const Local& to = route_[std::min(leg_ + 1, route_.size() - 1)];
+  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
+}
+
+Demand advised(const FlightRules& rules, const Demand& demand, const Measurement& measured,
+               std::optional<double> course_rad, std::optional<double> climb_m_s) {
+  // The bank for each radian that the course is off.
+  constexpr double kGain = 1.5;
+  Demand instead = demand;
+  if (course_rad) {
+    const double off_rad = wrapped(*course_rad - std::atan2(measured.east_m_s, measured.north_m_s));
+    instead.bank_rad =
+        std::clamp(kGain * off_rad, -rules.greatest_bank_rad, rules.greatest_bank_rad);
+  }
+  if (climb_m_s) {
+    const double climb_rad =
+        std::asin(std::clamp(*climb_m_s / std::max(measured.airspeed_m_s, 1.0), -1.0, 1.0));
+    instead.climb_rad = std::clamp(climb_rad, -rules.greatest_climb_rad, rules.greatest_climb_rad);
+  }
+  return instead;
 }
 
 }  // namespace reconnaissance

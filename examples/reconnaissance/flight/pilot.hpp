@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,11 @@ struct Guidance {
   std::function<double(const Motion&, const Circle&)> around;
 };
 
+/// What it takes to turn onto a course over ground and to climb as an advisory asks, within what
+/// the rules allow, in place of what a route demands. Each part may be missing.
+Demand advised(const FlightRules& rules, const Demand& demand, const Measurement& measured,
+               std::optional<double> course_rad, std::optional<double> climb_m_s);
+
 /// Flies an aircraft as it is told: takes off, follows the legs of a route, waits at its end, lands
 /// and stops. Turns onto the next leg as early as its turning circle needs. A pure object.
 class Pilot {
@@ -67,6 +73,8 @@ class Pilot {
   Demand fly(const Sight& sight);
 
   Mode mode() const { return mode_; }
+  /// Towards the end of the present leg, from a place; that of the runway while there is no route.
+  double route_course_rad(const Local& from) const;
   /// Which leg of the route is flown, from 0; after the last one their number.
   std::size_t leg() const { return leg_; }
   std::size_t legs() const { return route_.empty() ? 0 : route_.size() - 1; }

@@ -1,5 +1,6 @@
 #include "places.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -60,6 +61,39 @@ std::vector<SiteText> parse_sites(const std::string& text) {
     sites.push_back({part.substr(0, split), place({numbers[0], numbers[1], 0}, part), numbers[2]});
   }
   return sites;
+}
+
+std::vector<IntruderText> parse_intruders(const std::string& text) {
+  std::vector<IntruderText> intruders;
+  for (const std::string& part : parts_of(text, ';')) {
+    const auto numbers = numbers_in(part, 4, "intruder; write `seconds direction distance speed`");
+    if (numbers[2] <= 0 || numbers[3] <= 0)
+      throw skein::InvalidArgument("'" + part + "': an intruder has a distance and a speed");
+    intruders.push_back({numbers[0], radians(numbers[1]), numbers[2], numbers[3]});
+  }
+  return intruders;
+}
+
+std::vector<FailureText> parse_failures(const std::string& text) {
+  static const std::vector<std::string> kKinds{"none",  "off",  "stuck",   "garbage",
+                                               "wrong", "slow", "delayed", "intermittent"};
+  std::vector<FailureText> failures;
+  for (const std::string& part : parts_of(text, ';')) {
+    FailureText failure;
+    std::istringstream words(part);
+    std::string kind;
+    const bool read(words >> failure.set >> kind >> failure.from_s >> failure.until_s);
+    const auto found = std::find(kKinds.begin() + 1, kKinds.end(), kind);
+    if (!read || found == kKinds.end() || failure.set < 1 || failure.set > 3)
+      throw skein::InvalidArgument(
+          "'" + part +
+          "' is no failure; write `set kind from until`, with a set of 1 to 3 and "
+          "off, stuck, garbage, wrong, slow, delayed or intermittent");
+    --failure.set;
+    failure.kind = static_cast<SensorFailure>(found - kKinds.begin());
+    failures.push_back(failure);
+  }
+  return failures;
 }
 
 std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "flight/pilot.hpp"
+#include "flight/sensor_fault.hpp"
 #include "geodesy/local_frame.hpp"
 
 namespace reconnaissance {
@@ -26,6 +27,28 @@ struct SiteText {
   double active_from_s = 0;
 };
 std::vector<SiteText> parse_sites(const std::string& text);
+
+/// Intruders as a profile names them: `seconds direction distance speed`; separated by semicolons.
+/// So many seconds after the mission's beginning one appears, so many degrees to the right of the
+/// course of the aircraft and so far away, on collision course. Throws likewise.
+struct IntruderText {
+  double from_s = 0;
+  double direction_rad = 0;
+  double distance_m = 0;
+  double speed_m_s = 0;
+};
+std::vector<IntruderText> parse_intruders(const std::string& text);
+
+/// Failures of sensors as a profile names them: `set kind from until`, separated by semicolons: of
+/// the set 1, 2 or 3, a kind in PX4's words (off, stuck, garbage, wrong, slow, delayed,
+/// intermittent), and between which seconds of the mission. Throws likewise.
+struct FailureText {
+  std::size_t set = 0;  ///< From 0.
+  SensorFailure kind = SensorFailure::None;
+  double from_s = 0;
+  double until_s = 0;
+};
+std::vector<FailureText> parse_failures(const std::string& text);
 
 /// Names that are separated by commas.
 std::vector<std::string> parse_names(const std::string& text);

@@ -50,6 +50,17 @@ void Judge::count(std::size_t collected, std::size_t wanted) {
   wanted_ = wanted;
 }
 
+void Judge::meet(const Local& other) {
+  if (last_.on_ground) return;
+  const double level = level_m(other, last_.position);
+  const double height = other.height_m - last_.position.height_m;
+  const double separation = std::max(level / conditions_.well_clear_m,
+                                     std::abs(height) / conditions_.well_clear_height_m);
+  if (separation >= separation_) return;
+  separation_ = separation;
+  nearest_ = {level, 0, height};
+}
+
 void Judge::suffer(double survival, double tracked_s) {
   survival_ = survival;
   tracked_s_ = tracked_s;
@@ -98,6 +109,13 @@ Verdict Judge::conclude(const std::string& ended) const {
             ? "it was never more than 5 km from the runway"
             : fmt::format("{:.0f} m above ground at the lowest place of the way, at least {:.0f}",
                           clearance_m_, conditions_.least_clearance_m));
+  check("well clear", separation_ >= 1,
+        std::isinf(separation_)
+            ? "there was no other aircraft"
+            : fmt::format("{:.0f} m beside and {:.0f} m above or below at the closest, at least "
+                          "{:.0f} or {:.0f}",
+                          nearest_.north_m, std::abs(nearest_.height_m), conditions_.well_clear_m,
+                          conditions_.well_clear_height_m));
   check("no stall", !stalled_, stalled_ ? "the aircraft has stalled" : "it never stalled");
   if (touched_) {
     const double from_aim = level_m(*touched_, aim_);

@@ -14,8 +14,12 @@ struct PassConditions {
   double longest_s = 3600;         ///< From take-off to standing.
   double least_clearance_m = 100;  ///< Above ground, where it is more than 5 km from the runway.
   double least_survival = 0.95;    ///< Of the air defence, by its simulation.
-  double landed_within_m = 400;    ///< Between aiming point and touch-down.
-  double least_fuel_kg = 5;        ///< When it stands.
+  /// Of other aircraft, on the map or in height: the volume of DO-365B for those that do not
+  /// cooperate, 2200 ft and 450 ft.
+  double well_clear_m = 670.56;
+  double well_clear_height_m = 137.16;
+  double landed_within_m = 400;  ///< Between aiming point and touch-down.
+  double least_fuel_kg = 5;      ///< When it stands.
 };
 
 /// One condition, and whether it is kept.
@@ -55,6 +59,9 @@ class Judge {
   /// So many elements of interest are to be collected, and have been.
   void count(std::size_t collected, std::size_t wanted);
 
+  /// Another aircraft, at the instant of the last sample.
+  void meet(const Local& other);
+
   /// The probability to have survived until now, and for how long a site that can shoot has
   /// followed the aircraft.
   void suffer(double survival, double tracked_s);
@@ -75,6 +82,9 @@ class Judge {
   Local aim_;
   std::size_t collected_ = 0;
   std::size_t wanted_ = 0;
+  /// The least of all: the greater of both distances as a share of what is well clear.
+  double separation_ = std::numeric_limits<double>::infinity();
+  Local nearest_{};  ///< Of the other from the aircraft, then.
   double survival_ = 1;
   double tracked_s_ = 0;
   Sample last_{};

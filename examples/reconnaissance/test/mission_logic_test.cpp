@@ -163,6 +163,12 @@ TEST_CASE("each condition that is not kept fails the flight, and is named") {
                f.judge.suffer(0.9, 12);
              }),
              Contains("survival: survived the air defence with a probability of 0.900"));
+  CHECK_THAT(reason_of([](Flown& f) {
+               f.see(30, {0, 500, 500}, 320, 60, false);
+               f.judge.meet({0, 1100, 600});
+               f.fly();
+             }),
+             Contains("well clear: 600 m beside and 100 m above or below"));
   CHECK_THAT(reason_of([](Flown& f) { f.fly(500, 900); }), Contains("landing: touched down 900"));
   CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.longest_s = 100}), Contains("duration"));
   CHECK_THAT(reason_of([](Flown& f) { f.fly(); }, {.least_fuel_kg = 50}),
@@ -201,6 +207,17 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK(sites[1].place.longitude_deg == -27.7);
   CHECK(sites[1].active_from_s == 420);
   CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7"), skein::InvalidArgument);
+  const auto intruders = parse_intruders("300 90 9000 70");
+  REQUIRE(intruders.size() == 1);
+  CHECK(intruders[0].direction_rad == Approx(radians(90)));
+  CHECK_THROWS_AS(parse_intruders("300 90 9000"), skein::InvalidArgument);
+  const auto failures = parse_failures("2 wrong 200 400; 3 intermittent 10 20");
+  REQUIRE(failures.size() == 2);
+  CHECK(failures[0].set == 1);
+  CHECK(failures[0].kind == SensorFailure::Wrong);
+  CHECK(failures[1].kind == SensorFailure::Intermittent);
+  CHECK_THROWS_AS(parse_failures("4 wrong 200 400"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_failures("2 lazy 200 400"), skein::InvalidArgument);
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 93.5 27.7 0"), skein::InvalidArgument);
