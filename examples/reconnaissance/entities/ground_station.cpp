@@ -195,11 +195,13 @@ void GroundStation::show(const recon::MissionStatus& status) {
 void GroundStation::show(const recon::MissionMode& mode) {
   {
     std::lock_guard lock(mutex_);
-    if (mode_ == mode.mode) return;
+    if (mode_ == mode.mode && flight_order_ == mode.flight) return;
     mode_ = mode.mode;
+    flight_order_ = mode.flight;
   }
-  fmt::print("{}  mode {}{}\n", clock_of(mode.tick), to_string(mode.mode),
-             mode.reason.empty() ? "" : ": " + mode.reason);
+  fmt::print("{}  mode {}, {}{}{}\n", clock_of(mode.tick), to_string(mode.mode),
+             to_string(mode.flight), mode.cause.empty() ? "" : ": " + mode.cause,
+             mode.reason.empty() ? "" : "; " + mode.reason);
   std::fflush(stdout);
 }
 

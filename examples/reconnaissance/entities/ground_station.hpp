@@ -59,6 +59,7 @@ class GroundStation {
   bool avoiding_ = false;
   int sets_heard_ = 3;
   recon::Mode mode_ = recon::Mode::Starting;
+  recon::FlightOrder flight_order_ = recon::FlightOrder::FlyAsPlanned;
   std::set<std::uint32_t> threats_;  // that were shown, as were
   std::set<std::string> collected_;
   Tick last_tick_ = -1;

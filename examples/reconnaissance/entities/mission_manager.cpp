@@ -146,6 +146,8 @@ Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState
   if (const auto picture = pictures_.at(tick)) threats_ = discs_of(*picture, *frame_);
   const auto mode = mode_.at(tick);
   Conduct::Situation now;
+  return_home_.reset();
+  if (mode && mode->flight >= recon::FlightOrder::ReturnHome) return_home_ = mode->cause;
   now.all_fine = mode && mode->mode == recon::Mode::Normal;
   now.mode = mode_of(state.mode);
   now.height_m = state.position.height_m;
@@ -169,6 +171,7 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
   const MissionPhase phase = conduct_->phase();
   if (phase == MissionPhase::BuiltInTest)
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
+  if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
   const bool barred = now.legs > 0 && is_barred(state);
   if (phase == MissionPhase::Egress)
     return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};

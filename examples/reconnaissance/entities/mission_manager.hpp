@@ -64,13 +64,14 @@ class MissionManager : public recon::IMissionManager {
   std::optional<LocalFrame> frame_;
   std::optional<Conduct> conduct_;
   recon::Runway runway_;
-  recon::Route route_;                // that was ordered last
-  std::vector<WayPoint> through_;     // what it was to lead over
-  std::vector<ThreatDisc> threats_;   // as last seen
-  double barring_hazard_ = 0;         // of the rest of the route, from which on it is barred
-  std::vector<std::string> tour_;     // the elements that it passes,
-  std::size_t passed_ = 0;            // of which so many were passed
-  std::map<std::string, int> tries_;  // and how often, each
+  recon::Route route_;                      // that was ordered last
+  std::vector<WayPoint> through_;           // what it was to lead over
+  std::vector<ThreatDisc> threats_;         // as last seen
+  double barring_hazard_ = 0;               // of the rest of the route, from which on it is barred
+  std::vector<std::string> tour_;           // the elements that it passes,
+  std::size_t passed_ = 0;                  // of which so many were passed
+  std::map<std::string, int> tries_;        // and how often, each
+  std::optional<std::string> return_home_;  // as the executive wants, and why
   std::optional<recon::MissionStatus> told_;
 
   Stream<recon::FlightState> flight_;

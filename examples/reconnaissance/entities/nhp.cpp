@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "convert.hpp"
+#include "deciding.hpp"
 #include "mission/places.hpp"
 #include "topics.hpp"
 
@@ -16,11 +19,17 @@ using namespace std::chrono_literals;
 constexpr Tick kHealthPeriod = 50;
 // What somebody has told in the tick before is on its way here.
 constexpr auto kOnTheWay = 250ms;
+// Of the way home before it is planned: at 60 m/s, with a third more for turns and wind.
+constexpr double kFuel_kg_m = 0.006 / 60 * 1.33;
 
 }  // namespace
 
 Nhp::Nhp(skein::Entity& entity, const skein::ParameterValues& values)
-    : crew_(parse_names(values.get<std::string>("Crew"))),
+    : entity_(entity),
+      crew_(parse_names(values.get<std::string>("Crew"))),
+      required_(parse_names(values.find<std::string>("Required").value_or(""))),
+      fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
+      flight_(entity, topic::kFlightState),
       healths_(entity.subscription<recon::Health>(
           topic::kHealth, skein::TopicQos::state(),
           [this](const recon::Health& health) { hear(health); })),
@@ -42,19 +51,57 @@ void Nhp::judge(Tick tick) {
   recon::MissionMode mode;
   mode.tick = tick;
   mode.mode = recon::Mode::Starting;
+  missing_.clear();
   std::unique_lock lock(mutex_);
   if (tick > 0) {
     const Tick wanted = (tick - 1) / kHealthPeriod * kHealthPeriod;
     heard_.wait_for(lock, kOnTheWay, [&] { return all_heard(wanted); });
     for (const std::string& name : crew_) {
       const std::string trouble = trouble_of(name, wanted);
-      if (!trouble.empty()) mode.reason += (mode.reason.empty() ? "" : "; ") + name + " " + trouble;
+      if (trouble.empty()) continue;
+      mode.reason += (mode.reason.empty() ? "" : "; ") + name + " " + trouble;
+      missing_.push_back({name, std::ranges::count(required_, name) > 0, false});
     }
     started_ = started_ || mode.reason.empty();
     if (started_) mode.mode = mode.reason.empty() ? recon::Mode::Normal : recon::Mode::Limited;
   }
   lock.unlock();
+  if (mode.mode != recon::Mode::Starting) order_flight(tick, mode);
   mode_.publish(mode);
+}
+
+void Nhp::order_flight(Tick tick, recon::MissionMode& mode) {
+  const auto state = flight_.at(tick);
+  if (!state) return;
+  if (!home_) home_.emplace(geodetic(state->position));
+  const Local place = local(*home_, state->position);
+  recon::ExecutiveSituation situation;
+  situation.fuel_kg = state->fuel_kg;
+  situation.fuel_home_kg = kFuel_kg_m * std::hypot(place.north_m, place.east_m);
+  situation.fuel_for_mission_kg = situation.fuel_home_kg;
+  situation.fuel_reserve_kg = fuel_reserve_kg_;
+  situation.sensors = 3;
+  situation.sensors_heard = state->sets_heard;
+  situation.missing = missing_;
+  const recon::ExecutiveDecision decision = ask_executives(situation);
+  mode.flight = decision.order;
+  mode.cause = decision.cause;
+}
+
+recon::ExecutiveDecision Nhp::ask_executives(const recon::ExecutiveSituation& situation) {
+  skein::Task<recon::IExecutive, recon::ExecutiveDecision> task;
+  task.request = "what the mission has to do";
+  task.features = {{"missing", static_cast<double>(situation.missing.size())},
+                   {"sensors", static_cast<double>(situation.sensors_heard)}};
+  task.execution = skein::Execution::All;
+  task.enough = skein::TaskOptions::kAll;
+  task.run = [&](recon::IExecutive::Proxy& executive, skein::Duration) {
+    return executive.async_decide(situation);
+  };
+  // The most severe: it costs the least of them to be wrong.
+  task.synthesis = by_names(skein::best_by_cost<recon::ExecutiveDecision>(
+      [](const auto& decision) { return -static_cast<double>(static_cast<int>(decision.order)); }));
+  return decide(entity_, task).value_or(recon::ExecutiveDecision{});
 }
 
 bool Nhp::all_heard(Tick wanted) const {

@@ -3,17 +3,22 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "flight.idl.hpp"
+#include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
+#include "stream.hpp"
 
 namespace reconnaissance {
 
-/// The non-human pilot, the mission's executive: knows how everybody is, and says what is possible.
+/// The non-human pilot, the mission's executive: knows how everybody is, and says what the mission
+/// has to do. All of its CSPs are asked, and the most severe is heard.
 class Nhp {
  public:
   Nhp(skein::Entity& entity, const skein::ParameterValues& values);
@@ -25,13 +30,21 @@ class Nhp {
   /// What is wrong with one of the crew; empty if nothing is.
   std::string trouble_of(const std::string& name, Tick wanted) const;
   bool all_heard(Tick wanted) const;
+  void order_flight(Tick tick, recon::MissionMode& mode);
+  recon::ExecutiveDecision ask_executives(const recon::ExecutiveSituation& situation);
 
+  skein::Entity& entity_;
   std::vector<std::string> crew_;
+  std::vector<std::string> required_;
+  double fuel_reserve_kg_;
+  std::optional<LocalFrame> home_;  // about the first place of the aircraft
+  std::vector<recon::MissingEntity> missing_;
   mutable std::mutex mutex_;
   std::condition_variable heard_;
   std::map<std::string, recon::Health> health_;
   bool started_ = false;
 
+  Stream<recon::FlightState> flight_;
   skein::Subscription<recon::Health> healths_;
   skein::Publisher<recon::MissionMode> mode_;
   Member member_;

@@ -7,6 +7,7 @@
 #include "emitter_csps.hpp"
 #include "eo_manager.hpp"
 #include "eoi_manager.hpp"
+#include "executive_csps.hpp"
 #include "flight_controller.hpp"
 #include "flight_models.hpp"
 #include "flight_simulator.hpp"
@@ -76,6 +77,8 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::ITourPlanner, TourPlanner>(registry, "Heuristic", &heuristic_plan);
 
   add_activity<Nhp>(registry, "Nhp");
+  add_csp<recon::IExecutive, Executive<RuleTableExecutive>>(registry, "RuleTable");
+  add_csp<recon::IExecutive, Executive<UtilityExecutive>>(registry, "ExpectedUtility");
   add_activity<EoManager>(registry, "EoManager");
   add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "StepStare", &plan_step_stare);
   add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "LineScan", &plan_line_scan);

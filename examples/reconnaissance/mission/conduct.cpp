@@ -67,6 +67,11 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
   return Follow{tour_};
 }
 
+std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
+  const bool under_way = phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection;
+  return under_way ? go_home(reason) : std::nullopt;
+}
+
 std::optional<Conduct::Order> Conduct::go_home_another_way(const std::string& reason) {
   return phase_ == MissionPhase::Egress ? go_home(reason) : std::nullopt;
 }

@@ -105,6 +105,19 @@ TEST_CASE("another tour is flown at once where one is under way, and none leads 
   CHECK_FALSE(conduct.fly(kTour, "too late"));
 }
 
+TEST_CASE("a tour that is given up leads home, one that is not under way does not") {
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
+  CHECK_FALSE(conduct.give_up("no fuel"));
+  conduct.decide({.all_fine = true});
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  const auto order = conduct.give_up("no fuel");
+  REQUIRE(order);
+  CHECK(std::holds_alternative<Conduct::Land>(*order));
+  CHECK(conduct.reason() == "no fuel");
+  CHECK_FALSE(conduct.give_up("no fuel"));
+}
+
 TEST_CASE("where a route is refused the mission goes home, and says why") {
   Conduct conduct(kStrip);
   conduct.fly(kTour, "planned");
