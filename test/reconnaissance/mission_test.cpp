@@ -6,6 +6,7 @@
 
 #include "../mission/mission_run.hpp"
 #include "../tools/places.hpp"
+#include "track_check.hpp"
 
 using namespace skein::test;
 using Catch::Contains;
@@ -32,6 +33,27 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// What shares no code with those who flew it finds nothing wrong, either.
+void check_tracks(const MissionRun& run) {
+  const TrackExtremes extremes = extremes_of(run.file("reconnaissance.csv"));
+  CHECK(extremes.flown_s > 100);
+  CHECK(extremes.least_clearance_m > 200);
+  CHECK(extremes.greatest_bank_deg < 30);
+  // Through the air 6 degrees at most, which a head wind makes steeper over the ground.
+  CHECK(extremes.greatest_climb_deg < 8.5);
+  CHECK(extremes.longest_not_well_clear_s == 0);
+}
+
+/// The angle of a pixel of the camera: 3 degrees by 1440 rows.
+constexpr double kPixel_rad = 0.0524 / 1440;
+
+/// What was collected could be seen so finely from where the aircraft flew.
+void check_pass(const MissionRun& run, double latitude_deg, double longitude_deg) {
+  const Pass pass = pass_by(run.file("reconnaissance.csv"), latitude_deg, longitude_deg);
+  INFO(pass.beside_m << " m beside, " << pass.above_ground_m << " m above ground");
+  CHECK(pass.sample_m(kPixel_rad) < 0.3);
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -53,7 +75,24 @@ TEST_CASE(
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
   CHECK(verdict["checks"].size() == 9);
+  check_tracks(run);
+  check_pass(run, 53.3089, 27.3225);
+  // Of the site's weapon, 8 km around it.
+  CHECK(seconds_within(run.file("reconnaissance.csv"), 53.48, 27.5, 8000) == 0);
   CHECK_THAT(text_of(run.file("reconnaissance.junit.xml")), Contains("failures=\"0\""));
+}
+
+TEST_CASE("a mission whose fuel becomes short goes home, because its executive says so") {
+  const MissionRun run(kMission, with(kShort, {"--set", "flight_simulator.Fuel=22.6", "--set",
+                                               "nhp.Fuel reserve=22"}));
+  INFO(run.output());
+  CHECK(run.exit_code() == 10);
+  CHECK_THAT(run.output(), Contains("ReturnHome: fuel suffices for the way home and no more"));
+  CHECK_THAT(run.output(), Contains("Egress: fuel suffices for the way home and no more"));
+  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  CHECK(verdict["flown"] == true);
+  CHECK_THAT(verdict["reason"].get<std::string>(), Contains("targets: 0 of 1"));
+  check_tracks(run);
 }
 
 TEST_CASE("a flight that is not flown to its end says so by its exit code") {
@@ -70,4 +109,17 @@ TEST_CASE("a profile that is wrong is refused, and nothing flies") {
   const MissionRun run(kMission, with(kShort, {"--variable", "vendor_b=nobody"}));
   CHECK(run.exit_code() == 78);
   CHECK_FALSE(exists(run.file("reconnaissance.json")));
+}
+
+TEST_CASE("the nominal mission passes with other seeds, on each vendor and on both", "[.nominal]") {
+  const std::vector<std::pair<std::string, std::string>> vendors{
+      {"fastdds", "cyclonedds"}, {"fastdds", "fastdds"}, {"cyclonedds", "cyclonedds"}};
+  for (int seed = 1; seed <= 6; ++seed) {
+    const auto& [a, b] = vendors[static_cast<std::size_t>(seed) % vendors.size()];
+    const MissionRun run(kMission, {"--variable", "seed=" + std::to_string(seed), "--variable",
+                                    "vendor_a=" + a, "--variable", "vendor_b=" + b});
+    INFO("seed " << seed << " on " << a << " and " << b << "\n" << run.output());
+    CHECK(run.exit_code() == 0);
+    check_tracks(run);
+  }
 }

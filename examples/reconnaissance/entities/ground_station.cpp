@@ -46,6 +46,12 @@ std::string clock_of(Tick tick) {
   return fmt::format("{:%M:%S}", std::chrono::floor<std::chrono::seconds>(time_of(tick)));
 }
 
+std::string track_line(Tick tick, std::uint32_t aircraft, const recon::Position& place,
+                       double above_ground_m) {
+  return fmt::format("{:.2f},{},{:.7f},{:.7f},{:.2f},{:.2f}\n", seconds_of(tick), aircraft,
+                     place.latitude_deg, place.longitude_deg, place.height_m, above_ground_m);
+}
+
 /// Beside the file at first, then in its place: a reader finds a whole one.
 void write_whole(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path beside = file.string() + ".new";
@@ -171,6 +177,7 @@ bool GroundStation::is_complete() const {
 void GroundStation::see(const recon::Truth& truth) {
   {
     std::lock_guard lock(mutex_);
+    tracks_ += track_line(truth.tick, 0, truth.position, truth.height_above_ground_m);
     last_tick_ = truth.tick;
     if (!judge_.standing()) last_moving_tick_ = truth.tick;
     judge_.see({std::chrono::duration<double>(time_of(truth.tick)).count(),
@@ -271,6 +278,9 @@ void GroundStation::show(const recon::ElementList& list) {
 void GroundStation::write(const Verdict& verdict) const {
   write_whole(results_.string() + ".json", to_json(verdict, "reconnaissance"));
   write_whole(results_.string() + ".junit.xml", to_junit(verdict, "reconnaissance"));
+  write_whole(
+      results_.string() + ".csv",
+      "time_s,aircraft,latitude_deg,longitude_deg,height_m,height_above_ground_m\n" + tracks_);
 }
 
 }  // namespace reconnaissance

@@ -55,6 +55,7 @@ class GroundStation {
   std::condition_variable_any changed_;
   Judge judge_;
   std::optional<recon::Phase> phase_;
+  std::string tracks_;  // as they are written
   std::string reason_;  // that was shown, as were
   bool avoiding_ = false;
   int sets_heard_ = 3;
