@@ -34,7 +34,7 @@ MissionRun::MissionRun(const std::filesystem::path& profile,
                        const std::vector<std::string>& arguments)
     : folder_(make_folder()) {
   std::string command = "cd " + quoted(folder_) + " && XDG_STATE_HOME=" + quoted(folder_) +
-                        " exec timeout 120 " + quoted(built_program("skein")) + " launch " +
+                        " exec timeout 300 " + quoted(built_program("skein")) + " launch " +
                         quoted(profile);
   for (const std::string& argument : arguments) command += " " + quoted(argument);
   std::FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
