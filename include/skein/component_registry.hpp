@@ -86,6 +86,24 @@ class ComponentRegistry {
                   "the factory of a CSP takes (const skein::ParameterValues&) and returns "
                   "std::make_shared<INTERFACE::Skeleton>(std::make_shared<YOUR_CLASS>())");
   }
+  /// The same where also the interface is missing.
+  template <class Factory>
+  requires(!std::is_convertible_v<Factory, BodyFactory>) void add_body(const std::string&,
+                                                                       const Factory&) {
+    static_assert(
+        sizeof(Factory) == 0,
+        "a Body is registered with its interface, add_body<INTERFACE>(NAME, FACTORY), and "
+        "its factory takes (skein::Entity&, const skein::ParameterValues&) and returns "
+        "skein::ComponentRegistry::Body");
+  }
+  template <class Factory>
+  requires(!std::is_convertible_v<Factory, CspFactory>) void add_csp(const std::string&,
+                                                                     const Factory&) {
+    static_assert(sizeof(Factory) == 0,
+                  "a CSP is registered with its interface, add_csp<INTERFACE>(NAME, FACTORY), and "
+                  "its factory takes (const skein::ParameterValues&) and returns a "
+                  "std::shared_ptr<skein::Servant>");
+  }
   void add_mission(const std::string& component, Mission mission);
   void add_activity(const std::string& component, Activity activity);
   /// Makes a strategy selectable by its name, for example as a profile's `strategy`. Throws

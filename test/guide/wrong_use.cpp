@@ -12,6 +12,12 @@ void use(skein::ComponentRegistry& registry, skein::Entity& entity) {
 #if defined(CSP_WITHOUT_SKELETON)
   registry.add_csp<survey::IPlanner>(
       "Rows", [](const skein::ParameterValues&) { return std::make_shared<Rows>(); });
+#elif defined(CSP_WITHOUT_INTERFACE)
+  registry.add_csp("Rows", [](const skein::ParameterValues&) { return std::make_shared<Rows>(); });
+#elif defined(BODY_WITHOUT_INTERFACE)
+  registry.add_body("Rows", [](skein::Entity&, const skein::ParameterValues&) {
+    return std::make_shared<Rows>();
+  });
 #elif defined(INTERFACE_AS_TOPIC)
   auto planners = entity.publisher<survey::IPlanner>("planner");
 #elif defined(NUMBER_AS_TOPIC)
