@@ -266,6 +266,14 @@ class Links(TreeTest):
         self.write("a.md", "[b](b.md#one-heading-and-more) [b](b.md#two) [self](#three)\n\n# Three\n")
         self.assertFinds(text_rules.links(self.tree), "a.md:1", "b.md#two")
 
+    def test_a_file_that_a_profile_names_and_that_is_not_there_is_found(self):
+        self.write("examples/01/mission.xml", '<mission dictionary="../b.xml">\n<peer component="a.xml"/><peer component="${x}.xml"/>\n')
+        self.write("examples/b.xml", "<dictionary/>")
+        self.write("test/profile/mission.xml", '<mission dictionary="nowhere.xml"/>')
+        self.assertFinds(text_rules.links(self.tree), "examples/01/mission.xml:2", "a.xml")
+        self.write("examples/01/a.xml", "<component/>")
+        self.assertFindsNothing(text_rules.links(self.tree))
+
     def test_links_to_folders_pages_and_in_code_are_taken(self):
         self.write("b/x.txt", "")
         self.write("a.md", "[b](b) [page](https://example.org/x) `f[i](x)`\n\n```cpp\n[](x)\n```\n")

@@ -34,6 +34,9 @@ QUOTING = {
 _FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
 _CODE = re.compile(r"`[^`\n]*`")
 _LINK = re.compile(r"\]\(([^()\s]+)\)")
+# Profiles that are as they should be, which those of tests need not be.
+PROFILES = ("examples", "mission_profiles", "test/guide")
+_NAMED_FILE = re.compile(r'="([^"$]+\.xml)"')
 _TEST_CASE = re.compile(r'\bTEST_CASE(?:_METHOD)?\s*\(\s*(?:\w+\s*,\s*)?((?:"[^"]*"\s*)+)')
 WORKAROUNDS = "src/dds/WORKAROUNDS.md"
 # The columns of its tables.
@@ -109,8 +112,21 @@ def _without_margin(lines):
     return [line[margin:].rstrip() for line in lines]
 
 
+def named_files(tree):
+    """A file that a profile names and that is not there."""
+    for path in tree.files((".xml",)):
+        if not within(path, PROFILES):
+            continue
+        for found in _NAMED_FILE.finditer(tree.text(path)):
+            named = os.path.normpath(os.path.join(os.path.dirname(path), found.group(1)))
+            if not tree.exists(named):
+                line = tree.text(path).count("\n", 0, found.start()) + 1
+                yield f"{path}:{line}: names {found.group(1)}, which does not exist"
+
+
 def links(tree):
     """A link of a text to a file, a folder or a heading that is not there."""
+    yield from named_files(tree)
     for path in tree.files((".md",)):
         text = _prose(tree.text(path))
         for found in _LINK.finditer(text):
