@@ -11,9 +11,11 @@ std::unique_ptr<dds::Reader> tap_topic(dds::Participant& participant, const Know
   qos.partitions = std::move(systems);
   if (told.xcdr2) qos.representation = dds::DataRepresentation::Xcdr2;
   dds::ReaderListener listener;
-  listener.on_data = [on_value = std::move(tap.on_value)](dds::Reader& reader) {
+  listener.on_data = [on_value = std::move(tap.on_value),
+                      on_disposed = std::move(tap.on_disposed)](dds::Reader& reader) {
     reader.take([&](const dds::Sample& sample) {
-      if (sample.state == dds::InstanceState::Alive) on_value(sample);
+      const bool alive = sample.state == dds::InstanceState::Alive;
+      if (const auto& tell = alive ? on_value : on_disposed) tell(sample);
     });
   };
   listener.on_matched = std::move(tap.on_matched);

@@ -8,10 +8,11 @@
 
 namespace skein {
 
-/// Both run on a vendor's thread: they must return soon.
+/// All run on a vendor's thread: they must return soon.
 struct TopicTap {
   std::function<void(const dds::Sample& value)> on_value;
   std::function<void(const Guid& writer, bool matched)> on_matched{};
+  std::function<void(const dds::Sample& end)> on_disposed{};  ///< Of the instance of its key.
 };
 
 /// Reads the values of a topic as they travel, in these of its systems, with its reading_qos().

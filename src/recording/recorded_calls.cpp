@@ -90,7 +90,7 @@ void RecordedCalls::receive(Waiting waiting) {
                      channels_.contains({record.service, record.operation, part_of_result(record)});
   const std::size_t size = sizeof waiting + introspection::size_of(record);
   if (known) return write(waiting);
-  if (waiting_size_ + size > kMostWaiting) {
+  if (waiting_size_ > 0 && waiting_size_ + size > kMostWaiting) {
     writer_.count_dropped(records_, 1);
     return;
   }
@@ -166,7 +166,8 @@ void RecordedCalls::write(const Waiting& waiting) {
 void RecordedCalls::write_part(const Waiting& waiting, const std::string& part,
                                const std::vector<std::uint8_t>& data, std::uint64_t time) {
   const auto channel = channels_.find({waiting.record.service, waiting.record.operation, part});
-  if (channel == channels_.end() || channel->second == kNoChannel || data.empty()) return;
+  if (data.empty()) return;
+  if (channel == channels_.end()) return writer_.count_dropped(records_, 1);
   writer_.write({channel->second, waiting.sequence, time, time, std::as_bytes(std::span(data))});
 }
 

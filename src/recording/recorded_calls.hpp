@@ -50,10 +50,11 @@ class RecordedCalls {
   std::uint16_t channel_of(const Waiting& waiting, const std::string& part);
   const types::TypeSystem& types_of(const Waiting& waiting);
 
-  /// Of records that wait for their channels, in bytes; further ones are dropped.
+  /// Of records that wait for their channels, in bytes: further ones are dropped, but not one
+  /// alone.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
 
-  /// Beyond these, what calls carry is not recorded: names come from the network.
+  /// Beyond these, what calls carry counts as dropped: names come from the network.
   static constexpr std::size_t kMostChannels = 4096;
 
   Writer& writer_;

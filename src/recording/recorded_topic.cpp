@@ -20,13 +20,13 @@ void RecordedTopic::Heard::note(std::size_t reader, const Guid& writer, bool mat
 }
 
 // A value may come before its writer is known to be matched.
-void RecordedTopic::Heard::take(std::size_t reader, const dds::Sample& value) {
+void RecordedTopic::Heard::take(std::size_t reader, const dds::Sample& sample) {
   {
     std::lock_guard lock(mutex_);
-    const auto heard = readers_.find(value.writer);
+    const auto heard = readers_.find(sample.writer);
     if (heard != readers_.end() && *heard->second.begin() < reader) return;
   }
-  consumer_(value.cdr);
+  consumer_(sample);
 }
 
 void RecordedTopic::follow(dds::Participant& participant, const KnownTopic& topic) {
@@ -36,12 +36,13 @@ void RecordedTopic::follow(dds::Participant& participant, const KnownTopic& topi
   std::ranges::set_difference(topic.systems(), known, std::back_inserter(added));
   if (added.empty()) return;
   const std::size_t number = readers_.size();
-  readers_.push_back(
-      tap_topic(participant, topic, added,
-                {[number, heard = heard_](const dds::Sample& value) { heard->take(number, value); },
-                 [number, heard = heard_](const Guid& writer, bool matched) {
-                   heard->note(number, writer, matched);
-                 }}));
+  const auto take = [number, heard = heard_](const dds::Sample& sample) {
+    heard->take(number, sample);
+  };
+  const auto note = [number, heard = heard_](const Guid& writer, bool matched) {
+    heard->note(number, writer, matched);
+  };
+  readers_.push_back(tap_topic(participant, topic, added, {take, note, take}));
   known.insert(added.begin(), added.end());
 }
 

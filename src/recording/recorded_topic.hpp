@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -22,8 +21,8 @@ namespace skein::recording {
 /// several readers hear is recorded from the first of them.
 class RecordedTopic {
  public:
-  /// `consumer` runs on a vendor's thread, with values as they travel.
-  using Consumer = std::function<void(std::span<const std::byte> cdr)>;
+  /// `consumer` runs on a vendor's thread, with values as they travel, and disposals of instances.
+  using Consumer = std::function<void(const dds::Sample& sample)>;
 
   explicit RecordedTopic(Consumer consumer)
       : heard_(std::make_shared<Heard>(std::move(consumer))) {}
@@ -37,7 +36,7 @@ class RecordedTopic {
    public:
     explicit Heard(Consumer consumer) : consumer_(std::move(consumer)) {}
     void note(std::size_t reader, const Guid& writer, bool matched);
-    void take(std::size_t reader, const dds::Sample& value);
+    void take(std::size_t reader, const dds::Sample& sample);
 
    private:
     const Consumer consumer_;

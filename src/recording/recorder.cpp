@@ -15,6 +15,7 @@
 #include "recording/recorded_types.hpp"
 #include "rpc/introspection_topic.hpp"
 #include "skein/describe.hpp"
+#include "skein/detail/json.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/inspector.hpp"
@@ -46,6 +47,26 @@ std::map<std::string, std::string> metadata_of(const KnownTopic& topic) {
 /// How often entities are asked for the types of a topic. What comes until they tell them has no
 /// schema.
 constexpr int kMostQuestions = 3;
+
+/// MCAP has no message for the end of an instance, and a disposal no value of the topic's type.
+constexpr const char* kDisposals = "skein/disposals";
+constexpr const char* kDisposalSchema =
+    R"({"title":"Disposal","type":"object","properties":{"topic":{"type":"string"},)"
+    R"("key":{"type":"string","description":"The key's hash, DDSI-RTPS 9.6.3.8, in hexadecimal"},)"
+    R"("writer":{"type":"string","description":"Its GUID, in hexadecimal"}}})";
+
+std::string text_of_disposal(const std::string& topic, const dds::Sample& sample) {
+  idl::JsonWriter json;
+  json.begin_object();
+  json.key("topic");
+  json.write_string(topic);
+  json.key("key");
+  json.write_string(sample.key.hex());
+  json.key("writer");
+  json.write_string(sample.writer.hex());
+  json.end_object();
+  return json.take();
+}
 
 }  // namespace
 
@@ -109,6 +130,7 @@ struct Recorder::State {
     if (!known.has_schema && known.questions < kMostQuestions) {
       problem = name_channel(known, topic, patience);
     }
+    if (topic.endpoints.front().told.keyed) name_disposals();
     const std::string failure = listen(known, topic);
     if (!failure.empty()) return name + " is not recorded: " + failure;
     if (!is_new) return std::nullopt;
@@ -130,11 +152,25 @@ struct Recorder::State {
     }
   }
 
+  void name_disposals() {
+    if (disposals != 0) return;
+    const auto schema = writer.add_schema("skein.Disposal", "jsonschema", kDisposalSchema);
+    disposals = writer.add_channel(kDisposals, schema, {{"introspection", "true"}}, "json");
+  }
+
+  void write_sample(const Recorded& known, const std::string& topic, const dds::Sample& sample) {
+    if (sample.state == dds::InstanceState::Alive) return write(known.channel, sample.cdr);
+    const std::string text = text_of_disposal(topic, sample);
+    write(disposals, std::as_bytes(std::span(text)));
+  }
+
   /// Says why not, once for each reason. One topic must not end the recording of others.
   std::string listen(Recorded& known, const KnownTopic& topic) {
     if (!known.topic) {
       known.topic = std::make_unique<RecordedTopic>(
-          [this, &known](std::span<const std::byte> cdr) { write(known.channel, cdr); });
+          [this, &known, name = topic.name](const dds::Sample& sample) {
+            write_sample(known, name, sample);
+          });
     }
     try {
       known.topic->follow(entity.participant(), topic);
@@ -159,7 +195,8 @@ struct Recorder::State {
   Inspector inspector;
   RecordedCalls calls;
   std::atomic<std::uint32_t> sequence{0};
-  std::mutex looking;                                                // guards what follows
+  std::atomic<std::uint16_t> disposals{0};  // the channel, once a topic has keys
+  std::mutex looking;                       // guards what follows
   std::map<std::pair<std::string, std::string>, Recorded> recorded;  // by name and type
   // These go first: their listeners use the rest.
   std::vector<std::unique_ptr<introspection::AnyReader>> own_readers;

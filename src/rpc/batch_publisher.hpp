@@ -26,7 +26,7 @@ class BatchPublisher : public AnyPublisher {
 
   /// How long a value waits for others.
   static constexpr std::chrono::milliseconds kGatherTime{25};
-  /// What may wait, in bytes of memory; and what a sample holds: where one value is larger, that
+  /// What may wait, in bytes of memory, and what a sample holds: where one value is larger, that
   /// alone.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
   static constexpr std::size_t kMostInSample = std::size_t{48} << 10;
@@ -44,7 +44,7 @@ class BatchPublisher : public AnyPublisher {
     const std::size_t size = size_of(value);
     std::lock_guard lock(mutex_);
     if (closed_) return;
-    if (waiting_size_ + size > kMostWaiting) {
+    if (waiting_size_ > 0 && waiting_size_ + size > kMostWaiting) {
       ++dropped_;
       return;
     }

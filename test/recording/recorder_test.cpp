@@ -151,6 +151,36 @@ TEST_CASE("a publisher that several readers hear is recorded once") {
   CHECK(seen == std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
 }
 
+TEST_CASE("disposals of a keyed topic are recorded beside its values") {
+  Recorded recorded;
+  auto markers = recorded.provider->publisher<survey::Marker>("marker", TopicQos::state());
+  auto corners = recorded.provider->publisher<survey::Corner>("corner");
+  recorded.begin();
+  REQUIRE(eventually([&] {
+    return recorded.recorder->look(1s), markers.subscribers() == 1 && corners.subscribers() == 1;
+  }));
+  const survey::Marker north{"north", {1, 2}};
+  markers.publish(north);
+  markers.publish({"south", {3, 4}});
+  markers.dispose(north);
+  REQUIRE(eventually([&] { return recorded.written("skein/disposals") == 1; }));
+  CHECK(recorded.written("marker") == 2);
+  recorded.recorder->close();
+
+  const recording::Reader reader(recorded.file);
+  auto messages = reader.messages({.topics = {"skein/disposals"}});
+  const auto message = messages.next();
+  REQUIRE(message);
+  const std::string text(reinterpret_cast<const char*>(message->data.data()), message->data.size());
+  CHECK_THAT(text, Catch::StartsWith("{\"topic\":\"marker\",\"key\":\"" + key_hash(north).hex()));
+  CHECK_FALSE(messages.next());
+  for (const auto& [id, channel] : reader.channels()) {
+    if (channel.topic != "skein/disposals") continue;
+    CHECK(channel.message_encoding == "json");
+    CHECK(reader.schemas().at(channel.schema).encoding == "jsonschema");
+  }
+}
+
 TEST_CASE("a topic that cannot be read beside another one is told, and ends no recording") {
   Recorded recorded;
   auto corners = recorded.provider->publisher<survey::Corner>("place");
@@ -212,6 +242,29 @@ TEST_CASE("calls are recorded with what they carried, whatever their transport a
     INFO(channel.topic);
     CHECK(channel.schema != 0);
   }
+}
+
+TEST_CASE("a call is recorded whole, however large") {
+  Recorded recorded;
+  recorded.begin();
+  auto proxy = recorded.provider->connect<survey::ISurveyor>();
+  REQUIRE(eventually([&] {
+    proxy.greet("you");
+    return recorded.recorder->look(1s), recorded.written("skein/call_records") > 0;
+  }));
+  survey::Plot plot;
+  plot.corners.resize(std::size_t{3} << 16);  // 3 MiB
+  std::int32_t corners = 0;
+  proxy.measure(plot, corners);
+  const std::string topic = "calls/survey/ISurveyor/measure/request";
+  REQUIRE(eventually([&] { return recorded.recorder->look(1s), recorded.written(topic) == 1; }));
+  recorded.recorder->close();
+  CHECK(recorded.recorder->statistics().dropped() == 0);
+  const recording::Reader reader(recorded.file);
+  auto messages = reader.messages({.topics = {topic}});
+  const auto message = messages.next();
+  REQUIRE(message);
+  CHECK(message->data.size() > plot.corners.size() * sizeof(survey::Corner));
 }
 
 TEST_CASE("nothing of calls is copied while nobody records") {

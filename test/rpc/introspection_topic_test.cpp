@@ -306,6 +306,19 @@ TEST_CASE("gathered values for which there is no room are dropped, and samples t
   CHECK(onlooker.values.back().dropped == 3);
 }
 
+TEST_CASE("a value that is larger than what may wait is written, where it waits alone") {
+  World world;
+  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  publisher.publish(record(1, publisher.kMostWaiting + 1));
+  publisher.publish(record(2, publisher.kMostWaiting + 1));
+  world.clock.advance(publisher.kGatherTime);
+  world.control.run_all();
+  REQUIRE(onlooker.values.size() == 1);
+  CHECK(onlooker.values[0].values.at(0).number == 1);
+  CHECK(onlooker.values[0].dropped == 1);
+}
+
 TEST_CASE("what was gathered is written when the publisher closes, and nothing after that") {
   World world;
   Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
