@@ -54,7 +54,7 @@ void print(const Rows& rows) {
 }
 
 void save(const Rows& rows, const std::string& path) {
-  write_whole_file("the report", path, rows.dump(2) + '\n');
+  write_output([&] { write_whole_file("the report", path, rows.dump(2) + '\n'); });
 }
 
 int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&)) {
@@ -62,7 +62,8 @@ int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&))
     bench::serve(arguments);
     return 0;
   }
-  if (!arguments.output.empty()) try_whole_file("the report", arguments.output);
+  if (!arguments.output.empty())
+    write_output([&] { try_whole_file("the report", arguments.output); });
   bench::vendors_of(arguments);  // throws, where it must, before there is another process
   std::unique_ptr<Server> server;
   if (!arguments.remote) server = std::make_unique<Server>(arguments);

@@ -247,8 +247,6 @@ nlohmann::ordered_json to_json(const Graph& graph) {
 int draw_graph(const GraphArguments& arguments) {
   const Interruption interruption;
   const std::string format = arguments.json ? "json" : arguments.format;
-  if (format != "dot" && format != "mermaid" && format != "json")
-    throw InvalidArgument("--format is dot, mermaid or json, and not '" + format + "'");
   Entity entity = join(arguments, "graph");
   const introspection::StatisticsReader statistics(entity.participant());
   DomainLook look(entity);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "core/printable.hpp"
 #include "core/whole_file.hpp"
 #include "launch/start_script.hpp"
 #include "launch/systemd_units.hpp"
@@ -18,6 +19,14 @@ void make_executable(const std::filesystem::path& file) {
                                std::filesystem::perm_options::add);
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return;
+  throw WriteFailed("the folder '" + printable(folder.string()) +
+                    "' cannot be made: " + error.message());
+}
+
 }  // namespace
 
 int write_script(const ScriptArguments& given) {
@@ -27,13 +36,15 @@ int write_script(const ScriptArguments& given) {
   const auto plan = plan_of(mission, arguments);
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
   if (!arguments.systemd.empty()) {
-    std::filesystem::create_directories(arguments.systemd);
+    make_folder(arguments.systemd);
     for (const auto& [name, text] : launch::systemd_units(plan)) {
-      write_whole_file("the unit", std::filesystem::path(arguments.systemd) / name, text);
+      const auto file = std::filesystem::path(arguments.systemd) / name;
+      write_output([&] { write_whole_file("the unit", file, text); });
       std::printf("%s\n", name.c_str());
     }
   } else if (!arguments.output.empty()) {
-    write_whole_file("the script", arguments.output, launch::start_script(plan));
+    write_output(
+        [&] { write_whole_file("the script", arguments.output, launch::start_script(plan)); });
     make_executable(arguments.output);
   } else {
     std::fputs(launch::start_script(plan).c_str(), stdout);

@@ -26,4 +26,15 @@ void write_whole_file(const std::string& what, const std::filesystem::path& file
 /// nothing.
 void try_whole_file(const std::string& what, const std::filesystem::path& file);
 
+/// Runs `write`, which writes a file that a person has named as output: that it cannot even be made
+/// is output that is lost, too, WriteFailed in place of InvalidArgument.
+template <class Write>
+void write_output(const Write& write) {
+  try {
+    write();
+  } catch (const InvalidArgument& error) {
+    throw WriteFailed(error.what());
+  }
+}
+
 }  // namespace skein

@@ -106,13 +106,20 @@ VariableValues parse_variables(const std::vector<std::string>& assignments) {
   return values;
 }
 
-void apply_setting(MissionProfile& profile, std::string_view assignment) {
+void demand_setting(std::string_view assignment) {
   const auto equals = assignment.find('=');
-  const auto dot = assignment.substr(0, equals).find('.');
-  if (equals == std::string_view::npos || dot == std::string_view::npos) {
-    throw InvalidArgument(in_quotes(assignment) +
-                          " is no setting; write PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE");
-  }
+  if (equals != std::string_view::npos && assignment.find('.') < equals) return;
+  const std::string variable =
+      equals == std::string_view::npos ? "" : "; a variable is set by --variable";
+  throw InvalidArgument(in_quotes(assignment) +
+                        " is no setting; write PEER.PARAMETER=VALUE or PEER/CSP.PARAMETER=VALUE" +
+                        variable);
+}
+
+void apply_setting(MissionProfile& profile, std::string_view assignment) {
+  demand_setting(assignment);
+  const auto equals = assignment.find('=');
+  const auto dot = assignment.find('.');
   const auto owner = assignment.substr(0, dot);
   const std::string parameter(assignment.substr(dot + 1, equals - dot - 1));
   const std::string value(assignment.substr(equals + 1));

@@ -122,4 +122,7 @@ MissionProfile read_mission_profile(const std::filesystem::path& file,
 /// peer, CSP or parameter, with a suggestion, and for a value that the dictionary refuses.
 void apply_setting(MissionProfile& profile, std::string_view assignment);
 
+/// Throws InvalidArgument for what has not the form of such an assignment, whatever it names.
+void demand_setting(std::string_view assignment);
+
 }  // namespace skein::profile

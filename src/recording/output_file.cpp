@@ -30,9 +30,9 @@ OutputFile::OutputFile(std::string path)
       file_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kReadableByAll)) {
   if (file_) return;
   const int error = errno;
-  throw InvalidArgument("the recording '" + path_ + "' cannot be made: " + words(error) +
-                        (error == EEXIST ? "; name another file, or remove that one"
-                                         : "; name a file in a folder that may be written to"));
+  throw WriteFailed("the recording '" + path_ + "' cannot be made: " + words(error) +
+                    (error == EEXIST ? "; name another file, or remove that one"
+                                     : "; name a file in a folder that may be written to"));
 }
 
 void OutputFile::append(std::span<const std::byte> piece) {

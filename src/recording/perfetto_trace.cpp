@@ -222,7 +222,7 @@ PerfettoExport export_to_perfetto(const Reader& recording, const std::string& pa
     throw InvalidArgument(std::string("the recording has neither ") + kCallsTopic + " nor " +
                           kDecisionsTopic + "; record these topics to have a trace");
   }
-  try_whole_file("the trace", path);
+  write_output([&] { try_whole_file("the trace", path); });
   PerfettoTrace trace;
   PerfettoExport done;
   auto messages = recording.messages(selection);
@@ -240,7 +240,7 @@ PerfettoExport export_to_perfetto(const Reader& recording, const std::string& pa
       ++done.malformed;
     }
   }
-  write_whole_file("the trace", path, trace.finish());
+  write_output([&] { write_whole_file("the trace", path, trace.finish()); });
   return done;
 }
 

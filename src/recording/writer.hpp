@@ -52,8 +52,8 @@ struct WriterStatistics {
 class Writer {
  public:
   /// `path` is the file; with splitting `name.mcap` stands for `name_0.mcap`, `name_1.mcap`, …,
-  /// each of which is complete. Throws InvalidArgument for options that make no sense, and where
-  /// the file is there already or cannot be made.
+  /// each of which is complete. Throws InvalidArgument for options that make no sense, and
+  /// WriteFailed where the file is there already or cannot be made.
   Writer(const std::string& path, const WriterOptions& options);
   explicit Writer(const std::string& path) : Writer(path, WriterOptions()) {}
   /// Closes it; what close() would throw is logged.

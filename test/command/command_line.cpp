@@ -234,8 +234,29 @@ TEST_CASE("what users of other software type leads to a command that there is") 
   CHECK(familiar_name({"nothing", "of", "this"}).empty());
 }
 
-TEST_CASE("there is no completion for a shell that is not known") {
+TEST_CASE("a word that an option does not know is refused with those that it knows") {
+  CHECK_THAT(refusal("completion fishh"),
+             Contains("SHELL: 'fishh' is none of bash, zsh, fish (did you mean 'fish'?)"));
+  CHECK_THAT(refusal("graph --format png"),
+             Contains("--format: 'png' is none of dot, mermaid, json"));
   const Line line;
-  CHECK_THROWS_AS(completion(line.app, "fishh"), InvalidArgument);
-  CHECK_THROWS_WITH(completion(line.app, "fishh"), Contains("did you mean 'fish'?"));
+  line.each([&](const CLI::App& command, const std::string& words) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->get_type_name().find('|') == std::string::npos) continue;
+      CAPTURE(option->get_name());
+      Line tried;
+      auto* checked =
+          const_cast<CLI::App*>(tried.command_of(words))->get_option(option->get_name());
+      checked->add_result("neither");
+      CHECK_THROWS_AS(checked->run_callback(), CLI::ValidationError);
+    }
+  });
+}
+
+TEST_CASE("what sets nothing is refused with how it is written") {
+  for (const char* wrong : {"launch mission.xml --set lift=3", "check mission.xml --set lift=3.5"})
+    CHECK_THAT(refusal(wrong), Contains("--set: ") && Contains("PEER.PARAMETER=VALUE") &&
+                                   Contains("a variable is set by --variable"));
+  CHECK_THAT(refusal("launch mission.xml --set navigator.grid"), Contains("is no setting"));
+  CHECK_THAT(refusal("launch mission.xml --variable lift"), Contains("write NAME=VALUE"));
 }

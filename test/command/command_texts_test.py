@@ -28,6 +28,10 @@ class Hints(unittest.TestCase):
         self.check("--domain 42 services", "options follow the command: skein services --domain 42")
         self.check("--domain 42", "options follow the command: skein COMMAND --domain 42")
 
+    def test_a_global_option_that_is_misspelt_is_told_with_the_nearest(self):
+        self.check("--verison", "there is no option '--verison' (did you mean '--version'?)")
+        self.check("--hlep", "did you mean '--help'?")
+
     def test_a_profile_is_an_option_of_commands_that_look(self):
         self.check("services mission.xml", "--profile mission.xml")
 

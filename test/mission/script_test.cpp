@@ -88,8 +88,11 @@ TEST_CASE("units of systemd are written to the folder, which is made, and named"
   }
   CommandRun nowhere(
       {"script", errand.profile("", kPeers), "--output", "/no/such/folder/start.sh"});
-  CHECK(nowhere.wait() == 78);
+  CHECK(nowhere.wait() == 74);
   CHECK_THAT(nowhere.output(), Contains("'/no/such/folder/start.sh' cannot be written"));
+  CommandRun no_folder({"script", errand.profile("", kPeers), "--systemd", "/dev/null/units"});
+  CHECK(no_folder.wait() == 74);
+  CHECK_THAT(no_folder.output(), Contains("the folder '/dev/null/units' cannot be made"));
 }
 
 TEST_CASE("a script for which the disk has no room is output that was lost") {

@@ -12,6 +12,7 @@
 #include "dds/vendor_names.hpp"
 #include "help.hpp"
 #include "profile/dictionary.hpp"
+#include "profile/mission_profile.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
@@ -149,6 +150,7 @@ CLI::Option* add_variables(CLI::App& command, std::vector<std::string>& variable
                   "the profile says")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+      ->check(of_form([](const std::string& text) { profile::parse_variables({text}); }))
 }
 
 CLI::Option* add_json(CLI::App& command, bool& json, const std::string& form) {
@@ -180,6 +182,19 @@ CLI::Option* add_duration(CLI::App& command, const std::string& name, double& se
 }
 
 CLI::Validator above_zero() {
+CLI::Validator of_form(const std::function<void(const std::string& text)>& parse) {
+  return CLI::Validator(
+      [parse](std::string& text) -> std::string {
+        try {
+          parse(text);
+          return {};
+        } catch (const InvalidArgument& error) {
+          return error.what();
+        }
+      },
+      "");
+}
+
   return CLI::Validator(
       [](std::string& text) -> std::string {
         double number = 0;
@@ -189,7 +204,7 @@ CLI::Validator above_zero() {
       "");
 }
 
-CLI::Validator known_vendor() {
+CLI::Validator known_word(const std::vector<std::string>& words) {
   return CLI::Validator(
       [](std::string& text) -> std::string {
         const auto& vendors = dds::networked_vendors();
@@ -199,6 +214,8 @@ CLI::Validator known_vendor() {
       },
       "");
 }
+
+CLI::Validator known_vendor() { return known_word(dds::networked_vendors()); }
 
 CLI::Validator interface_of_this_host() {
   return CLI::Validator(

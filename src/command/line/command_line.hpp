@@ -85,8 +85,14 @@ CLI::Validator above_zero();
 /// For options whose value must be the number of a DDS domain, a vendor that reaches other
 /// processes, or a network interface that this host has, by name or address.
 CLI::Validator domain_number();
+/// For an option whose value `parse` takes: what it throws is told.
+CLI::Validator of_form(const std::function<void(const std::string& text)>& parse);
+
 CLI::Validator known_vendor();
 CLI::Validator interface_of_this_host();
+
+/// For an option whose value must be one of these words.
+CLI::Validator known_word(const std::vector<std::string>& words);
 
 /// The options of a command that joins a domain to look at it.
 void add_onlooker(CLI::App& command, Onlooker& onlooker);

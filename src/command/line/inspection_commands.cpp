@@ -59,8 +59,10 @@ void add_graph(CLI::App& app, int& result) {
        {"skein graph --profile mission.xml --format json", "Nodes and edges, for programs"}});
   auto& arguments = arguments_of(command, draw_graph, result);
   add_onlooker(command, arguments);
+  const std::vector<std::string> formats{"dot", "mermaid", "json"};
   auto* format = command.add_option("--format", arguments.format, "The notation")
-                     ->type_name(one_of({"dot", "mermaid", "json"}))
+                     ->type_name(one_of(formats))
+                     ->check(known_word(formats))
                      ->capture_default_str();
   command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
   add_wait(command, arguments.seconds);

@@ -46,9 +46,18 @@ const CLI::App& command_of(const CLI::App& app, const std::vector<std::string>& 
   return app;
 }
 
+std::vector<std::string> long_options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
 /// What is wrong where options come first; empty where they do not.
 std::string misplaced_options(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty() || !words[0].starts_with('-') || app.get_option_no_throw(words[0])) return {};
+  const std::string nearest = suggestion(words[0], long_options_of(app));
+  if (!nearest.empty()) return "there is no option '" + printable(words[0]) + "'" + nearest;
   std::string line = "skein", options;
   const auto is_command = [&](const std::string& word) {
     return std::ranges::any_of(shown_commands(app),
@@ -102,13 +111,10 @@ std::string text_of(const CLI::ParseError& error, const CLI::App& app,
                     const std::vector<std::string>& words) {
   std::size_t length = 0;
   const CLI::App& command = command_of(app, words, length);
-  std::vector<std::string> known;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   std::string name = app.get_name();
   for (std::size_t i = 0; i < length; ++i) name += " " + words[i];
   const std::string text = dynamic_cast<const CLI::ExtrasError*>(&error)
-                               ? unexpected(app.remaining(true), known)
+                               ? unexpected(app.remaining(true), long_options_of(command))
                                : printable(error.what(), kLongestError);
   return text + "; see `" + name + " --help`";
 }

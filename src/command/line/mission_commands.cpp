@@ -3,6 +3,7 @@
 #include "command/commands.hpp"
 #include "command_line.hpp"
 #include "launch/exit_codes.hpp"
+#include "profile/mission_profile.hpp"
 
 // What checks missions and flies them.
 namespace skein::command {
@@ -23,7 +24,8 @@ void add_mission(CLI::App& command, MissionArguments& arguments) {
       .add_option("--set", arguments.settings,
                   "A parameter's value for this run: PEER.PARAMETER=VALUE or "
                   "PEER/CSP.PARAMETER=VALUE; may be given several times; default: the profile's")
-      ->type_name("SETTING");
+      ->type_name("SETTING")
+      ->check(of_form([](const std::string& text) { profile::demand_setting(text); }));
   add_variables(command, arguments.variables);
 }
 

@@ -5,7 +5,7 @@
 #include "command_line.hpp"
 #include "completion.hpp"
 #include "manual.hpp"
-#include "skein/error.hpp"
+#include "core/whole_file.hpp"
 
 // Completion and manual pages, both made from the command line itself.
 namespace skein::command {
@@ -18,7 +18,7 @@ void write_manual(const CLI::App& app, const std::filesystem::path& folder) {
     std::ofstream file(path);
     file << manual_page(command, words);
     if (!file.flush())
-      throw InvalidArgument(path.string() + " cannot be written; is its folder writable?");
+      throw WriteFailed(path.string() + " cannot be written; is its folder writable?");
   });
 }
 
@@ -32,6 +32,7 @@ void add_completion(CLI::App& app) {
   command.add_option("SHELL", *shell, "The shell: " + one_of(shells()))
       ->type_name(one_of(shells()))
       ->required();
+      ->check(known_word(shells()))
   command.callback([&app, shell] { std::cout << completion(app, *shell); });
 }
 
