@@ -15,7 +15,8 @@ namespace {
 Guid provider_of(const ServiceDescription& description) { return {description.provider}; }
 
 std::vector<std::string> names_of(const ServiceDescription& description) {
-  std::vector<std::string> names{description.service, description.entity};
+  std::vector<std::string> names{description.service};
+  if (!is_built_in_interface(description.service)) names.push_back(description.entity);
   names.insert(names.end(), description.bases.begin(), description.bases.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());

@@ -194,6 +194,29 @@ struct CallArguments : Onlooker {
 /// arguments. 1 where it ends with an exception that its interface declares.
 int call(const CallArguments& arguments);
 
+struct ParamArguments : Onlooker {
+  std::string entity;  ///< `list`: empty for all.
+  std::string parameter;
+  std::string value;
+  double within = 5;   ///< Seconds, for one entity's answer.
+  double seconds = 5;  ///< Until the entity is there; `list` of all: how long it listens.
+  bool json = false;
+};
+
+/// `skein param list|get|set`: parameters of peers that run. `set` returns 1 where the component
+/// refuses the value.
+int list_parameters(const ParamArguments& arguments);
+int get_parameter(const ParamArguments& arguments);
+int set_parameter(const ParamArguments& arguments);
+
+struct LiveNamesArguments : Onlooker {
+  std::string kind;  ///< `service`, `operation`, `topic`, `entity`, `parameter` or `name`.
+  std::vector<std::string> words;  ///< That stand before on the command line.
+};
+
+/// `skein complete`: names of that kind on a domain, for the completion of shells.
+int print_live_names(const LiveNamesArguments& arguments);
+
 struct DescribeArguments : Onlooker {
   std::string name;
   double seconds = 1.5;

@@ -54,7 +54,8 @@ inline constexpr std::array kLookingExitCodes{
     launch::ExitCode{"0", "done"},
     launch::ExitCode{"1",
                      "call: it ended with an exception that its interface declares; echo: fewer "
-                     "values than --count came; info: the file holds nothing"},
+                     "values than --count came; info: the file holds nothing; param set: the "
+                     "component refuses the value"},
     launch::ExitCode{"64", "the command line is wrong; nothing was done"},
     launch::ExitCode{"69", "no service, entity or topic of that name is there, or it has gone"},
     launch::ExitCode{"71", "it could not join the domain, or the call failed at the other side"},

@@ -15,14 +15,16 @@ brokerless_discovery::Table::Found services_of(const brokerless_discovery::Broke
                                                const std::string& entity) {
   auto services = broker.all();
   std::erase_if(services, [&](const auto& service) {
-    return !service->owner.empty() || entity_name_of(*service) != entity;
+    return !service->owner.empty() || is_built_in_interface(service->service) ||
+           entity_name_of(*service) != entity;
   });
   return services;
 }
 
 bool is_named(const discovery::ServiceDescription& service, const std::string& name) {
-  return service.entity == name || entity_name_of(service) == name ||
-         is_interface_named(service.service, name);
+  if (is_interface_named(service.service, name)) return true;
+  return !is_built_in_interface(service.service) &&
+         (service.entity == name || entity_name_of(service) == name);
 }
 
 bool is_interface_named(const std::string& interface, const std::string& name) {

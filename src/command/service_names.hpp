@@ -11,11 +11,12 @@ namespace skein::command {
 /// `SYSTEM/ENTITY`, as `skein peers` and `skein services` print it.
 std::string entity_name_of(const discovery::ServiceDescription& service);
 
-/// What the entity of that name, SYSTEM/ENTITY, provides for others.
+/// What the entity of that name, SYSTEM/ENTITY, provides for others, but for services of Skein's.
 brokerless_discovery::Table::Found services_of(const brokerless_discovery::Broker& broker,
                                                const std::string& entity);
 
-/// Whether people may mean the service by its interface, its interface's last part, or its entity.
+/// Whether people may mean the service by its interface, its interface's last part, or its entity
+/// (whose own services are meant by that, not those of Skein beside them).
 bool is_named(const discovery::ServiceDescription& service, const std::string& name);
 
 /// Whether people may mean the interface: `A/I`, `A::I` or `I`.

@@ -88,6 +88,10 @@ std::string short_interface_name(std::string_view name) {
   return std::string(parts_of(name).back());
 }
 
+bool is_built_in_interface(std::string_view canonical_name) noexcept {
+  return canonical_name.starts_with("skein/");
+}
+
 std::string scoped_interface_name(std::string_view name) { return joined(parts_of(name), "::"); }
 
 }  // namespace skein

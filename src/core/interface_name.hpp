@@ -29,6 +29,10 @@ bool same_interface(std::string_view left, std::string_view right);
 /// Throws as canonical_interface_name() does.
 std::string short_interface_name(std::string_view name);
 
+/// Whether the interface, by its canonical name, is one that Skein itself provides beside an
+/// entity's own: who names the entity does not mean it.
+bool is_built_in_interface(std::string_view canonical_name) noexcept;
+
 /// The C++ and IDL spelling: `AE_navigator::IPlanner`. Throws as canonical_interface_name() does.
 std::string scoped_interface_name(std::string_view name);
 

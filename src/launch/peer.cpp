@@ -31,6 +31,7 @@
 #include "launch/launch_plan.hpp"
 #include "launch/progress_report.hpp"
 #include "launch/ready.hpp"
+#include "live_parameters.hpp"
 #include "namesakes.hpp"
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
@@ -93,15 +94,13 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   return options;
 }
 
-/// The profile's values, as the dictionary types them. It has been checked that it knows them.
-ParameterValues values_of(const std::vector<profile::Setting>& settings,
-                          const profile::Dictionary& dictionary) {
-  ParameterValues values;
-  for (const profile::Setting& setting : settings) {
-    const auto* entry = dictionary.find(profile::EntryKind::Parameter, setting.name);
-    if (entry) values.set(setting.name, profile::parse_value(*entry, setting.value));
-  }
-  return values;
+/// Of the components of one process. They are offered once one may change.
+std::shared_ptr<LiveParameters> parameters_of(Entity& entity,
+                                              const profile::Dictionary& dictionary) {
+  return std::make_shared<LiveParameters>(dictionary,
+                                          [&entity](std::shared_ptr<ILiveParameters> service) {
+                                            entity.provide<ILiveParameters>(std::move(service));
+                                          });
 }
 
 // What the component's description declares of the interface that `servant` implements.
@@ -202,10 +201,10 @@ auto make_component(const Profile& profile, const Factory& factory, Arguments&&.
 }
 
 void provide_csp(Entity& entity, const std::string& owner, const MissionProfile& mission,
-                 const CspProfile& csp, const LoadedPlugins& plugins) {
+                 const CspProfile& csp, const LoadedPlugins& plugins,
+                 const ParameterValues& values) {
   demand_code(csp, plugins);
-  auto servant = make_component(csp, *plugins.registry().find_csp(csp.component->name),
-                                values_of(csp.parameters, mission.dictionary));
+  auto servant = make_component(csp, *plugins.registry().find_csp(csp.component->name), values);
   ServiceOptions options = service_options(*csp.component, mission.dictionary, *servant);
   options.thread = csp.threads.thread;
   options.scheduling = csp.threads.settings;
@@ -231,9 +230,8 @@ std::size_t threads_of(const PeerProfile& peer, const ComponentRegistry::Body& b
 using SelfTest = std::function<void()>;
 
 SelfTest provide_body(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
-                      const ComponentRegistry& registry) {
-  auto body = make_component(peer, *registry.find_body(peer.component->name), entity,
-                             values_of(peer.parameters, mission.dictionary));
+                      const ComponentRegistry& registry, const ParameterValues& values) {
+  auto body = make_component(peer, *registry.find_body(peer.component->name), entity, values);
   ServiceOptions options = service_options(*peer.component, mission.dictionary, *body.servant);
   options.thread = peer.threads.thread;
   options.threads = threads_of(peer, body);
@@ -331,9 +329,8 @@ void serve(Entity& entity, const profile::ProcessRules& rules) {
 }
 
 /// What a peer does that provides nothing.
-int run_own_code(Entity& entity, const MissionProfile& mission, const PeerProfile& peer,
-                 const ComponentRegistry& registry) {
-  const auto values = values_of(peer.parameters, mission.dictionary);
+int run_own_code(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry,
+                 const ParameterValues& values) {
   const auto* activity = registry.find_activity(peer.component->name);
   if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
   std::stop_source told_to_end;
@@ -365,7 +362,9 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
-  provide_csp(entity, peer.system + "/" + peer.name, mission, csp, plugins);
+  const auto parameters = parameters_of(entity, mission.dictionary);
+  provide_csp(entity, peer.system + "/" + peer.name, mission, csp, plugins,
+              parameters->values_of("", csp.parameters));
   report_ready();
   const ProgressReport progress(entity, csp.rules.progress_timeout);
   serve(entity, csp.rules);
@@ -423,14 +422,17 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
         const std::string text = namesakes.look_at(change);
         if (!text.empty()) log(LogLevel::Warning, entity.id(), text);
       });
+  const auto parameters = parameters_of(entity, mission.dictionary);
+  const ParameterValues values = parameters->values_of("", peer.parameters);
   for (const CspProfile& csp : peer.csps) {
-    if (csp.process == profile::CspProcess::InOwner)
-      provide_csp(entity, entity.id(), mission, csp, plugins);
+    if (csp.process != profile::CspProcess::InOwner) continue;
+    provide_csp(entity, entity.id(), mission, csp, plugins,
+                parameters->values_of(csp.name + ".", csp.parameters));
   }
   demand_code(peer, plugins);
   SelfTest self_test;
   if (!peer.component->interfaces.empty())
-    self_test = provide_body(entity, mission, peer, registry);
+    self_test = provide_body(entity, mission, peer, registry, values);
   if (!await_dependencies(entity, peer, begun)) return 0;
   pass(self_test, entity, peer);
   report_ready();
@@ -441,7 +443,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
       Namesakes silent(peer.system, peer.name, brokerless_discovery::ProcessWatch::host(),
                        static_cast<std::uint32_t>(::getpid()));
       const NamesakeQuestion question(entity, silent);
-      code = run_user_code("", [&] { return run_own_code(entity, mission, peer, registry); });
+      code = run_user_code("", [&] { return run_own_code(entity, peer, registry, values); });
     } else {
       serve(entity, peer.rules);
     }

@@ -70,7 +70,7 @@ BACK_END = 2.5
 NEIGHBOURS = {("launch", "profile")}
 # Headers that are generated, by the floor of their IDL; all of idl/navigation are of `navigation`.
 GENERATED = {"skein/types.idl.hpp": "idl", "skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc",
-             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "launch"}
+             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "launch", "skein/live_parameters.idl.hpp": "launch"}
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from
 # outside, are built on the vendors' own headers.

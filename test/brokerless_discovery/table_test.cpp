@@ -47,6 +47,13 @@ TEST_CASE("a description is found by its interface, its bases and its entity", "
   CHECK(entities(table, query("A/IOther")).empty());
 }
 
+TEST_CASE("what Skein provides beside an entity's own is not found by the entity's name", "[R1]") {
+  Table table;
+  table.on_description(description(1, "skein/launch/ILiveParameters", "navigator"), kWriter);
+  CHECK(entities(table, query("navigator")).empty());
+  CHECK(entities(table, query("skein/launch/ILiveParameters")) == Names{"navigator"});
+}
+
 TEST_CASE("all spellings of an interface's name are one", "[R2]") {
   Table table;
   table.on_description(description(1, "IDL:A/INavigator:1.0", "navigator"), kWriter);

@@ -228,7 +228,7 @@ TEST_CASE("what users of other software type leads to a command that there is") 
   for (const FamiliarName& name : familiar_names()) {
     CAPTURE(name.theirs, name.ours);
     CHECK(line.command_of("skein " + name.ours) != &line.app);
-    CHECK(line.command_of("skein " + name.theirs) == &line.app);
+    CHECK(!shown_commands(*line.command_of("skein " + name.theirs)).empty());
   }
   CHECK(familiar_name({"service", "list", "-t"}) == "services");
   CHECK(familiar_name({"nothing", "of", "this"}).empty());

@@ -53,6 +53,8 @@ def needs(program):
 class InShell(unittest.TestCase):
     """Completes in an empty folder but for mission.xml."""
 
+    before = ""  # what stands before Skein in the path
+
     def setUp(self):
         self.place = tempfile.TemporaryDirectory()
         self.addCleanup(self.place.cleanup)
@@ -61,7 +63,7 @@ class InShell(unittest.TestCase):
 
     def run_shell(self, *words):
         environment = {**os.environ, "HOME": self.place.name, "TERM": "dumb", "LC_ALL": "C.UTF-8"}
-        environment["PATH"] = f"{COMMAND.parent}:{environment['PATH']}"
+        environment["PATH"] = f"{self.before}{COMMAND.parent}:{environment['PATH']}"
         done = subprocess.run(words, cwd=self.place.name, env=environment, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
@@ -79,6 +81,41 @@ class InShell(unittest.TestCase):
         self.assertEqual(self.complete("skein services --interface l"), ["lo"])
         self.assertEqual(self.complete("skein services --wait "), [])
         self.assertEqual(self.complete("skein completion f"), ["fish"])
+        self.check_live()
+
+    def check_live(self):
+        """Names that a domain has now, as a command in place of Skein's tells them, with what it was asked."""
+        told = self.stand_in()
+        self.assertEqual(self.complete("skein echo po"), ["pose"])
+        self.assertEqual(told(), ["complete topic echo"])
+        self.assertEqual(self.complete("skein call --domain 47 IGr"), ["IGreeter"])
+        self.assertIn("complete service call --domain 47", told())
+        self.assertIn("greet", self.complete("skein call IGreeter "))
+        self.assertIn("complete operation call IGreeter", told())
+        self.assertIn("Period", self.complete("skein param set beacon P"))
+        self.assertTrue(any(line.startswith("complete parameter ") and line.endswith("set beacon") for line in told()))
+        self.assertEqual(self.complete("skein record --topics po"), ["pose"])
+        self.assertFalse((pathlib.Path(self.place.name) / "evil").exists())
+
+    def stand_in(self):
+        """Puts a command before Skein's; what it gives tells, and forgets, with which words that was called."""
+        folder = pathlib.Path(self.place.name) / "bin"
+        folder.mkdir()
+        calls = folder / "calls"
+        calls.touch()
+        names = {"topic": "pose; echo '$(touch evil)'", "service": "IGreeter", "operation": "greet", "entity": "beacon", "parameter": "Period", "name": "pose"}
+        cases = "".join(f"{kind}) echo {name} ;; " for kind, name in names.items())
+        program = folder / "skein"
+        program.write_text(f'#!/bin/sh\necho "$*" >> {calls}\ncase $2 in {cases}esac\n')
+        program.chmod(0o755)
+        self.before = f"{folder}:"
+
+        def told():
+            lines = calls.read_text().splitlines()
+            calls.write_text("")
+            return lines
+
+        return told
 
 
 class Bash(InShell):

@@ -26,7 +26,8 @@ const launch::ExitCode& looking_code(std::string_view code) {
 std::string exit_codes() {
   std::vector<launch::ExitCode> codes{
       {"0", "done; of a mission: its own code 0"},
-      {"1, 2", "what doctor, call, echo, info or decisions --replay found: see their help"},
+      {"1, 2",
+       "what doctor, call, echo, info, param set or decisions --replay found: see their help"},
       {"other", "of launch: the code with which the mission's peer ended"}};
   // The first two are what was said above; the last is not of a launch alone.
   for (const launch::ExitCode& code : std::span(launch::kExitCodes).subspan(2)) {
@@ -84,7 +85,7 @@ void make_command_line(CLI::App& app, int& result) {
   app.group("Measuring");
   add_measuring_commands(app, result);
   app.group("For the shell");
-  add_shell_commands(app);
+  add_shell_commands(app, result);
   app.footer(exit_codes() + "\n" +
              examples_text({{"skein check mission.xml && skein launch mission.xml",
                              "Fly a mission if nothing is missing"},
@@ -149,8 +150,8 @@ CLI::Option* add_variables(CLI::App& command, std::vector<std::string>& variable
                   "A value for a variable of the profile; may be given several times; default: as "
                   "the profile says")
       ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
       ->check(of_form([](const std::string& text) { profile::parse_variables({text}); }))
+      ->allow_extra_args(false);
 }
 
 CLI::Option* add_json(CLI::App& command, bool& json, const std::string& form) {
@@ -181,7 +182,6 @@ CLI::Option* add_duration(CLI::App& command, const std::string& name, double& se
       ->check(CLI::Validator(refusal, ""));
 }
 
-CLI::Validator above_zero() {
 CLI::Validator of_form(const std::function<void(const std::string& text)>& parse) {
   return CLI::Validator(
       [parse](std::string& text) -> std::string {
@@ -195,6 +195,7 @@ CLI::Validator of_form(const std::function<void(const std::string& text)>& parse
       "");
 }
 
+CLI::Validator above_zero() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
         double number = 0;
@@ -206,11 +207,10 @@ CLI::Validator of_form(const std::function<void(const std::string& text)>& parse
 
 CLI::Validator known_word(const std::vector<std::string>& words) {
   return CLI::Validator(
-      [](std::string& text) -> std::string {
-        const auto& vendors = dds::networked_vendors();
-        if (std::ranges::count(vendors, text) > 0) return {};
-        return "'" + printable(text) + "' is none of " + CLI::detail::join(vendors, ", ") +
-               suggestion(text, vendors);
+      [words](std::string& text) -> std::string {
+        if (std::ranges::count(words, text) > 0) return {};
+        return "'" + printable(text) + "' is none of " + CLI::detail::join(words, ", ") +
+               suggestion(text, words);
       },
       "");
 }

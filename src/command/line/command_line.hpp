@@ -24,7 +24,7 @@ void add_inspection_commands(CLI::App& app, int& result);
 void add_topic_commands(CLI::App& app, int& result);
 void add_recording_commands(CLI::App& app, int& result);
 void add_measuring_commands(CLI::App& app, int& result);
-void add_shell_commands(CLI::App& app);
+void add_shell_commands(CLI::App& app, int& result);
 
 /// A command line as a user would type it, and what it does.
 struct Example {
@@ -63,6 +63,12 @@ void add_exit_codes(CLI::App& command);
 inline constexpr const char* kFile = "FILE";
 inline constexpr const char* kDirectory = "DIRECTORY";
 inline constexpr const char* kInterface = "INTERFACE";
+inline constexpr const char* kService = "SERVICE";  ///< By interface or entity.
+inline constexpr const char* kOperation = "OPERATION";
+inline constexpr const char* kTopic = "TOPIC";
+inline constexpr const char* kEntity = "ENTITY";  ///< That tells its parameters.
+inline constexpr const char* kParameter = "PARAMETER";
+inline constexpr const char* kServiceOrTopic = "SERVICE-OR-TOPIC";
 std::string one_of(const std::vector<std::string>& words);  ///< `a|b|c`
 
 /// A length of time, with or without a unit; help says once what that is.
@@ -79,20 +85,20 @@ CLI::Option* add_duration(CLI::App& command, const std::string& name, double& se
 /// How help writes it: `1.5s`.
 std::string default_duration(double seconds);
 
+/// For an option whose value `parse` takes: what it throws is told.
+CLI::Validator of_form(const std::function<void(const std::string& text)>& parse);
+
 /// For an option whose value must be a number above 0.
 CLI::Validator above_zero();
+
+/// For an option whose value must be one of these words.
+CLI::Validator known_word(const std::vector<std::string>& words);
 
 /// For options whose value must be the number of a DDS domain, a vendor that reaches other
 /// processes, or a network interface that this host has, by name or address.
 CLI::Validator domain_number();
-/// For an option whose value `parse` takes: what it throws is told.
-CLI::Validator of_form(const std::function<void(const std::string& text)>& parse);
-
 CLI::Validator known_vendor();
 CLI::Validator interface_of_this_host();
-
-/// For an option whose value must be one of these words.
-CLI::Validator known_word(const std::vector<std::string>& words);
 
 /// The options of a command that joins a domain to look at it.
 void add_onlooker(CLI::App& command, Onlooker& onlooker);

@@ -8,13 +8,26 @@
 namespace skein::command {
 namespace {
 
-/// What completes a value: `file`, `directory`, `interface`, `words:a,b`, or `value` for one that
-/// only the user knows.
+/// The kinds of `skein complete` by the types of options.
+constexpr std::pair<const char*, const char*> kLive[] = {
+    {kService, "service"}, {kOperation, "operation"}, {kTopic, "topic"},
+    {kEntity, "entity"},   {kParameter, "parameter"}, {kServiceOrTopic, "name"}};
+
+/// Of a kind `live:topic`, `topic`; empty for others.
+std::string live_kind(const std::string& kind) {
+  constexpr std::string_view kPrefix = "live:";
+  return kind.starts_with(kPrefix) ? kind.substr(kPrefix.size()) : "";
+}
+
+/// What completes a value: `file`, `directory`, `interface`, `words:a,b`, `live:topic` for what
+/// `skein complete topic` tells of a domain, or `value` for one that only the user knows.
 std::string kind_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (type == kFile) return "file";
   if (type == kDirectory) return "directory";
   if (type == kInterface) return "interface";
+  for (const auto& [name, kind] : kLive)
+    if (type == name) return "live:" + std::string(kind);
   if (type.find('|') == std::string::npos) return "value";
   return "words:" + CLI::detail::find_and_replace(type, "|", ",");
 }
@@ -89,6 +102,9 @@ _skein() {
       [[ $kind == directory ]] && only=-d
       mapfile -t COMPREPLY < <(compgen $only -- "$current") ;;
     interface) mapfile -t COMPREPLY < <(compgen -W "$(ls /sys/class/net)" -- "$current") ;;
+    live:*)  # names from a network, which compgen would expand
+      mapfile -t COMPREPLY < <(skein complete "${kind#live:}" "${COMP_WORDS[@]:1:COMP_CWORD-1}" 2>/dev/null |
+        while IFS= read -r word; do [[ $word == "$current"* ]] && printf '%q\n' "$word"; done) ;;
     words:*) mapfile -t COMPREPLY < <(IFS=,; compgen -W "${kind#words:}" -- "$current") ;;
   esac
 }
@@ -124,6 +140,8 @@ std::string zsh_action(const CLI::Option& option) {
   if (kind == "file") return "_files";
   if (kind == "directory") return "_files -/";
   if (kind == "interface") return "_net_interfaces";
+  if (const std::string live = live_kind(kind); !live.empty())
+    return " _skein_live " + live;  // the blank: without arguments of _arguments
   if (kind == "value") return " ";
   return "(" + CLI::detail::find_and_replace(kind.substr(kind.find(':') + 1), ",", " ") + ")";
 }
@@ -175,13 +193,21 @@ std::string zsh_command(const CLI::App& command, const std::string& words) {
   return text + "}\n";
 }
 
+/// $words begins with the last of the command's names.
+constexpr const char* kZshLive = R"zsh(
+_skein_live() {
+  local -a names=(${(f)"$(skein complete $1 ${words[1,CURRENT-1]} 2>/dev/null)"})
+  compadd -a names
+}
+)zsh";
+
 std::string zsh(const CLI::App& app) {
   std::string text = "#compdef skein\n# Completion of skein for zsh.\n";
   for_each_command(app, [&](const CLI::App& command, const std::string& words) {
     text += zsh_command(command, words);
   });
   // Loaded by name from fpath, the file is the function's body; sourced, it only defines it.
-  return text +
+  return text + (kZshLive + 1) +
          "if [ \"$funcstack[1]\" = \"_skein\" ]; then\n  _skein \"$@\"\nelse\n"
          "  compdef _skein skein\nfi\n";
 }
@@ -202,6 +228,8 @@ std::string fish_values(const CLI::Option& option) {
   if (kind == "file") return " -r -F";
   if (kind == "directory") return " -x -a '(__fish_complete_directories)'";
   if (kind == "interface") return " -x -a '(__fish_print_interfaces)'";
+  if (const std::string live = live_kind(kind); !live.empty())
+    return " -x -a '(skein complete " + live + " (commandline -opc)[2..] 2>/dev/null)'";
   if (kind == "value") return " -x";
   return " -x -a " +
          fish_quoted(CLI::detail::find_and_replace(kind.substr(kind.find(':') + 1), ",", " "));

@@ -81,7 +81,7 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   for (const CLI::App* command : shown_commands(parent)) known.push_back(command->get_name());
   const std::string& word = words[length];
   if (length == 0 && word == "stop") return kHowToStop;
-  std::string familiar = length == 0 ? familiar_name(words) : "";
+  std::string familiar = familiar_name(words);
   if (!familiar.empty()) familiar = "; in Skein: skein " + familiar;
   return "there is no command '" + (length == 0 ? "" : parent.get_name() + " ") + printable(word) +
          "'" + (familiar.empty() ? suggestion(word, known) : familiar) + "; known are " +

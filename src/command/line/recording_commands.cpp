@@ -6,7 +6,7 @@ namespace skein::command {
 namespace {
 
 void add_topics(CLI::App& command, std::vector<std::string>& topics, const char* what) {
-  command.add_option("--topics", topics, what)->type_name("NAMES")->delimiter(',');
+  command.add_option("--topics", topics, what)->type_name(kTopic)->delimiter(',');
 }
 
 void add_record(CLI::App& app, int& result) {

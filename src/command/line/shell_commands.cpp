@@ -2,10 +2,11 @@
 #include <fstream>
 #include <iostream>
 
+#include "command/commands.hpp"
 #include "command_line.hpp"
 #include "completion.hpp"
-#include "manual.hpp"
 #include "core/whole_file.hpp"
+#include "manual.hpp"
 
 // Completion and manual pages, both made from the command line itself.
 namespace skein::command {
@@ -31,9 +32,20 @@ void add_completion(CLI::App& app) {
   const auto shell = std::make_shared<std::string>();
   command.add_option("SHELL", *shell, "The shell: " + one_of(shells()))
       ->type_name(one_of(shells()))
-      ->required();
       ->check(known_word(shells()))
+      ->required();
   command.callback([&app, shell] { std::cout << completion(app, *shell); });
+}
+
+/// Hidden: completion runs it, with all words that were typed.
+void add_complete(CLI::App& app, int& result) {
+  auto& command = add_command(app, "complete", "Print names of a domain for completion", {});
+  command.group("");
+  auto& arguments = arguments_of(command, print_live_names, result);
+  command.add_option("KIND", arguments.kind, "Of the names")->required();
+  command.add_option("WORD", arguments.words, "What was typed");
+  add_onlooker(command, arguments);
+  command.allow_extras();
 }
 
 /// Hidden: the build runs it.
@@ -50,8 +62,9 @@ void add_man(CLI::App& app) {
 
 }  // namespace
 
-void add_shell_commands(CLI::App& app) {
+void add_shell_commands(CLI::App& app, int& result) {
   add_completion(app);
+  add_complete(app, result);
   add_man(app);
 }
 

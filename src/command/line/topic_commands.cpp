@@ -18,10 +18,10 @@ void add_call(CLI::App& app, int& result) {
        {"skein call IGreeter greet - < name.json", "Arguments from a file"}});
   auto& arguments = arguments_of(command, call, result);
   command.add_option("SERVICE", arguments.name, "An interface, or an entity: NAME or SYSTEM/NAME")
-      ->type_name("NAME")
+      ->type_name(kService)
       ->required();
   command.add_option("OPERATION", arguments.operation, "What to call")
-      ->type_name("NAME")
+      ->type_name(kOperation)
       ->required();
   auto* values =
       command
@@ -44,6 +44,63 @@ void add_call(CLI::App& app, int& result) {
   add_exit_codes(command);
 }
 
+void add_param_options(CLI::App& command, ParamArguments& arguments) {
+  add_onlooker(command, arguments);
+  add_duration(command, "--within", arguments.within, "Timeout of the question", Zero::Refused)
+      ->default_str(default_duration(arguments.within));
+  add_duration(command, "--wait", arguments.seconds, "How long to look for the entity", Zero::Taken)
+      ->default_str(default_duration(arguments.seconds));
+  add_json(command, arguments.json);
+  add_exit_codes(command);
+}
+
+ParamArguments& add_parameter(CLI::App& command, int (*function)(const ParamArguments&),
+                              int& result) {
+  auto& arguments = arguments_of(command, function, result);
+  command.add_option("ENTITY", arguments.entity, "NAME or SYSTEM/NAME")
+      ->type_name(kEntity)
+      ->required();
+  command
+      .add_option("PARAMETER", arguments.parameter,
+                  "Its name; of a CSP in its owner's process: CSP.NAME")
+      ->type_name(kParameter)
+      ->required();
+  return arguments;
+}
+
+void add_param(CLI::App& app, int& result) {
+  auto& param = add_command(
+      app, "param",
+      "Read and set parameters of peers while they run\n\n"
+      "Of peers with a component that declares a parameter which may change while it runs. A value "
+      "is written as in a mission profile, with its unit, and checked as there; the component may "
+      "refuse it. A peer that starts anew has its profile's values again.",
+      {{"skein param list --domain 42", "All parameters, and which may change"},
+       {"skein param set beacon Period '200 ms'", "Another value, from now on"}});
+  param.require_subcommand(1);
+
+  auto& list = add_command(param, "list", "List the parameters of running peers",
+                           {{"skein param list --domain 42", "Of all peers that tell them"},
+                            {"skein param list beacon --json", "Of one, for programs"}});
+  auto& listed = arguments_of(list, list_parameters, result);
+  listed.seconds = 1.5;
+  list.add_option("ENTITY", listed.entity, "NAME or SYSTEM/NAME; default: all")->type_name(kEntity);
+  add_param_options(list, listed);
+
+  auto& get = add_command(param, "get", "Print a parameter of a running peer",
+                          {{"skein param get beacon Period --domain 42", "Its value now"}});
+  add_param_options(get, add_parameter(get, get_parameter, result));
+
+  auto& set = add_command(param, "set", "Give a parameter of a running peer another value",
+                          {{"skein param set beacon Period '200 ms' --domain 42",
+                            "Exit code 1: the component refuses it, and says why"}});
+  auto& changed = add_parameter(set, set_parameter, result);
+  set.add_option("VALUE", changed.value, "As a mission profile has it, with its unit")
+      ->type_name("VALUE")
+      ->required();
+  add_param_options(set, changed);
+}
+
 void add_describe(CLI::App& app, int& result) {
   auto& command =
       add_command(app, "describe", "Print the IDL of a running service or of a topic",
@@ -51,7 +108,7 @@ void add_describe(CLI::App& app, int& result) {
                    {"skein describe pose --domain 42", "The type of a topic"}});
   auto& arguments = arguments_of(command, describe, result);
   command.add_option("NAME", arguments.name, "An interface, an entity, a topic or its type")
-      ->type_name("NAME")
+      ->type_name(kServiceOrTopic)
       ->required();
   add_onlooker(command, arguments);
   add_wait(command, arguments.seconds);
@@ -69,7 +126,7 @@ void add_topics(CLI::App& app, int& result) {
 }
 
 void add_topic(CLI::App& command, TopicArguments& arguments) {
-  command.add_option("TOPIC", arguments.topic, "Its name")->type_name("NAME")->required();
+  command.add_option("TOPIC", arguments.topic, "Its name")->type_name(kTopic)->required();
   add_onlooker(command, arguments);
   add_duration(command, "--wait", arguments.wait, "How long to look for the topic", Zero::Taken)
       ->default_str(default_duration(arguments.wait));
@@ -131,6 +188,7 @@ void add_topic_commands(CLI::App& app, int& result) {
   add_call(app, result);
   add_describe(app, result);
   add_echo(app, result);
+  add_param(app, result);
   add_publish(app, result);
   add_rate(app, result);
   add_topics(app, result);

@@ -1,0 +1,102 @@
+#include <cstdio>
+#include <set>
+#include <string>
+
+#include "brokerless_discovery/broker.hpp"
+#include "commands.hpp"
+#include "core/interface_name.hpp"
+#include "core/printable.hpp"
+#include "interruption.hpp"
+#include "service_names.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/entity.hpp"
+#include "skein/inspector.hpp"
+#include "skein/live_parameters.idl.hpp"
+
+namespace skein::command {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// Who presses the tab key waits for this.
+constexpr double kListening = 0.6;
+constexpr std::chrono::milliseconds kPatience{500};
+
+bool is_public(const discovery::ServiceDescription& service) {
+  return service.owner.empty() && !is_built_in_interface(service.service);
+}
+
+Names services(Entity& entity) {
+  Names names;
+  for (const auto& service : entity.broker().all()) {
+    if (is_public(*service))
+      names.insert({short_interface_name(service->service), service->entity});
+  }
+  return names;
+}
+
+Names operations(Entity& entity, const std::string& service_name) {
+  Names names;
+  for (const auto& service : entity.broker().all()) {
+    if (!is_public(*service) || !is_named(*service, service_name)) continue;
+    for (const auto& operation : service->operations) names.insert(operation.name);
+  }
+  return names;
+}
+
+Names topics(Entity& entity) {
+  Names names;
+  Inspector inspector(entity);
+  for (const KnownTopic& topic : known_topics(inspector, kPatience)) names.insert(topic.name);
+  return names;
+}
+
+/// Of those whose parameters are told.
+Names entities(Entity& entity) {
+  Names names;
+  for (const auto& service : entity.broker().all()) {
+    if (service->service == launch::ILiveParameters::interface_info().name)
+      names.insert(service->entity);
+  }
+  return names;
+}
+
+Names parameters(Entity& entity, const std::string& name) {
+  Names names;
+  for (const auto& service : entity.broker().all()) {
+    if (service->service != launch::ILiveParameters::interface_info().name ||
+        (service->entity != name && entity_name_of(*service) != name)) {
+      continue;
+    }
+    const auto peer = entity.connect<launch::ILiveParameters>({.system = ConnectOptions::kAnySystem,
+                                                               .provider = Guid{service->provider},
+                                                               .timeout = kPatience});
+    for (const auto& parameter : peer.within(kPatience).parameters()) names.insert(parameter.name);
+  }
+  return names;
+}
+
+Names names_of(Entity& entity, const std::string& kind, const std::string& before) {
+  if (kind == "service") return services(entity);
+  if (kind == "operation") return operations(entity, before);
+  if (kind == "topic") return topics(entity);
+  if (kind == "entity") return entities(entity);
+  if (kind == "parameter") return parameters(entity, before);
+  Names all = services(entity);
+  all.merge(topics(entity));
+  return all;
+}
+
+}  // namespace
+
+int print_live_names(const LiveNamesArguments& arguments) {
+  const Interruption interruption;
+  Entity entity = join(arguments, "complete");
+  interruption.wait(kListening);
+  const std::string before = arguments.words.empty() ? "" : arguments.words.back();
+  for (const std::string& name : names_of(entity, arguments.kind, before))
+    std::printf("%s\n", printable(name).c_str());
+  return 0;
+}
+
+}  // namespace skein::command
