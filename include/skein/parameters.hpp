@@ -92,12 +92,12 @@ class ParameterValues {
     throw_missing(name);
   }
 
-  /// As get(), for a parameter that `skein param set` may change while the component runs, as long
-  /// as a copy of what it returns lives. A new value has the type, unit and range of the
-  /// dictionary. Before it is taken, `on_change` gets it, on a thread of the peer's, one value at a
-  /// time; what it throws refuses the value, and tells whoever set it why. It must return soon. The
-  /// end of the last copy waits while it runs. Without a launcher the value stays as it is. Throws
-  /// InvalidArgument also where the parameter is live already.
+  /// As get(), for a parameter that `skein param set` may change as long as a copy of the result
+  /// lives. A new value has the dictionary's type, unit and range. Before it is taken, `on_change`
+  /// gets it, on a thread of the peer's, one value at a time; what it throws refuses the value, and
+  /// tells why. It must return soon. The last copy's end waits for any `on_change`: let go of it
+  /// outside of those, holding no lock that they take. Without a launcher the value stays as it is.
+  /// Throws InvalidArgument also where the parameter is live already.
   template <class T>
   LiveParameter<T> live(const std::string& name,
                         std::function<void(const T& wanted)> on_change = {}) const;

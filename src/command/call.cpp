@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
@@ -11,13 +10,13 @@
 #include "core/printable.hpp"
 #include "idl/flags.hpp"
 #include "json_text.hpp"
-#include "rpc/common.hpp"
 #include "service_names.hpp"
 #include "skein/detail/json.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "time_limits.hpp"
 
 namespace skein::command {
 namespace {
@@ -36,8 +35,6 @@ std::string shown(const std::string& result, bool json) {
   const bool alone = members.size() == 1 && members.contains("return_");
   return json_text(alone ? members["return_"].dump() : result, !json);
 }
-
-Duration nanoseconds(double seconds) { return Duration(std::llround(seconds * 1e9)); }
 
 /// What JSON has for a type.
 std::string word_of(const types::Type& type) {
@@ -124,7 +121,7 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   ConnectOptions options;
   options.name = arguments.name;
   options.system = arguments.system.empty() ? ConnectOptions::kAnySystem : arguments.system;
-  options.timeout = nanoseconds(arguments.seconds);
+  options.timeout = duration_of(arguments.seconds);
   const std::size_t slash = arguments.name.find('/');
   if (slash == std::string::npos) return options;
   const auto& broker = entity.broker();
@@ -141,15 +138,6 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   return options;
 }
 
-/// The remedy that is a function in C++ is an option here.
-std::string at_command_line(std::string text) {
-  const std::string_view remedy = rpc::kMoreTime;
-  const std::size_t place = text.find(remedy);
-  const std::string option = "; --within DURATION sets a longer limit";
-  if (place == std::string::npos) return text + option;
-  return text.replace(place, remedy.size(), option);
-}
-
 void print(const std::string& result, bool json) {
   if (result != "{}" || json) std::printf("%s\n", shown(result, json).c_str());
   std::fflush(stdout);
@@ -161,7 +149,7 @@ int call(const CallArguments& arguments) {
   const std::string values = arguments.example ? "" : values_of(arguments);
   Entity entity = join(arguments, "call");
   const DynamicProxy proxy = connect_dynamic(entity, connection_of(entity, arguments))
-                                 .within(nanoseconds(arguments.within));
+                                 .within(duration_of(arguments.within));
   demand_one_service(entity, arguments, proxy.interface_name());
   if (arguments.example) {
     std::printf("%s\n", json_text(proxy.example(arguments.operation), !arguments.json).c_str());

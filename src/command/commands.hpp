@@ -195,7 +195,7 @@ struct CallArguments : Onlooker {
 int call(const CallArguments& arguments);
 
 struct ParamArguments : Onlooker {
-  std::string entity;  ///< `list`: empty for all.
+  std::string entity;  ///< NAME or SYSTEM/NAME; `list`: empty for all.
   std::string parameter;
   std::string value;
   double within = 5;   ///< Seconds, for one entity's answer.
@@ -204,7 +204,7 @@ struct ParamArguments : Onlooker {
 };
 
 /// `skein param list|get|set`: parameters of peers that run. `set` returns 1 where the component
-/// refuses the value.
+/// refuses the value; `list` of all kNoAnswer where one did not answer.
 int list_parameters(const ParamArguments& arguments);
 int get_parameter(const ParamArguments& arguments);
 int set_parameter(const ParamArguments& arguments);

@@ -1,17 +1,18 @@
+#include <chrono>
 #include <cstdio>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "brokerless_discovery/broker.hpp"
 #include "commands.hpp"
 #include "core/interface_name.hpp"
 #include "core/printable.hpp"
-#include "interruption.hpp"
+#include "peer_parameters.hpp"
 #include "service_names.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/inspector.hpp"
-#include "skein/live_parameters.idl.hpp"
 
 namespace skein::command {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using Names = std::set<std::string>;
 
 /// Who presses the tab key waits for this.
-constexpr double kListening = 0.6;
+constexpr std::chrono::milliseconds kListening{600};
 constexpr std::chrono::milliseconds kPatience{500};
 
 bool is_public(const discovery::ServiceDescription& service) {
@@ -54,24 +55,15 @@ Names topics(Entity& entity) {
 /// Of those whose parameters are told.
 Names entities(Entity& entity) {
   Names names;
-  for (const auto& service : entity.broker().all()) {
-    if (service->service == launch::ILiveParameters::interface_info().name)
-      names.insert(service->entity);
-  }
+  for (const auto& service : tellers(entity, "")) names.insert(service->entity);
   return names;
 }
 
 Names parameters(Entity& entity, const std::string& name) {
   Names names;
-  for (const auto& service : entity.broker().all()) {
-    if (service->service != launch::ILiveParameters::interface_info().name ||
-        (service->entity != name && entity_name_of(*service) != name)) {
-      continue;
-    }
-    const auto peer = entity.connect<launch::ILiveParameters>({.system = ConnectOptions::kAnySystem,
-                                                               .provider = Guid{service->provider},
-                                                               .timeout = kPatience});
-    for (const auto& parameter : peer.within(kPatience).parameters()) names.insert(parameter.name);
+  for (const auto& service : tellers(entity, name)) {
+    for (const auto& parameter : connect(entity, *service, kPatience).parameters())
+      names.insert(parameter.name);
   }
   return names;
 }
@@ -90,9 +82,8 @@ Names names_of(Entity& entity, const std::string& kind, const std::string& befor
 }  // namespace
 
 int print_live_names(const LiveNamesArguments& arguments) {
-  const Interruption interruption;
   Entity entity = join(arguments, "complete");
-  interruption.wait(kListening);
+  std::this_thread::sleep_for(kListening);
   const std::string before = arguments.words.empty() ? "" : arguments.words.back();
   for (const std::string& name : names_of(entity, arguments.kind, before))
     std::printf("%s\n", printable(name).c_str());

@@ -59,8 +59,8 @@ inline constexpr std::array kLookingExitCodes{
     launch::ExitCode{"64", "the command line is wrong; nothing was done"},
     launch::ExitCode{"69", "no service, entity or topic of that name is there, or it has gone"},
     launch::ExitCode{"71", "it could not join the domain, or the call failed at the other side"},
-    launch::ExitCode{"74", "all went well, but the output, or the recording, could not be written"},
-    launch::ExitCode{"78", "a file, a name or JSON is wrong"},
+    launch::ExitCode{"74", "the output, or a file, could not be made or written"},
+    launch::ExitCode{"78", "a file, a name, JSON or a parameter's value is wrong"},
     launch::ExitCode{"124", "no answer came in time"},
 };
 

@@ -1,21 +1,23 @@
 #include <chrono>
-#include <cmath>
 #include <cstdio>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <thread>
 
 #include "brokerless_discovery/broker.hpp"
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
-#include "interruption.hpp"
 #include "json_output.hpp"
+#include "peer_parameters.hpp"
 #include "service_names.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/inspector.hpp"
-#include "skein/live_parameters.idl.hpp"
+#include "time_limits.hpp"
 #include "topic_survey.hpp"
 
 namespace skein::command {
@@ -25,18 +27,10 @@ using brokerless_discovery::Table;
 using launch::ILiveParameters;
 using launch::RunningParameter;
 
-constexpr double kLookAgain = 0.02;
+constexpr std::chrono::milliseconds kLookAgain{20};
+/// A name alone may be that of entities in several systems, which are not found at once.
+constexpr std::chrono::seconds kSettling{1};
 constexpr std::size_t kLongestText = 4096;
-
-/// Of the entity of that name, NAME or SYSTEM/NAME; of all where it is empty.
-Table::Found tellers(Entity& entity, const std::string& name) {
-  auto found = entity.broker().all();
-  std::erase_if(found, [&](const auto& service) {
-    return service->service != ILiveParameters::interface_info().name ||
-           (!name.empty() && service->entity != name && entity_name_of(*service) != name);
-  });
-  return found;
-}
 
 /// For who is there, and does not tell, or is not there at all.
 std::string reason_for_none(Entity& entity, const std::string& name) {
@@ -55,40 +49,70 @@ std::string reason_for_none(Entity& entity, const std::string& name) {
          "; `skein peers` lists them";
 }
 
-/// Who tells of the parameters of that entity, once it is there.
-Table::Found::value_type await_teller(Entity& entity, const ParamArguments& arguments,
-                                      const Interruption& interruption) {
-  for (double waited = 0;; waited += kLookAgain) {
+/// Why it is left open which of them is meant.
+std::string choice_among_namesakes(const Table::Found& found, const std::string& name) {
+  std::set<std::string> names;
+  std::string processes;
+  for (const auto& service : found) {
+    names.insert(entity_name_of(*service));
+    processes += (processes.empty() ? "" : ", ") + std::to_string(service->pid);
+  }
+  if (names.size() == 1) {
+    return "several processes have the name " + *names.begin() + " (" + processes +
+           "): end all but one, or give them other names or systems";
+  }
+  std::string list;
+  for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;
+  return "there are several '" + name + "': name one of " + list;
+}
+
+/// Who tells of the parameters of that entity, once it is there. Of several nobody is chosen.
+Table::Found::value_type await_teller(Entity& entity, const ParamArguments& arguments) {
+  const bool names_system = arguments.entity.find('/') != std::string::npos;
+  const Instant end = entity.clock().now() + duration_of(arguments.seconds);
+  std::optional<Instant> settled;
+  for (;; std::this_thread::sleep_for(kLookAgain)) {
     const auto found = tellers(entity, arguments.entity);
-    if (found.size() == 1) return found.front();
-    if (!found.empty()) {
-      std::string list;
-      for (const auto& service : found)
-        list += (list.empty() ? "" : ", ") + entity_name_of(*service);
-      throw InvalidArgument("there are several '" + arguments.entity + "': name one of " + list);
+    const Instant now = entity.clock().now();
+    if (found.empty()) {
+      if (now >= end) throw Unavailable(reason_for_none(entity, arguments.entity));
+      settled.reset();
+      continue;
     }
-    if (waited >= arguments.seconds) throw Unavailable(reason_for_none(entity, arguments.entity));
-    if (interruption.wait(kLookAgain))
-      throw Interrupted("interrupted before the peer was found", interruption.signal());
+    if (!settled) settled = now + kSettling;
+    if (found.size() == 1 && (names_system || now >= *settled)) return found.front();
+    if (now >= *settled) throw InvalidArgument(choice_among_namesakes(found, arguments.entity));
   }
 }
 
-ILiveParameters::Proxy connect(Entity& entity, const discovery::ServiceDescription& service,
-                               Duration within) {
-  return entity
-      .connect<ILiveParameters>({.system = ConnectOptions::kAnySystem,
-                                 .provider = Guid{service.provider},
-                                 .timeout = within})
-      .within(within);
+/// What the service answers. A TimedOut names the option that helps.
+template <class Question>
+auto ask(Entity& entity, const discovery::ServiceDescription& service, double within,
+         const Question& question) {
+  try {
+    return question(connect(entity, service, duration_of(within)));
+  } catch (const TimedOut& error) {
+    throw TimedOut(at_command_line(error.what()));
+  }
 }
 
-Duration nanoseconds(double seconds) { return Duration(std::llround(seconds * 1e9)); }
+std::vector<RunningParameter> parameters_of(Entity& entity,
+                                            const discovery::ServiceDescription& service,
+                                            double within) {
+  return ask(entity, service, within,
+             [](ILiveParameters::Proxy peer) { return peer.parameters(); });
+}
 
 std::string with_unit(const std::string& value, const RunningParameter& parameter) {
   return parameter.unit.empty() ? value : value + " " + parameter.unit;
 }
 
-std::string number_text(double number) { return nlohmann::json(number).dump(); }
+/// `60000`, `0.1`.
+std::string number_text(double number) {
+  std::string text = nlohmann::json(number).dump();
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
 
 /// `duration, at least 10 ms`.
 std::string kind_of(const RunningParameter& parameter) {
@@ -124,20 +148,19 @@ std::string assignment(const RunningParameter& parameter) {
   return parameter.name + " = " + with_unit(parameter.value, parameter);
 }
 
-/// What one entity tells, or that it does not.
-nlohmann::ordered_json list_of(Entity& entity, const discovery::ServiceDescription& service,
-                               Duration within, bool json) {
-  const std::string name = entity_name_of(service);
-  auto list = nlohmann::ordered_json::array();
-  const auto parameters = connect(entity, service, within).parameters();
-  if (!json) std::printf("%s\n", printable(name).c_str());
+void print(const std::string& entity, const std::vector<RunningParameter>& parameters) {
+  std::printf("%s\n", printable(entity).c_str());
   for (const RunningParameter& parameter : parameters) {
-    list.push_back(to_json(parameter));
-    if (json) continue;
     std::printf("    %-32s %s\n", printable(assignment(parameter), kLongestText).c_str(),
                 printable(kind_of(parameter)).c_str());
   }
-  return {{"entity", name}, {"parameters", list}};
+}
+
+nlohmann::ordered_json to_json(const std::string& entity,
+                               const std::vector<RunningParameter>& parameters) {
+  auto list = nlohmann::ordered_json::array();
+  for (const RunningParameter& parameter : parameters) list.push_back(to_json(parameter));
+  return {{"entity", entity}, {"parameters", list}};
 }
 
 const RunningParameter& find(const std::vector<RunningParameter>& parameters,
@@ -154,39 +177,52 @@ const RunningParameter& find(const std::vector<RunningParameter>& parameters,
 }  // namespace
 
 int list_parameters(const ParamArguments& arguments) {
-  const Interruption interruption;
   Entity entity = join(arguments, "param");
-  const Duration within = nanoseconds(arguments.within);
-  auto all = nlohmann::ordered_json::array();
-  if (!arguments.entity.empty()) {
-    const auto service = await_teller(entity, arguments, interruption);
-    all.push_back(list_of(entity, *service, within, arguments.json));
+  const bool of_all = arguments.entity.empty();
+  Table::Found asked;
+  if (of_all) {
+    std::this_thread::sleep_for(duration_of(arguments.seconds));
+    asked = tellers(entity, "");
   } else {
-    if (arguments.seconds > 0) interruption.wait(arguments.seconds);
-    for (const auto& service : tellers(entity, "")) {
-      try {
-        all.push_back(list_of(entity, *service, within, arguments.json));
-      } catch (const Error& error) {  // the others are told all the same
-        std::fprintf(stderr, "skein: %s: %s\n", printable(entity_name_of(*service)).c_str(),
-                     printable(error.what(), kLongestText).c_str());
-      }
+    asked.push_back(await_teller(entity, arguments));
+  }
+  // All at once: who does not answer must not take the time of the others.
+  std::vector<std::future<std::vector<RunningParameter>>> answers;
+  for (const auto& service : asked) {
+    answers.push_back(std::async(std::launch::async, [&entity, &arguments, &service] {
+      return parameters_of(entity, *service, arguments.within);
+    }));
+  }
+  auto all = nlohmann::ordered_json::array();
+  bool complete = true;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::string name = entity_name_of(*asked[i]);
+    try {
+      const auto parameters = answers[i].get();
+      all.push_back(to_json(name, parameters));
+      if (!arguments.json) print(name, parameters);
+    } catch (const Error& error) {
+      if (!of_all) throw;
+      complete = false;
+      std::fprintf(stderr, "skein: %s: %s\n", printable(name).c_str(),
+                   printable(error.what(), kLongestText).c_str());
     }
   }
-  if (arguments.json) {
-    print_json(all, true);
-  } else if (all.empty()) {
-    std::printf("nobody in %s has parameters that may change while it runs\n",
-                entity.broker().options().place.c_str());
+  if (arguments.json) print_json(all, true);
+  if (asked.empty()) {
+    if (!arguments.json) {
+      std::printf("nobody in %s has parameters that may change while it runs\n",
+                  entity.broker().options().place.c_str());
+    }
+    tell_missions_elsewhere(arguments);
   }
-  if (all.empty()) tell_missions_elsewhere(arguments);
-  return 0;
+  return complete ? 0 : kNoAnswer;
 }
 
 int get_parameter(const ParamArguments& arguments) {
-  const Interruption interruption;
   Entity entity = join(arguments, "param");
-  const auto service = await_teller(entity, arguments, interruption);
-  const auto all = connect(entity, *service, nanoseconds(arguments.within)).parameters();
+  const auto service = await_teller(entity, arguments);
+  const auto all = parameters_of(entity, *service, arguments.within);
   const RunningParameter& parameter = find(all, arguments.parameter);
   if (arguments.json) {
     print_json(to_json(parameter), false);
@@ -197,21 +233,25 @@ int get_parameter(const ParamArguments& arguments) {
 }
 
 int set_parameter(const ParamArguments& arguments) {
-  const Interruption interruption;
   Entity entity = join(arguments, "param");
-  const auto service = await_teller(entity, arguments, interruption);
+  const auto service = await_teller(entity, arguments);
+  const std::string name = entity_name_of(*service);
   try {
-    const RunningParameter parameter = connect(entity, *service, nanoseconds(arguments.within))
-                                           .set(arguments.parameter, arguments.value);
+    const auto parameter =
+        ask(entity, *service, arguments.within, [&](ILiveParameters::Proxy peer) {
+          return peer.set(arguments.parameter, arguments.value);
+        });
     if (arguments.json) {
-      print_json(to_json(parameter), false);
+      nlohmann::ordered_json json{{"entity", name}};
+      json.update(to_json(parameter));
+      print_json(json, false);
     } else {
-      std::printf("%s\n", printable(assignment(parameter), kLongestText).c_str());
+      std::printf("%s: %s\n", printable(name).c_str(),
+                  printable(assignment(parameter), kLongestText).c_str());
     }
     return 0;
   } catch (const launch::ValueRefused& refusal) {
-    std::fprintf(stderr, "skein: %s does not take it: %s\n",
-                 printable(entity_name_of(*service)).c_str(),
+    std::fprintf(stderr, "skein: %s does not take it: %s\n", printable(name).c_str(),
                  printable(refusal.reason, kLongestText).c_str());
     return 1;
   }

@@ -11,6 +11,8 @@ std::unique_ptr<dds::Reader> tap_topic(dds::Participant& participant, const Know
   qos.partitions = std::move(systems);
   if (told.xcdr2) qos.representation = dds::DataRepresentation::Xcdr2;
   dds::ReaderListener listener;
+  // Of a topic without keys a foreign writer alone sends them, and no instance ends by it.
+  if (!told.keyed) tap.on_disposed = nullptr;
   listener.on_data = [on_value = std::move(tap.on_value),
                       on_disposed = std::move(tap.on_disposed)](dds::Reader& reader) {
     reader.take([&](const dds::Sample& sample) {

@@ -12,7 +12,8 @@ namespace skein {
 struct TopicTap {
   std::function<void(const dds::Sample& value)> on_value;
   std::function<void(const Guid& writer, bool matched)> on_matched{};
-  std::function<void(const dds::Sample& end)> on_disposed{};  ///< Of the instance of its key.
+  std::function<void(const dds::Sample& end)> on_disposed{};  ///< Of the instance of its key; of
+                                                              ///< keyed topics alone.
 };
 
 /// Reads the values of a topic as they travel, in these of its systems, with its reading_qos().

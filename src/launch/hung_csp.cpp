@@ -5,6 +5,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "brokerless_discovery/kill_process.hpp"
 #include "brokerless_discovery/process_watch.hpp"
+#include "core/interface_name.hpp"
 #include "core/log.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/selection.hpp"
@@ -37,9 +38,10 @@ void end_hung_csp(Entity& entity, const profile::PeerProfile& peer, const Candid
   });
   if (found == all.end() || (*found)->host != ProcessWatch::host()) return;
   const auto pid = (*found)->pid;
+  // What Skein itself provides there, as its parameters, has no owner.
   const bool only_ours = std::all_of(all.begin(), all.end(), [&](const auto& description) {
     return description->host != ProcessWatch::host() || description->pid != pid ||
-           description->owner == entity.id();
+           description->owner == entity.id() || is_built_in_interface(description->service);
   });
   if (only_ours && brokerless_discovery::kill_process((*found)->process)) {
     tell(entity, hung.name, hung.pid, "hangs");

@@ -32,7 +32,8 @@ ParameterValues LiveParameters::values_of(const std::string& prefix,
     const auto* entry = dictionary_.find(profile::EntryKind::Parameter, setting.name);
     if (!entry) continue;
     values.set(setting.name, profile::parse_value(*entry, setting.value));
-    parameters_[prefix + setting.name] = {entry, profile::plain_text(*entry, setting.value)};
+    const std::string text = profile::plain_text(*entry, setting.value);
+    parameters_[prefix + setting.name] = {entry, text, text};
   }
   values.set_host(std::make_shared<Host>(shared_from_this(), prefix));
   return values;
@@ -47,17 +48,28 @@ void LiveParameters::make_live(const std::string& name, Change change) {
       throw InvalidArgument("the parameter '" + name +
                             "' is live already; keep what live() returned, and copy it");
     }
-    parameter.change = std::move(change);
+    parameter.change = std::make_shared<const Change>(std::move(change));
     first = !offered_;
     offered_ = true;
   }
-  if (first) offer_(shared_from_this());
+  if (!first) return;
+  try {
+    offer_(shared_from_this());
+  } catch (...) {
+    fix(name);
+    const std::lock_guard lock(mutex_);
+    offered_ = false;
+    throw;
+  }
 }
 
 void LiveParameters::fix(const std::string& name) {
-  Change old;  // goes without the lock
+  std::shared_ptr<const Change> old;  // goes without the locks
+  const std::lock_guard changing(changing_);
   const std::lock_guard lock(mutex_);
-  old.swap(parameters_.at(name).change);
+  Parameter& parameter = parameters_.at(name);
+  old.swap(parameter.change);
+  parameter.value = parameter.given;
 }
 
 LiveParameters::Parameter& LiveParameters::find(const std::string& name) {
@@ -97,20 +109,30 @@ std::vector<RunningParameter> LiveParameters::parameters() {
 }
 
 RunningParameter LiveParameters::set(const std::string& name, const std::string& value) {
-  const std::lock_guard lock(mutex_);
-  Parameter& parameter = find(name);
-  if (!parameter.change) {
-    throw InvalidArgument("'" + name +
-                          "' may not change while its component runs; set it in the mission "
-                          "profile, or by `skein launch --set`, and start the peer anew");
+  const std::lock_guard changing(changing_);
+  std::shared_ptr<const Change> change;
+  ParameterValue wanted;
+  std::string text;
+  {
+    const std::lock_guard lock(mutex_);
+    const Parameter& parameter = find(name);
+    if (!parameter.change) {
+      throw InvalidArgument("'" + name +
+                            "' may not change while its component runs; set it in the mission "
+                            "profile, or by `skein launch --set`, and start the peer anew");
+    }
+    wanted = profile::parse_value(*parameter.entry, value);
+    text = profile::plain_text(*parameter.entry, value);
+    change = parameter.change;
   }
-  const ParameterValue wanted = profile::parse_value(*parameter.entry, value);
   try {
-    parameter.change(wanted);
+    (*change)(wanted);
   } catch (const std::exception& error) {
     throw ValueRefused(error.what());
   }
-  parameter.value = profile::plain_text(*parameter.entry, value);
+  const std::lock_guard lock(mutex_);
+  Parameter& parameter = find(name);
+  parameter.value = text;
   return told(name, parameter);
 }
 

@@ -15,7 +15,7 @@
 namespace skein::launch {
 
 /// The parameters of the components of one process, and those of them that may change while these
-/// run: what `skein param` asks. Thread-safe; a change that does not return holds up the others.
+/// run: what `skein param` asks. Thread-safe; a change that does not return holds up other changes.
 class LiveParameters final : public ILiveParameters,
                              public std::enable_shared_from_this<LiveParameters> {
  public:
@@ -38,8 +38,9 @@ class LiveParameters final : public ILiveParameters,
   using Change = std::function<void(const ParameterValue& value)>;
   struct Parameter {
     const profile::DictionaryEntry* entry = nullptr;
+    std::string given;  ///< What the profile has, from which live() starts.
     std::string value;
-    Change change{};  ///< Empty while it may not be changed.
+    std::shared_ptr<const Change> change{};  ///< Null while it may not be changed.
   };
 
   void make_live(const std::string& name, Change change);
@@ -49,7 +50,8 @@ class LiveParameters final : public ILiveParameters,
 
   const profile::Dictionary& dictionary_;
   const Offer offer_;
-  std::mutex mutex_;
+  std::mutex changing_;  ///< Held while a component's code runs; comes before the other one.
+  std::mutex mutex_;     ///< Guards what follows.
   bool offered_ = false;
   std::map<std::string, Parameter> parameters_;
 };

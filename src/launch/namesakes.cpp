@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "core/host.hpp"
+#include "core/interface_name.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/inspection.idl.hpp"
 
@@ -21,7 +22,7 @@ std::string Namesakes::look_at(const brokerless_discovery::Change& change) {
   const auto& service = *change.description;
   const bool is_namesake = change.kind == brokerless_discovery::Change::Kind::Added &&
                            service.owner.empty() && service.system == system_ &&
-                           service.entity == entity_;
+                           service.entity == entity_ && !is_built_in_interface(service.service);
   const bool here = service.host == host_;
   if (!is_namesake || (here && (service.pid == process_ || !lives(service.pid)))) return {};
   return tell(service.host, service.pid, here);

@@ -57,8 +57,9 @@ std::string add_type(types::TypeSystem& known, const CallRecord& record, const s
 
 }  // namespace
 
-RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask)
-    : writer_(writer), types_(types), ask_(std::move(ask)) {
+RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask,
+                             std::size_t most_waiting)
+    : writer_(writer), types_(types), ask_(std::move(ask)), most_waiting_(most_waiting) {
   const std::string type = "skein::introspection::CallRecord";
   records_ = types_.add_channel(introspection::kCallRecords.name, type,
                                 skein::describe(idl::type_support<CallRecord>()),
@@ -90,7 +91,7 @@ void RecordedCalls::receive(Waiting waiting) {
                      channels_.contains({record.service, record.operation, part_of_result(record)});
   const std::size_t size = sizeof waiting + introspection::size_of(record);
   if (known) return write(waiting);
-  if (waiting_size_ > 0 && waiting_size_ + size > kMostWaiting) {
+  if (waiting_size_ > 0 && waiting_size_ + size > most_waiting_) {
     writer_.count_dropped(records_, 1);
     return;
   }

@@ -24,7 +24,10 @@ class RecordedCalls {
   using AskTypes =
       std::function<types::TypeSystem(const std::string& service, const Guid& participant)>;
 
-  RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask);
+  /// `most_waiting`: of records that wait for their channels, in bytes. Further ones are dropped,
+  /// but not one alone.
+  RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask,
+                std::size_t most_waiting = kMostWaiting);
 
   /// On a vendor's thread. Throws InvalidArgument for what is no record.
   void receive(const dds::Sample& sample);
@@ -50,8 +53,6 @@ class RecordedCalls {
   std::uint16_t channel_of(const Waiting& waiting, const std::string& part);
   const types::TypeSystem& types_of(const Waiting& waiting);
 
-  /// Of records that wait for their channels, in bytes: further ones are dropped, but not one
-  /// alone.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
 
   /// Beyond these, what calls carry counts as dropped: names come from the network.
@@ -60,6 +61,7 @@ class RecordedCalls {
   Writer& writer_;
   RecordedTypes& types_;
   const AskTypes ask_;
+  const std::size_t most_waiting_;
   std::uint16_t records_ = 0;   // the channel
   std::uint32_t sequence_ = 0;  // guarded by what follows
   std::mutex mutex_;

@@ -60,8 +60,10 @@ std::string text_of_disposal(const std::string& topic, const dds::Sample& sample
   json.begin_object();
   json.key("topic");
   json.write_string(topic);
-  json.key("key");
-  json.write_string(sample.key.hex());
+  if (!sample.key.is_nil()) {  // foreign writers may send none
+    json.key("key");
+    json.write_string(sample.key.hex());
+  }
   json.key("writer");
   json.write_string(sample.writer.hex());
   json.end_object();

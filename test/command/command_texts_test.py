@@ -95,6 +95,9 @@ class InShell(unittest.TestCase):
         self.assertIn("Period", self.complete("skein param set beacon P"))
         self.assertTrue(any(line.startswith("complete parameter ") and line.endswith("set beacon") for line in told()))
         self.assertEqual(self.complete("skein record --topics po"), ["pose"])
+        told()
+        self.assertEqual(self.complete("skein replay flight.mcap --topics po"), [])  # they are the file's
+        self.assertEqual(told(), [])
         self.assertFalse((pathlib.Path(self.place.name) / "evil").exists())
 
     def stand_in(self):
@@ -133,6 +136,11 @@ class Bash(InShell):
     def test_completes_a_value_behind_an_equals_sign_which_bash_takes_for_a_word(self):
         self.assertEqual(self.complete_words(["skein", "services", "--vendor", "=", "fast"]), ["fastdds"])
         self.assertEqual(self.complete_words(["skein", "services", "--vendor", "="]), ["cyclonedds", "fastdds"])
+
+    def test_asks_a_domain_that_stands_behind_an_equals_sign(self):
+        told = self.stand_in()
+        self.assertEqual(self.complete_words(["skein", "echo", "--domain", "=", "47", "po"]), ["pose"])
+        self.assertEqual(told(), ["complete topic echo --domain 47"])
 
     def test_takes_the_value_of_an_option_for_no_argument(self):
         self.assertEqual(self.complete("skein peer --set a.b=1 mis"), ["mission.xml"])

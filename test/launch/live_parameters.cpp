@@ -1,7 +1,10 @@
 // What becomes of the parameters of components that run.
 #include "live_parameters.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <future>
+#include <optional>
 
 #include "skein/error.hpp"
 
@@ -26,8 +29,12 @@ const profile::Dictionary& dictionary() {
 
 struct Peer {
   int offered = 0;
+  bool has_room = true;
   std::shared_ptr<LiveParameters> parameters = std::make_shared<LiveParameters>(
-      dictionary(), [this](const std::shared_ptr<ILiveParameters>&) { ++offered; });
+      dictionary(), [this](const std::shared_ptr<ILiveParameters>&) {
+        if (!has_room) throw Unavailable("no room for a service");
+        ++offered;
+      });
   ParameterValues values = parameters->values_of(
       "", {{"Period", "0.1 s", {}}, {"Lift", "3", {}}, {"Tries", "5", {}}, {"Name", "heron", {}}});
 
@@ -115,6 +122,63 @@ TEST_CASE("a component that has let go of a parameter is not asked about it") {
   CHECK(asked == 0);
   const auto again = peer.values.live<std::string>("Name");
   CHECK(peer.of("Name").live);
+}
+
+TEST_CASE("a parameter that is declared anew begins with its profile's value, which is told, too") {
+  const Peer peer;
+  {
+    const auto name = peer.values.live<std::string>("Name");
+    peer.parameters->set("Name", "crane");
+  }
+  CHECK(peer.of("Name").value == "heron");
+  const auto again = peer.values.live<std::string>("Name");
+  CHECK(again.get() == "heron");
+  CHECK(peer.of("Name").value == "heron");
+}
+
+TEST_CASE("while a component looks at a value, it may declare parameters and all may be read") {
+  const Peer peer;
+  std::string told;
+  std::optional<LiveParameter<double>> lift;
+  const auto name = peer.values.live<std::string>("Name", [&](const std::string&) {
+    lift = peer.values.live<double>("Lift");
+    told = peer.of("Name").value;
+  });
+  peer.parameters->set("Name", "crane");
+  CHECK(told == "heron");
+  CHECK(lift->get() == 3);
+  CHECK(peer.of("Name").value == "crane");
+}
+
+TEST_CASE("who lets go of a parameter waits for the component's look at a value") {
+  const Peer peer;
+  std::promise<void> looks, may_go_on;
+  std::atomic<bool> has_looked = false;
+  auto name = std::make_optional(peer.values.live<std::string>("Name", [&](const std::string&) {
+    looks.set_value();
+    may_go_on.get_future().wait();
+    has_looked = true;
+  }));
+  const auto set =
+      std::async(std::launch::async, [&] { return peer.parameters->set("Name", "crane"); });
+  looks.get_future().wait();
+  auto letting_go = std::async(std::launch::async, [&] {
+    name.reset();
+    return has_looked.load();
+  });
+  may_go_on.set_value();
+  CHECK(letting_go.get());
+}
+
+TEST_CASE("a parameter is declared, and offered, once there is room where there was none") {
+  Peer peer;
+  peer.has_room = false;
+  CHECK_THROWS_AS(peer.values.live<std::string>("Name"), Unavailable);
+  CHECK_FALSE(peer.of("Name").live);
+  peer.has_room = true;
+  const auto name = peer.values.live<std::string>("Name");
+  CHECK(peer.of("Name").live);
+  CHECK(peer.offered == 1);
 }
 
 TEST_CASE("the parameters of a CSP in its owner's process have its name before theirs") {

@@ -68,6 +68,9 @@ TEST_CASE("Who has another name, belongs to another, goes or is dead is no names
   SECTION("another system") { service.system = "port"; }
   SECTION("another name") { service.entity = "chart"; }
   SECTION("a managed service") { service.owner = "boat/tide"; }
+  SECTION("a service of Skein's own, beside which it tells of itself") {
+    service.service = "skein/launch/ILiveParameters";
+  }
   SECTION("dead") { service.pid = 0x7fff'fff0; }
   CHECK(namesakes.look_at(added(service)).empty());
   CHECK(namesakes

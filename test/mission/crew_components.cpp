@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,9 @@ using namespace std::chrono_literals;
 
 class Worker final : public crew::Worker {
  public:
-  explicit Worker(std::string name) : name_(std::move(name)) {}
+  Worker(std::string name, const ParameterValues& values) : name_(std::move(name)) {
+    if (values.contains(kSeed)) seed_ = values.live<std::int64_t>(kSeed);
+  }
 
   std::string work(const std::string& task) override {
     if (name_ == "moody" && task.starts_with("stop")) raise(SIGSTOP);
@@ -34,7 +37,10 @@ class Worker final : public crew::Worker {
   }
 
  private:
+  static constexpr const char* kSeed = "Seed";
+
   const std::string name_;
+  std::optional<LiveParameter<std::int64_t>> seed_;  // which it offers beside its service
 };
 
 class Desk final : public crew::Desk {
@@ -91,8 +97,8 @@ int ask_once(Entity& entity, const ParameterValues&) {
 }
 
 ComponentRegistry::CspFactory worker(const std::string& name) {
-  return [name](const ParameterValues&) {
-    return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>(name));
+  return [name](const ParameterValues& values) {
+    return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>(name, values));
   };
 }
 

@@ -11,8 +11,8 @@
 namespace skein::test {
 
 /// A mission of the crew (see crew_components.cpp): an office with two CSPs, of which `moody`
-/// declares the better quality, and the peer `mission` that runs it. Its folder goes with this
-/// object.
+/// declares the better quality and has a parameter that may change, and the peer `mission` that
+/// runs it. Its folder goes with this object.
 class CrewProfile {
  public:
   /// `office` and `moody` are attributes of that peer and of that CSP, `mission` a component.
@@ -30,14 +30,16 @@ class CrewProfile {
     write(mission + ".xml",
           "<component name='" + mission +
               "'><dependencies><depends>IDL:crew/Desk</depends></dependencies></component>");
-    write("mission.xml", "<mission name='moods' domain='47' system='uav-1' dictionary='" +
-                             project_file("mission_profiles/dictionary.xml") +
-                             "' plugin='skein_crew_components' vendor='" + vendor +
-                             "'><peer name='office' component='office.xml' " + office +
-                             "><csp component='sound.xml' process='in'/>"
-                             "<csp component='moody.xml' " +
-                             moody + "/></peer><peer name='client' component='" + mission +
-                             ".xml' role='mission'/></mission>");
+    write("mission.xml",
+          "<mission name='moods' domain='47' system='uav-1' dictionary='" +
+              project_file("mission_profiles/dictionary.xml") +
+              "' plugin='skein_crew_components' vendor='" + vendor +
+              "'><peer name='office' component='office.xml' " + office +
+              "><csp component='sound.xml' process='in'/>"
+              "<csp component='moody.xml' " +
+              moody +
+              "><parameter name='Seed' value='1'/></csp></peer><peer name='client' component='" +
+              mission + ".xml' role='mission'/></mission>");
   }
   ~CrewProfile() {
     std::error_code ignored;
@@ -55,7 +57,7 @@ class CrewProfile {
            "'><interfaces><implements><type>IDL:crew/Worker</type>"
            "<attribute name='latency' value='" +
            latency_ms + " ms'/><attribute name='quality' value='" + quality +
-           "'/></implements></interfaces></component>";
+           "'/><optional><parameter name='Seed'/></optional></implements></interfaces></component>";
   }
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;

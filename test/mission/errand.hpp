@@ -14,7 +14,8 @@ namespace skein::test {
 /// object. `office` answers, `sick` would but fails its self-test, `bad` and the CSP `bad_clerk`
 /// are not made: their argument says what their factory returns or throws. `client` asks and ends,
 /// `vexer` makes the office spin first, `clumsy` ends by an exception and `thrower` by what is
-/// none, `herald` calls out until it is told to end, `page` does so three times.
+/// none, `herald` calls out until it is told to end, `page` does so three times, `thinker` never
+/// comes to an end with a new value of its parameter Rate.
 class Errand {
  public:
   Errand() {
@@ -31,7 +32,7 @@ class Errand {
                                 "'><dependencies><depends>IDL:crew/Desk</depends>"
                                 "</dependencies></component>");
     }
-    for (const std::string lone : {"clumsy", "herald", "page", "thrower"})
+    for (const std::string lone : {"clumsy", "herald", "page", "thinker", "thrower"})
       write(lone + ".xml", "<component name='" + lone + "'/>");
   }
   ~Errand() {

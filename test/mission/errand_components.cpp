@@ -89,6 +89,17 @@ int call_thrice(Entity& entity, const ParameterValues&, const std::stop_token& t
   return 3;
 }
 
+int ponder(Entity& entity, const ParameterValues& values, const std::stop_token& told_to_end) {
+  const auto rate = values.live<int>("Rate", [](int wanted) {
+    std::printf("ponders %d\n", wanted);
+    std::fflush(stdout);
+    std::promise<void>().get_future().wait();
+  });
+  while (!await_end(entity, told_to_end, 1s)) {
+  }
+  return 0;
+}
+
 int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the client stumbled"); }
 
 /// What becomes of a component whose process was given `how` as its argument.
@@ -138,5 +149,6 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   registry.add_mission("clumsy", stumble);
   registry.add_activity("herald", call_out);
   registry.add_activity("page", call_thrice);
+  registry.add_activity("thinker", ponder);
   registry.add_strategy(std::make_shared<First>());
 }

@@ -109,7 +109,6 @@ TEST_CASE("each exit code of the table has its cause") {
   table.expect(launch::kOutputLost, {"record", "--domain", "49", "--output", nowhere});
   table.expect(launch::kOutputLost,
                {"record", "--domain", "49", "--output", recording});  // it is there
-  table.expect(launch::kOutputLost, {"export", recording, "--perfetto", nowhere});
   table.expect(launch::kOutputLost, {"--help"}, {.output = "/dev/full"});
 
   table.expect(launch::kConfigurationError, {"check", "nowhere.xml"});
@@ -134,13 +133,13 @@ TEST_CASE("each exit code of the table has its cause") {
                                "<peer name='page' component='page.xml' role='mission'/>")});
   table.expect(kInterruptedBySigint,
                {"launch", "--verbose", "--no-log", errand.profile("", office)}, {},
-               "office is ready");
+               "office: ready");
 
   const CommandRun desk({"launch", "--verbose", "--no-log",
                          errand.profile("",
                                         "<peer name='office' component='office.xml' "
                                         "stop_timeout='100 ms'/>")});
-  REQUIRE(desk.writes("office is ready"));
+  REQUIRE(desk.writes("office: ready"));
   table.expect(command::kNoAnswer,
                {"call", "Desk", "ask", "\"spin\"", "--within", "200ms", "--domain", "48"});
 

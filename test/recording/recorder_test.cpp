@@ -7,11 +7,14 @@
 #include "../tools/eventually.hpp"
 #include "recording/player.hpp"
 #include "recording/reader.hpp"
+#include "recording/recorded_calls.hpp"
+#include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
+#include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
 using namespace skein;
@@ -70,6 +73,54 @@ struct Recorded {
     return all;
   }
 };
+
+/// As the publisher of a survey's type in the system uav-1 has it.
+dds::Qos as_published(dds::Qos qos) {
+  if (is_xcdr2(idl::type_support<survey::Marker>().representation))
+    qos.representation = dds::DataRepresentation::Xcdr2;
+  qos.partitions = {"uav-1"};
+  return qos;
+}
+
+/// A foreign writer's disposal comes to each of its readers.
+class Disposing final : public dds::Participant {
+ public:
+  std::unique_ptr<dds::Writer> create_writer(const dds::Topic&, const dds::Qos&,
+                                             dds::WriterListener) override {
+    throw Internal("nothing is written here");
+  }
+  std::unique_ptr<dds::Reader> create_reader(const dds::Topic&, const dds::Qos&,
+                                             dds::ReaderListener listener) override {
+    auto reader = std::make_unique<Reader>();
+    listener.on_data(*reader);
+    return reader;
+  }
+  Guid guid() const override { return {}; }
+
+ private:
+  class Reader final : public dds::Reader {
+   public:
+    std::size_t take(const std::function<void(const dds::Sample&)>& consumer,
+                     std::size_t) override {
+      dds::Sample end;
+      end.state = dds::InstanceState::Disposed;
+      consumer(end);
+      return 1;
+    }
+    Guid guid() const override { return {}; }
+    std::vector<Guid> matched_writers() const override { return {}; }
+    dds::ReceiveCounters counters() const override { return {}; }
+  };
+};
+
+std::vector<std::string> texts_of(const recording::Reader& reader, const std::string& topic) {
+  std::vector<std::string> texts;
+  auto messages = reader.messages({.topics = {topic}});
+  while (const auto message = messages.next()) {
+    texts.emplace_back(reinterpret_cast<const char*>(message->data.data()), message->data.size());
+  }
+  return texts;
+}
 
 template <class T>
 std::vector<T> values_of(const recording::Reader& reader, const std::string& topic) {
@@ -168,16 +219,47 @@ TEST_CASE("disposals of a keyed topic are recorded beside its values") {
   recorded.recorder->close();
 
   const recording::Reader reader(recorded.file);
-  auto messages = reader.messages({.topics = {"skein/disposals"}});
-  const auto message = messages.next();
-  REQUIRE(message);
-  const std::string text(reinterpret_cast<const char*>(message->data.data()), message->data.size());
-  CHECK_THAT(text, Catch::StartsWith("{\"topic\":\"marker\",\"key\":\"" + key_hash(north).hex()));
-  CHECK_FALSE(messages.next());
+  const auto disposals = texts_of(reader, "skein/disposals");
+  REQUIRE(disposals.size() == 1);
+  CHECK_THAT(disposals[0],
+             Catch::StartsWith("{\"topic\":\"marker\",\"key\":\"" + key_hash(north).hex()));
   for (const auto& [id, channel] : reader.channels()) {
     if (channel.topic != "skein/disposals") continue;
     CHECK(channel.message_encoding == "json");
     CHECK(reader.schemas().at(channel.schema).encoding == "jsonschema");
+  }
+}
+
+TEST_CASE("a disposal that came without its key is recorded without one") {
+  Recorded recorded;
+  auto markers = recorded.provider->publisher<survey::Marker>("marker", TopicQos::state());
+  recorded.begin();
+  REQUIRE(eventually([&] { return recorded.recorder->look(1s), markers.subscribers() == 1; }));
+  const auto stranger = make_entity("stranger");
+  const auto writer = stranger->participant().create_writer({"marker", "survey::Marker", true},
+                                                            as_published(TopicQos::state()));
+  REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
+  writer->dispose({});
+  REQUIRE(eventually([&] { return recorded.written("skein/disposals") == 1; }));
+  recorded.recorder->close();
+  const auto disposals = texts_of(recording::Reader(recorded.file), "skein/disposals");
+  REQUIRE(disposals.size() == 1);
+  CHECK_THAT(disposals[0],
+             Catch::StartsWith("{\"topic\":\"marker\",\"writer\":\"" + writer->guid().hex()));
+}
+
+TEST_CASE("disposals are heard of keyed topics alone") {
+  Disposing participant;
+  for (const bool keyed : {true, false}) {
+    CAPTURE(keyed);
+    inspection::TopicEndpoint told;
+    told.publishes = true;
+    told.keyed = keyed;
+    const KnownTopic topic{"marker", "survey::Marker", {{{}, "uav-1/stranger", told}}};
+    int heard = 0;
+    recording::RecordedTopic recorded([&](const dds::Sample&) { ++heard; });
+    recorded.follow(participant, topic);
+    CHECK(heard == (keyed ? 1 : 0));
   }
 }
 
@@ -244,7 +326,36 @@ TEST_CASE("calls are recorded with what they carried, whatever their transport a
   }
 }
 
-TEST_CASE("a call is recorded whole, however large") {
+TEST_CASE("a call is recorded, however large, while no other one waits for its types") {
+  const std::string file = new_file();
+  recording::Writer writer(file);
+  recording::RecordedTypes known(writer);
+  const auto nobody_tells = [](const std::string&, const Guid&) -> types::TypeSystem {
+    throw Unavailable("nobody tells types here");
+  };
+  recording::RecordedCalls calls(writer, known, nobody_tells, 1);
+  introspection::CallRecord call;
+  call.service = "survey/ISurveyor";
+  call.operation = "measure";
+  call.end = introspection::CallEnd::Returned;
+  call.arguments.resize(64);
+  const Bytes message = idl::encode_message(introspection::CallRecords{{call, call}, 0});
+  dds::Sample sample;
+  sample.cdr = message;
+  calls.receive(sample);
+  calls.name_channels();
+  writer.close();
+  const auto statistics = writer.statistics();
+  std::filesystem::remove(file);
+  const auto requests =
+      std::ranges::find(statistics.channels, "calls/survey/ISurveyor/measure/request",
+                        &recording::ChannelStatistics::topic);
+  REQUIRE(requests != statistics.channels.end());
+  CHECK(requests->written == 1);
+  CHECK(statistics.dropped() == 1);  // the one that came while the first waited
+}
+
+TEST_CASE("a call of some MiB is recorded whole") {
   Recorded recorded;
   recorded.begin();
   auto proxy = recorded.provider->connect<survey::ISurveyor>();

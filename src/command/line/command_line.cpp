@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <list>
 #include <sstream>
 
 #include "command/wrapped.hpp"
@@ -35,11 +36,13 @@ std::string exit_codes() {
     if (code.code == "128 + N") codes.push_back(looking_code("124"));
     codes.push_back(code);
   }
-  // Of a launch and of commands that look this means two things.
-  const auto failed = std::ranges::find(codes, "71", &launch::ExitCode::code);
-  const std::string both = std::string(failed->meaning) +
-                           "; of commands that look: " + std::string(looking_code("71").meaning);
-  failed->meaning = both;
+  // Of a launch and of commands that look these mean two things.
+  std::list<std::string> meanings;
+  for (const std::string_view code : {"71", "74"}) {
+    const auto entry = std::ranges::find(codes, code, &launch::ExitCode::code);
+    entry->meaning = meanings.emplace_back(std::string(entry->meaning) + "; of other commands: " +
+                                           std::string(looking_code(code).meaning));
+  }
   codes.back().meaning = "interrupted by signal N before it was done";
   return exit_codes_text(codes);
 }

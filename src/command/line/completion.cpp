@@ -66,13 +66,13 @@ std::string bash_entry(const CLI::App& command, const std::string& words) {
 constexpr const char* kBash = R"bash(
 _skein() {
   local current=${COMP_WORDS[COMP_CWORD]} path=skein commands options kinds waiting= place=0 word kind=
-  local -a places
+  local -a places said=()
   [[ $current == '=' ]] && current=
   _skein_describe "$path"
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
-    if [[ $word == '=' ]]; then
-      continue
-    elif [[ -n $waiting ]]; then
+    [[ $word == '=' ]] && continue
+    said+=("$word")
+    if [[ -n $waiting ]]; then
       waiting=
     elif [[ $word == -* ]]; then
       [[ " $kinds" == *" $word="* ]] && waiting=$word
@@ -103,7 +103,7 @@ _skein() {
       mapfile -t COMPREPLY < <(compgen $only -- "$current") ;;
     interface) mapfile -t COMPREPLY < <(compgen -W "$(ls /sys/class/net)" -- "$current") ;;
     live:*)  # names from a network, which compgen would expand
-      mapfile -t COMPREPLY < <(skein complete "${kind#live:}" "${COMP_WORDS[@]:1:COMP_CWORD-1}" 2>/dev/null |
+      mapfile -t COMPREPLY < <(skein complete "${kind#live:}" "${said[@]}" 2>/dev/null |
         while IFS= read -r word; do [[ $word == "$current"* ]] && printf '%q\n' "$word"; done) ;;
     words:*) mapfile -t COMPREPLY < <(IFS=,; compgen -W "${kind#words:}" -- "$current") ;;
   esac

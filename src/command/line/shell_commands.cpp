@@ -37,6 +37,21 @@ void add_completion(CLI::App& app) {
   command.callback([&app, shell] { std::cout << completion(app, *shell); });
 }
 
+/// Of commands that are completed: their values are no words of `complete`.
+void ignore_other_options(const CLI::App& app, CLI::App& complete) {
+  for_each_command(app, [&](const CLI::App& command, const std::string&) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->get_items_expected_max() == 0) continue;
+      for (const std::string& name : option->get_lnames()) {
+        if (complete.get_option_no_throw("--" + name)) continue;
+        complete.add_option_function<std::string>("--" + name, [](const std::string&) {})
+            ->expected(0, 1)  // it may be the value that is completed
+            ->take_last();
+      }
+    }
+  });
+}
+
 /// Hidden: completion runs it, with all words that were typed.
 void add_complete(CLI::App& app, int& result) {
   auto& command = add_command(app, "complete", "Print names of a domain for completion", {});
@@ -45,6 +60,7 @@ void add_complete(CLI::App& app, int& result) {
   command.add_option("KIND", arguments.kind, "Of the names")->required();
   command.add_option("WORD", arguments.words, "What was typed");
   add_onlooker(command, arguments);
+  ignore_other_options(app, command);
   command.allow_extras();
 }
 

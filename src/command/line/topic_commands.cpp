@@ -57,7 +57,8 @@ void add_param_options(CLI::App& command, ParamArguments& arguments) {
 ParamArguments& add_parameter(CLI::App& command, int (*function)(const ParamArguments&),
                               int& result) {
   auto& arguments = arguments_of(command, function, result);
-  command.add_option("ENTITY", arguments.entity, "NAME or SYSTEM/NAME")
+  command
+      .add_option("ENTITY", arguments.entity, "SYSTEM/NAME; or NAME, where one system alone has it")
       ->type_name(kEntity)
       ->required();
   command
@@ -84,7 +85,7 @@ void add_param(CLI::App& app, int& result) {
                             {"skein param list beacon --json", "Of one, for programs"}});
   auto& listed = arguments_of(list, list_parameters, result);
   listed.seconds = 1.5;
-  list.add_option("ENTITY", listed.entity, "NAME or SYSTEM/NAME; default: all")->type_name(kEntity);
+  list.add_option("ENTITY", listed.entity, "SYSTEM/NAME or NAME; default: all")->type_name(kEntity);
   add_param_options(list, listed);
 
   auto& get = add_command(param, "get", "Print a parameter of a running peer",
