@@ -42,6 +42,7 @@ void check_tracks(const MissionRun& run) {
   CHECK(extremes.greatest_bank_deg < 30);
   // Through the air 6 degrees at most, which a head wind makes steeper over the ground.
   CHECK(extremes.greatest_climb_deg < 8.5);
+  CHECK(extremes.others == 1);
   CHECK(extremes.longest_not_well_clear_s == 0);
 }
 
@@ -136,6 +137,14 @@ TEST_CASE(
     INFO("seed " << seed << " on " << a << " and " << b << "\n" << run.output());
     CHECK(run.exit_code() == 0);
     check_tracks(run);
+    // What was collected: a place, the corners of a road, a bridge.
+    check_pass(run, 53.4050, 27.5985);
+    check_pass(run, 53.4047, 27.7111);
+    check_pass(run, 53.3823, 27.7363);
+    check_pass(run, 53.3405, 27.6390);
+    // Of the weapons of the sites that are there from the beginning.
+    CHECK(seconds_within(run.file("reconnaissance.csv"), 53.48, 27.5, 8000) == 0);
+    CHECK(seconds_within(run.file("reconnaissance.csv"), 53.55, 27.95, 15000) == 0);
     if (seed == 1) {
       const std::vector<std::string> shown = lines_in_readme();
       CHECK(shown.size() > 5);

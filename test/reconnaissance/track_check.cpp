@@ -13,7 +13,7 @@ namespace skein::test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kNear_m = 2200 * 0.3048;
+constexpr double kNear_m = 0.66 * 1852;
 constexpr double kNearHeight_m = 450 * 0.3048;
 constexpr double kAirfield_m = 5000;
 constexpr double kFlying_m_s = 30;
@@ -128,8 +128,11 @@ TrackExtremes extremes_of(const std::filesystem::path& tracks) {
       extremes.least_clearance_m = std::min(extremes.least_clearance_m, own[i].above_ground_m);
   }
   see_turns_and_climbs(own, extremes);
-  for (const auto& [number, track] : all)
-    if (number != 0) see_other(own, track, extremes);
+  for (const auto& [number, track] : all) {
+    if (number == 0) continue;
+    ++extremes.others;
+    see_other(own, track, extremes);
+  }
   return extremes;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <limits>
 
@@ -10,7 +11,8 @@ struct TrackExtremes {
   double least_clearance_m = std::numeric_limits<double>::infinity();  ///< 5 km from the start on.
   double greatest_bank_deg = 0;         ///< That a coordinated turn as tight as the track's needs.
   double greatest_climb_deg = 0;        ///< Up or down.
-  double longest_not_well_clear_s = 0;  ///< Within 2200 ft and 450 ft of another aircraft.
+  double longest_not_well_clear_s = 0;  ///< Within 0.66 nmi and 450 ft of another aircraft.
+  std::size_t others = 0;               ///< Of which there are tracks.
   double flown_s = 0;
   double flown_m = 0;
 };

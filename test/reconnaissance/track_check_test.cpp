@@ -1,10 +1,13 @@
 // The check of recorded tracks itself: it finds what is wrong.
 #include "track_check.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <string>
 
 using namespace skein::test;
 
@@ -18,7 +21,8 @@ struct Place {
 template <class Judge>
 auto judge_by(const Judge& judge, double seconds, const std::function<Place(double)>& own,
               const std::function<Place(double)>& other = {}) {
-  const auto file = std::filesystem::temp_directory_path() / "track_check_test.csv";
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("track_check_test_" + std::to_string(getpid()) + ".csv");
   {
     std::ofstream stream(file);
     stream.precision(12);
@@ -71,17 +75,17 @@ TEST_CASE("clearance counts away from where the track begins") {
   CHECK(low_where(8000).least_clearance_m == 90);
 }
 
-TEST_CASE("who comes within 2200 ft and 450 ft of another is not well clear for so long") {
+TEST_CASE("who comes within 0.66 nautical miles and 450 ft of another is not well clear for so long") {
   const auto own = [](double t) { return Place{60 * t, 0, 900, 700}; };
   const auto passing = [&](double aside_m, double above_m) {
     return judge(100, own, [=](double t) {
       return Place{6000 - 60 * t, aside_m, 900 + above_m, 700};
     });
   };
-  CHECK(passing(700, 0).longest_not_well_clear_s == 0);
+  CHECK(passing(1300, 0).longest_not_well_clear_s == 0);
   CHECK(passing(300, 140).longest_not_well_clear_s == 0);
-  // A chord of 1200 m, at 120 m/s.
-  CHECK(passing(300, 100).longest_not_well_clear_s == Approx(10).margin(0.3));
+  // A chord of 2370 m, at 120 m/s.
+  CHECK(passing(300, 100).longest_not_well_clear_s == Approx(19.75).margin(0.3));
 }
 
 TEST_CASE("a track tells how a place was passed, how finely it could be seen, and for how long") {

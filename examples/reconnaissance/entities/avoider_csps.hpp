@@ -9,11 +9,6 @@ inline TrafficState traffic_state(const recon::TrafficMotion& told) {
   return {{told.north_m, told.east_m, told.height_m}, told.north_m_s, told.east_m_s, told.up_m_s};
 }
 
-inline recon::TrafficMotion traffic_motion(const TrafficState& state) {
-  return {state.place.north_m, state.place.east_m, state.place.height_m,
-          state.north_m_s,     state.east_m_s,     state.up_m_s};
-}
-
 /// Detect and avoid by bands: a CSP of the collision manager.
 class Bands : public recon::IAvoider {
  public:

@@ -14,7 +14,7 @@ namespace reconnaissance {
 namespace {
 
 // What an avoider may ask for: more the aircraft cannot.
-constexpr double kGreatestClimb_m_s = 10;
+constexpr double kGreatestClimb_m_s = 6.3;
 
 std::optional<std::string> cannot_be_flown(const recon::Avoidance& avoidance) {
   if (avoidance.turns && !std::isfinite(avoidance.course_rad)) return "its course is no number";

@@ -37,13 +37,6 @@ inline std::vector<Local> locals(const LocalFrame& frame,
   return result;
 }
 
-inline std::vector<recon::Position> positions(const LocalFrame& frame,
-                                              const std::vector<Local>& locals) {
-  std::vector<recon::Position> result;
-  for (const Local& each : locals) result.push_back(position(frame, each));
-  return result;
-}
-
 /// The ground that a profile names by `Runway` and `Hills`, about the runway's threshold.
 inline Hills ground_of(const skein::ParameterValues& values) {
   const RunwayText runway = parse_runway(values.get<std::string>("Runway"));

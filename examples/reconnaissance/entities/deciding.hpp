@@ -13,8 +13,10 @@ namespace reconnaissance {
 
 /// While a Head decides in a tick, the mission's time stands, so that no time limit of the mission
 /// could end it. This one, by the system's clock, is for CSPs that hang: so long that no busy
-/// machine decides anything.
-inline constexpr skein::Duration kUnlessItHangs = std::chrono::minutes(10);
+/// machine decides anything, and the Head asks the next one in time.
+inline constexpr skein::Duration kUnlessItHangs = std::chrono::seconds(20);
+/// Of who asks somebody whose Head decides several times.
+inline constexpr skein::Duration kUnlessAllHang = std::chrono::minutes(1);
 
 /// What the Head makes of a task; nothing if no CSP has an answer, or they do not agree. Throws
 /// what else ends a task.

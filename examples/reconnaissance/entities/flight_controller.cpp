@@ -16,6 +16,8 @@ namespace {
 constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 // Of winds in which turns that were planned are flown as tightly as that.
 constexpr double kTailWind_m_s = 7;
+// Above ground; below it no advisory leads further down.
+constexpr double kLeastDescent_m = 300;
 
 FlightRules rules_of(const skein::ParameterValues& values) {
   FlightRules rules;
@@ -131,32 +133,42 @@ void FlightController::fly(Tick tick) {
   publish(tick, avoid(tick, pilot_.fly(*last_sight_)), *last_sight_, *sensors);
 }
 
-/// An advisory goes before the route, but not before a take-off or a landing.
+/// An advisory goes before the route, but not before a take-off or the straight part that leads
+/// down to the runway.
 Demand FlightController::avoid(Tick tick, const Demand& demand) {
   // Of a tick before: who advises waits for the state of this one.
   const auto advisory = advisories_.at(tick - 1);
   const bool free = pilot_.mode() == Pilot::Mode::Following ||
                     pilot_.mode() == Pilot::Mode::Waiting ||
-                    (pilot_.mode() == Pilot::Mode::Approaching && pilot_.leg() == 0);
+                    (pilot_.mode() == Pilot::Mode::Approaching && pilot_.leg() + 2 < pilot_.legs());
   // Who advised last may be gone.
   const bool fresh = advisory && advisory->tick >= tick - 2 * topic::kAdvisory.period;
   avoiding_ = free && fresh && (advisory->avoidance.turns || advisory->avoidance.climbs);
   if (!avoiding_) return demand;
   const recon::Avoidance& wanted = advisory->avoidance;
+  // Another aircraft is no reason to fly into the ground.
+  const bool low = last_sight_->radar_height_m < kLeastDescent_m;
+  const bool climbs = wanted.climbs && !(low && wanted.climb_m_s < 0);
   return advised(rules_, demand, last_sight_->measured,
                  wanted.turns ? std::optional(wanted.course_rad) : std::nullopt,
-                 wanted.climbs ? std::optional(wanted.climb_m_s) : std::nullopt);
+                 climbs ? std::optional(wanted.climb_m_s) : std::nullopt);
 }
 
 std::optional<Pilot::Sight> FlightController::look(const recon::Sensors& sensors) {
   std::array<std::optional<Measurement>, 3> sets;
-  // Before the first runway is known the aircraft stands, and where does not matter.
-  const LocalFrame frame = frame_.value_or(LocalFrame(geodetic(sensors.sets[0].position)));
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const recon::SensorSet& set = sensors.sets[i];
     if (!set.working) continue;
-    sets[i] = Measurement{local(frame, set.position), set.north_m_s,   set.east_m_s,  set.up_m_s,
-                          set.airspeed_m_s,           set.heading_rad, set.climb_rad, set.bank_rad};
+    // Before the first runway is known the aircraft stands, and any place near it will do.
+    if (!frame_ && !stand_) stand_.emplace(geodetic(set.position));
+    sets[i] = Measurement{local(frame(), set.position),
+                          set.north_m_s,
+                          set.east_m_s,
+                          set.up_m_s,
+                          set.airspeed_m_s,
+                          set.heading_rad,
+                          set.climb_rad,
+                          set.bank_rad};
   }
   const auto measured = voter_.vote(sets, kTick_s);
   if (!measured) return std::nullopt;
@@ -179,7 +191,7 @@ void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sig
   recon::FlightState state;
   state.tick = tick;
   state.mode = mode_of(pilot_.mode());
-  state.position = frame_ ? position(*frame_, measured.position) : sensors.sets[0].position;
+  state.position = position(frame(), measured.position);
   state.north_m_s = measured.north_m_s;
   state.east_m_s = measured.east_m_s;
   state.up_m_s = measured.up_m_s;

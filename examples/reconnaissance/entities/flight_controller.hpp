@@ -41,6 +41,7 @@ class FlightController : public recon::IFlightController {
   void accept(std::int64_t tick, std::uint32_t route, std::function<std::string()> obey);
   void fly(Tick tick);
   void obey(Tick tick);
+  const LocalFrame& frame() const { return frame_ ? *frame_ : *stand_; }
   std::optional<Pilot::Sight> look(const recon::Sensors& sensors);
   double ask_guidance(const Motion& motion, const Line& leg, double circle_radius_m);
   Demand avoid(Tick tick, const Demand& demand);
@@ -50,6 +51,7 @@ class FlightController : public recon::IFlightController {
   skein::Entity& entity_;
   FlightRules rules_;
   std::optional<LocalFrame> frame_;  // about the first runway
+  std::optional<LocalFrame> stand_;  // about where it stood before that was known
   Voter voter_;
   Pilot pilot_;
   std::optional<recon::IGuidance::Proxy> guidance_;

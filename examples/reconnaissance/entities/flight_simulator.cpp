@@ -28,6 +28,8 @@ Wind wind_from(double from_rad, double speed_m_s) {
   return {-speed_m_s * std::cos(from_rad), -speed_m_s * std::sin(from_rad), 0};
 }
 
+// So that what is drawn for others is not what is drawn for the own aircraft.
+constexpr std::uint64_t kOtherNumbers = 1'000'003;
 // Of the sensor that sees other aircraft: as of one that receives what they broadcast.
 constexpr double kTrafficPlaceError_m = 15;
 constexpr double kTrafficSpeedError_m_s = 0.5;
@@ -68,14 +70,14 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
       failures_(parse_failures(values.find<std::string>("Sensor failures").value_or(""))),
       intruders_(parse_intruders(values.find<std::string>("Intruders").value_or(""))),
       others_(intruders_.size()),
-      traffic_random_(values.find<std::uint64_t>("Seed").value_or(1)),
+      traffic_random_(values.find<std::uint64_t>("Seed").value_or(1) + kOtherNumbers),
       aircraft_(parked(runway_, values.find<double>("Fuel").value_or(80))),
       health_(entity),
       time_(entity, values.get<std::size_t>("Participants"),
             values.find<double>("Speed limit").value_or(0)),
       commands_(entity, topic::kFlightCommand),
       sensors_out_(entity.publisher<recon::Sensors>(topic::kSensors.name, stream_qos())),
-      truth_(entity.publisher<recon::Truth>(topic::kTruth.name, stream_qos())),
+      truth_(entity.publisher<recon::Truth>(topic::kTruth.name)),
       traffic_(entity.publisher<recon::Traffic>(topic::kTraffic.name)),
       traffic_truth_(entity.publisher<recon::Traffic>(topic::kTrafficTruth.name)) {}
 

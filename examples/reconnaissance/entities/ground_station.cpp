@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <utility>
 
 #include "convert.hpp"
 #include "mission/conduct.hpp"
@@ -20,6 +21,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 20s;
+// Ticks of which a part is on its way; more have lost one.
+constexpr std::size_t kOnTheWay = 100;
+// Of the mission: until then everybody has to be fine.
+constexpr double kLongestTest_s = 600;
 
 PassConditions conditions_of(const skein::ParameterValues& values) {
   PassConditions conditions;
@@ -79,9 +84,10 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       order_{runway(parse_runway(values.get<std::string>("Runway")))},
       frame_(geodetic(order_.runway.threshold)),
       results_(values.find<std::string>("Results").value_or("reconnaissance")),
-      patience_(values.find<skein::Duration>("Patience").value_or(60s)),
+      patience_(values.find<skein::Duration>("Patience").value_or(2min)),
+      ground_(ground_of(values)),
       judge_(judge_of(frame_, order_.runway, values)),
-      truths_(entity.subscription<recon::Truth>(topic::kTruth.name, stream_qos(),
+      truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
                                                 [this](const recon::Truth& truth) { see(truth); })),
       statuses_(entity.subscription<recon::MissionStatus>(
           topic::kStatus, skein::TopicQos::state(),
@@ -101,7 +107,7 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
           topic::kTrafficTruth.name, {}, [this](const recon::Traffic& traffic) { see(traffic); })),
       advisories_(entity.subscription<recon::ResolutionAdvisory>(
           topic::kAdvisory.name, skein::TopicQos::state(),
-          [this](const recon::ResolutionAdvisory& advisory) { show(advisory); })),
+          [this](const recon::ResolutionAdvisory& advisory) { see(advisory); })),
       states_(entity.subscription<recon::FlightState>(
           topic::kFlightState.name, stream_qos(),
           [this](const recon::FlightState& state) { show(state); })),
@@ -135,14 +141,17 @@ std::string GroundStation::await_end(const std::stop_token& told_to_end) {
   std::unique_lock lock(mutex_);
   for (Tick seen = -1;;) {
     const auto is_over = [&] {
-      return is_complete() || phase_ == recon::Phase::Aborted || judge_.too_long();
+      return is_complete() || phase_ == recon::Phase::Aborted || judge_.too_long() ||
+             never_begins();
     };
     const bool moved = changed_.wait_for(lock, told_to_end, patience_,
                                          [&] { return is_over() || last_tick_ != seen; });
     if (is_complete()) return "";
     if (told_to_end.stop_requested()) return "the ground station was told to end";
-    if (phase_ == recon::Phase::Aborted) return "the mission was aborted";
+    if (phase_ == recon::Phase::Aborted) return "the mission was aborted: " + reason_;
     if (judge_.too_long()) return "the flight takes too long";
+    if (never_begins())
+      return fmt::format("there was no take-off within {:.0f} s: {}", kLongestTest_s, why_limited_);
     if (!moved) {
       lock.unlock();
       const std::string reason = why_time_stands();
@@ -167,6 +176,11 @@ std::string GroundStation::why_time_stands() {
   return reason;
 }
 
+/// Somebody is not fine, and does not become so.
+bool GroundStation::never_begins() const {
+  return phase_ == recon::Phase::BuiltInTest && seconds_of(last_tick_) > kLongestTest_s;
+}
+
 /// The mission manager has a moment to say so, too.
 bool GroundStation::is_complete() const {
   constexpr Tick kMoment = 250;
@@ -177,14 +191,41 @@ bool GroundStation::is_complete() const {
 void GroundStation::see(const recon::Truth& truth) {
   {
     std::lock_guard lock(mutex_);
-    tracks_ += track_line(truth.tick, 0, truth.position, truth.height_above_ground_m);
-    last_tick_ = truth.tick;
-    if (!judge_.standing()) last_moving_tick_ = truth.tick;
-    judge_.see({std::chrono::duration<double>(time_of(truth.tick)).count(),
-                local(frame_, truth.position), truth.height_above_ground_m, truth.ground_speed_m_s,
-                truth.fuel_kg, truth.on_ground, truth.stalled});
+    moments_[truth.tick].own = truth;
+    judge_what_is_whole();
   }
   changed_.notify_all();
+}
+
+void GroundStation::see(const recon::Traffic& traffic) {
+  {
+    std::lock_guard lock(mutex_);
+    moments_[traffic.tick].others = traffic;
+    judge_what_is_whole();
+  }
+  changed_.notify_all();
+}
+
+/// In the order of time, with all aircraft where they were at the same instant.
+void GroundStation::judge_what_is_whole() {
+  for (; !moments_.empty(); moments_.erase(moments_.begin())) {
+    const auto& [own, others] = moments_.begin()->second;
+    if (!own || !others) {
+      if (moments_.size() <= kOnTheWay) return;
+      continue;
+    }
+    tracks_ += track_line(own->tick, 0, own->position, own->height_above_ground_m);
+    last_tick_ = own->tick;
+    if (!judge_.standing()) last_moving_tick_ = own->tick;
+    judge_.see({seconds_of(own->tick), local(frame_, own->position), own->height_above_ground_m,
+                own->ground_speed_m_s, own->fuel_kg, own->on_ground, own->stalled});
+    for (const recon::OtherAircraft& each : others->others) {
+      const Local place = local(frame_, each.position);
+      judge_.meet(place);
+      tracks_ += track_line(own->tick, each.number, each.position,
+                            place.height_m - ground_(place.north_m, place.east_m));
+    }
+  }
 }
 
 void GroundStation::show(const recon::MissionStatus& status) {
@@ -205,6 +246,7 @@ void GroundStation::show(const recon::MissionMode& mode) {
     if (mode_ == mode.mode && flight_order_ == mode.flight) return;
     mode_ = mode.mode;
     flight_order_ = mode.flight;
+    why_limited_ = mode.reason.empty() ? mode.cause : mode.reason;
   }
   fmt::print("{}  mode {}, {}{}{}\n", clock_of(mode.tick), to_string(mode.mode),
              to_string(mode.flight), mode.cause.empty() ? "" : ": " + mode.cause,
@@ -230,31 +272,26 @@ void GroundStation::see(const recon::ThreatTruth& truth) {
   if (!judge_.standing()) judge_.suffer(truth.survival, truth.tracked_s);
 }
 
-void GroundStation::see(const recon::Traffic& traffic) {
+void GroundStation::see(const recon::ResolutionAdvisory& advisory) {
   std::lock_guard lock(mutex_);
-  for (const recon::OtherAircraft& each : traffic.others) judge_.meet(local(frame_, each.position));
-}
-
-void GroundStation::show(const recon::ResolutionAdvisory& advisory) {
-  const bool avoiding = advisory.avoidance.turns || advisory.avoidance.climbs;
-  {
-    std::lock_guard lock(mutex_);
-    if (avoiding == avoiding_) return;
-    avoiding_ = avoiding;
-  }
-  fmt::print("{}  {}\n", clock_of(advisory.tick),
-             avoiding ? fmt::format("another aircraft is avoided ({})", to_string(advisory.alert))
-                      : "clear of other aircraft");
-  std::fflush(stdout);
+  alert_ = advisory.alert;
 }
 
 void GroundStation::show(const recon::FlightState& state) {
+  bool avoiding_changed = false, sets_changed = false;
+  recon::TrafficAlert alert{};
   {
     std::lock_guard lock(mutex_);
-    if (sets_heard_ == state.sets_heard) return;
-    sets_heard_ = state.sets_heard;
+    avoiding_changed = std::exchange(avoiding_, state.avoiding) != state.avoiding;
+    sets_changed = std::exchange(sets_heard_, state.sets_heard) != state.sets_heard;
+    alert = alert_;
   }
-  fmt::print("{}  {} of 3 sets of sensors are heard\n", clock_of(state.tick), state.sets_heard);
+  if (avoiding_changed)
+    fmt::print("{}  {}\n", clock_of(state.tick),
+               state.avoiding ? fmt::format("another aircraft is avoided ({})", to_string(alert))
+                              : "clear of other aircraft: back to the route");
+  if (sets_changed)
+    fmt::print("{}  {} of 3 sets of sensors are heard\n", clock_of(state.tick), state.sets_heard);
   std::fflush(stdout);
 }
 

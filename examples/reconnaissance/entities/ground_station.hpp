@@ -2,12 +2,14 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
 
+#include "geodesy/hills.hpp"
 #include "geodesy/local_frame.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
@@ -30,17 +32,19 @@ class GroundStation {
 
  private:
   void see(const recon::Truth& truth);
+  void judge_what_is_whole();
   void show(const recon::MissionStatus& status);
   void show(const recon::MissionMode& mode);
   void show(const recon::ThreatPicture& picture);
   void show(const recon::ElementList& list);
   void see(const recon::ThreatTruth& truth);
   void see(const recon::Traffic& traffic);
-  void show(const recon::ResolutionAdvisory& advisory);
+  void see(const recon::ResolutionAdvisory& advisory);
   void show(const recon::FlightState& state);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
+  bool never_begins() const;
   std::string why_time_stands();
   void write(const Verdict& verdict) const;
 
@@ -50,15 +54,24 @@ class GroundStation {
   std::optional<recon::IFlightSimulator::Proxy> simulator_;
   std::filesystem::path results_;
   skein::Duration patience_;
+  Hills ground_;
 
   std::mutex mutex_;
   std::condition_variable_any changed_;
   Judge judge_;
+  /// Where all aircraft were at a tick, as far as it has arrived.
+  struct Moment {
+    std::optional<recon::Truth> own;
+    std::optional<recon::Traffic> others;
+  };
+  std::map<Tick, Moment> moments_;  // not judged yet
   std::optional<recon::Phase> phase_;
   std::string tracks_;  // as they are written
   std::string reason_;  // that was shown, as were
+  recon::TrafficAlert alert_ = recon::TrafficAlert::NoAlert;
   bool avoiding_ = false;
   int sets_heard_ = 3;
+  std::string why_limited_;
   recon::Mode mode_ = recon::Mode::Starting;
   recon::FlightOrder flight_order_ = recon::FlightOrder::FlyAsPlanned;
   std::set<std::uint32_t> threats_;  // that were shown, as were

@@ -21,11 +21,6 @@ constexpr auto kPatience = 20s;
 // Above the runway: higher than any hill, by as much as the camera likes.
 constexpr double kCollectionHeight_m = 750;
 constexpr double kLeastSurvival = 0.97;
-constexpr double kEndurance_s = 3600;
-// Of a site, within as much more as its place is uncertain.
-constexpr double kKills_per_s = 0.02;
-constexpr double kDeviations = 2;
-constexpr double kFurthestOff_m = 1500;
 // What bars a way: less is the uncertainty of a place that moves.
 constexpr double kBarringHazard = 0.03;
 // An element that is missed is passed once more.
@@ -78,8 +73,8 @@ std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const Loca
   for (const recon::Threat& threat : picture.threats) {
     if (threat.lethal_range_m == 0) continue;
     const Local site = local(frame, threat.position);
-    const double off_m = std::min(kDeviations * threat.deviation_m, kFurthestOff_m);
-    discs.push_back({site.north_m, site.east_m, threat.lethal_range_m + off_m, kKills_per_s});
+    discs.push_back({site.north_m, site.east_m, reach_m(threat.lethal_range_m, threat.deviation_m),
+                     kKills_per_s});
   }
   return discs;
 }
@@ -94,6 +89,7 @@ recon::TourPass tour_pass(const CollectionPass& pass) {
 MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
       fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
+      endurance_s_(values.find<std::chrono::duration<double>>("Endurance").value_or(1h).count()),
       flight_(entity, topic::kFlightState),
       mode_(entity, topic::kMode, skein::TopicQos::state()),
       pictures_(entity, topic::kThreats, skein::TopicQos::state()),
@@ -102,7 +98,7 @@ MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValu
       member_(entity, values, [this](Tick tick) { manage(tick); }) {}
 
 void MissionManager::start() {
-  navigator_ = entity_.connect<recon::INavigator>({.timeout = kUnlessItHangs});
+  navigator_ = entity_.connect<recon::INavigator>({.timeout = kPatience}).within(kUnlessAllHang);
   controller_ = entity_.connect<recon::IFlightController>({.timeout = kPatience});
   limits_ = controller_->limits();
   cruise_.speed_m_s = limits_.speed_m_s;
@@ -148,7 +144,8 @@ Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState
   Conduct::Situation now;
   return_home_.reset();
   if (mode && mode->flight >= recon::FlightOrder::ReturnHome) return_home_ = mode->cause;
-  now.all_fine = mode && mode->mode == recon::Mode::Normal;
+  nothing_new_ = mode && mode->flight >= recon::FlightOrder::BeginNothingNew;
+  now.all_fine = mode && mode->mode == recon::Mode::Normal && !nothing_new_;
   now.mode = mode_of(state.mode);
   now.height_m = state.position.height_m;
   if (state.route != route_.number) return now;
@@ -169,9 +166,9 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
                                                  const recon::ElementList& elements,
                                                  const Conduct::Situation& now) {
   const MissionPhase phase = conduct_->phase();
+  if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
   if (phase == MissionPhase::BuiltInTest)
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
-  if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
   const bool barred = now.legs > 0 && is_barred(state);
   if (phase == MissionPhase::Egress)
     return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
@@ -181,7 +178,8 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
   const bool missed = std::ranges::any_of(elements.elements, [&](const recon::Element& each) {
     return !each.collected && tries_[each.name] < kTries;
   });
-  return flown && missed ? tour(state, elements, "an element was missed") : Order{};
+  return flown && missed && !nothing_new_ ? tour(state, elements, "an element was missed")
+                                          : Order{};
 }
 
 /// Whether the rest of the route leads through what a weapon reaches, where a way around would be
@@ -215,7 +213,7 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
   problem.speed_m_s = cruise_.speed_m_s;
   problem.turn_radius_m = cruise_.turn_radius_m;
   problem.fuel_kg_s = cruise_.fuel_kg_s;
-  problem.endurance_s = kEndurance_s;
+  problem.endurance_s = endurance_s_ - (took_off_ ? seconds_of(state.tick - *took_off_) : 0);
   problem.fuel_kg = state.fuel_kg - fuel_reserve_kg_;
   problem.least_survival = kLeastSurvival;
 
@@ -258,7 +256,11 @@ std::optional<recon::Tour> MissionManager::ask_tour(const recon::TourProblem& pr
           return std::nullopt;
         return "it takes more fuel, time or risk than there is";
       });
-  return decide(entity_, task);
+  try {
+    return decide(entity_, task);
+  } catch (const skein::Error&) {
+    return std::nullopt;  // Without a tour it goes home.
+  }
 }
 
 void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
@@ -267,6 +269,7 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
   try {
     if (std::holds_alternative<Conduct::TakeOff>(order)) {
       controller_->take_off(runway_, tick);
+      took_off_ = tick;
     } else if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
       controller_->follow(ask_route(follow->through, tick, state, kLeastSurvival), tick);
     } else {
@@ -291,7 +294,10 @@ recon::Route MissionManager::ask_route(const std::vector<WayPoint>& through, Tic
   for (const WayPoint& each : through)
     request.through.push_back({position(*frame_, each.place), each.straight});
   if (conduct_->phase() == MissionPhase::Egress) tour_.clear();
+  // By numbers of its own: a navigator that was restarted counts anew.
+  const std::uint32_t number = route_.number + 1;
   route_ = navigator_->plan(request);
+  route_.number = number;
   through_ = through;
   // What remains of a way that leads around as well as it can bars nothing.
   std::vector<Local> way = locals(*frame_, route_.points);

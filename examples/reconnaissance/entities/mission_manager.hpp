@@ -55,6 +55,7 @@ class MissionManager : public recon::IMissionManager {
   recon::FlightLimits limits_;
   CruiseFigures cruise_;
   double fuel_reserve_kg_;
+  double endurance_s_;
 
   std::mutex mutex_;
   std::optional<recon::MissionOrder> order_;
@@ -72,6 +73,8 @@ class MissionManager : public recon::IMissionManager {
   std::size_t passed_ = 0;                  // of which so many were passed
   std::map<std::string, int> tries_;        // and how often, each
   std::optional<std::string> return_home_;  // as the executive wants, and why
+  bool nothing_new_ = false;                // likewise
+  std::optional<Tick> took_off_;
   std::optional<recon::MissionStatus> told_;
 
   Stream<recon::FlightState> flight_;

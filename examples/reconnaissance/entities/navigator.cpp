@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -18,20 +19,17 @@
 namespace reconnaissance {
 namespace {
 
-// Above the ground, but for straight ways.
+// Above the ground, as planners are asked for it; and what a way must keep, whoever made it.
 constexpr double kLeastHeight_m = 250;
+constexpr double kLeastClearance_m = 60;
 constexpr double kHighest_m = 4000;
 constexpr double kShareOfClimb = 0.9;
 // Of a site that stands where it is thought to be.
 constexpr double kMast_m = 10;
-constexpr double kKills_per_s = 0.02;
 // Metres of detour that an expected kill is worth: more than any way around.
 constexpr double kKillWeight_m = 1e6;
 // Expected kills, by which turns that are flown may be worse than the way that a planner found.
 constexpr double kTurnHazard = 1e-3;
-// A site that is badly placed may be anywhere within that of its error, up to a limit.
-constexpr double kDeviations = 2;
-constexpr double kFurthestOff_m = 1500;
 
 AE_navigator::Position in_tile(const Tile& tile, const recon::Position& place) {
   const Local at = tile.to_tile(geodetic(place));
@@ -125,6 +123,9 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
     course = course_rad(local(frame_, last[-2]), local(frame_, last[-1]));
   }
   const auto points = locals(frame_, route.points);
+  const double survival = std::exp(-hazard_of(problem, way_in_tile(points)));
+  if (survival < request.least_survival)
+    throw recon::NoRoute(fmt::format("the whole way survives with {:.3f}", survival));
   for (std::size_t i = 1; i < points.size(); ++i)
     route.length_m += std::hypot(points[i].north_m - points[i - 1].north_m,
                                  points[i].east_m - points[i - 1].east_m);
@@ -132,7 +133,7 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
   return route;
 }
 
-/// With its turns, unless they lead into what the planner's way leads around.
+/// With its turns, unless they lead into what the planner's way leads around, or over.
 std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
                                           const std::vector<Local>& way, double begin_course_rad,
                                           double end_course_rad, double radius_m) const {
@@ -140,12 +141,33 @@ std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
   for (std::size_t i = 1; i + 1 < turned.size(); ++i)
     turned[i].height_m =
         std::max(turned[i].height_m, ground_(turned[i].north_m, turned[i].east_m) + kLeastHeight_m);
-  const auto hazard = [&](const std::vector<Local>& of) {
-    std::vector<Local> in_tile;
-    for (const Local& each : of) in_tile.push_back(tile_.to_tile(frame_.to_geodetic(each)));
-    return hazard_of(problem, in_tile);
-  };
-  return hazard(turned) > hazard(way) + kTurnHazard ? way : turned;
+  const bool leads_into =
+      hazard_of(problem, way_in_tile(turned)) > hazard_of(problem, way_in_tile(way)) + kTurnHazard;
+  return leads_into || clearance_m(turned) < kLeastClearance_m ? way : turned;
+}
+
+std::vector<Local> Navigator::way_in_tile(const std::vector<Local>& way) const {
+  std::vector<Local> result;
+  for (const Local& each : way) result.push_back(tile_.to_tile(frame_.to_geodetic(each)));
+  return result;
+}
+
+/// Above the ground, where it is least.
+double Navigator::clearance_m(const std::vector<Local>& way) const {
+  constexpr double kStep_m = 100;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const Local &from = way[i - 1], &to = way[i];
+    const double length_m = std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
+    const int steps = std::max(1, static_cast<int>(std::ceil(length_m / kStep_m)));
+    for (int step = 0; step <= steps; ++step) {
+      const double share = static_cast<double>(step) / steps;
+      const double ground_m = ground_(std::lerp(from.north_m, to.north_m, share),
+                                      std::lerp(from.east_m, to.east_m, share));
+      least_m = std::min(least_m, std::lerp(from.height_m, to.height_m, share) - ground_m);
+    }
+  }
+  return least_m;
 }
 
 /// From end to end: as high as it wants to be there, or as the aircraft can be. It goes on climbing
@@ -178,12 +200,12 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
   for (const recon::Threat& threat : picture->threats) {
     if (threat.lethal_range_m == 0) continue;
     const auto site = in_tile(tile_, threat.position);
-    const double off_m = std::min(kDeviations * threat.deviation_m, kFurthestOff_m);
-    problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
-                                     {site.north_m, site.east_m},
-                                     kMast_m,
-                                     (threat.lethal_range_m + off_m) * (1 + Tile::kLargestError),
-                                     kKills_per_s});
+    problem.missile_sites.push_back(
+        {fmt::format("{} {}", threat.kind, threat.number),
+         {site.north_m, site.east_m},
+         kMast_m,
+         reach_m(threat.lethal_range_m, threat.deviation_m) * (1 + Tile::kLargestError),
+         kKills_per_s});
   }
   return problem;
 }
@@ -204,6 +226,16 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
   task.evaluate.check("can be climbed", [&](const AE_navigator::Route& route) {
     return climbs_too_steeply(problem, route);
   });
+  task.evaluate.check("keeps above the ground",
+                      [&](const AE_navigator::Route& route) -> std::optional<std::string> {
+                        std::vector<Local> way;
+                        for (const AE_navigator::Position& each : route.waypoints)
+                          way.push_back(frame_.to_local(tile_.to_geodetic(place(each))));
+                        const double least_m = clearance_m(way);
+                        if (least_m >= kLeastClearance_m) return std::nullopt;
+                        return fmt::format("it is {:.0f} m above the ground at its lowest place",
+                                           least_m);
+                      });
   // That no way leads around is no planner's fault.
   task.evaluate.admitted("survives",
                          [&](const AE_navigator::Route& route) -> std::optional<std::string> {

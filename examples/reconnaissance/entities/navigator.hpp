@@ -32,6 +32,8 @@ class Navigator : public recon::INavigator {
   void pose(AE_navigator::Problem& problem, const recon::Position& from,
             const recon::Position& to) const;
   AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
+  std::vector<Local> way_in_tile(const std::vector<Local>& way) const;
+  double clearance_m(const std::vector<Local>& way) const;
   std::vector<Local> onto_course(const AE_navigator::Problem& problem,
                                  const std::vector<Local>& way, double begin_course_rad,
                                  double end_course_rad, double radius_m) const;

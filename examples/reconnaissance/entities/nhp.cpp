@@ -17,6 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Tick kHealthPeriod = 50;
+// Who has said nothing for a minute of the mission does not come back.
+constexpr Tick kGivenUp = 60 * kHealthPeriod;
 // What somebody has told in the tick before is on its way here.
 constexpr auto kOnTheWay = 250ms;
 // Of the way home before it is planned: at 60 m/s, with a third more for turns and wind.
@@ -60,7 +62,7 @@ void Nhp::judge(Tick tick) {
       const std::string trouble = trouble_of(name, wanted);
       if (trouble.empty()) continue;
       mode.reason += (mode.reason.empty() ? "" : "; ") + name + " " + trouble;
-      missing_.push_back({name, std::ranges::count(required_, name) > 0, false});
+      missing_.push_back({name, std::ranges::count(required_, name) > 0, given_up(name, tick)});
     }
     started_ = started_ || mode.reason.empty();
     if (started_) mode.mode = mode.reason.empty() ? recon::Mode::Normal : recon::Mode::Limited;
@@ -111,6 +113,11 @@ bool Nhp::all_heard(Tick wanted) const {
     return found == health_.end() || found->second.tick >= wanted ||
            found->second.tick < wanted - kHealthPeriod;
   });
+}
+
+bool Nhp::given_up(const std::string& name, Tick tick) const {
+  const auto found = health_.find(name);
+  return found != health_.end() && tick - found->second.tick > kGivenUp;
 }
 
 std::string Nhp::trouble_of(const std::string& name, Tick wanted) const {

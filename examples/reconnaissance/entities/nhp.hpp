@@ -28,6 +28,7 @@ class Nhp {
   void hear(const recon::Health& health);
   void judge(Tick tick);
   /// What is wrong with one of the crew; empty if nothing is.
+  bool given_up(const std::string& name, Tick tick) const;
   std::string trouble_of(const std::string& name, Tick wanted) const;
   bool all_heard(Tick wanted) const;
   void order_flight(Tick tick, recon::MissionMode& mode);

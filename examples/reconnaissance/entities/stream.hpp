@@ -26,8 +26,9 @@ inline skein::TopicQos stream_qos() {
 template <class T>
 class Stream {
  public:
-  /// Longer than a sample that has been sent takes on a busy machine.
-  static constexpr skein::Duration kPatience = std::chrono::milliseconds(250);
+  /// Longer than a sample that has been sent takes on a busy machine, through all who make it of
+  /// others' samples of the same tick.
+  static constexpr skein::Duration kPatience = std::chrono::seconds(2);
 
   Stream(skein::Entity& entity, const StreamTopic& topic, const skein::TopicQos& qos = stream_qos())
       : period_(topic.period),
@@ -41,17 +42,21 @@ class Stream {
         })) {}
 
   /// The sample of that tick, or of the last before at which there is one. Waits for it while
-  /// somebody publishes, `patience` at most; then it is counted as lost, and the newest from before
-  /// stands in for it, if there is any.
+  /// somebody publishes, `patience` at most and once; then it is counted as lost, and the newest
+  /// from before stands in for it, if there is any.
   std::optional<T> at(Tick tick, skein::Duration patience = kPatience) {
+    if (tick < 0) return std::nullopt;
     std::unique_lock lock(mutex_);
     const Tick wanted = tick - tick % period_;
     const auto is_here = [&] { return !samples_.empty() && samples_.back().tick >= wanted; };
-    if (!is_here()) {
+    if (!is_here() && wanted > in_vain_) {
       lock.unlock();
       const bool hopeless = subscription_.publishers() == 0;
       lock.lock();
-      if (!arrived_.wait_for(lock, hopeless ? skein::Duration{} : patience, is_here)) ++lost_;
+      if (!arrived_.wait_for(lock, hopeless ? skein::Duration{} : patience, is_here)) {
+        ++lost_;
+        in_vain_ = wanted;
+      }
     }
     for (auto sample = samples_.rbegin(); sample != samples_.rend(); ++sample)
       if (sample->tick <= tick) return *sample;
@@ -92,6 +97,7 @@ class Stream {
   std::condition_variable arrived_;
   std::deque<T> samples_;
   std::uint64_t lost_ = 0;
+  Tick in_vain_ = -1;  // the last that was waited for and did not come
   Tick taken_ = -1;
   skein::Subscription<T> subscription_;
 };

@@ -68,8 +68,9 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
 }
 
 std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
-  const bool under_way = phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection;
-  return under_way ? go_home(reason) : std::nullopt;
+  if (phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection) return go_home(reason);
+  if (phase_ == MissionPhase::BuiltInTest) enter(MissionPhase::Aborted, reason);
+  return std::nullopt;
 }
 
 std::optional<Conduct::Order> Conduct::go_home_another_way(const std::string& reason) {

@@ -69,7 +69,7 @@ class Conduct {
   /// What is flown from now on, in place of what was: at once, where that is under way.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
 
-  /// What is left of the tour is given up, if it is under way.
+  /// What is left of the tour is given up, if it is under way; before the take-off all is.
   std::optional<Order> give_up(const std::string& reason);
 
   /// The way home is to be planned anew, if it is under way and the aircraft does not yet descend.

@@ -83,12 +83,14 @@ std::vector<FailureText> parse_failures(const std::string& text) {
     std::istringstream words(part);
     std::string kind;
     const bool read(words >> failure.set >> kind >> failure.from_s >> failure.until_s);
+    const bool whole = read && (words >> std::ws).eof() && failure.from_s < failure.until_s;
     const auto found = std::find(kKinds.begin() + 1, kKinds.end(), kind);
-    if (!read || found == kKinds.end() || failure.set < 1 || failure.set > 3)
+    if (!whole || found == kKinds.end() || failure.set < 1 || failure.set > 3)
       throw skein::InvalidArgument(
           "'" + part +
-          "' is no failure; write `set kind from until`, with a set of 1 to 3 and "
-          "off, stuck, garbage, wrong, slow, delayed or intermittent");
+          "' is no failure; write `set kind from until`, with a set of 1 to 3, and "
+          "off, stuck, garbage, wrong, slow, delayed or intermittent; several are separated by "
+          "semicolons");
     --failure.set;
     failure.kind = static_cast<SensorFailure>(found - kKinds.begin());
     failures.push_back(failure);

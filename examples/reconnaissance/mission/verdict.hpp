@@ -14,9 +14,9 @@ struct PassConditions {
   double longest_s = 3600;         ///< From take-off to standing.
   double least_clearance_m = 100;  ///< Above ground, where it is more than 5 km from the runway.
   double least_survival = 0.95;    ///< Of the air defence, by its simulation.
-  /// Of other aircraft, on the map or in height: the volume of DO-365B for those that do not
-  /// cooperate, 2200 ft and 450 ft.
-  double well_clear_m = 670.56;
+  /// Of other aircraft, on the map or in height: DO-365B's en-route volume, 0.66 nautical miles and
+  /// 450 ft, without its time.
+  double well_clear_m = 1222.32;
   double well_clear_height_m = 137.16;
   double landed_within_m = 400;  ///< Between aiming point and touch-down.
   double least_fuel_kg = 5;      ///< When it stands.

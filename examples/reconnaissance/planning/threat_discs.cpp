@@ -53,6 +53,13 @@ CollectionPass straight_past(const Local& middle, double half_m, double course_r
 
 }  // namespace
 
+double reach_m(double lethal_range_m, double deviation_m) {
+  // A site that is badly placed may be anywhere within that of its error, up to a limit.
+  constexpr double kDeviations = 2;
+  constexpr double kFurthestOff_m = 1500;
+  return lethal_range_m + std::min(kDeviations * deviation_m, kFurthestOff_m);
+}
+
 double hazard_of_leg(const Local& from, const Local& to, std::span<const ThreatDisc> discs,
                      double speed_m_s) {
   double hazard = 0;

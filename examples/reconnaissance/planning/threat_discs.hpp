@@ -16,6 +16,12 @@ struct ThreatDisc {
   double kills_per_s = 0;
 };
 
+/// What a weapon is taken to cost within its reach.
+inline constexpr double kKills_per_s = 0.02;
+
+/// As far as a weapon may reach whose site is known but for that deviation in the worst direction.
+double reach_m(double lethal_range_m, double deviation_m);
+
 /// ∫ λ dt of a straight flight over all discs that it crosses.
 double hazard_of_leg(const Local& from, const Local& to, std::span<const ThreatDisc> discs,
                      double speed_m_s);

@@ -108,14 +108,23 @@ TEST_CASE("another tour is flown at once where one is under way, and none leads 
 TEST_CASE("a tour that is given up leads home, one that is not under way does not") {
   Conduct conduct(kStrip);
   conduct.fly(kTour, "planned");
-  CHECK_FALSE(conduct.give_up("no fuel"));
   conduct.decide({.all_fine = true});
+  CHECK_FALSE(conduct.give_up("no fuel"));
   conduct.decide({true, Pilot::Mode::TakingOff, 340});
   const auto order = conduct.give_up("no fuel");
   REQUIRE(order);
   CHECK(std::holds_alternative<Conduct::Land>(*order));
   CHECK(conduct.reason() == "no fuel");
   CHECK_FALSE(conduct.give_up("no fuel"));
+}
+
+TEST_CASE("what is given up before the take-off does not begin") {
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
+  CHECK_FALSE(conduct.give_up("no fuel"));
+  CHECK(conduct.phase() == MissionPhase::Aborted);
+  CHECK(conduct.reason() == "no fuel");
+  CHECK_FALSE(conduct.decide({.all_fine = true}));
 }
 
 TEST_CASE("where a route is refused the mission goes home, and says why") {
@@ -231,6 +240,8 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK(failures[1].kind == SensorFailure::Intermittent);
   CHECK_THROWS_AS(parse_failures("4 wrong 200 400"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_failures("2 lazy 200 400"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_failures("2 wrong 200 400, 1 off 500 600"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_failures("2 wrong 400 200"), skein::InvalidArgument);
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 93.5 27.7 0"), skein::InvalidArgument);

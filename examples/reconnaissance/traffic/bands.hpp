@@ -13,8 +13,8 @@ struct ManoeuvreLimits {
   double turn_rate_rad_s = 0.0523598775598;  ///< 3 °/s.
   double vertical_acceleration_m_s2 = 0.25 * 9.80665;
   double altitude_change_m_s = 500 * kFoot_m / 60;
-  double least_climb_m_s = -7.3;  ///< 7° at 60 m/s.
-  double greatest_climb_m_s = 7.3;
+  double least_climb_m_s = -6.2;  ///< 6° at 60 m/s.
+  double greatest_climb_m_s = 6.2;
   double least_altitude_m = 100 * kFoot_m;
   double greatest_altitude_m = 50'000 * kFoot_m;
   double look_ahead_s = 180;
