@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "../mission/mission_run.hpp"
@@ -20,7 +21,8 @@ const std::filesystem::path kMission = project_file("mission_profiles/reconnaiss
 const std::vector<std::string> kShort{"--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
                                       "--variable", "objects=53.3089 27.3226 3 0 0",
                                       "--variable", "intruders=70 30 7000 60",
-                                      "--variable", "failures=2 wrong 40 300"};
+                                      "--variable", "failures=2 wrong 40 300",
+                                      "--variable", "planner_failures=2 killed"};
 
 std::vector<std::string> with(std::vector<std::string> arguments,
                               const std::vector<std::string>& more) {
@@ -57,6 +59,13 @@ std::vector<std::string> lines_in_readme() {
   return lines;
 }
 
+std::set<std::string> told_faults(const nlohmann::json& report) {
+  std::set<std::string> told;
+  for (const auto& each : report["faults"])
+    told.insert(each["noticed_by"].get<std::string>() + ": " + each["what"].get<std::string>());
+  return told;
+}
+
 /// The angle of a pixel of the camera: 3 degrees by 1440 rows.
 constexpr double kPixel_rad = 0.0524 / 1440;
 
@@ -81,6 +90,8 @@ TEST_CASE(
   // One that comes is avoided, one that lies is not heard.
   CHECK_THAT(run.output(), Contains("another aircraft is avoided"));
   CHECK_THAT(run.output(), Contains("2 of 3 sets of sensors are heard"));
+  // One that dies is replaced, and comes back.
+  CHECK_THAT(run.output(), Contains("AStar has died at its task: RRTConnect does it instead"));
   // What is flown is what the mission manager's Head chose.
   CHECK_THAT(run.output(), Contains("planned: shed"));
   // What is to be seen is seen as finely as it was ordered, by a pattern that a Head chose.
@@ -88,6 +99,14 @@ TEST_CASE(
   const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
   CHECK(verdict["verdict"] == "passed");
   CHECK(verdict["checks"].size() == 9);
+  // What broke is told: who noticed it, and what was done.
+  CHECK(told_faults(verdict) ==
+        std::set<std::string>{"flight_controller: A set of sensors fails",
+                              "collision_manager: Another aircraft comes near",
+                              "navigator: AStar dies at its task"});
+  CHECK(verdict["routes"].size() >= 2);
+  CHECK(verdict["decisions"].size() > 5);
+  CHECK_THAT(text_of(run.file("reconnaissance.html")), Contains("Passed"));
   check_tracks(run);
   check_pass(run, 53.3089, 27.3225);
   // Of the site's weapon, 8 km around it.

@@ -160,21 +160,29 @@ void FlightSimulator::publish(Tick tick) {
   sensors_out_.publish(sensors);
   fly_others(tick);
   if (!is_due(topic::kTruth.period, tick)) return;
+  std::uint8_t failing = 0;
+  for (std::size_t i = 0; i < sensors.sets.size(); ++i)
+    if (failure_of(i, tick) != SensorFailure::None) ++failing;
   truth_.publish({tick, position(frame_, aircraft_.position), above_ground_m,
                   aircraft_.airspeed_m_s,
                   course(std::atan2(aircraft_.east_m_s, aircraft_.north_m_s)),
                   std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.heading_rad,
                   aircraft_.climb_rad, aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground,
-                  aircraft_.stalled});
+                  aircraft_.stalled, failing});
 }
 
-recon::SensorSet FlightSimulator::measure(std::size_t set, Tick tick) {
+SensorFailure FlightSimulator::failure_of(std::size_t set, Tick tick) const {
   const double now_s = seconds_of(tick);
   SensorFailure failure = SensorFailure::None;
   for (const FailureText& each : failures_)
     if (each.set == set && now_s >= each.from_s && now_s < each.until_s) failure = each.kind;
-  const auto told = failing_[set].pass(sensors_[set].measure(aircraft_, kTick_s, random_), failure,
-                                       kTick_s, random_, garbage, falsified);
+  return failure;
+}
+
+recon::SensorSet FlightSimulator::measure(std::size_t set, Tick tick) {
+  const auto told =
+      failing_[set].pass(sensors_[set].measure(aircraft_, kTick_s, random_), failure_of(set, tick),
+                         kTick_s, random_, garbage, falsified);
   if (!told) return {};
   return {true,
           position(frame_, told->position),

@@ -42,6 +42,7 @@ class FlightSimulator : public recon::IFlightSimulator {
   void simulate(Tick tick);
   Wind blow();
   void publish(Tick tick);
+  SensorFailure failure_of(std::size_t set, Tick tick) const;
   recon::SensorSet measure(std::size_t set, Tick tick);
   double ground_m() const;
   void fly_others(Tick tick);

@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "mission/conduct.hpp"
+#include "report/report.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 #include "stream.hpp"
@@ -85,6 +86,7 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       frame_(geodetic(order_.runway.threshold)),
       results_(values.find<std::string>("Results").value_or("reconnaissance")),
       patience_(values.find<skein::Duration>("Patience").value_or(2min)),
+      command_(values.find<std::string>("Command").value_or("")),
       ground_(ground_of(values)),
       judge_(judge_of(frame_, order_.runway, values)),
       truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
@@ -111,6 +113,10 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       states_(entity.subscription<recon::FlightState>(
           topic::kFlightState.name, stream_qos(),
           [this](const recon::FlightState& state) { show(state); })),
+      decisions_(entity.subscription<skein::introspection::Decision>(
+          topic::kDecisions, decisions_qos(),
+          [this](const skein::introspection::Decision& decision) { show(decision); })),
+      recorder_(entity, frame_),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -295,6 +301,21 @@ void GroundStation::show(const recon::FlightState& state) {
   std::fflush(stdout);
 }
 
+void GroundStation::show(const skein::introspection::Decision& decision) {
+  using skein::introspection::Outcome;
+  std::string lost, instead;
+  for (const auto& attempt : decision.attempts) {
+    if (attempt.outcome == Outcome::Disconnected) lost = attempt.csp + " has died at its task";
+    if (attempt.outcome == Outcome::TimedOut) lost = attempt.csp + " does not answer";
+    if (attempt.outcome == Outcome::Accepted) instead = attempt.csp;
+  }
+  if (lost.empty()) return;
+  std::lock_guard lock(mutex_);
+  fmt::print("{}  {}: {}\n", clock_of(last_tick_), lost,
+             instead.empty() ? "nobody does it instead" : instead + " does it instead");
+  std::fflush(stdout);
+}
+
 void GroundStation::show(const recon::ElementList& list) {
   {
     std::lock_guard lock(mutex_);
@@ -313,7 +334,14 @@ void GroundStation::show(const recon::ElementList& list) {
 }
 
 void GroundStation::write(const Verdict& verdict) const {
-  write_whole(results_.string() + ".json", to_json(verdict, "reconnaissance"));
+  MissionRecord record = recorder_.record();
+  record.mission = "reconnaissance";
+  record.command = command_;
+  record.origin = geodetic(order_.runway.threshold);
+  record.verdict = verdict;
+  record.ground = ground_around(record, 180, ground_);
+  write_whole(results_.string() + ".json", to_json(record));
+  write_whole(results_.string() + ".html", to_html(record));
   write_whole(results_.string() + ".junit.xml", to_junit(verdict, "reconnaissance"));
   write_whole(
       results_.string() + ".csv",

@@ -14,7 +14,9 @@
 #include "member.hpp"
 #include "mission.idl.hpp"
 #include "mission/verdict.hpp"
+#include "recorder.hpp"
 #include "skein/entity.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/parameters.hpp"
 #include "targets.idl.hpp"
 #include "threats.idl.hpp"
@@ -41,6 +43,7 @@ class GroundStation {
   void see(const recon::Traffic& traffic);
   void see(const recon::ResolutionAdvisory& advisory);
   void show(const recon::FlightState& state);
+  void show(const skein::introspection::Decision& decision);
   /// Waits for the end; why it is not the end of the flight, or an empty text.
   std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
@@ -54,6 +57,7 @@ class GroundStation {
   std::optional<recon::IFlightSimulator::Proxy> simulator_;
   std::filesystem::path results_;
   skein::Duration patience_;
+  std::string command_;  // that flies the mission again
   Hills ground_;
 
   std::mutex mutex_;
@@ -88,6 +92,8 @@ class GroundStation {
   skein::Subscription<recon::Traffic> traffic_truths_;
   skein::Subscription<recon::ResolutionAdvisory> advisories_;
   skein::Subscription<recon::FlightState> states_;
+  skein::Subscription<skein::introspection::Decision> decisions_;
+  Recorder recorder_;
   Member member_;
 };
 

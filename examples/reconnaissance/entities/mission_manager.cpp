@@ -95,6 +95,7 @@ MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValu
       pictures_(entity, topic::kThreats, skein::TopicQos::state()),
       elements_(entity, topic::kElements, skein::TopicQos::state()),
       status_(entity.publisher<recon::MissionStatus>(topic::kStatus, skein::TopicQos::state())),
+      taken_(entity.publisher<recon::RouteTaken>(topic::kRoute, skein::TopicQos::state())),
       member_(entity, values, [this](Tick tick) { manage(tick); }) {}
 
 void MissionManager::start() {
@@ -236,7 +237,7 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
 
 std::optional<recon::Tour> MissionManager::ask_tour(const recon::TourProblem& problem) {
   skein::Task<recon::ITourPlanner, recon::Tour> task;
-  task.request = "tour";
+  task.request = fmt::format("tour {}", ++tours_);
   task.features = {{"elements", static_cast<double>(problem.tasks.size())},
                    {"weapons", static_cast<double>(problem.weapons.size())}};
   task.run = [&](recon::ITourPlanner::Proxy& planner, skein::Duration) {
@@ -270,12 +271,15 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
     if (std::holds_alternative<Conduct::TakeOff>(order)) {
       controller_->take_off(runway_, tick);
       took_off_ = tick;
-    } else if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
+      return;
+    }
+    if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
       controller_->follow(ask_route(follow->through, tick, state, kLeastSurvival), tick);
     } else {
       controller_->land(ask_route(std::get<Conduct::Land>(order).through, tick, state, 0), runway_,
                         tick);
     }
+    taken_.publish({tick, route_});
     return;
   } catch (const recon::NoRoute& error) {
     refusal = error.reason;

@@ -75,6 +75,7 @@ class MissionManager : public recon::IMissionManager {
   std::optional<std::string> return_home_;  // as the executive wants, and why
   bool nothing_new_ = false;                // likewise
   std::optional<Tick> took_off_;
+  int tours_ = 0;  // that were asked for
   std::optional<recon::MissionStatus> told_;
 
   Stream<recon::FlightState> flight_;
@@ -82,6 +83,7 @@ class MissionManager : public recon::IMissionManager {
   Stream<recon::ThreatPicture> pictures_;
   Stream<recon::ElementList> elements_;
   skein::Publisher<recon::MissionStatus> status_;
+  skein::Publisher<recon::RouteTaken> taken_;
   Member member_;
 };
 

@@ -1,12 +1,16 @@
 #include "navigator.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <sstream>
+#include <utility>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -14,6 +18,7 @@
 #include "planning/threat_discs.hpp"
 #include "planning/turns.hpp"
 #include "skein/error.hpp"
+#include "skein/introspection.idl.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -69,6 +74,24 @@ Local place(const AE_navigator::Position& in_tile) {
   return {in_tile.north_m, in_tile.east_m, in_tile.altitude_m};
 }
 
+/// Whether who started this process has started that one, too; on another host nobody has.
+bool is_sibling(pid_t process) {
+  std::ifstream stream(fmt::format("/proc/{}/stat", process));
+  std::string text;
+  std::getline(stream, text);
+  // Behind the name, which may hold anything, stand its state and its parent.
+  std::istringstream words(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  std::string state;
+  pid_t parent = 0;
+  return words >> state >> parent && parent == getppid();
+}
+
+std::string accepted(const skein::introspection::Decision& decision) {
+  for (const auto& attempt : decision.attempts)
+    if (attempt.outcome == skein::introspection::Outcome::Accepted) return attempt.csp;
+  return "";
+}
+
 double course_rad(const Local& from, const Local& to) {
   return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
 }
@@ -80,6 +103,7 @@ Navigator::Navigator(skein::Entity& entity, const skein::ParameterValues& values
       frame_(parse_runway(values.get<std::string>("Runway")).threshold),
       ground_(ground_of(values)),
       tile_(parse_runway(values.get<std::string>("Runway")).threshold),
+      failures_(parse_planner_failures(values.find<std::string>("Planner failures").value_or(""))),
       threats_(entity, topic::kThreats, skein::TopicQos::state()),
       member_(entity, values) {
   // Planners read terrain from files: beside the mission's results, and for this process alone.
@@ -96,6 +120,7 @@ Navigator::~Navigator() {
 
 recon::Route Navigator::plan(const recon::RouteRequest& request) {
   if (request.through.empty()) throw recon::NoRoute("there is no point to fly over");
+  instead_.clear();
   AE_navigator::Problem problem = problem_of(request);
   recon::Route route;
   route.points = {request.from};
@@ -210,14 +235,26 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
   return problem;
 }
 
+/// The process of who works for the Head now.
+void Navigator::strike(int signal) const {
+  for (const skein::Head::Current& each : entity_.head().running()) {
+    const auto process = static_cast<pid_t>(each.pid);
+    if (process != getpid() && is_sibling(process)) ::kill(process, signal);
+  }
+}
+
 AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
                                            double least_survival) {
   skein::Task<AE_navigator::IPlanner, AE_navigator::Route> task;
   task.request = fmt::format("route {}", routes_ + 1);
+  task.only = instead_;
+  const auto failure = std::ranges::find(failures_, ++asked_, &PlannerFailureText::request);
+  bool strikes = failure != failures_.end();
   task.features = {{"threats", static_cast<double>(problem.missile_sites.size())},
                    {"length_m", std::hypot(problem.goal.north_m - problem.start.north_m,
                                            problem.goal.east_m - problem.start.east_m)}};
   task.run = [&](AE_navigator::IPlanner::Proxy& planner, skein::Duration) {
+    if (std::exchange(strikes, false)) strike(failure->stopped ? SIGSTOP : SIGKILL);
     return planner.plan(problem);
   };
   task.evaluate.check("leads from end to end", [&](const AE_navigator::Route& route) {
@@ -247,7 +284,11 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
                            return fmt::format("it survives with {:.2f}", survival);
                          });
   try {
-    return entity_.head().perform(task, nullptr, kUnlessItHangs);
+    skein::introspection::Decision decision;
+    const AE_navigator::Route route = entity_.head().perform(task, &decision, kUnlessItHangs);
+    // Whether it is back for the next part of this route is luck, and has no say in it.
+    if (failure != failures_.end()) instead_ = accepted(decision);
+    return route;
   } catch (const AE_navigator::NoRoute& refusal) {
     throw recon::NoRoute(refusal.reason);
   } catch (const AE_navigator::InvalidProblem& refusal) {

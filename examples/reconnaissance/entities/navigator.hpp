@@ -9,6 +9,7 @@
 #include "geodesy/tile.hpp"
 #include "member.hpp"
 #include "mission.idl.hpp"
+#include "mission/places.hpp"
 #include "navigator.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
@@ -31,6 +32,7 @@ class Navigator : public recon::INavigator {
   AE_navigator::Problem problem_of(const recon::RouteRequest& request);
   void pose(AE_navigator::Problem& problem, const recon::Position& from,
             const recon::Position& to) const;
+  void strike(int signal) const;
   AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
   std::vector<Local> way_in_tile(const std::vector<Local>& way) const;
   double clearance_m(const std::vector<Local>& way) const;
@@ -43,6 +45,9 @@ class Navigator : public recon::INavigator {
   Hills ground_;
   Tile tile_;
   std::string terrain_;
+  std::vector<PlannerFailureText> failures_;
+  std::uint32_t asked_ = 0;  // requests for ways so far
+  std::string instead_;      // who is asked for the rest of a route, after one whose planner failed
   std::atomic<std::uint32_t> routes_{0};
 
   Stream<recon::ThreatPicture> threats_;

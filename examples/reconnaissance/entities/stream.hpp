@@ -22,6 +22,14 @@ inline skein::TopicQos stream_qos() {
   return qos;
 }
 
+/// As Skein publishes decisions: outside of any system.
+inline skein::TopicQos decisions_qos() {
+  skein::TopicQos qos = stream_qos();
+  qos.history_depth = 64;
+  qos.systems = {""};
+  return qos;
+}
+
 /// Reads a topic whose samples bear the tick to which they belong. Thread-safe.
 template <class T>
 class Stream {

@@ -31,6 +31,8 @@ inline constexpr StreamTopic kThreatTruth{"simulation/threats", 50};
 
 inline constexpr const char* kHealth = "mission/health";
 inline constexpr const char* kStatus = "mission/status";
+inline constexpr const char* kDecisions = "skein/decisions";
+inline constexpr const char* kRoute = "mission/route";
 
 }  // namespace topic
 }  // namespace reconnaissance

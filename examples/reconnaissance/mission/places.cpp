@@ -98,6 +98,23 @@ std::vector<FailureText> parse_failures(const std::string& text) {
   return failures;
 }
 
+std::vector<PlannerFailureText> parse_planner_failures(const std::string& text) {
+  std::vector<PlannerFailureText> failures;
+  for (const std::string& part : parts_of(text, ';')) {
+    std::istringstream words(part);
+    std::int32_t request = 0;
+    std::string kind;
+    const bool read(words >> request >> kind);
+    if (!read || !(words >> std::ws).eof() || request < 1 ||
+        (kind != "killed" && kind != "stopped"))
+      throw skein::InvalidArgument("'" + part +
+                                   "' is no failure of a planner; write `request kind`, with the "
+                                   "number of a request, from 1, and killed or stopped");
+    failures.push_back({static_cast<std::uint32_t>(request), kind == "stopped"});
+  }
+  return failures;
+}
+
 std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }
 
 }  // namespace reconnaissance

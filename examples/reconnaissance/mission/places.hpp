@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,15 @@ struct FailureText {
   double until_s = 0;
 };
 std::vector<FailureText> parse_failures(const std::string& text);
+
+/// Failures of planners as a profile names them: `request kind`, separated by semicolons: at which
+/// of the requests for a way, from 1, the process of the planner that is asked is killed or
+/// stopped. Throws likewise.
+struct PlannerFailureText {
+  std::uint32_t request = 0;
+  bool stopped = false;  ///< It does not answer any more; otherwise it is killed.
+};
+std::vector<PlannerFailureText> parse_planner_failures(const std::string& text);
 
 /// Names that are separated by commas.
 std::vector<std::string> parse_names(const std::string& text);

@@ -17,28 +17,21 @@ double level_m(const Local& one, const Local& other) {
   return std::hypot(one.north_m - other.north_m, one.east_m - other.east_m);
 }
 
-std::string escaped(const std::string& text, bool xml) {
-  std::string result;
+std::string xml(const std::string& text) {
+  std::string result = "\"";
   for (const char c : text) {
-    if (xml && c == '&') {
+    if (c == '&') {
       result += "&amp;";
-    } else if (xml && c == '<') {
+    } else if (c == '<') {
       result += "&lt;";
-    } else if (xml && c == '"') {
+    } else if (c == '"') {
       result += "&quot;";
-    } else if (!xml && (c == '"' || c == '\\')) {
-      result += {'\\', c};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      result += ' ';
     } else {
-      result += c;
+      result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
   }
-  return result;
+  return result + '"';
 }
-
-std::string json(const std::string& text) { return '"' + escaped(text, false) + '"'; }
-std::string xml(const std::string& text) { return '"' + escaped(text, true) + '"'; }
 
 }  // namespace
 
@@ -137,21 +130,6 @@ Verdict Judge::conclude(const std::string& ended) const {
 int exit_code(const Verdict& verdict) {
   if (!verdict.flown) return kNotFlown;
   return verdict.passed ? kPassed : kFailed;
-}
-
-std::string to_json(const Verdict& verdict, const std::string& mission) {
-  std::string text = fmt::format(
-      "{{\n  \"mission\": {},\n  \"verdict\": \"{}\",\n  \"flown\": {},\n  \"reason\": {},\n"
-      "  \"duration_s\": {:.2f},\n  \"distance_m\": {:.0f},\n  \"checks\": [",
-      json(mission), verdict.passed ? "passed" : "failed", verdict.flown, json(verdict.reason),
-      verdict.duration_s, verdict.distance_m);
-  const char* separator = "\n";
-  for (const Check& check : verdict.checks) {
-    text += fmt::format("{}    {{\"name\": {}, \"passed\": {}, \"text\": {}}}", separator,
-                        json(check.name), check.passed, json(check.text));
-    separator = ",\n";
-  }
-  return text + "\n  ]\n}\n";
 }
 
 std::string to_junit(const Verdict& verdict, const std::string& mission) {

@@ -103,8 +103,7 @@ inline constexpr int kFailed = 10;    ///< Flown to its end, and not all conditi
 inline constexpr int kNotFlown = 11;  ///< Not flown to its end.
 int exit_code(const Verdict& verdict);
 
-/// As JSON, and as JUnit's XML for build servers: a test case for each check.
-std::string to_json(const Verdict& verdict, const std::string& mission);
+/// As JUnit's XML for build servers: a test case for each check.
 std::string to_junit(const Verdict& verdict, const std::string& mission);
 
 }  // namespace reconnaissance
