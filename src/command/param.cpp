@@ -1,8 +1,8 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <future>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <thread>
 
@@ -70,18 +70,18 @@ std::string choice_among_namesakes(const Table::Found& found, const std::string&
 Table::Found::value_type await_teller(Entity& entity, const ParamArguments& arguments) {
   const bool names_system = arguments.entity.find('/') != std::string::npos;
   const Instant end = entity.clock().now() + duration_of(arguments.seconds);
-  std::optional<Instant> settled;
+  Instant settled = Instant::max();
   for (;; std::this_thread::sleep_for(kLookAgain)) {
     const auto found = tellers(entity, arguments.entity);
     const Instant now = entity.clock().now();
     if (found.empty()) {
       if (now >= end) throw Unavailable(reason_for_none(entity, arguments.entity));
-      settled.reset();
+      settled = Instant::max();
       continue;
     }
-    if (!settled) settled = now + kSettling;
-    if (found.size() == 1 && (names_system || now >= *settled)) return found.front();
-    if (now >= *settled) throw InvalidArgument(choice_among_namesakes(found, arguments.entity));
+    settled = std::min(settled, now + kSettling);
+    if (found.size() == 1 && (names_system || now >= settled)) return found.front();
+    if (now >= settled) throw InvalidArgument(choice_among_namesakes(found, arguments.entity));
   }
 }
 
