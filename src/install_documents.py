@@ -28,12 +28,12 @@ def main(source, target, *paths):
     for path in paths:
         there |= {str(folder) for folder in pathlib.PurePosixPath(path).parents}
     for path in paths:
-        text = (pathlib.Path(source) / path).read_text(encoding="utf-8")
+        content = (pathlib.Path(source) / path).read_bytes()
         if path.endswith(".md"):
-            text = without_dead_links(path, text, there)
+            content = without_dead_links(path, content.decode("utf-8"), there).encode("utf-8")
         new = pathlib.Path(target) / path
         new.parent.mkdir(parents=True, exist_ok=True)
-        new.write_text(text, encoding="utf-8")
+        new.write_bytes(content)
 
 
 if __name__ == "__main__":

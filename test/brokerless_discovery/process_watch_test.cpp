@@ -22,10 +22,10 @@
 
 using namespace skein::brokerless_discovery;
 using skein::connect_to;
-using skein::Reached;
 using skein::FileDescriptor;
 using skein::fill_address;
 using skein::local_socket;
+using skein::Reached;
 using skein::test::eventually;
 
 namespace {

@@ -75,7 +75,8 @@ TEST_CASE("clearance counts away from where the track begins") {
   CHECK(low_where(8000).least_clearance_m == 90);
 }
 
-TEST_CASE("who comes within 0.66 nautical miles and 450 ft of another is not well clear for so long") {
+TEST_CASE(
+    "who comes within 0.66 nautical miles and 450 ft of another is not well clear for so long") {
   const auto own = [](double t) { return Place{60 * t, 0, 900, 700}; };
   const auto passing = [&](double aside_m, double above_m) {
     return judge(100, own, [=](double t) {

@@ -180,9 +180,8 @@ SensorFailure FlightSimulator::failure_of(std::size_t set, Tick tick) const {
 }
 
 recon::SensorSet FlightSimulator::measure(std::size_t set, Tick tick) {
-  const auto told =
-      failing_[set].pass(sensors_[set].measure(aircraft_, kTick_s, random_), failure_of(set, tick),
-                         kTick_s, random_, garbage, falsified);
+  const auto told = failing_[set].pass(sensors_[set].measure(aircraft_, kTick_s, random_),
+                                       failure_of(set, tick), kTick_s, random_, garbage, falsified);
   if (!told) return {};
   return {true,
           position(frame_, told->position),
