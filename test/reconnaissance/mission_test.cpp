@@ -103,6 +103,7 @@ TEST_CASE(
   CHECK(told_faults(verdict) ==
         std::set<std::string>{"flight_controller: A set of sensors fails",
                               "collision_manager: Another aircraft comes near",
+                              "ad_manager: A short-range site pops up",
                               "navigator: AStar dies at its task"});
   CHECK(verdict["routes"].size() >= 2);
   CHECK(verdict["decisions"].size() > 5);

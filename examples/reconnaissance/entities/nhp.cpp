@@ -20,7 +20,7 @@ constexpr Tick kHealthPeriod = 50;
 // Who has said nothing for a minute of the mission does not come back.
 constexpr Tick kGivenUp = 60 * kHealthPeriod;
 // What somebody has told in the tick before is on its way here.
-constexpr auto kOnTheWay = 2s;
+constexpr auto kOnTheWay = 1s;
 // Of the way home before it is planned: at 60 m/s, with a third more for turns and wind.
 constexpr double kFuel_kg_m = 0.006 / 60 * 1.33;
 

@@ -36,7 +36,7 @@ class Stream {
  public:
   /// Longer than a sample that has been sent takes on a busy machine, through all who make it of
   /// others' samples of the same tick.
-  static constexpr skein::Duration kPatience = std::chrono::seconds(2);
+  static constexpr skein::Duration kPatience = std::chrono::seconds(1);
 
   Stream(skein::Entity& entity, const StreamTopic& topic, const skein::TopicQos& qos = stream_qos())
       : period_(topic.period),

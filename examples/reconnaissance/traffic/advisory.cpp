@@ -67,7 +67,11 @@ ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
                                         std::span<const TrafficState> others,
                                         double route_course_rad, AlertLevel alert) {
   if (!avoiding_) {
-    avoiding_ = alert >= AlertLevel::Corrective;
+    // An alert outlives its cause: where the route leads clear, it is flown.
+    const bool route_conflicts =
+        conflict(with_course(own, route_course_rad), others, volume_, limits_.look_ahead_s);
+    avoiding_ =
+        alert >= AlertLevel::Warning || (alert >= AlertLevel::Corrective && route_conflicts);
   } else if (!conflict(with_course(own, route_course_rad), others, widened(volume_),
                        limits_.look_ahead_s)) {
     avoiding_ = false;

@@ -26,8 +26,8 @@ struct ResolutionAdvisory {
 /// - If none does either, recovery: of the manoeuvres that keep outside near mid-air collision and
 ///   of as large a part of the well-clear volume as any allows (made smaller by a tenth at a time),
 ///   the one that regains well clear soonest.
-/// Advisories begin with a corrective alert, and last until the course that the route asks for is
-/// free of a volume half as wide again.
+/// Advisories begin with a corrective alert where the course that the route asks for leads into the
+/// volume, or with a warning, and last until that course is free of a volume half as wide again.
 class BandsAvoider {
  public:
   explicit BandsAvoider(const ManoeuvreLimits& limits = {},
