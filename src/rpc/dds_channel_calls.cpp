@@ -203,7 +203,11 @@ void DdsChannel::State::tell_server(std::uint64_t number) {
 
 // On the thread that takes the results: one that is held up here takes none anyway.
 void DdsChannel::State::grant(std::uint64_t number, std::uint32_t count) {
-  send_reserved(wire::kCredit, {.target = number, .credit = count});
+  try {
+    send_reserved(wire::kCredit, {.target = number, .credit = count});
+  } catch (const Unavailable&) {
+    // The connection has just ended: whoever tells of that ends the stream, as Disconnected.
+  }
 }
 
 // About a call; nothing is to be said to a server that is gone.
