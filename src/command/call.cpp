@@ -83,7 +83,8 @@ std::string needs_of(const types::Operation& operation, const std::string& value
     text += (text.empty() ? operation.name + " needs " : ", ") + parameter.name + " (" +
             word_of(parameter.type) + ")";
   }
-  const bool one_line = values.find('\n') == std::string::npos;
+  const bool structured = values.starts_with('{') || values.starts_with('[');
+  const bool one_line = values.find('\n') == std::string::npos && !structured;
   text += parameters.size() == 1 && is_text(parameters.front().type) && one_line
               ? "; for text write '\"" + (values.empty() ? "text" : values) + "\"'"
               : "; --example prints a template";
@@ -93,7 +94,10 @@ std::string needs_of(const types::Operation& operation, const std::string& value
 /// Before anything is sent: people forget arguments, and the quotes of JSON within those of the
 /// shell.
 void demand_arguments(const types::Operation& operation, const std::string& values) {
-  if (values.empty() && parameters_of(operation).empty()) return;
+  if (parameters_of(operation).empty()) {
+    if (values.empty() || values == "{}") return;
+    throw InvalidArgument(operation.name + " takes no arguments; leave out '" + values + "'");
+  }
   try {
     idl::parse_json(values, [](const idl::JsonReader&) {});
   } catch (const InvalidArgument& error) {

@@ -1,7 +1,9 @@
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "core/whole_file.hpp"
 #include "json_output.hpp"
 #include "recording/perfetto_trace.hpp"
 
@@ -9,6 +11,10 @@ namespace skein::command {
 
 int export_recording(const ExportArguments& arguments) {
   const recording::Reader reader(arguments.file);
+  if (std::filesystem::exists(arguments.perfetto)) {
+    throw WriteFailed("the trace '" + arguments.perfetto +
+                      "' is there already; name another file, or remove that one");
+  }
   const auto done = recording::export_to_perfetto(reader, arguments.perfetto);
   if (arguments.json) {
     print_json({{"file", arguments.perfetto},

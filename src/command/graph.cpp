@@ -259,6 +259,7 @@ int draw_graph(const GraphArguments& arguments) {
   traffic.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   traffic.services = statistics.latest();
   if (!arguments.tools) std::erase_if(picture, is_tool);
+  if (picture.empty()) tell_missions_elsewhere(arguments);
   const Graph graph = graph_of(picture, traffic);
   if (format == "json") {
     print_json(to_json(graph), true);

@@ -57,7 +57,9 @@ inline constexpr std::array kLookingExitCodes{
                      "values than --count came; info: the file holds nothing; param set: the "
                      "component refuses the value"},
     launch::ExitCode{"64", "the command line is wrong; nothing was done"},
-    launch::ExitCode{"69", "no service, entity or topic of that name is there, or it has gone"},
+    launch::ExitCode{"69",
+                     "no service, entity or topic of that name is there, or it has gone; record: "
+                     "nothing was recorded"},
     launch::ExitCode{"71", "it could not join the domain, or the call failed at the other side"},
     launch::ExitCode{"74", "the output, or a file, could not be made or written"},
     launch::ExitCode{"78", "a file, a name, JSON or a parameter's value is wrong"},

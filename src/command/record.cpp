@@ -2,7 +2,9 @@
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "brokerless_discovery/broker.hpp"
 #include "commands.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
@@ -90,8 +92,9 @@ int record(const RecordArguments& arguments) {
   Inspector inspector(entity);
   const std::string file = file_of(arguments);
   recording::Recorder recorder(entity, file, options_of(arguments));
-  std::fprintf(stderr, "skein: recording into %s; Ctrl-C ends it\n",
-               printable(file, kLongestProblem).c_str());
+  std::fprintf(stderr, "skein: recording into %s what domain %u has; Ctrl-C ends it\n",
+               printable(file, kLongestProblem).c_str(), arguments.watched_domain());
+  bool alone = true;
   using std::chrono::steady_clock;
   const auto end = steady_clock::now() + std::chrono::duration_cast<Duration>(
                                              std::chrono::duration<double>(arguments.seconds));
@@ -100,6 +103,8 @@ int record(const RecordArguments& arguments) {
       std::fprintf(stderr, "skein: topic %s\n", printable(topic, kLongestProblem).c_str());
     }
     if (!recorder.statistics().failure.empty()) break;
+    if (std::exchange(alone, false) && entity.broker().all().empty())
+      tell_missions_elsewhere(arguments);
   } while (!interruption.wait(kLookAgain) && (arguments.seconds <= 0 || steady_clock::now() < end));
   const auto print_counts = arguments.json ? print_as_json : print;
   try {
@@ -111,7 +116,9 @@ int record(const RecordArguments& arguments) {
   }
   print_counts(recorder.statistics());
   tell_missing(arguments.topics, recorder.statistics().channels, inspector);
-  return 0;
+  if (recorder.statistics().written() > 0) return 0;
+  std::fputs("skein: nothing was recorded\n", stderr);
+  return kNothingThere;
 }
 
 }  // namespace skein::command

@@ -60,7 +60,9 @@ void print_line(std::FILE* stream, std::string_view name, std::string_view separ
 }
 
 constexpr const char* kOpenEnd =
-    "; the mission runs on another host: this launcher runs until it is interrupted or all of its "
+    "; the peer that runs the mission is not among them: this launcher runs until it is "
+    "interrupted "
+    "or all of its "
     "processes have ended";
 
 std::string accepted(const std::string& text) { return std::string(kAccepted).append(text); }

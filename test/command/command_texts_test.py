@@ -39,6 +39,18 @@ class Hints(unittest.TestCase):
         self.check("echo pose --once", "--count 1")
         self.check("publish pose 1 --once", "--count 1")
 
+    def test_short_options_of_others_lead_to_those_that_there_are(self):
+        self.check("record -o x.mcap", "-o (--output does that)")
+        self.check("replay x.mcap -r 2", "-r (--rate does that)")
+        self.check("peers -d 61", "-d (--domain does that)")
+        self.check("record -a", "-a (all is taken unless an option says otherwise)")
+
+    def test_a_mission_flies_on_the_domain_of_its_profile(self):
+        self.check("launch mission.xml --domain 61", "--domain (the profile says it: <mission domain=")
+
+    def test_help_is_an_option(self):
+        self.check("help", "skein --help, skein COMMAND --help")
+
     def test_a_mission_is_stopped_where_it_was_launched(self):
         self.check("stop", "Ctrl-C in the launch's terminal")
 

@@ -143,7 +143,8 @@ TEST_CASE("A process that has waited and is ready has no reason any more") {
   CHECK(result.reason == "a ended with exit code 3");
 }
 
-TEST_CASE("A launcher whose mission runs on another host says so, and ends with its processes") {
+TEST_CASE(
+    "A launcher without the peer that runs the mission says so, and ends with its processes") {
   RecordedMission ending({shell_child("a", "ready; exit 0")});
   ending.plan.mission_elsewhere = "client on beta";
   CHECK(ending.run().exit_code == 0);
@@ -151,7 +152,7 @@ TEST_CASE("A launcher whose mission runs on another host says so, and ends with 
   waiting.plan.mission_elsewhere = "client on beta";
   Supervisor* running = nullptr;
   waiting.on_event = [&](const ChildEvent& event) {
-    if (event.text.find("the mission runs on another host") != std::string::npos)
+    if (event.text.find("the peer that runs the mission is not among them") != std::string::npos)
       running->request_stop();
   };
   Supervisor supervisor(waiting.plan, waiting.options());

@@ -588,6 +588,12 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK(json.json()["events"] > 0);
     CHECK(json.json()["malformed"] == 0);
     CHECK(text_of(shelf / "a.pftrace") == text_of(shelf / "b.pftrace"));
+    // What is there stays, be it the recording itself.
+    const std::string before = text_of(file);
+    Command itself({"export", file, "--perfetto", file});
+    CHECK(itself.code() == 74);
+    CHECK(text_of(file) == before);
+    CHECK(Command({"export", file, "--perfetto", shelf / "a.pftrace"}).code() == 74);
   }
   SECTION("replay") {
     Field other(vendor);

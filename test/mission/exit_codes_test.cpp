@@ -75,7 +75,7 @@ TEST_CASE("each exit code of the table has its cause") {
   table.expect(0, {"completion", "bash"});
   const std::string recording = (errand.path() / "empty.mcap").string();
   table.expect(
-      0, {"record", "--only-topics", "--for", "0.2", "--domain", "49", "--output", recording});
+      69, {"record", "--only-topics", "--for", "0.2", "--domain", "49", "--output", recording});
   table.expect(1, {"info", recording});
   table.expect(2, {"doctor", errand.write("broken.xml", "<mission")});
 

@@ -332,6 +332,10 @@ TEST_CASE("who calls without arguments, or without quotes, is told what the oper
   CHECK_THAT(unquoted.output,
              Contains("this is no JSON") && Contains("ask needs task (string); for text write "
                                                      "'\"synthetic:7\"'"));
+  const Ended yaml = ended({"call", "desk", "ask", "{task: 'x'}", "--domain", desk.domain});
+  CHECK(yaml.code == 78);
+  CHECK_THAT(yaml.output, Contains("this is no JSON") && Contains("--example prints a template") &&
+                              !Contains("for text write"));
 }
 
 TEST_CASE("what is not there is told with the domain, and by an exit code of its own") {
@@ -452,9 +456,10 @@ TEST_CASE("a recording says into which file, and which topics have not appeared"
   if (!installed("cyclonedds")) return;
   const Ended recording = ended({"record", "--domain", "76", "--topics", "nosuch", "--for", "200ms",
                                  "--output", "flight.mcap"});
-  CHECK(recording.code == 0);
-  CHECK_THAT(recording.output,
-             Contains("recording into flight.mcap") && Contains("topic 'nosuch' has not appeared"));
+  CHECK(recording.code == 69);
+  CHECK_THAT(recording.output, Contains("recording into flight.mcap what domain 76 has") &&
+                                   Contains("topic 'nosuch' has not appeared") &&
+                                   Contains("nothing was recorded"));
 }
 
 TEST_CASE("a file that holds nothing is no recording to rely on") {

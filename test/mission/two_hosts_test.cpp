@@ -35,7 +35,7 @@ void flies(const TwoHosts& hosts, const std::string& profile,
   CHECK(exit_code == 0);
   CHECK_THAT(client.output(), Contains("the desk says: yes, dear"));
   CHECK_THAT(client.output(), Contains("office on") && Contains("is not started here"));
-  CHECK(office.writes("the mission runs on another host"));
+  CHECK(office.writes("the peer that runs the mission is not among them"));
   CHECK_THAT(office.output(), Contains("client on") && Contains("is not started here"));
   office.signal(SIGINT);
   CHECK(office.wait() == 128 + SIGINT);

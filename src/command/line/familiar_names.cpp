@@ -1,6 +1,7 @@
 #include "familiar_names.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace skein::command {
 namespace {
@@ -23,7 +24,7 @@ const FamiliarName kNames[] = {
     {"ps", "peers"},
     {"pub", "publish"},
     {"rqt_graph", "graph"},
-    {"run", "peer"},
+    {"run", "launch"},
     {"service", "services"},
     {"service call", "call"},
     {"service type", "describe"},
@@ -41,7 +42,18 @@ const FamiliarName kNames[] = {
     {"wtf", "doctor"},
 };
 
+const std::pair<const char*, const char*> kOptions[] = {
+    {"-d", "--domain"}, {"-n", "--count"}, {"-o", "--output"}, {"-p", "--profile"},
+    {"-r", "--rate"},   {"-s", "--split"}, {"-t", "--topics"}, {"-w", "--wait"},
+};
+
 }  // namespace
+
+std::string familiar_option(const std::string& theirs) {
+  const auto found =
+      std::ranges::find(kOptions, theirs, [](const auto& each) { return each.first; });
+  return found == std::end(kOptions) ? "" : found->second;
+}
 
 std::span<const FamiliarName> familiar_names() { return kNames; }
 

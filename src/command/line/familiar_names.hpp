@@ -6,6 +6,10 @@
 
 namespace skein::command {
 
+/// The long option for a short one that users of other software type: `--output` for `-o`. Empty:
+/// none is known.
+std::string familiar_option(const std::string& theirs);
+
 /// What users of other robotics software type, and what does that in Skein.
 struct FamiliarName {
   std::string theirs;  ///< One word, or two: `topic list`.

@@ -81,6 +81,7 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   for (const CLI::App* command : shown_commands(parent)) known.push_back(command->get_name());
   const std::string& word = words[length];
   if (length == 0 && word == "stop") return kHowToStop;
+  if (length == 0 && word == "help") return "help is an option: skein --help, skein COMMAND --help";
   std::string familiar = familiar_name(words);
   if (!familiar.empty()) familiar = "; in Skein: skein " + familiar;
   return "there is no command '" + (length == 0 ? "" : parent.get_name() + " ") + printable(word) +
@@ -97,6 +98,12 @@ std::string unexpected(const std::vector<std::string>& words,
     text += " " + printable(word);
     if (word == "--once" && has("--count")) {
       text += " (--count 1 does that)";
+    } else if (const std::string ours = familiar_option(word); has(ours.c_str())) {
+      text += " (" + ours + " does that)";
+    } else if (word == "-a" || word == "--all") {
+      text += " (all is taken unless an option says otherwise)";
+    } else if ((word == "--domain" || word == "-d") && has("--variable")) {
+      text += " (the profile says it: <mission domain=\"...\">)";
     } else if (word.starts_with("--")) {
       text += suggestion(word.substr(0, word.find('=')), options);
     } else if (word.ends_with(".xml") && has("--profile")) {
