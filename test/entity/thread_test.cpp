@@ -161,8 +161,10 @@ TEST_CASE("a CSP that hangs on its caller's thread is told of at once, while its
   Office office;
   Hang hang;
   office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  constexpr auto kLimit = 50ms;
+  const auto begun = std::chrono::steady_clock::now();
   std::thread caller([&] {
-    CHECK_THROWS_AS(office.owner->head().perform(blocking_task(), nullptr, 50ms), TimedOut);
+    CHECK_THROWS_AS(office.owner->head().perform(blocking_task(), nullptr, kLimit), TimedOut);
   });
   CHECK(eventually([&] {
     return log.count(
@@ -170,6 +172,8 @@ TEST_CASE("a CSP that hangs on its caller's thread is told of at once, while its
                "it runs on its caller's thread, which waits for it: give it a thread of its "
                "own (CallThread::Own)") == 1;
   }));
+  // It is told at the end of its slice, which is a little before that of the limit.
+  CHECK(eventually([&] { return std::chrono::steady_clock::now() > begun + 2 * kLimit; }));
   hang.release();
   caller.join();
 }
