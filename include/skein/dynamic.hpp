@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "skein/call.hpp"
@@ -89,6 +90,9 @@ class DynamicPublisher {
 
   /// As Publisher::publish(). Throws InvalidArgument, with the place, for what is no such value.
   void publish(const std::string& json);
+  /// A value as it stands on the wire, with its encapsulation header: what was recorded. Throws
+  /// InvalidArgument where the topic has keys and the bytes are no value of its type.
+  void publish_encoded(std::span<const std::byte> cdr);
   /// As Publisher's.
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
     return writer_->wait_for_acknowledgments(timeout);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "skein/detail/topic_type.hpp"
@@ -33,6 +34,7 @@ class TopicWriter {
               const TopicQos& qos, Register* known);
   ~TopicWriter();
   void publish(const void* value);
+  void publish(std::span<const std::byte> message, const Guid& key);
   void dispose(const void* value);
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout);
   std::size_t subscribers() const;

@@ -68,6 +68,17 @@ void DynamicPublisher::publish(const std::string& json) {
   writer_->publish(&value);
 }
 
+void DynamicPublisher::publish_encoded(std::span<const std::byte> cdr) {
+  Guid key;
+  if (type_.key_of != nullptr) {
+    const auto* support = static_cast<const DynamicSupport*>(type_.support);
+    DynamicValue value{support, {}};
+    support->decode(&value, cdr, idl::kEncapsulation.size());
+    key = type_.key_of(&value);
+  }
+  writer_->publish(cdr, key);
+}
+
 DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topic,
                                          const std::string& type, const types::TypeSystem& known,
                                          const TopicQos& qos, Callback callback,

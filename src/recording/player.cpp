@@ -7,11 +7,9 @@
 #include <sstream>
 
 #include "core/suggestion.hpp"
-#include "dds/port.hpp"
-#include "idl/dynamic_codec.hpp"
-#include "idl/dynamic_support.hpp"
 #include "recording/recorded_types.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/topic_qos.hpp"
@@ -50,7 +48,7 @@ std::optional<std::chrono::milliseconds> time_of(const Channel& channel, const s
   return std::chrono::milliseconds(milliseconds);
 }
 
-dds::Qos qos_of(const Channel& channel, const idl::DynamicType& type) {
+TopicQos qos_of(const Channel& channel) {
   TopicQos qos;
   qos.deadline = time_of(channel, "deadline_ms");
   qos.liveliness_lease = time_of(channel, "lease_ms");
@@ -58,8 +56,8 @@ dds::Qos qos_of(const Channel& channel, const idl::DynamicType& type) {
   qos.transient_local = value_of(channel, "transient_local") == "true";
   qos.exclusive = value_of(channel, "exclusive") == "true";
   if (qos.transient_local) qos.history_depth = 1;
-  if (is_xcdr2(type.representation)) qos.representation = dds::DataRepresentation::Xcdr2;
-  qos.partitions = split(value_of(channel, "systems"));
+  qos.systems = split(value_of(channel, "systems"));
+  if (qos.systems.empty()) qos.systems = {""};
   return qos;
 }
 
@@ -67,39 +65,6 @@ types::TypeSystem types_of(const Reader& recording, const std::string& type) {
   const std::string told = recording.attachment(types_attachment(type)).data;
   return idl::decode_message<types::TypeSystem>(std::as_bytes(std::span(told)));
 }
-
-/// One topic as it is published again.
-class Track {
- public:
-  Track(Entity& entity, const Reader& recording, const Channel& channel)
-      : types_(types_of(recording, value_of(channel, "type"))),
-        support_(types_.type(value_of(channel, "type"))),
-        keyed_(idl::is_keyed(support_.type)),
-        writer_(entity.participant().create_writer(
-            {channel.topic, std::string(support_.name), keyed_}, qos_of(channel, support_.type))) {}
-
-  void publish(std::span<const std::byte> cdr) { writer_->write(cdr, key_of(cdr)); }
-  void await_delivery(std::chrono::milliseconds patience) {
-    writer_->wait_for_acknowledgments(patience);
-  }
-
- private:
-  Guid key_of(std::span<const std::byte> cdr) const {
-    Guid key;
-    if (!keyed_) return key;
-    idl::DynamicValue value{&support_};
-    support_.decode(&value, cdr, idl::kEncapsulation.size());
-    idl::parse_json(value.json, [&](const idl::JsonReader& json) {
-      key = idl::key_hash_of(json, support_.type);
-    });
-    return key;
-  }
-
-  const idl::DynamicTypes types_;
-  const idl::DynamicSupport support_;
-  const bool keyed_;
-  std::unique_ptr<dds::Writer> writer_;
-};
 
 }  // namespace
 
@@ -109,7 +74,9 @@ struct Player::State {
     check_names();
     for (const auto& [id, channel] : recording.channels()) {
       if (!is_wanted(channel)) continue;
-      tracks.emplace(id, std::make_unique<Track>(entity, recording, channel));
+      const std::string type = value_of(channel, "type");
+      tracks.try_emplace(id, entity, channel.topic, type, types_of(recording, type),
+                         qos_of(channel));
     }
     if (tracks.empty()) throw InvalidArgument("the recording has no topic that can be published");
   }
@@ -133,7 +100,7 @@ struct Player::State {
 
   const Reader& recording;
   const PlayerOptions options;
-  std::map<std::uint16_t, std::unique_ptr<Track>> tracks;
+  std::map<std::uint16_t, DynamicPublisher> tracks;
 };
 
 Player::Player(Entity& entity, const Reader& recording, PlayerOptions options)
@@ -165,13 +132,13 @@ std::uint64_t Player::play(const std::function<bool(Duration)>& pause) {
         static_cast<double>(message->log_time - first) / state_->options.rate);
     const auto left = begin + std::chrono::duration_cast<Duration>(after) - steady_clock::now();
     if (pause(std::max<Duration>(left, Duration::zero()))) return published;
-    track->second->publish(message->data);
+    track->second.publish_encoded(message->data);
     ++published;
   }
   const auto end = steady_clock::now() + kDeliveryPatience;
-  for (const auto& [id, track] : state_->tracks) {
+  for (auto& [id, track] : state_->tracks) {
     const auto left = std::max<Duration>(end - steady_clock::now(), Duration::zero());
-    track->await_delivery(std::chrono::ceil<std::chrono::milliseconds>(left));
+    track.wait_for_acknowledgments(std::chrono::ceil<std::chrono::milliseconds>(left));
   }
   return published;
 }

@@ -21,7 +21,8 @@ struct PlayerOptions {
 };
 
 /// Publishes what a recording has of topics again: the same bytes, in the recorded order and pace,
-/// in the recorded systems, with the QoS that their publishers had. Not thread-safe.
+/// in the recorded systems, with the QoS that their publishers had; who looks at the entity finds
+/// these topics. Not thread-safe.
 class Player {
  public:
   /// `entity` and `recording` outlive it. Throws InvalidArgument for a topic that is not recorded,

@@ -84,11 +84,15 @@ void TopicWriter::publish(const void* value) {
   message.clear();
   message.append(encapsulation(state_->type.support->representation));
   idl::encode_value(*state_->type.support, value, message);
-  state_->tell_if_too_large(message.size());
   const auto key_of = state_->type.key_of;
-  state_->writer->write(message, key_of != nullptr ? key_of(value) : Guid{});
-  ++state_->published;
+  publish(message, key_of != nullptr ? key_of(value) : Guid{});
   state_->give_back(std::move(message));
+}
+
+void TopicWriter::publish(std::span<const std::byte> message, const Guid& key) {
+  state_->tell_if_too_large(message.size());
+  state_->writer->write(message, key);
+  ++state_->published;
 }
 
 void TopicWriter::dispose(const void* value) {

@@ -609,6 +609,17 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK(wrong.code() == 78);
     CHECK_THAT(wrong.said(), Contains("did you mean 'plot'?"));
   }
+  SECTION("replay to commands that look") {
+    Command replay({"replay", file, "--topics", "plot", "--rate", "0.1", "--domain", "80"});
+    REQUIRE(replay.says("publishes plot"));
+    Command echo({"echo", "plot", "--count", "1", "--json", "--domain", "80"});
+    CHECK(echo.code() == 0);
+    CHECK(echo.json_lines().size() == 1);
+    Command topics({"topics", "--json", "--domain", "80"});
+    CHECK_THAT(topics.printed(), Contains("\"plot\""));
+    replay.signal(SIGINT);
+    CHECK(replay.code() == 128 + SIGINT);
+  }
   SECTION("replay of its decisions, of which there are none") {
     Command replay({"replay", file, "--decisions"});
     CHECK(replay.code() == 78);
