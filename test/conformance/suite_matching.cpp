@@ -174,7 +174,7 @@ TEST_CASE("a writer of another version of the type is not matched, and nothing o
   CHECK(numbers(inbox.received()) == std::vector<std::uint32_t>{11, 13});
   CHECK(inbox.reader().matched_writers() == std::vector{same.writer().guid()});
   CHECK(changed.writer().matched_readers().empty());
-  CHECK(inbox.matches() == Events{{same.writer().guid(), true}});
+  CHECK(eventually([&] { return inbox.matches() == Events{{same.writer().guid(), true}}; }));
 }
 
 TEST_CASE("a topic name that is in use with another type is refused") {
