@@ -47,18 +47,25 @@ TEST_CASE("A DTED tile of any level is read column by column from the south-west
     const Terrain terrain = read_dted(file.path());
     REQUIRE(terrain.rows() == made.rows);
     REQUIRE(terrain.columns() == made.columns);
-    CHECK(terrain.post_m(0, 0) == 0);
-    CHECK(terrain.post_m(made.rows - 1, 0) == (made.rows - 1) / 3);
-    CHECK(terrain.post_m(0, made.columns - 1) == -((made.columns - 1) / 4));
-    CHECK(terrain.north_extent_m() == Approx(111195.08));
-    CHECK(terrain.east_extent_m() == Approx(111195.08 * std::cos(53.5 * 3.14159265358979 / 180)));
+    for (const auto& [row, column] : {std::pair{0.1, 0.2}, {0.9, 0.2}, {0.1, 0.8}, {0.95, 0.95}}) {
+      const double expected = row * (made.rows - 1) / 3 - column * (made.columns - 1) / 4;
+      CHECK(height_at(terrain, 53 + row, 27 + column) == Approx(expected).margin(2));
+    }
   }
 }
 
-TEST_CASE("A DTED tile of the southern hemisphere is as large as its latitude says") {
-  const DtedFile file(MadeDted{0, 300, "0540000S"}.bytes(slopes));
-  CHECK(read_dted(file.path()).east_extent_m() ==
-        Approx(111195.08 * std::cos(53.5 * 3.14159265358979 / 180)));
+TEST_CASE("A DTED tile lies where its header says, and is as large as an SRTM tile there") {
+  const TemporaryFolder folder;
+  MadeDted made{1, 30, "0540000S", "0710000W"};
+  std::ofstream(folder.path() / "s54.dt1", std::ios::binary) << made.bytes(slopes);
+  write_hgt(folder.path() / "S54W071.hgt", slopes);
+  const Terrain dted = read_dted(folder.path() / "s54.dt1");
+  const Terrain srtm = read_hgt(folder.path() / "S54W071.hgt");
+  CHECK(dted.heights_m() == srtm.heights_m());
+  CHECK(dted.east_spacing_m() == srtm.east_spacing_m());
+  CHECK(dted.north_spacing_m() == srtm.north_spacing_m());
+  CHECK(dted.frame()->to_earth({0, 0}).longitude_deg ==
+        srtm.frame()->to_earth({0, 0}).longitude_deg);
 }
 
 TEST_CASE("A void of a DTED tile becomes as high as the highest post beside it") {
@@ -67,8 +74,8 @@ TEST_CASE("A void of a DTED tile becomes as high as the highest post beside it")
     return row == 13 && column == 12 ? 777 : -50;
   }));
   const Terrain terrain = read_dted(file.path());
-  CHECK(terrain.post_m(11, 11) == 777);
-  CHECK(terrain.post_m(10, 15) == 777);
+  CHECK(height_at(terrain, 53 + 11 / 120.0, 27 + 11 / 120.0) == Approx(777).margin(99));
+  CHECK(height_at(terrain, 53 + 11 / 120.0, 27 + 14 / 120.0) == Approx(777).margin(99));
   CHECK(terrain.lowest_m() == -50);
 }
 
@@ -78,7 +85,7 @@ TEST_CASE("The checker reads a DTED tile by its own means, and finds the same gr
   }));
   const Terrain terrain = read_dted(file.path());
   const HeightGrid ground = read_height_grid(file.path());
-  CHECK(ground.heights_m == terrain.heights_m());
+  CHECK(largest_difference_m(ground.heights_m, terrain.heights_m()) < 0.05);
   CHECK(ground.north_spacing_m == Approx(terrain.north_spacing_m()).epsilon(1e-12));
   CHECK(ground.east_spacing_m == Approx(terrain.east_spacing_m()).epsilon(1e-12));
 }
@@ -86,7 +93,7 @@ TEST_CASE("The checker reads a DTED tile by its own means, and finds the same gr
 TEST_CASE("A problem finds its DTED tile by the file's name") {
   const DtedFile file(MadeDted{}.bytes(slopes));
   TerrainProvider provider({file.path().parent_path()});
-  CHECK(provider.load("n53.dt0")->post_m(120, 0) == 360);
+  CHECK(height_at(*provider.load("n53.dt0"), 53.5, 27.5) == Approx(60));
 }
 
 TEST_CASE("A damaged DTED file is refused with its name, the place and the reason") {
@@ -107,6 +114,9 @@ TEST_CASE("A damaged DTED file is refused with its name, the place and the reaso
   CHECK_THAT(spoilt(47, "0061"), Contains("not one degree by one degree"));
   CHECK_THAT(spoilt(12, "0533000N"), Contains("whole degree"));
   CHECK_THAT(spoilt(19, "E"), Contains("whole degree"));
+  CHECK_THAT(spoilt(4, "0270030E"), Contains("lies at longitude '0270030E'"));
+  CHECK_THAT(spoilt(4, "1800000E"), Contains("no such longitude"));
+  CHECK_THAT(spoilt(12, "0890000N"), Contains("80 degrees south to 84 degrees north"));
   CHECK_THAT(spoilt(kFirst + 3 * kRecord, "x"), Contains("column 3 does not begin with AA"));
   CHECK_THAT(spoilt(kFirst + 3 * kRecord + 5, "\4"), Contains("column 3 says that it is column 4"));
   CHECK_THAT(spoilt(kFirst + 3 * kRecord + 20, "\x7f"), Contains("the checksum of column 3"));

@@ -2,10 +2,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,21 @@ inline Terrain make_terrain(int posts, double spacing_m,
     }
   }
   return Terrain("made", posts, posts, spacing_m, spacing_m, heights);
+}
+
+/// The ground at a place on the earth.
+inline double height_at(const Terrain& terrain, double latitude_deg, double longitude_deg) {
+  const auto point = terrain.frame().value().to_ground({latitude_deg, longitude_deg});
+  return terrain.height_m(point.north_m, point.east_m);
+}
+
+inline double largest_difference_m(const std::vector<float>& a, const std::vector<float>& b) {
+  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, static_cast<double>(std::abs(a[i] - b[i])));
+  }
+  return largest;
 }
 
 /// A folder of its own that goes with the object.
@@ -68,6 +86,7 @@ struct MadeDted {
   int level = 0;
   int column_spacing_tenths = 300;
   std::string latitude = "0530000N";
+  std::string longitude = "0270000E";
 
   int rows() const { return level == 0 ? 121 : level == 1 ? 1201 : 3601; }
   int columns() const { return 36000 / column_spacing_tenths + 1; }
@@ -79,8 +98,8 @@ struct MadeDted {
       text.replace(at, what.size(), what);
     };
     const auto digits = [](int number) { return std::to_string(10000 + number).substr(1); };
-    put(0,
-        "UHL10270000E" + latitude + digits(column_spacing_tenths) + digits(36000 / (rows() - 1)));
+    put(0, "UHL1" + longitude + latitude + digits(column_spacing_tenths) +
+               digits(36000 / (rows() - 1)));
     put(47, digits(columns()) + digits(rows()));
     put(80, "DSI");
     put(728, "ACC");

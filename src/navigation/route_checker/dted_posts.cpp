@@ -34,6 +34,7 @@ TilePosts read_dted_posts(const std::filesystem::path& file) {
   tile.rows = latitude_points;
   tile.columns = longitude_lines;
   tile.southern_latitude_deg = std::atoi(text.substr(12, 3).c_str()) * (text[19] == 'S' ? -1 : 1);
+  tile.western_longitude_deg = std::atoi(text.substr(4, 3).c_str()) * (text[11] == 'W' ? -1 : 1);
   const auto rows = static_cast<std::size_t>(tile.rows);
   const std::size_t column_bytes = 12 + 2 * rows;
   if (text.size() != kFirstColumn + column_bytes * static_cast<std::size_t>(tile.columns)) {

@@ -5,9 +5,12 @@
 
 namespace skein::navigation {
 
-/// A tile of one degree by one degree as it is stored, voids (-32768) included.
+/// A tile of one degree by one degree, or several, as they are stored, voids (-32768) included.
 struct TilePosts {
   int southern_latitude_deg = 0;
+  int western_longitude_deg = 0;
+  int degrees_north = 1;
+  int degrees_east = 1;
   int rows = 0;
   int columns = 0;
   std::vector<float> heights_m;  ///< Row by row, the southernmost first.

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,8 +10,10 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "dted_posts.hpp"
+#include "rules.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation {
@@ -76,15 +79,16 @@ void fill_voids(std::vector<float>& heights, int columns) {
 /// What the name and the size of an SRTM tile say, and its posts.
 TilePosts read_srtm_posts(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
-  int degrees = 0;
-  char hemisphere = 0;
-  if (std::sscanf(name.c_str(), "%c%2d", &hemisphere, &degrees) != 2) {
+  int north = 0, east = 0;
+  char north_or_south = 0, east_or_west = 0;
+  if (std::sscanf(name.c_str(), "%c%2d%c%3d", &north_or_south, &north, &east_or_west, &east) != 4) {
     throw InvalidArgument(
-        fmt::format("{}: the name does not begin with a latitude", file.string()));
+        fmt::format("{}: the name does not begin with a latitude and a longitude", file.string()));
   }
   const std::vector<int> values = read_all(file.string());
   TilePosts tile;
-  tile.southern_latitude_deg = std::toupper(hemisphere) == 'S' ? -degrees : degrees;
+  tile.southern_latitude_deg = std::toupper(north_or_south) == 'S' ? -north : north;
+  tile.western_longitude_deg = std::toupper(east_or_west) == 'W' ? -east : east;
   tile.rows = tile.columns = static_cast<int>(std::lround(std::sqrt(values.size())));
   if (tile.rows != 1201 && tile.rows != 3601) {
     throw InvalidArgument(fmt::format("{}: {} heights are no tile of 1201 or 3601 squared",
@@ -97,6 +101,155 @@ TilePosts read_srtm_posts(const std::filesystem::path& file) {
   return tile;
 }
 
+/// Geodesics from the middle of a tile: the checker's own way to the frame of `navigator.idl`.
+class Geodesics {
+ public:
+  Geodesics(double latitude, double longitude) : latitude_(latitude), longitude_(longitude) {}
+
+  /// Metres east and north of the middle.
+  std::pair<double, double> metres(double latitude, double longitude) const {
+    double distance = 0, azimuth = 0, ignored = 0;
+    GeographicLib::Geodesic::WGS84().Inverse(latitude_, longitude_, latitude, longitude, distance,
+                                             azimuth, ignored);
+    return {distance * std::sin(azimuth * kDegree), distance * std::cos(azimuth * kDegree)};
+  }
+
+  /// Degrees of longitude and latitude.
+  std::pair<double, double> degrees(double east_m, double north_m) const {
+    double latitude = 0, longitude = 0;
+    GeographicLib::Geodesic::WGS84().Direct(latitude_, longitude_,
+                                            std::atan2(east_m, north_m) / kDegree,
+                                            std::hypot(east_m, north_m), latitude, longitude);
+    return {longitude_ + std::remainder(longitude - longitude_, 360), latitude};
+  }
+
+ private:
+  static constexpr double kDegree = std::numbers::pi / 180;
+  double latitude_;
+  double longitude_;
+};
+
+/// Fills in `count` places: geodesics for one in `step`, straight lines in between.
+template <class Place>
+void fill_row(std::vector<std::pair<double, double>>& places, int count, int step,
+              const Place& place) {
+  places.resize(static_cast<std::size_t>(count));
+  for (int from = 0; from + 1 < count; from += step) {
+    const int to = std::min(from + step, count - 1);
+    const auto a = place(from), b = place(to);
+    for (int i = from; i <= to; ++i) {
+      const double share = static_cast<double>(i - from) / (to - from);
+      places[static_cast<std::size_t>(i)] = {std::lerp(a.first, b.first, share),
+                                             std::lerp(a.second, b.second, share)};
+    }
+  }
+}
+
+/// The ground in metres, from posts in degrees, as `navigator.idl` and read_hgt() promise it.
+class GroundInMetres {
+ public:
+  explicit GroundInMetres(TilePosts tile)
+      : tile_(std::move(tile)),
+        south_(tile_.southern_latitude_deg),
+        west_(tile_.western_longitude_deg),
+        by_row_(static_cast<double>(tile_.degrees_north) / (tile_.rows - 1)),
+        // At most 740 m, over which a straight line is wrong by centimetres.
+        step_(std::max(1, (tile_.rows - 1) / tile_.degrees_north / 150)),
+        by_column_(static_cast<double>(tile_.degrees_east) / (tile_.columns - 1)),
+        geodesics_(south_ + tile_.degrees_north / 2.0, west_ + tile_.degrees_east / 2.0) {}
+
+  HeightGrid make() {
+    measure();
+    interpolate();
+    raise();
+    return std::move(grid_);
+  }
+
+ private:
+  void measure() {
+    const double north = south_ + tile_.degrees_north, east = west_ + tile_.degrees_east;
+    for (const double longitude : {(west_ + east) / 2, east}) {
+      bottom_m_ = std::max(bottom_m_, geodesics_.metres(south_, longitude).second);
+      top_m_ = std::min(top_m_, geodesics_.metres(north, longitude).second);
+    }
+    for (const double latitude : {south_, north}) {
+      half_width_m_ = std::min(half_width_m_, geodesics_.metres(latitude, east).first);
+    }
+    grid_.rows = tile_.rows;
+    grid_.columns = tile_.columns;
+    grid_.north_spacing_m = (top_m_ - bottom_m_) / (grid_.rows - 1);
+    grid_.east_spacing_m = 2 * half_width_m_ / (grid_.columns - 1);
+  }
+
+  void interpolate() {
+    const HeightGrid raw{tile_.rows, tile_.columns, by_row_, by_column_, tile_.heights_m};
+    std::vector<std::pair<double, double>> places;
+    for (int row = 0; row < grid_.rows; ++row) {
+      fill_row(places, grid_.columns, step_, [&](int column) {
+        return geodesics_.degrees(column * grid_.east_spacing_m - half_width_m_,
+                                  bottom_m_ + row * grid_.north_spacing_m);
+      });
+      for (const auto& [longitude, latitude] : places) {
+        grid_.heights_m.push_back(static_cast<float>(
+            route_checker::ground_height(raw, latitude - south_, longitude - west_)));
+      }
+    }
+  }
+
+  /// Lifts the corners around each post that stands above the ground, each by its share.
+  void raise() {
+    std::vector<float> raised = grid_.heights_m;
+    std::vector<std::pair<double, double>> places;
+    for (int row = 0; row < tile_.rows; ++row) {
+      fill_row(places, tile_.columns, step_, [&](int column) {
+        return geodesics_.metres(south_ + row * by_row_, west_ + column * by_column_);
+      });
+      for (int column = 0; column < tile_.columns; ++column) {
+        const auto& [east_m, north_m] = places[static_cast<std::size_t>(column)];
+        if (std::abs(east_m) > half_width_m_ || north_m < bottom_m_ || north_m > top_m_) continue;
+        raise_to(tile_.heights_m[post(row, column)], north_m - bottom_m_, east_m + half_width_m_,
+                 raised);
+      }
+    }
+    grid_.heights_m = std::move(raised);
+  }
+
+  void raise_to(double height_m, double north_m, double east_m, std::vector<float>& raised) const {
+    const double lacking = height_m - route_checker::ground_height(grid_, north_m, east_m);
+    if (!(lacking > 0)) return;
+    const double x = north_m / grid_.north_spacing_m, y = east_m / grid_.east_spacing_m;
+    const int i = std::min(static_cast<int>(x), grid_.rows - 2);
+    const int j = std::min(static_cast<int>(y), grid_.columns - 2);
+    const auto squares = [](double t) { return t * t + (1 - t) * (1 - t); };
+    for (const int north : {0, 1}) {
+      for (const int east : {0, 1}) {
+        const double share = (1 - std::abs(i + north - x)) * (1 - std::abs(j + east - y));
+        const std::size_t corner = post(i + north, j + east);
+        raised[corner] = std::max(
+            raised[corner], static_cast<float>(grid_.heights_m[corner] +
+                                               lacking * share / squares(x - i) / squares(y - j)));
+      }
+    }
+  }
+
+  std::size_t post(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_.columns) +
+           static_cast<std::size_t>(column);
+  }
+
+  const TilePosts tile_;
+  const double south_;
+  const double west_;
+  const double by_row_;
+  const int step_;
+  const double by_column_;
+  const Geodesics geodesics_;
+  double bottom_m_ = -1e9;
+  double top_m_ = 1e9;
+  double half_width_m_ = 1e9;
+  HeightGrid grid_;
+};
+
 bool is_dted(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   return ending.size() == 4 && (ending[1] == 'd' || ending[1] == 'D');
@@ -107,15 +260,7 @@ bool is_dted(const std::filesystem::path& file) {
 HeightGrid read_height_grid(const std::filesystem::path& file) {
   TilePosts tile = is_dted(file) ? read_dted_posts(file) : read_srtm_posts(file);
   fill_voids(tile.heights_m, tile.columns);
-  HeightGrid grid;
-  grid.rows = tile.rows;
-  grid.columns = tile.columns;
-  grid.heights_m = std::move(tile.heights_m);
-  const double degree_m = 2 * std::numbers::pi * 6371008.8 / 360;
-  const double middle = (2 * tile.southern_latitude_deg + 1) * std::numbers::pi / 360;
-  grid.north_spacing_m = degree_m / (grid.rows - 1);
-  grid.east_spacing_m = degree_m * std::cos(middle) / (grid.columns - 1);
-  return grid;
+  return GroundInMetres(std::move(tile)).make();
 }
 
 }  // namespace skein::navigation

@@ -25,6 +25,7 @@ using Bytes = std::span<const unsigned char>;
 
 struct Layout {
   int southern_latitude_deg;
+  int western_longitude_deg;
   int rows;
   int columns;
 };
@@ -56,14 +57,15 @@ int number(std::string_view text, const char* what, const std::filesystem::path&
   return value;
 }
 
-/// DDDMMSSH, of the south-west corner.
-int latitude(std::string_view text, const std::filesystem::path& file) {
-  const int degrees = number(text.substr(0, 3), "latitude", file);
-  const char hemisphere = text[7];
-  if (text.substr(3, 4) != "0000" || degrees > 90 || (hemisphere != 'N' && hemisphere != 'S')) {
-    refuse(file, fmt::format("lies at latitude '{}'; tiles begin at a whole degree", text));
+/// DDDMMSSH, of the south-west corner; `hemispheres` are the positive and the negative one.
+int whole_degrees(std::string_view text, const char* what, std::string_view hemispheres,
+                  const std::filesystem::path& file) {
+  const int degrees = number(text.substr(0, 3), what, file);
+  if (text.substr(3, 4) != "0000" || degrees < 0 ||
+      hemispheres.find(text[7]) == std::string_view::npos) {
+    refuse(file, fmt::format("lies at {} '{}'; tiles begin at a whole degree", what, text));
   }
-  return hemisphere == 'S' ? -degrees : degrees;
+  return text[7] == hemispheres[1] ? -degrees : degrees;
 }
 
 Layout read_layout(std::string_view headers, const std::filesystem::path& file) {
@@ -74,9 +76,11 @@ Layout read_layout(std::string_view headers, const std::filesystem::path& file) 
   }
   const int column_spacing = number(headers.substr(20, 4), "interval of longitude", file);
   const int row_spacing = number(headers.substr(24, 4), "interval of latitude", file);
-  const Layout layout{latitude(headers.substr(12, 8), file),
+  const Layout layout{whole_degrees(headers.substr(12, 8), "latitude", "NS", file),
+                      whole_degrees(headers.substr(4, 8), "longitude", "EW", file),
                       number(headers.substr(51, 4), "number of rows", file),
                       number(headers.substr(47, 4), "number of columns", file)};
+  require_between_poles(file, layout.southern_latitude_deg, layout.western_longitude_deg);
   if (row_spacing != 300 && row_spacing != 30 && row_spacing != 10) {
     refuse(file,
            fmt::format("has a post every {} tenths of a second of latitude; levels 0, 1 and 2 "
@@ -149,8 +153,11 @@ Terrain read_dted(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_bytes(file);
   const std::string_view headers(reinterpret_cast<const char*>(bytes.data()), kHeadersSize);
   const Layout layout = read_layout(headers, file);
-  return lay_out_tile(file, layout.southern_latitude_deg, layout.rows, layout.columns,
-                      read_posts(Bytes(bytes).subspan(kHeadersSize), layout, file));
+  return lay_out(file, {.southern_latitude_deg = layout.southern_latitude_deg,
+                        .western_longitude_deg = layout.western_longitude_deg,
+                        .rows = layout.rows,
+                        .columns = layout.columns,
+                        .heights_m = read_posts(Bytes(bytes).subspan(kHeadersSize), layout, file)});
 }
 
 }  // namespace skein::navigation

@@ -9,18 +9,28 @@
 namespace skein::navigation {
 namespace {
 
-/// Latitude of the southern edge in degrees, from a name such as `S07W123.hgt`.
-int southern_latitude(const std::filesystem::path& file) {
-  static const std::regex kName(R"(([NS])(\d\d)[EW]\d\d\d\.hgt)", std::regex::icase);
+struct Corner {
+  int latitude_deg;
+  int longitude_deg;
+};
+
+/// The south-west corner, from a name such as `S07W123.hgt`.
+Corner south_west_corner(const std::filesystem::path& file) {
+  static const std::regex kName(R"(([NS])(\d\d)([EW])(\d\d\d)\.hgt)", std::regex::icase);
   std::smatch match;
   const std::string name = file.filename().string();
   if (!std::regex_match(name, match, kName)) {
     refuse(file, "the name does not say where the tile lies; it must be like N53E027.hgt");
   }
-  const int degrees = std::atoi(match[2].str().c_str());
-  const int latitude = match[1] == "S" || match[1] == "s" ? -degrees : degrees;
-  if (latitude < -90 || latitude > 89) refuse(file, "there is no such latitude");
-  return latitude;
+  const auto degrees = [&](std::size_t hemisphere, const char* negative) {
+    const int value = std::atoi(match[hemisphere + 1].str().c_str());
+    if (match[hemisphere].str().find_first_of(negative) == std::string::npos) return value;
+    if (value == 0) refuse(file, "the tiles at 0 degrees are N00 and E000");
+    return -value;
+  };
+  const Corner corner{degrees(1, "Ss"), degrees(3, "Ww")};
+  require_between_poles(file, corner.latitude_deg, corner.longitude_deg);
+  return corner;
 }
 
 int posts_per_side(const std::filesystem::path& file) {
@@ -62,9 +72,13 @@ std::vector<float> read_posts(const std::filesystem::path& file, int side) {
 }  // namespace
 
 Terrain read_hgt(const std::filesystem::path& file) {
-  const int latitude = southern_latitude(file);
+  const Corner corner = south_west_corner(file);
   const int side = posts_per_side(file);
-  return lay_out_tile(file, latitude, side, side, read_posts(file, side));
+  return lay_out(file, {.southern_latitude_deg = corner.latitude_deg,
+                        .western_longitude_deg = corner.longitude_deg,
+                        .rows = side,
+                        .columns = side,
+                        .heights_m = read_posts(file, side)});
 }
 
 }  // namespace skein::navigation

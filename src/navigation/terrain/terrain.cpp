@@ -10,13 +10,15 @@
 namespace skein::navigation {
 
 Terrain::Terrain(std::string name, int rows, int columns, double north_spacing_m,
-                 double east_spacing_m, std::vector<float> heights_m)
+                 double east_spacing_m, std::vector<float> heights_m,
+                 std::optional<EarthFrame> frame)
     : name_(std::move(name)),
       rows_(rows),
       columns_(columns),
       north_spacing_m_(north_spacing_m),
       east_spacing_m_(east_spacing_m),
-      heights_m_(std::move(heights_m)) {
+      heights_m_(std::move(heights_m)),
+      frame_(frame) {
   if (rows < 2 || columns < 2) {
     throw InvalidArgument(fmt::format("terrain '{}' has {} x {} posts; two by two are the least",
                                       name_, rows, columns));

@@ -81,7 +81,7 @@ std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) co
       const Terrain tile = read_tile(candidate);
       return std::make_shared<const Terrain>(name, tile.rows(), tile.columns(),
                                              tile.north_spacing_m(), tile.east_spacing_m(),
-                                             tile.heights_m());
+                                             tile.heights_m(), tile.frame());
     }
     searched += (searched.empty() ? "" : ", ") + candidate.string();
   }
