@@ -225,12 +225,11 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
   for (const recon::Threat& threat : picture->threats) {
     if (threat.lethal_range_m == 0) continue;
     const auto site = in_tile(tile_, threat.position);
-    problem.missile_sites.push_back(
-        {fmt::format("{} {}", threat.kind, threat.number),
-         {site.north_m, site.east_m},
-         kMast_m,
-         reach_m(threat.lethal_range_m, threat.deviation_m) * (1 + Tile::kLargestError),
-         kKills_per_s});
+    problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
+                                     {site.north_m, site.east_m},
+                                     kMast_m,
+                                     reach_m(threat.lethal_range_m, threat.deviation_m),
+                                     kKills_per_s});
   }
   return problem;
 }

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <vector>
 
 #include "skein/error.hpp"
@@ -12,7 +12,6 @@
 namespace reconnaissance {
 namespace {
 
-constexpr double kDegree_m = 111195.08;
 constexpr int kPosts = 1201;
 // So many posts apart places are exactly known; between them they are 0.1 m off.
 constexpr int kExact = 20;
@@ -22,16 +21,23 @@ constexpr int kExact = 20;
 Tile::Tile(const Geodetic& place)
     : south_deg_(static_cast<int>(std::floor(place.latitude_deg))),
       west_deg_(static_cast<int>(std::floor(place.longitude_deg))),
-      degree_east_m_(kDegree_m * std::cos((south_deg_ + 0.5) * std::numbers::pi / 180)) {}
+      frame_({south_deg_ + 0.5, west_deg_ + 0.5, 0}) {
+  // Parallels bend towards the poles, and meridians come together there.
+  const auto at = [&](double north, double east) {
+    return frame_.to_local({south_deg_ + north, west_deg_ + east, 0});
+  };
+  south_m_ = std::max(at(0, 0.5).north_m, at(0, 1).north_m);
+  west_m_ = -std::min(at(0, 1).east_m, at(1, 1).east_m);
+}
 
 Local Tile::to_tile(const Geodetic& place) const {
-  return {(place.latitude_deg - south_deg_) * kDegree_m,
-          (place.longitude_deg - west_deg_) * degree_east_m_, place.height_m};
+  const Local from_middle = frame_.to_local(place);
+  return {from_middle.north_m - south_m_, from_middle.east_m - west_m_, place.height_m};
 }
 
 Geodetic Tile::to_geodetic(const Local& in_tile) const {
-  return {south_deg_ + in_tile.north_m / kDegree_m, west_deg_ + in_tile.east_m / degree_east_m_,
-          in_tile.height_m};
+  return frame_.to_geodetic(
+      {in_tile.north_m + south_m_, in_tile.east_m + west_m_, in_tile.height_m});
 }
 
 std::string Tile::file_name() const {

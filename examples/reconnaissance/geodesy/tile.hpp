@@ -7,14 +7,11 @@
 
 namespace reconnaissance {
 
-/// A tile of one degree by one degree as Skein's planners of routes lay it out (navigator.idl):
-/// flat, with its origin in the south-western corner, a degree of latitude 111195.08 m long, one of
-/// longitude that times the cosine in the middle of the tile. Places stay where they are on
-/// WGS-84; what planners take for distances is up to 1.3 % wrong.
+/// A tile of one degree by one degree as Skein's planners of routes lay it out (navigator.idl): the
+/// largest rectangle within it that is symmetric about its middle meridian, in metres from its
+/// south-western corner. Distances are right to 20 parts in a million.
 class Tile {
  public:
-  static constexpr double kLargestError = 0.013;
-
   /// The one in which the place is.
   explicit Tile(const Geodetic& place);
 
@@ -33,7 +30,9 @@ class Tile {
  private:
   int south_deg_;
   int west_deg_;
-  double degree_east_m_;
+  LocalFrame frame_;    // about the middle
+  double south_m_ = 0;  // The rectangle's edges there.
+  double west_m_ = 0;
 };
 
 }  // namespace reconnaissance
