@@ -76,29 +76,73 @@ void fill_voids(std::vector<float>& heights, int columns) {
   }
 }
 
-/// What the name and the size of an SRTM tile say, and its posts.
-TilePosts read_srtm_posts(const std::filesystem::path& file) {
-  const std::string name = file.stem().string();
+/// Degrees north and east, from the name of a tile.
+std::pair<int, int> corner_in(const std::string& name, const std::filesystem::path& file) {
   int north = 0, east = 0;
   char north_or_south = 0, east_or_west = 0;
   if (std::sscanf(name.c_str(), "%c%2d%c%3d", &north_or_south, &north, &east_or_west, &east) != 4) {
     throw InvalidArgument(
         fmt::format("{}: the name does not begin with a latitude and a longitude", file.string()));
   }
-  const std::vector<int> values = read_all(file.string());
-  TilePosts tile;
-  tile.southern_latitude_deg = std::toupper(north_or_south) == 'S' ? -north : north;
-  tile.western_longitude_deg = std::toupper(east_or_west) == 'W' ? -east : east;
-  tile.rows = tile.columns = static_cast<int>(std::lround(std::sqrt(values.size())));
-  if (tile.rows != 1201 && tile.rows != 3601) {
+  return {std::toupper(north_or_south) == 'S' ? -north : north,
+          std::toupper(east_or_west) == 'W' ? -east : east};
+}
+
+/// The heights of one tile, the northernmost row first.
+std::vector<int> read_square(const std::filesystem::path& file, int& side) {
+  std::vector<int> values = read_all(file.string());
+  side = static_cast<int>(std::lround(std::sqrt(values.size())));
+  if ((side != 1201 && side != 3601) || values.size() != static_cast<std::size_t>(side * side)) {
     throw InvalidArgument(fmt::format("{}: {} heights are no tile of 1201 or 3601 squared",
                                       file.string(), values.size()));
   }
-  for (int row = tile.rows; row-- > 0;) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row) * tile.columns;
-    tile.heights_m.insert(tile.heights_m.end(), begin, begin + tile.columns);
+  return values;
+}
+
+/// What the name and the sizes of SRTM tiles say, and their posts: one tile, or all between two.
+TilePosts read_srtm_posts(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  const std::size_t dots = name.find("..");
+  const auto [south, west] = corner_in(name, file);
+  const auto last =
+      dots == std::string::npos ? std::pair{south, west} : corner_in(name.substr(dots + 2), file);
+  TilePosts posts;
+  posts.southern_latitude_deg = south;
+  posts.western_longitude_deg = west;
+  posts.degrees_north = last.first - south + 1;
+  posts.degrees_east = (last.second - west + 360) % 360 + 1;
+  for (int degree = 0; degree < posts.degrees_north * posts.degrees_east; ++degree) {
+    const int north = degree / posts.degrees_east, east = degree % posts.degrees_east;
+    const int latitude = south + north;
+    const int longitude = west + east < 180 ? west + east : west + east - 360;
+    const std::filesystem::path tile =
+        dots == std::string::npos
+            ? file
+            : file.parent_path() / fmt::format("{}{:02}{}{:03}.hgt", latitude < 0 ? "S" : "N",
+                                               std::abs(latitude), longitude < 0 ? "W" : "E",
+                                               std::abs(longitude));
+    int side = 0;
+    const std::vector<int> values = read_square(tile, side);
+    if (degree == 0) {
+      posts.rows = (side - 1) * posts.degrees_north + 1;
+      posts.columns = (side - 1) * posts.degrees_east + 1;
+      posts.heights_m.assign(
+          static_cast<std::size_t>(posts.rows) * static_cast<std::size_t>(posts.columns), kNoData);
+    }
+    if ((side - 1) * posts.degrees_north + 1 != posts.rows) {
+      throw InvalidArgument(
+          fmt::format("{}: has another number of posts than {}", tile.string(), name));
+    }
+    for (int i = 0; i < side * side; ++i) {
+      const int row = north * (side - 1) + side - 1 - i / side;
+      const int column = east * (side - 1) + i % side;
+      float& post =
+          posts.heights_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(posts.columns) +
+                          static_cast<std::size_t>(column)];
+      post = std::max(post, static_cast<float>(values[static_cast<std::size_t>(i)]));
+    }
   }
-  return tile;
+  return posts;
 }
 
 /// Geodesics from the middle of a tile: the checker's own way to the frame of `navigator.idl`.

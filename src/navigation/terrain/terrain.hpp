@@ -70,9 +70,13 @@ class Terrain {
 /// Its posts are bilinear between those of the tile, and raised where one of the tile's would
 /// stand above them, so that the ground is nowhere lower than a post of the tile says.
 ///
+/// Several tiles of a folder are one terrain by a name such as `N53E027.hgt..N54E028.hgt`: all from
+/// the south-western to the north-eastern one, up to 3 by 3 of the same resolution, named like
+/// these; across the antimeridian, too. Of the posts that two tiles share, the higher one counts.
+///
 /// Connected posts without data (-32768) become as high as the highest post beside them, so that no
 /// planner takes a hole in the data for a valley. Throws InvalidArgument, naming the file, where it
-/// cannot be read, is named or sized otherwise, lies where tiles are not taken (see
+/// cannot be read, is named or sized otherwise, lacks tiles, which it names, lies where tiles are not taken (see
 /// degree_tile.hpp), holds a height that no mountain on earth has, or holds no data at all.
 Terrain read_hgt(const std::filesystem::path& file);
 

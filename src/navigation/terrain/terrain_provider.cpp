@@ -36,6 +36,12 @@ Reader reader_of(std::string_view name) {
   return ending == ".dt0" || ending == ".dt1" || ending == ".dt2" ? read_dted : nullptr;
 }
 
+/// The file that must be there; of several tiles the first.
+std::filesystem::path first_file(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return path.parent_path() / name.substr(0, name.find(".."));
+}
+
 }  // namespace
 
 TerrainProvider::TerrainProvider(std::vector<std::filesystem::path> folders)
@@ -69,7 +75,8 @@ std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) co
   if (read_tile == nullptr) {
     throw InvalidArgument(
         fmt::format("there is no terrain '{}'; a terrain is synthetic:<seed> or the "
-                    "name of a file that ends with .hgt, .dt0, .dt1 or .dt2",
+                    "name of a file that ends with .hgt, .dt0, .dt1 or .dt2, or of several such as "
+                    "N53E027.hgt..N54E028.hgt",
                     name));
   }
   std::string searched;
@@ -77,7 +84,7 @@ std::shared_ptr<const Terrain> TerrainProvider::read(const std::string& name) co
   for (const auto& folder : folders_) candidates.push_back(folder / name);
   for (const auto& candidate : candidates) {
     std::error_code ignored;
-    if (std::filesystem::exists(candidate, ignored)) {
+    if (std::filesystem::exists(first_file(candidate), ignored)) {
       const Terrain tile = read_tile(candidate);
       return std::make_shared<const Terrain>(name, tile.rows(), tile.columns(),
                                              tile.north_spacing_m(), tile.east_spacing_m(),
