@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <sstream>
 
 #include "ad_manager.idl.hpp"
+#include "core/whole_file.hpp"
 #include "flight_controller.idl.hpp"
 #include "mission_text.hpp"
 #include "navigation/route_checker/route_checker.hpp"
 #include "navigation/routes/demo_problem.hpp"
+#include "navigation/routes/flight_plan.hpp"
+#include "navigation/routes/geojson.hpp"
 #include "navigation/terrain/terrain_provider.hpp"
 #include "skein/error.hpp"
 
@@ -54,6 +58,15 @@ AE_navigator::GroundPoint on_ground(const AE_navigator::Position& position) {
   return {position.north_m, position.east_m};
 }
 
+std::vector<AE_navigator::NoFlyZone> read_zones(const std::string& file,
+                                                const skein::navigation::Terrain& terrain) {
+  if (file.empty()) return {};
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw skein::InvalidArgument(fmt::format("the zones in '{}' cannot be read", file));
+  return skein::navigation::zones_from_geojson(text, file, terrain);
+}
+
 void use(const AE_adManagerI::ThreatPicture& picture, Problem& problem) {
   problem.radar_sites = picture.radar_sites;
   problem.missile_sites = picture.missile_sites;
@@ -86,6 +99,7 @@ GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& value
       terrain_(skein::navigation::TerrainProvider().load(
           name_for_all(values.find<std::string>("Terrain").value_or("synthetic:7")))),
       terrain_title_(std::filesystem::path(terrain_->name()).filename().string()),
+      zones_(read_zones(values.find<std::string>("Zones").value_or(""), *terrain_)),
       ground_(ground_of(*terrain_)),
       navigator_(entity),
       limits_(ask_flight_limits()) {
@@ -109,7 +123,7 @@ bool GroundStation::fly() {
 }
 
 void GroundStation::introduce() {
-  const Problem problem = skein::navigation::demo_problem(*terrain_);
+  const Problem problem = flyable(skein::navigation::demo_problem(*terrain_));
   print_heading("Route planning over " + terrain_title_);
   print_field("terrain",
               fmt::format("{:.0f} by {:.0f} km, {:.0f} to {:.0f} m high; {} radar sites, {} "
@@ -258,15 +272,33 @@ void GroundStation::accept(const std::string& label, const Question& question,
 }
 
 void GroundStation::draw() {
-  Problem problem = skein::navigation::demo_problem(*terrain_);
+  Problem problem = flyable(skein::navigation::demo_problem(*terrain_));
   problem.missile_sites = missiles_;
   skein::navigation::write_route_picture(picture_, *terrain_, problem, routes_,
                                          "Route planning over " + terrain_title_);
+  if (terrain_->frame() && !routes_.empty()) write_for_others(problem);
+}
+
+void GroundStation::write_for_others(const Problem& problem) {
+  const auto write = [&](const char* ending, const std::string& text) {
+    written_.push_back(std::filesystem::path(picture_).replace_extension(ending));
+    skein::write_whole_file("what is for maps and ground stations", written_.back(), text);
+  };
+  write(".geojson", skein::navigation::to_geojson(*terrain_, problem, routes_));
+  const auto plan = skein::navigation::to_flight_plan(*terrain_, problem, routes_.back().route);
+  write(".plan", plan.text);
+  not_in_fence_ = plan.zones_left_out;
 }
 
 bool GroundStation::conclude() {
   print_heading("Result");
   print_field("picture", std::filesystem::absolute(picture_).lexically_normal().string());
+  for (const auto& file : written_) {
+    print_field("written", std::filesystem::absolute(file).lexically_normal().string());
+  }
+  for (const std::string& zone : not_in_fence_) {
+    print_field("no fence", fmt::format("around '{}', which the route passes over or below", zone));
+  }
   for (const std::string& failure : failures_) print_field("failed", failure);
   if (failures_.empty()) {
     print_field("done",
@@ -284,6 +316,7 @@ AE_flightControllerI::FlightLimits GroundStation::ask_flight_limits() {
 
 Problem GroundStation::flyable(Problem problem) const {
   problem.limits = limits_;
+  problem.no_fly_zones.insert(problem.no_fly_zones.end(), zones_.begin(), zones_.end());
   return problem;
 }
 

@@ -19,14 +19,15 @@ namespace route_planning {
 /// while it plans; with threats that are out of date; and to a goal that cannot be reached.
 /// Believes none of the answers before the route checker has seen them.
 ///
-/// Parameters: `Terrain` (an .hgt file, or synthetic:SEED; synthetic:7 without it), `Picture` (the
-/// SVG to write; route.svg), `Planners` (names, separated by commas, of the planners that must know
-/// the terrain before the first question), `Time limit` (the longest time that it waits for a
-/// route; 2 s).
+/// Parameters: `Terrain` (as a Problem names it; synthetic:7 without it), `Zones` (a GeoJSON file
+/// of further no-fly zones), `Picture` (the SVG to write; route.svg. Over a terrain that lies on
+/// the earth, all routes are written as GeoJSON and the last one as a flight plan beside it),
+/// `Planners` (names, separated by commas, of the planners that must know the terrain before the
+/// first question), `Time limit` (the longest time that it waits for a route; 2 s).
 class GroundStation {
  public:
-  /// Throws InvalidArgument for a terrain that cannot be read, Unavailable without a navigator or
-  /// flight controller.
+  /// Throws InvalidArgument for a terrain or zones that cannot be read, Unavailable without a
+  /// navigator or flight controller.
   GroundStation(skein::Entity& entity, const skein::ParameterValues& values);
 
   /// The mission; true only if every route was valid and the unreachable goal was refused as such.
@@ -42,6 +43,7 @@ class GroundStation {
   void ask_with_an_old_picture();
   void ask_for_the_unreachable();
   void draw();
+  void write_for_others(const AE_navigator::Problem& problem);
   bool conclude();
   Answer show(const Question& question, Answer answer);
   void accept(const std::string& label, const Question& question, const Answer& answer);
@@ -55,12 +57,15 @@ class GroundStation {
   std::chrono::milliseconds time_limit_;
   std::shared_ptr<const skein::navigation::Terrain> terrain_;
   std::string terrain_title_;
+  std::vector<AE_navigator::NoFlyZone> zones_;
   skein::navigation::HeightGrid ground_;
   NavigatorLink navigator_;
   AE_flightControllerI::FlightLimits limits_;
   std::chrono::milliseconds hurry_{};
   std::vector<skein::navigation::PicturedRoute> routes_;
   std::vector<AE_navigator::MissileSite> missiles_;  // found on the way
+  std::vector<std::filesystem::path> written_;
+  std::vector<std::string> not_in_fence_;
   std::vector<std::string> failures_;
 };
 

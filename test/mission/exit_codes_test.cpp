@@ -90,7 +90,7 @@ TEST_CASE("each exit code of the table has its cause") {
                              {"completion", "tcsh"},
                              {"launch", whole, "--set", "lift=3"},
                              {"launch", whole, "--variable", "lift"},
-                             {"status"}}) {
+                             {"restart"}}) {
     table.expect(launch::kUsageError, words);
   }
 

@@ -1,5 +1,8 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <fstream>
 
 #include "../tools/places.hpp"
 #include "mission_run.hpp"
@@ -16,18 +19,32 @@ std::filesystem::path tile() {
   std::_Exit(77);
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 }  // namespace
 
 TEST_CASE("the mission flies over an SRTM tile that is given by a relative path",
           "[.][real_terrain]") {
   const auto from_mission_folder =
       std::filesystem::relative(tile(), std::filesystem::temp_directory_path() / "any");
-  const MissionRun run(project_file("mission_profiles/route_planning.xml"),
-                       {"--set", "ground_station.Terrain=" + from_mission_folder.string(), "--set",
-                        "ground_station.Time limit=10 s"});
+  const auto zones = std::filesystem::temp_directory_path() /
+                     ("skein-zones-" + std::to_string(getpid()) + ".geojson");
+  std::ofstream(zones) << R"({"type": "Feature", "properties": {"name": "Moor", "margin_m": 900},
+                              "geometry": {"type": "Point", "coordinates": [27.9, 53.1]}})";
+  const MissionRun run(
+      project_file("mission_profiles/route_planning.xml"),
+      {"--set", "ground_station.Terrain=" + from_mission_folder.string(), "--set",
+       "ground_station.Time limit=10 s", "--set", "ground_station.Zones=" + zones.string()});
+  std::filesystem::remove(zones);
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(), Contains("Route planning over N53E027.hgt"));
   CHECK_THAT(run.output(),
              Contains("5 routes, all valid; the unreachable goal was refused as such"));
+  CHECK_THAT(run.output(), Contains("4 no-fly zones"));
+  CHECK_THAT(text_of(run.file("route.geojson")), Contains("Moor") && Contains("planner killed"));
+  CHECK_THAT(text_of(run.file("route.plan")), Contains("\"fileType\": \"Plan\""));
 }

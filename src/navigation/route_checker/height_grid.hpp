@@ -15,8 +15,8 @@ struct HeightGrid {
   std::vector<float> heights_m;  ///< Row by row, the southernmost first.
 };
 
-/// Reads SRTM tiles or a DTED tile without any code of the planners. Voids are as high as the highest
-/// post beside them. Throws InvalidArgument, naming the file, where that cannot be done.
+/// Reads SRTM tiles or a DTED tile without any code of the planners. Voids are as high as the
+/// highest post beside them. Throws InvalidArgument, naming the file, where that cannot be done.
 HeightGrid read_height_grid(const std::filesystem::path& file);
 
 }  // namespace skein::navigation

@@ -169,7 +169,7 @@ DegreePosts read_tiles(const Tiles& tiles, const std::filesystem::path& file) {
 
 Terrain read_hgt(const std::filesystem::path& file) {
   const Tiles tiles = tiles_of(file);
-  if (tiles.degrees_north == 1 && tiles.degrees_east == 1) {
+  if (file.filename().string().find("..") == std::string::npos) {
     const int side = posts_per_side(file);
     return lay_out(file, {.southern_latitude_deg = tiles.south_west.latitude_deg,
                           .western_longitude_deg = tiles.south_west.longitude_deg,

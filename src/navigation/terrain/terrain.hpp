@@ -76,8 +76,9 @@ class Terrain {
 ///
 /// Connected posts without data (-32768) become as high as the highest post beside them, so that no
 /// planner takes a hole in the data for a valley. Throws InvalidArgument, naming the file, where it
-/// cannot be read, is named or sized otherwise, lacks tiles, which it names, lies where tiles are not taken (see
-/// degree_tile.hpp), holds a height that no mountain on earth has, or holds no data at all.
+/// cannot be read, is named or sized otherwise, lacks tiles, which it names, lies where tiles are
+/// not taken (see degree_tile.hpp), holds a height that no mountain on earth has, or holds no data
+/// at all.
 Terrain read_hgt(const std::filesystem::path& file);
 
 /// Reads a DTED tile of level 0, 1 or 2 (MIL-PRF-89020B), which its headers describe; the file's

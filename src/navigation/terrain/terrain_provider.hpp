@@ -15,9 +15,9 @@ namespace skein::navigation {
 /// Finds a terrain by the name that a Problem gives, and keeps the last few that were asked for.
 ///
 /// `synthetic:<seed>` is invented; any other name is the path of an SRTM (`.hgt`) or DTED (`.dt0`,
-/// `.dt1`, `.dt2`) file, looked for as it is and then in each of the folders, in order. Several SRTM
-/// tiles (see read_hgt) are where the first of them is.
-/// Thread-safe; two threads that ask for the same new name wait for one reading.
+/// `.dt1`, `.dt2`) file, looked for as it is and then in each of the folders, in order. Several
+/// SRTM tiles (see read_hgt) are where the first of them is. Thread-safe; two threads that ask for
+/// the same new name wait for one reading.
 class TerrainProvider {
  public:
   explicit TerrainProvider(std::vector<std::filesystem::path> folders = {});
