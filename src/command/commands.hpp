@@ -167,7 +167,8 @@ struct StatusArguments : RunningArguments {
   bool json = false;
 };
 
-/// `skein status PROFILE`: what the launcher of a mission knows of its processes.
+/// `skein status [PROFILE]`: what the launcher of a mission knows of its processes; without a
+/// profile, of all missions that this user flies here.
 int show_status(const StatusArguments& arguments);
 
 struct ServicesArguments : Onlooker {
@@ -228,6 +229,7 @@ int describe(const DescribeArguments& arguments);
 
 struct TopicsArguments : Onlooker {
   double seconds = 1.5;
+  bool names = false;  ///< Nothing else of each.
   bool json = false;
 };
 

@@ -158,6 +158,9 @@ int read(const DecisionsArguments& arguments) {
   };
   arguments.log.ends_with(".mcap") ? for_each_in_recording(arguments.log, read_one)
                                    : for_each_in_log(arguments.log, read_one);
+  if (count == 0)
+    std::fprintf(stderr, "skein: %s holds no decisions\n",
+                 printable(arguments.log, kLongestPlace).c_str());
   if (!arguments.replays) return 0;
   print_counts(count, different, arguments.json);
   return different == 0 ? 0 : 1;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "check.hpp"
@@ -6,8 +7,13 @@
 #include "doctor/purpose.hpp"
 #include "doctor/report.hpp"
 #include "interruption.hpp"
+#include "launch/launch_plan.hpp"
+#include "launch/mission_claim.hpp"
 #include "profile/check.hpp"
 #include "profile/mission_profile.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+#include "skein/mission_status.idl.hpp"
 
 namespace skein::command {
 namespace {
@@ -75,6 +81,25 @@ Onlooker place_of(const DoctorArguments& arguments, const doctor::Purpose& purpo
   return place;
 }
 
+/// Takes those out of the mission that its launcher was told to leave out, and says so.
+Symptoms leave_out(profile::MissionProfile& mission, const std::string& host) {
+  launch::MissionStatus status;
+  try {
+    status = idl::from_json<launch::MissionStatus>(launch::ask_launcher(mission, host, "status"));
+  } catch (const Error&) {
+    return {};  // it does not fly, or its launcher hangs: other findings tell
+  }
+  std::string names;
+  std::erase_if(mission.peers, [&](const profile::PeerProfile& peer) {
+    if (std::ranges::count(status.elsewhere, peer.name + launch::kLeftOut) == 0) return false;
+    names += (names.empty() ? "" : ", ") + peer.name;
+    return true;
+  });
+  if (names.empty()) return {};
+  return {{Severity::Note, "peers",
+           "not started here" + std::string(launch::kLeftOut) + ": " + names, "skein status", ""}};
+}
+
 std::vector<std::string> usable_vendors(const doctor::Facts& facts) {
   std::vector<std::string> names;
   for (const doctor::VendorModule& vendor : facts.vendors)
@@ -94,8 +119,10 @@ int examine(const DoctorArguments& arguments) {
     symptoms.insert(symptoms.end(), more.begin(), more.end());
   };
   if (!arguments.profile.empty()) add(findings(arguments));
+  auto expected = mission;
+  if (expected) add(leave_out(*expected, arguments.host));
   add(doctor::encounter(place_of(arguments, purpose, sound), usable_vendors(facts),
-                        mission ? &*mission : nullptr, interruption));
+                        expected ? &*expected : nullptr, interruption));
   if (arguments.json) {
     doctor::print_as_json(symptoms);
   } else {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -81,6 +82,17 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
   return options;
 }
 
+/// Where it flies, and where commands look that are not told.
+std::string place_of(const profile::MissionProfile& mission) {
+  const std::string domain = std::to_string(mission.domain);
+  const char* const variable = std::getenv(kDomainVariable);
+  const std::string named = variable ? variable : "";
+  const std::string text = "flies on domain " + domain;
+  if (named == domain || (named.empty() && mission.domain == 0)) return text;
+  return text + "; commands that look need --domain " + domain + ", or they look on domain " +
+         (named.empty() ? "0" : named + ", as " + kDomainVariable + " says");
+}
+
 /// Throws DescriptionError with all that `check` finds, where one of it is an error; otherwise says
 /// what it finds. A dry run starts nothing, and does not need what this machine may lack.
 profile::MissionProfile read_checked(const LaunchArguments& arguments) {
@@ -135,6 +147,7 @@ int launch(const LaunchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);
   if (arguments.attended) return run_for_another(plan, claim, mission);
   const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
+  narrator->tell_error("* mission: " + place_of(mission));
   if (!beside.empty()) narrator->tell_error("* mission: " + beside);
   for (const std::string& name : plan.elsewhere)
     narrator->tell_error("* mission: " + name + " is not started here");

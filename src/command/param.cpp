@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -28,24 +29,36 @@ using launch::ILiveParameters;
 using launch::RunningParameter;
 
 constexpr std::chrono::milliseconds kLookAgain{20};
+constexpr std::chrono::milliseconds kAskAgain{200};
 /// A name alone may be that of entities in several systems, which are not found at once.
 constexpr std::chrono::seconds kSettling{1};
 constexpr std::size_t kLongestText = 4096;
 
-/// For who is there, and does not tell, or is not there at all.
-std::string reason_for_none(Entity& entity, const std::string& name) {
+/// Who answers, by names.
+struct Present {
   std::vector<std::string> names;
-  Inspector inspector(entity);
-  for (const Inspected& peer : inspector.ask_all(inspection::Subject::Self, kAnswerPatience)) {
+  std::string asked;  ///< SYSTEM/NAME of who has the name that is looked for; empty: nobody.
+};
+
+Present ask_for(Inspector& inspector, const std::string& name, Duration patience) {
+  Present present;
+  for (const Inspected& peer : inspector.ask_all(inspection::Subject::Self, patience)) {
     const std::string& whole = peer.answer.entity;
-    names.push_back(whole);
-    names.push_back(whole.substr(whole.find('/') + 1));
-    if (name != names.back() && name != whole) continue;
-    return whole +
+    present.names.push_back(whole);
+    present.names.push_back(whole.substr(whole.find('/') + 1));
+    if (name == present.names.back() || name == whole) present.asked = whole;
+  }
+  return present;
+}
+
+/// For who is there, and does not tell, or is not there at all.
+std::string reason_for_none(const Present& present, const std::string& name) {
+  if (!present.asked.empty()) {
+    return present.asked +
            " has no parameter that may change while it runs; what it was given stands in its "
            "mission profile";
   }
-  return "no entity here is '" + name + "'" + suggestion(name, names) +
+  return "no entity here is '" + name + "'" + suggestion(name, present.names) +
          "; `skein peers` lists them";
 }
 
@@ -70,15 +83,22 @@ std::string choice_among_namesakes(const Table::Found& found, const std::string&
 Table::Found::value_type await_teller(Entity& entity, const ParamArguments& arguments) {
   const bool names_system = arguments.entity.find('/') != std::string::npos;
   const Instant end = entity.clock().now() + duration_of(arguments.seconds);
+  Inspector inspector(entity);
   Instant settled = Instant::max();
+  std::optional<Instant> silent;  // since when it is known to be there, and tells nothing
   for (;; std::this_thread::sleep_for(kLookAgain)) {
     const auto found = tellers(entity, arguments.entity);
-    const Instant now = entity.clock().now();
     if (found.empty()) {
-      if (now >= end) throw Unavailable(reason_for_none(entity, arguments.entity));
       settled = Instant::max();
+      const Present present = ask_for(inspector, arguments.entity, kSettling);
+      const Instant now = entity.clock().now();
+      silent = present.asked.empty() ? std::nullopt : std::optional(silent.value_or(now));
+      if (now >= end || (silent && now >= *silent + kSettling))
+        throw Unavailable(reason_for_none(present, arguments.entity));
+      std::this_thread::sleep_for(kAskAgain);
       continue;
     }
+    const Instant now = entity.clock().now();
     settled = std::min(settled, now + kSettling);
     if (found.size() == 1 && (names_system || now >= settled)) return found.front();
     if (now >= settled) throw InvalidArgument(choice_among_namesakes(found, arguments.entity));

@@ -5,6 +5,8 @@
 
 #include "commands.hpp"
 #include "core/printable.hpp"
+#include "json_output.hpp"
+#include "launch/exit_codes.hpp"
 #include "launch/mission_claim.hpp"
 #include "profile/check.hpp"
 #include "skein/detail/type_support.hpp"
@@ -29,6 +31,8 @@ std::string without_system(const profile::MissionProfile& mission, const std::st
   return process;
 }
 
+constexpr std::size_t kLongestReason = 4096;
+
 std::string seconds(double time) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.1f s", time);
@@ -46,12 +50,39 @@ void print(const launch::ProcessStatus& process) {
 }
 
 void print(const launch::MissionStatus& status) {
-  std::printf("mission %s, by launcher %u for %s%s\n", printable(status.mission).c_str(),
-              status.launcher, seconds(status.uptime).c_str(), status.degraded ? ", degraded" : "");
-  if (!status.ending.empty()) std::printf("  ends: %s\n", printable(status.ending, 4096).c_str());
+  std::printf("mission %s, on domain %u, by launcher %u for %s%s\n",
+              printable(status.mission).c_str(), status.domain, status.launcher,
+              seconds(status.uptime).c_str(), status.degraded ? ", degraded" : "");
+  if (!status.ending.empty())
+    std::printf("  ends: %s\n", printable(status.ending, kLongestReason).c_str());
   for (const auto& process : status.processes) print(process);
   for (const auto& name : status.elsewhere)
     std::printf("  %s: not started here\n", printable(name).c_str());
+}
+
+int show_all(bool json) {
+  auto list = nlohmann::ordered_json::array();
+  std::size_t flown = 0;
+  bool complete = true;
+  for (const launch::LauncherAnswer& answer : launch::ask_launchers("status")) {
+    if (!answer.failure.empty()) {
+      complete = false;
+      std::fprintf(stderr, "skein: %s\n", printable(answer.failure, kLongestReason).c_str());
+      continue;
+    }
+    if (json) {
+      list.push_back(nlohmann::ordered_json::parse(answer.text));
+    } else {
+      print(idl::from_json<launch::MissionStatus>(answer.text));
+    }
+    ++flown;
+  }
+  if (json) {
+    print_json(list, true);
+  } else if (flown == 0 && complete) {
+    std::printf("no mission of this user flies here\n");
+  }
+  return complete ? 0 : launch::kStartFailed;
 }
 
 }  // namespace
@@ -65,6 +96,7 @@ int restart_process(const RestartArguments& arguments) {
 }
 
 int show_status(const StatusArguments& arguments) {
+  if (arguments.profile.empty()) return show_all(arguments.json);
   const std::string answer = launch::ask_launcher(mission_of(arguments), arguments.host, "status");
   if (arguments.json) {
     std::printf("%s\n", printable(answer, answer.size()).c_str());

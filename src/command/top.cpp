@@ -185,17 +185,23 @@ nlohmann::ordered_json json_of(const top::Figures& figures) {
 }
 
 /// Rates need two tellings of each peer, who tells once a second.
-void show_once(Watch& watch, bool json, const Interruption& interruption) {
-  if (interruption.wait(1.5)) return;
+void show_once(Watch& watch, const TopArguments& arguments, const Interruption& interruption) {
+  const auto listen = [&] {
+    if (interruption.wait(1.5))
+      throw Interrupted("interrupted while it listened", interruption.signal());
+  };
+  listen();
   watch.look();
-  if (interruption.wait(1.5)) return;
-  if (json) {
-    print_json(json_of(watch.look()), true);
-    return;
+  listen();
+  const top::Figures figures = watch.look();
+  if (arguments.json) {
+    print_json(json_of(figures), true);
+  } else {
+    constexpr std::size_t kWidth = 80;
+    for (const top::Line& line : top::draw(figures, {}, kWidth, std::nullopt))
+      std::printf("%s\n", line.text.c_str());
   }
-  constexpr std::size_t kWidth = 80;
-  for (const top::Line& line : top::draw(watch.look(), {}, kWidth, std::nullopt))
-    std::printf("%s\n", line.text.c_str());
+  if (figures.peers.empty()) tell_missions_elsewhere(arguments);
 }
 
 }  // namespace
@@ -205,7 +211,7 @@ int show_top(const TopArguments& arguments) {
   Entity entity = join(arguments, "top");
   Watch watch(entity, arguments.tools);
   if (arguments.once) {
-    show_once(watch, arguments.json, interruption);
+    show_once(watch, arguments, interruption);
   } else {
     const Observer observer(watch, arguments.every);
     show(observer, interruption);

@@ -140,6 +140,9 @@ std::string conflict(const Endpoint& publisher, const Endpoint& subscription, Ve
   return others_versions(publisher, subscription, difference);
 }
 
+/// Skein's own topics, whose publishers come with what there is to tell.
+bool is_own(const std::string& topic) { return topic.starts_with("skein/"); }
+
 }  // namespace
 
 std::optional<std::string> difference_of(const types::TypeSystem& one,
@@ -180,7 +183,7 @@ std::vector<UnpublishedTopic> unpublished_topics(const std::vector<Endpoint>& en
   std::set<std::pair<std::string, std::string>> told;  // topic and entity
   for (const Endpoint& subscription : endpoints) {
     const inspection::TopicEndpoint& wanted = subscription.told;
-    if (wanted.publishes || !is_alone(subscription)) continue;
+    if (wanted.publishes || is_own(wanted.name) || !is_alone(subscription)) continue;
     if (!told.emplace(wanted.name, subscription.entity).second) continue;
     std::vector<std::string> unheard;
     for (const Endpoint& other : endpoints) {

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kLookAgain = 0.1;
 constexpr std::size_t kLongestConflict = 1024;
+/// After which it says what it waits for.
+constexpr std::chrono::milliseconds kSilence{1500};
 /// Of one round of questions.
 constexpr std::chrono::milliseconds kShortest{100};
 constexpr std::chrono::milliseconds kLongest{1000};
@@ -34,8 +36,10 @@ std::vector<std::string> names_of(const std::vector<KnownTopic>& topics) {
 KnownTopic await_topic(Inspector& inspector, const std::string& name, double seconds,
                        const Interruption& interruption) {
   using std::chrono::steady_clock;
-  const auto end = steady_clock::now() +
-                   std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+  const auto begin = steady_clock::now();
+  const auto end =
+      begin + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+  bool told = false;
   std::vector<KnownTopic> topics;
   while (true) {
     topics = known_topics(inspector,
@@ -48,7 +52,13 @@ KnownTopic await_topic(Inspector& inspector, const std::string& name, double sec
       throw InvalidArgument("topic '" + name + "' has several types here: " +
                             printable(found[0].type) + " and " + printable(found[1].type));
     }
-    if (steady_clock::now() >= end) break;
+    const auto now = steady_clock::now();
+    if (now >= end) break;
+    if (!told && now - begin >= kSilence) {
+      told = true;
+      std::fprintf(stderr, "skein: waiting for the topic '%s'%s\n", printable(name).c_str(),
+                   suggestion(name, names_of(topics)).c_str());
+    }
     if (interruption.wait(kLookAgain)) {
       throw Interrupted("interrupted while it looked for the topic '" + name + "'",
                         interruption.signal());

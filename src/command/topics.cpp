@@ -62,6 +62,11 @@ int list_topics(const TopicsArguments& arguments) {
   Inspector inspector(entity);
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const auto topics = known_topics(inspector, kAnswerPatience);
+  if (arguments.names) {
+    for (const KnownTopic& topic : topics) std::printf("%s\n", printable(topic.name).c_str());
+    if (topics.empty()) tell_missions_elsewhere(arguments);
+    return 0;
+  }
   if (arguments.json) {
     auto all = nlohmann::ordered_json::array();
     for (const KnownTopic& topic : topics) all.push_back(json_of(topic));

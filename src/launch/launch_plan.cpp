@@ -162,6 +162,7 @@ LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeAr
   demand_known(only, mission);
   LaunchPlan plan;
   plan.mission = mission.name;
+  plan.domain = mission.domain;
   std::map<std::string, bool> known{{"", true}};  // whether a host is here: names are asked once
   for (const std::string& name : hosts_of(mission)) known[name] = is_here(name, host);
   known["localhost"] = true;
@@ -173,7 +174,7 @@ LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeAr
     const auto& peer = mission.peers[i];
     const std::string why_not = starts_here[i]      ? ""
                                 : !known[peer.host] ? " on " + peer.host
-                                                    : ", which --only leaves out";
+                                                    : kLeftOut;
     if (peer.runs_mission && !why_not.empty()) plan.mission_elsewhere = peer.name + why_not;
     const auto add = [&](ChildPlan child) {
       if (why_not.empty()) {

@@ -24,6 +24,9 @@ struct ChildPlan {
   std::vector<Prerequisite> after{};  ///< What must be ready before it is started.
 };
 
+/// Behind the names of processes of this host that are not started.
+inline constexpr const char* kLeftOut = ", which --only leaves out";
+
 struct LaunchPlan {
   std::string mission;
   std::vector<ChildPlan> children;
@@ -31,6 +34,7 @@ struct LaunchPlan {
   /// The peer that runs the mission, where it is one of those: this launcher does not see its end,
   /// and runs until it is interrupted or its own processes have ended.
   std::string mission_elsewhere{};
+  int domain = 0;
 };
 
 /// Why a launcher of `host` has nothing to start: who it is, and which hosts the peers name.

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -29,14 +30,17 @@ constexpr std::string_view kPrefix = "skein-launch-";
 /// A launcher takes the first name that no process of another user has: anybody may take any name.
 constexpr int kNames = 16;
 
+/// With which the names of all this user's launchers begin.
+std::string own_prefix() { return std::string(kPrefix) + std::to_string(::getuid()) + "-"; }
+
 /// Two launchers of one name start the same peers. `number` is less than kNames.
 std::string name_of(const profile::MissionProfile& mission, const std::string& host, int number) {
   std::set<std::string> systems;
   for (const auto& peer : mission.peers) systems.insert(peer.system);
   std::string all = mission.name + '\0' + host;
   for (const std::string& system : systems) all += '\0' + system;
-  return std::string(kPrefix) + std::to_string(::getuid()) + "-" + std::to_string(mission.domain) +
-         "-" + std::to_string(std::hash<std::string>()(all)) +
+  return own_prefix() + std::to_string(mission.domain) + "-" +
+         std::to_string(std::hash<std::string>()(all)) +
          (number == 0 ? "" : "-" + std::to_string(number));
 }
 
@@ -61,20 +65,30 @@ std::optional<ucred> connect(const FileDescriptor& client, const sockaddr_un& ad
 
 constexpr std::string_view kUnconnected = "01";  // SS_UNCONNECTED of <linux/net.h>
 
-/// The inode of the socket that is bound to that name, as a process's descriptor shows it.
-std::optional<std::string> link_to(const std::string& name) {
+/// Sockets that are bound to a name in the abstract namespace, with the inode of each.
+std::map<std::string, std::string> bound_sockets() {
+  std::map<std::string, std::string> inodes;
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {
     std::istringstream columns(line);
     std::string word, state, inode, shown;
     for (int i = 0; i < 5; ++i) columns >> word;
     columns >> state >> inode >> shown;
-    if (state != kUnconnected) continue;  // what is connected to it bears its name, too
+    // What is connected to it bears its name, too.
+    if (state != kUnconnected || !shown.starts_with('@')) continue;
     // Each zero shows as '@', and the name is filled up with them.
     shown.erase(shown.find_last_not_of('@') + 1);
-    if (shown == "@" + name) return "socket:[" + inode + "]";
+    if (shown.size() > 1) inodes.emplace(shown.substr(1), inode);
   }
-  return std::nullopt;
+  return inodes;
+}
+
+/// The socket that is bound to that name, as a process's descriptor shows it.
+std::optional<std::string> link_to(const std::string& name) {
+  const auto sockets = bound_sockets();
+  const auto found = sockets.find(name);
+  if (found == sockets.end()) return std::nullopt;
+  return "socket:[" + found->second + "]";
 }
 
 /// Not by the owner of the folder, which is root where a process has changed its user.
@@ -127,14 +141,36 @@ std::string read_all(const FileDescriptor& socket) {
   return text;
 }
 
+FileDescriptor patient_socket() {
+  FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!socket) throw_system_error("a socket");
+  for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
+    ::setsockopt(socket.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
+  return socket;
+}
+
+/// What the launcher at the other end answers. Throws as ask_launcher().
+std::string ask(const FileDescriptor& socket, pid_t launcher, const std::string& request) {
+  const std::string line = request + "\n";
+  std::string answer;
+  if (::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL) ==
+      static_cast<ssize_t>(line.size()))
+    answer = read_all(socket);
+  const bool accepted = answer.starts_with(kAccepted);
+  if (!accepted && !answer.starts_with(kRefused)) {
+    throw Unavailable("the launcher, process " + std::to_string(launcher) +
+                      ", does not answer; is it stopped?");
+  }
+  answer.erase(0, accepted ? kAccepted.size() : kRefused.size());
+  if (!accepted) throw Unavailable("the launcher refuses: " + answer);
+  return answer;
+}
+
 }  // namespace
 
 std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
                          const std::string& request) {
-  const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (!socket) throw_system_error("a socket");
-  for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
-    ::setsockopt(socket.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
+  const FileDescriptor socket = patient_socket();
   std::optional<ucred> holder;
   for (int number = 0; number < kNames && !holder; ++number) {
     const std::string name = name_of(mission, host, number);
@@ -146,19 +182,23 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
                       (host.empty() ? "" : " as host '" + host + "'") +
                       "; start it by skein launch, and ask as the same user");
   }
-  const std::string line = request + "\n";
-  std::string answer;
-  if (::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL) ==
-      static_cast<ssize_t>(line.size()))
-    answer = read_all(socket);
-  const bool accepted = answer.starts_with(kAccepted);
-  if (!accepted && !answer.starts_with(kRefused)) {
-    throw Unavailable("the launcher, process " + std::to_string(holder->pid) +
-                      ", does not answer; is it stopped?");
+  return ask(socket, holder->pid, request);
+}
+
+std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
+  std::vector<LauncherAnswer> answers;
+  for (const auto& [name, inode] : bound_sockets()) {
+    if (!name.starts_with(own_prefix())) continue;
+    const FileDescriptor socket = patient_socket();
+    const auto holder = connect(socket, address_of(name));
+    if (!holder || holder->uid != ::getuid()) continue;
+    try {
+      answers.push_back({ask(socket, holder->pid, request), ""});
+    } catch (const Unavailable& error) {
+      answers.push_back({"", error.what()});
+    }
   }
-  answer.erase(0, accepted ? kAccepted.size() : kRefused.size());
-  if (!accepted) throw Unavailable("the launcher refuses: " + answer);
-  return answer;
+  return answers;
 }
 
 MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::string& host) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "profile/mission_profile.hpp"
 
@@ -18,6 +19,15 @@ inline constexpr std::string_view kRefused = "no ";
 /// some seconds, and with its reason where it refuses.
 std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
                          const std::string& request);
+
+struct LauncherAnswer {
+  std::string text;
+  std::string failure;  ///< Why there is none: it does not answer, or refuses.
+};
+
+/// Asks all launchers of this user and network namespace; one that does not answer takes some
+/// seconds.
+std::vector<LauncherAnswer> ask_launchers(const std::string& request);
 
 /// Keeps other launchers of this user and network namespace from flying the same mission (name,
 /// domain and systems) as the same host, while it lives. Released with the process, however it

@@ -65,6 +65,20 @@ constexpr const char* kOpenEnd =
     "or all of its "
     "processes have ended";
 
+/// The process of a CSP is PEER/CSP here, PEER.CSP among entities, and CSP where nobody else has
+/// that name.
+std::optional<std::size_t> process_named(std::string_view asked,
+                                         const std::vector<std::string>& names) {
+  std::string name(asked);
+  std::ranges::replace(name, '.', '/');
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == asked) return i;
+    if (names[i] == name || names[i].ends_with("/" + name)) found.push_back(i);
+  }
+  return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+}
+
 std::string accepted(const std::string& text) { return std::string(kAccepted).append(text); }
 std::string refused(const std::string& text) { return std::string(kRefused).append(text); }
 
@@ -266,19 +280,18 @@ class MissionRun {
     return refused("it does not know this request; is it of another version?");
   }
 
-  std::string restart(std::string_view name) {
+  std::string restart(std::string_view asked) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < children_.size(); ++i) {
-      names.push_back(children_[i].plan().name);
-      if (names.back() != name) continue;
+    for (const SupervisedChild& child : children_) names.push_back(child.plan().name);
+    if (const auto i = process_named(asked, names)) {
+      const std::string& name = names[*i];
       if (state_.verdict()) return refused("the mission is being ended");
-      if (child_of(i).state() == ChildState::Idle)
-        return refused(names.back() + " was not started yet");
-      report("is asked to start " + names.back() + " anew");
-      apply(state_.restart(i, now()));
-      return accepted(names.back() + " is started anew");
+      if (child_of(*i).state() == ChildState::Idle) return refused(name + " was not started yet");
+      report("is asked to start " + name + " anew");
+      apply(state_.restart(*i, now()));
+      return accepted(name + " is started anew");
     }
-    const std::string unknown = printable(name);
+    const std::string unknown = printable(asked);
     std::string list;
     for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;
     return refused("the mission has no process '" + unknown + "' here" +
@@ -289,6 +302,7 @@ class MissionRun {
     MissionStatus status;
     const Time when = now();
     status.mission = plan_.mission;
+    status.domain = static_cast<std::uint32_t>(plan_.domain);
     status.launcher = static_cast<std::uint32_t>(::getpid());
     status.uptime = std::chrono::duration<double>(when - start_).count();
     status.degraded = state_.is_degraded();

@@ -331,6 +331,21 @@ TEST_CASE("of two peers of one name that provide nothing the later one warns of 
   CHECK(second.writes("process " + std::to_string(first.pid()) + " runs a peer of the same name"));
 }
 
+TEST_CASE("a launcher says on which domain it flies, and that commands look on another") {
+  const Errand errand;
+  const std::string profile =
+      errand.profile("", "<peer name='p' component='herald.xml' program='true'/>");
+  const auto told = [&](const std::string& named) {
+    CommandRun run({"launch", profile},
+                   {.prepare = [&] { setenv("SKEIN_DOMAIN", named.c_str(), 1); }});
+    CHECK(run.wait() == 0);
+    return run.output();
+  };
+  CHECK_THAT(told("48"), Contains("* mission: flies on domain 48\n"));
+  CHECK_THAT(told("7"), Contains("flies on domain 48; commands that look need --domain 48, or "
+                                 "they look on domain 7, as SKEIN_DOMAIN says"));
+}
+
 TEST_CASE("a second launcher of a mission is refused and names the first") {
   if (!installed("fastdds")) return;
   const Errand errand;

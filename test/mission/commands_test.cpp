@@ -290,6 +290,9 @@ TEST_CASE("topics lists who publishes and subscribes to what") {
   CHECK(json.json()[0]["endpoints"][0]["entity"] == "field/station");
   CHECK(json.json()[0]["endpoints"][0]["publishes"] == true);
   CHECK(json.json()[1]["endpoints"][0]["publishes"] == false);
+  Command names = field.start({"topics", "--names"});
+  CHECK(names.code() == 0);
+  CHECK(names.printed() == "corner\nplot\n");
 }
 
 TEST_CASE(
@@ -704,6 +707,7 @@ TEST_CASE("decisions that are made again are counted") {
   Command text(words);
   CHECK(text.code() == 0);
   CHECK(text.printed() == "0 decisions, 0 come out differently\n");
+  CHECK_THAT(text.said(), Contains(log + " holds no decisions"));
   Words with_json = words;
   with_json.push_back("--json");
   Command json(with_json);

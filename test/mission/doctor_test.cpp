@@ -153,6 +153,21 @@ TEST_CASE("a peer that does not answer while others do is named") {
   CHECK_THAT(finding["cause"].get<std::string>(), Contains("the peer 'branch' does not answer"));
 }
 
+TEST_CASE("a peer that --only leaves out is not missed") {
+  if (!installed("fastdds") || !installed("cyclonedds")) return;
+  const Errand errand;
+  const std::string profile =
+      errand.profile("", kOffice + "<peer name='branch' component='office.xml'/>");
+  CommandRun mission({"launch", profile, "--only", "office"});
+  REQUIRE(mission.writes("all 1 processes are ready"));
+  CommandRun run({"doctor", profile, "--json"});
+  CHECK(run.wait() <= 1);
+  const auto finding = about("peers", run.output());
+  CHECK(finding["severity"] == "note");
+  CHECK(finding["cause"] == "not started here, which --only leaves out: branch");
+  CHECK_THAT(run.output(), Contains("all 1 peers of the mission answer"));
+}
+
 TEST_CASE("a doctor that is interrupted while it looks ends") {
   CommandRun run({"doctor", "--domain", "52"});
   run.signal(SIGINT);

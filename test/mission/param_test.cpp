@@ -218,6 +218,19 @@ TEST_CASE("who asks a peer that does not answer is told so in time, and may give
   });
 }
 
+TEST_CASE("of a peer whose parameters are all fixed that is told, and not only when time is up") {
+  on_each_vendor([](const std::string& vendor) {
+    const Errand errand;
+    const CommandRun launch({"launch", "--verbose", "--no-log",
+                             errand.profile("vendor='" + vendor + "'",
+                                            "<peer name='herald' component='herald.xml'/>")});
+    REQUIRE(launch.writes("herald: ready"));
+    const auto said = say({"param", "get", "herald", "Rate", "--wait", "10 min"}, vendor);
+    CHECK(said.code == 69);
+    CHECK_THAT(said.text, Contains("uav-1/herald has no parameter that may change while it runs"));
+  });
+}
+
 TEST_CASE("where nobody has parameters that may change, that is told") {
   on_each_vendor([](const std::string& vendor) {
     const auto said = say({"param", "list", "--wait", "0.1s"}, vendor);

@@ -222,6 +222,49 @@ TEST_CASE("who was given up is shown, is started anew on request, and marks the 
   CHECK_THAT(nobody.output(), Contains("the mission 'errand' is not flown here on domain 48"));
 }
 
+TEST_CASE("all missions that fly here are shown to who names none") {
+  if (!installed("fastdds")) return;
+  const auto all = [](std::vector<std::string> options) {
+    options.insert(options.begin(), "status");
+    CommandRun run(options);
+    CHECK(run.wait() == 0);
+    return run.output();
+  };
+  CHECK(all({}) == "no mission of this user flies here\n");
+  CHECK(all({"--json"}) == "[]\n");
+  const Errand errand;
+  const std::string other =
+      errand.write("other.xml", "<mission name='other' domain='47' dictionary='" +
+                                    project_file("mission_profiles/dictionary.xml") +
+                                    "' plugin='skein_errand_components'>" + kOffice + "</mission>");
+  CommandRun first({"launch", errand.profile("", kOffice)});
+  CommandRun second({"launch", other});
+  REQUIRE(first.writes("all 1 processes are ready"));
+  REQUIRE(second.writes("all 1 processes are ready"));
+  CHECK_THAT(
+      all({}),
+      Contains("mission errand, on domain 48, by launcher " + std::to_string(first.pid())) &&
+          Contains("mission other, on domain 47, by launcher " + std::to_string(second.pid())) &&
+          Contains("office: ready"));
+}
+
+TEST_CASE("the process of a CSP is started anew by each name under which it is shown") {
+  if (!installed("cyclonedds") || !installed("fastdds")) return;
+  const Errand folder;
+  const std::string profile = write_route_mission(folder.path());
+  CommandRun launcher({"launch", profile});
+  REQUIRE(launcher.writes("all 4 processes are ready"));
+  for (const std::string name :
+       {"navigator/RRTConnect", "navigator.RRTConnect", "RRTConnect", "uav-1/navigator/RRTConnect",
+        "uav-1/navigator.RRTConnect", "uav-1/RRTConnect"}) {
+    CAPTURE(name);
+    REQUIRE(becomes(profile, "navigator/RRTConnect", "ready"));
+    CommandRun restart({"restart", profile, name});
+    CHECK(restart.wait() == 0);
+    CHECK(restart.output() == "navigator/RRTConnect is started anew\n");
+  }
+}
+
 TEST_CASE("a launcher keeps logs of all that happened, with what the run depended on") {
   if (!installed("fastdds")) return;
   const Errand errand;

@@ -119,9 +119,8 @@ Symptoms of_mission(const DomainPicture& picture, const profile::MissionProfile&
         {Severity::Warning, "peers",
          "the peer '" + peer->name + "' does not answer, though others of the mission do",
          "nothing of " + peer->system + "/" + peer->name + " is known in " + place,
-         "where --only left it out, that is no fault; else see whether another finding tells that "
-         "its "
-         "process is stopped, and what `skein launch` says of it" +
+         "see whether another finding tells that its process is stopped, and what `skein status` "
+         "says of it" +
              (peer->host.empty() ? "" : " on " + peer->host + ", and `skein doctor` there")});
   }
   if (symptoms.empty()) {

@@ -13,8 +13,9 @@ CLI::Option* add_profile(CLI::App& command, std::string& profile) {
   return command.add_option("PROFILE", profile, "Mission profile (XML)")->type_name(kFile);
 }
 
-void add_host(CLI::App& command, std::string& host) {
-  command.add_option("--host", host, "Which host of the profile this is; default: as names tell")
+CLI::Option* add_host(CLI::App& command, std::string& host) {
+  return command
+      .add_option("--host", host, "Which host of the profile this is; default: as names tell")
       ->type_name("NAME");
 }
 
@@ -139,7 +140,7 @@ void add_peer(CLI::App& app, int& result) {
       ->type_name("WORD");
 }
 
-void add_running(CLI::App& command, RunningArguments& arguments) {
+CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
   constexpr std::array kCodes{
       launch::ExitCode{"0", "done"},
       launch::ExitCode{"64", "the command line is wrong; nothing was done"},
@@ -147,10 +148,11 @@ void add_running(CLI::App& command, RunningArguments& arguments) {
                        "the mission does not fly here, or its launcher refused or did not answer"},
       launch::ExitCode{"78", "the profile is wrong"},
   };
-  add_profile(command, arguments.profile)->required();
-  add_variables(command, arguments.variables);
-  add_host(command, arguments.host);
+  CLI::Option* profile = add_profile(command, arguments.profile);
+  add_variables(command, arguments.variables)->needs(profile);
+  add_host(command, arguments.host)->needs(profile);
   command.footer(command.get_footer() + "\n" + exit_codes_text(kCodes));
+  return profile;
 }
 
 void add_restart(CLI::App& app, int& result) {
@@ -158,16 +160,18 @@ void add_restart(CLI::App& app, int& result) {
       app, "restart", "Start a process of a running mission anew",
       {{"skein restart mission.xml navigator", "Also if it was given up: restarts count anew"}});
   auto& arguments = arguments_of(command, restart_process, result);
-  add_running(command, arguments);
+  add_running(command, arguments)->required();
   add_process(command, arguments.process);
 }
 
 void add_status(CLI::App& app, int& result) {
   auto& command =
       add_command(app, "status", "Show what the launcher of a running mission knows",
-                  {{"skein status mission.xml", "State, process, restarts and last end of each"}});
+                  {{"skein status", "Of all missions that you fly here"},
+                   {"skein status mission.xml", "State, process, restarts and last end of each"}});
   auto& arguments = arguments_of(command, show_status, result);
-  add_running(command, arguments);
+  add_running(command, arguments)
+      ->description("Mission profile (XML); default: all missions that this user flies here");
   add_json(command, arguments.json);
 }
 

@@ -119,11 +119,13 @@ void add_describe(CLI::App& app, int& result) {
 
 void add_topics(CLI::App& app, int& result) {
   auto& command = add_command(app, "topics", "List who publishes and subscribes to what",
-                              {{"skein topics --domain 42", "Types, entities, QoS and counts"}});
+                              {{"skein topics --domain 42", "Types, entities, QoS and counts"},
+                               {"skein topics --names", "A line for each topic"}});
   auto& arguments = arguments_of(command, list_topics, result);
   add_onlooker(command, arguments);
   add_wait(command, arguments.seconds);
-  add_json(command, arguments.json);
+  auto* names = command.add_flag("--names", arguments.names, "Print the topics' names alone");
+  add_json(command, arguments.json)->excludes(names);
 }
 
 void add_topic(CLI::App& command, TopicArguments& arguments) {
