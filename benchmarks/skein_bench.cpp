@@ -27,6 +27,7 @@ namespace {
 struct Plan {
   CallPlan calls;
   CallPlan ways;
+  CallPlan same_host;
   RivalPlan rivals;
   CallPlan idle_clients;
   CallPlan recorded_calls;
@@ -51,6 +52,7 @@ Plan full_plan() {
   const CallPlan ways{{{64, 200}, {65'536, 60}, {1'048'576, 15}}, 10};
   return {{sizes, 90},
           ways,
+          {{{64, 1000}}, 30},
           {sizes, 15, 400, 320, 1000, 200, 3000},
           {{{64, 300}}, 60},
           {{{64, 300}, {1024, 300}, {65'536, 100}}, 40},
@@ -73,6 +75,7 @@ Plan quick_plan() {
   const std::vector<CallPlan::Size> sizes{{16, 3}, {64, 3}, {1024, 3}, {65'536, 3}, {1'048'576, 2}};
   return {{sizes, 1},
           {sizes, 1},
+          {{{64, 3}}, 1},
           {sizes, 1, 5, 32, 64, 5, 10},
           {{{64, 3}}, 1},
           {{{64, 3}}, 1},
@@ -117,6 +120,8 @@ struct Part {
 const std::vector<Part> kParts{
     {"calls", [](Configurations& all, const Plan& plan) { return compare_calls(all, plan.calls); }},
     {"ways", [](Configurations& all, const Plan& plan) { return compare_ways(all, plan.ways); }},
+    {"same_host",
+     [](Configurations& all, const Plan& plan) { return compare_same_host(all, plan.same_host); }},
     {"rivals",
      [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
     {"in_process",
@@ -223,6 +228,9 @@ int main(int argc, char** argv) {
   as_peer->add_option("--interface", peer.interface);
   as_peer->add_option("--peer", peer.peer);
   as_peer->add_option("--peers", peer.peers);
+  as_peer->add_flag("--shared-memory", peer.shared_memory);
+  as_peer->add_flag("--on-arrival", peer.on_arrival);
+  as_peer->add_option("--spin-us", peer.spin_us);
   as_peer->add_flag("--survives", peer.survives);
   CLI11_PARSE(app, argc, argv);
   try {

@@ -42,6 +42,11 @@ std::vector<Comparison> compare_ways(Configurations& configurations, const CallP
 /// clients, with many calls in flight, and the processor time of both sides.
 std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan);
 
+/// A call between processes of one host through shared memory, its service on a thread of its own,
+/// on the one that takes the request, and with all threads that wait spinning; beside one over DDS,
+/// omniORB, a Unix socket, and memory on which both sides spin.
+std::vector<Comparison> compare_same_host(Configurations& configurations, const CallPlan& plan);
+
 /// A call that does not leave its process, beside omniORB's.
 std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan);
 

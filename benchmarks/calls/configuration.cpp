@@ -55,6 +55,22 @@ Configuration Configurations::skein(const std::string& server, const std::string
   return made;
 }
 
+Configuration Configurations::skein_same_host(SharedMemory how) {
+  Configuration made = skein("fastdds", "fastdds");
+  made.name = "skein shared memory";
+  for (Words* command : {&made.server, &made.client}) command->push_back("--shared-memory");
+  if (how == SharedMemory::OwnThread) return made;
+  made.name += ", on arrival";
+  made.server.push_back("--on-arrival");
+  if (how == SharedMemory::OnArrival) return made;
+  made.name += ", spinning";
+  made.needs_a_core_each = true;
+  for (Words* command : {&made.server, &made.client}) {
+    command->insert(command->end(), {"--spin-us", "100"});
+  }
+  return made;
+}
+
 std::vector<std::string> Configurations::recorder_of(const Configuration& skein) {
   Words command = skein.client;
   *std::ranges::find(command, "client") = "recorder";

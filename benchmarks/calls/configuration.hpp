@@ -38,6 +38,13 @@ class Configurations {
   Configuration skein(const std::string& server, const std::string& client, std::size_t threads = 1,
                       const std::optional<Place>& server_place = {},
                       const std::optional<Place>& client_place = {});
+  /// Both on Fast DDS, with calls through shared memory.
+  enum class SharedMemory {
+    OwnThread,
+    OnArrival,  ///< The service runs on the thread that takes the request.
+    Spinning,   ///< That, and whoever waits spins.
+  };
+  Configuration skein_same_host(SharedMemory how);
   /// Records the domain of a Skein configuration (recording/recording_peer.hpp).
   static std::vector<std::string> recorder_of(const Configuration& skein);
   /// A Skein publisher as `client`, and as `server` who receives: `recorder` or `counter`, by

@@ -42,6 +42,7 @@ void serve(const SkeinPeer& peer) {
   Entity entity(entity_options(peer));
   ServiceOptions options;
   options.threads = peer.threads;
+  if (peer.on_arrival) options.thread = CallThread::Caller;
   entity.provide<Echo>(std::make_shared<EchoBody>(), options);
   run_server();
 }
@@ -201,6 +202,8 @@ EntityOptions entity_options(const SkeinPeer& peer) {
   options.name = peer.role;
   options.vendor = load_or_skip(peer.vendor);
   options.domain = peer.domain;
+  options.shared_memory_calls = peer.shared_memory;
+  options.spin = std::chrono::microseconds(peer.spin_us);
   options.network.max_participants = kMaxParticipants;
   if (!peer.interface.empty()) {
     options.network.interfaces = {peer.interface};

@@ -15,8 +15,11 @@ struct SkeinPeer {
   std::string vendor;
   std::uint32_t domain = 0;
   std::size_t threads = 1;
-  std::string interface;  ///< Empty: loopback.
-  std::string peer;       ///< Address of the other host, with `interface`.
+  std::string interface;       ///< Empty: loopback.
+  std::string peer;            ///< Address of the other host, with `interface`.
+  bool shared_memory = false;  ///< See EntityOptions::shared_memory_calls.
+  bool on_arrival = false;     ///< A server whose service has CallThread::Caller.
+  std::uint32_t spin_us = 0;   ///< See EntityOptions::spin.
   bool survives = false;  ///< A server or client that goes through faults (calls/survivor.hpp).
   std::size_t peers =
       0;  ///< Of a `neighbour` or `bystander`: how many there are, itself among them.

@@ -11,7 +11,8 @@ bool is_vendor_alone(const std::string& rival) {
 
 /// A call to another process; the others have claims of their own.
 bool is_call_beside(const Comparison& comparison, const char* rival) {
-  return comparison.claim != "a call in the same process" && comparison.rival.starts_with(rival);
+  return comparison.claim != "a call in the same process" &&
+         comparison.claim != kCallThroughSharedMemory && comparison.rival.starts_with(rival);
 }
 
 bool is_look_up(const Comparison& comparison) {

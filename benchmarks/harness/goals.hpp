@@ -20,6 +20,9 @@ inline constexpr double kOverdueUs = 50'000;
 inline constexpr double kHealedUs = 2'000'000;
 inline constexpr double kLateAnswerUs = 5'000;
 
+/// What has no goal yet, though it stands beside rivals.
+inline constexpr const char* kCallThroughSharedMemory = "a call through shared memory";
+
 /// One goal, and the comparisons that it speaks of.
 struct Goal {
   /// Where the project wants to be in the end: the report says how far it is, and does not call it

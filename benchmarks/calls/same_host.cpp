@@ -1,0 +1,39 @@
+#include "calls/benchmarks.hpp"
+#include "calls/contest.hpp"
+#include "harness/goals.hpp"
+
+namespace skein::benchmarks {
+
+std::vector<Comparison> compare_same_host(Configurations& configurations, const CallPlan& plan) {
+  std::vector<Trial> trials;
+  for (const auto& size : plan.sizes) {
+    trials.push_back(closed_loop(kCallThroughSharedMemory, size.size_bytes, size.calls_per_turn));
+  }
+  Contest contest("same host", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
+  std::vector<std::string> rivals;
+  const auto enter_rival = [&](const Configuration& rival) {
+    rivals.push_back(rival.name);
+    contest.enter(rival);
+  };
+  using Memory = Configurations::SharedMemory;
+  const std::vector<Configuration> subjects{configurations.skein_same_host(Memory::OwnThread),
+                                            configurations.skein_same_host(Memory::OnArrival),
+                                            configurations.skein_same_host(Memory::Spinning)};
+  for (const Configuration& subject : subjects) contest.enter(subject);
+  enter_rival(configurations.skein("fastdds", "fastdds"));
+  for (const char* transport : {"unix", "tcp"}) {
+    enter_rival(configurations.rival("omniorb", transport));
+  }
+  enter_rival(configurations.unix_socket());
+  enter_rival(configurations.shared_memory());
+  contest.run(plan.rounds);
+  std::vector<Comparison> comparisons;
+  for (const Configuration& subject : subjects) {
+    for (const std::string& rival : rivals) {
+      append(comparisons, contest.compare(subject.name, rival));
+    }
+  }
+  return comparisons;
+}
+
+}  // namespace skein::benchmarks
