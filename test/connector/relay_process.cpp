@@ -1,5 +1,6 @@
 // An entity with a relay: VENDOR NAME. It says `ready`, and ends with its standard input.
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -12,6 +13,7 @@ int main(int count, char** given) {
   options.name = given[2];
   options.system = "uav-1";
   options.domain = 17;
+  options.shared_memory_calls = std::getenv("SKEIN_SHARED_MEMORY_CALLS") != nullptr;
   skein::Entity entity(std::move(options));
   entity.provide<test::Relay>(std::make_shared<skein::test::RelayService>(entity));
   std::cout << "ready" << std::endl;
