@@ -60,6 +60,7 @@ class Peer {
   std::string obey(const std::string& command, std::istringstream& rest) {
     if (command == "provide") return provide();
     if (command == "calls") return "calls " + std::to_string(service_->calls);
+    if (command == "inside") return "inside " + std::to_string(service_->inside);
     if (command == "services") return services();
     if (command == "gather") return gather(rest);
     if (command == "logged") return "logged " + log_.text();
@@ -67,6 +68,7 @@ class Peer {
     if (command == "echo") return echo(rest);
     if (command == "octets") return octets(rest);
     if (command == "pour") return pour(rest);
+    if (command == "listen") return listen();
     if (command == "wait") return wait();
     if (command == "outcome") return outcome();
     return "error no command '" + command + "'";
@@ -142,6 +144,12 @@ class Peer {
     return "poured";
   }
 
+  // Takes one item of a long stream.
+  std::string listen() {
+    heard_.emplace(echo_->within(10min).count_up(1'000'000, -1));
+    return heard_->next() ? "listens" : "error the stream has ended";
+  }
+
   std::string wait() {
     waiting_.emplace(echo_->within(10min).async_wait(600'000));
     return "waiting";
@@ -159,6 +167,7 @@ class Peer {
   std::optional<LouderEcho::Proxy> echo_;
   std::vector<Call<std::string>> poured_;
   std::optional<Call<bool>> waiting_;
+  std::optional<Stream<std::int32_t>> heard_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -33,6 +34,8 @@ inline EntityOptions entity_options(const PeerArguments& arguments) {
   if (arguments.contains("host")) options.network.peers = {arguments.at("host")};
   options.network.multicast_discovery = arguments.contains("multicast");
   options.network.shared_memory = arguments.contains("shared_memory");
+  options.shared_memory_calls = arguments.contains("shared_memory_calls") ||
+                                std::getenv("SKEIN_SHARED_MEMORY_CALLS") != nullptr;
   return options;
 }
 

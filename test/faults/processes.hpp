@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,6 +55,7 @@ inline std::unique_ptr<Entity> entity_with_lease(const std::string& name,
   options.vendor = std::move(vendor);
   options.domain = 17;
   options.lease = lease;
+  options.shared_memory_calls = std::getenv("SKEIN_SHARED_MEMORY_CALLS") != nullptr;
   return std::make_unique<Entity>(std::move(options));
 }
 
