@@ -15,7 +15,9 @@
 #include <utility>
 
 #include "core/abstract_socket.hpp"
+#include "core/log.hpp"
 #include "core/printable.hpp"
+#include "core/recent_set.hpp"
 #include "core/start_thread.hpp"
 #include "skein/error.hpp"
 
@@ -28,6 +30,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kAfterRefusal{10};
 constexpr std::chrono::milliseconds kAfterShortage{100};
 constexpr std::size_t kAcceptedInARow = 16;
+// Of how many users it is remembered that the log knows of them.
+constexpr std::size_t kToldUsers = 16;
 constexpr std::uint64_t kWake = 0;
 
 // What both sides say to each other once; each is a packet. A change of the memory's layout is
@@ -114,12 +118,13 @@ struct Meeting::State {
   struct Newcomer {
     std::shared_ptr<Offer> offer;
     std::shared_ptr<const FileDescriptor> socket;
+    pid_t process = 0;
     Clock::time_point deadline;
   };
   struct Watched {
     std::shared_ptr<const FileDescriptor> socket;
     std::weak_ptr<Link> link;
-    bool guest = false;
+    std::optional<pid_t> guest;  // whose it is
   };
   struct Admitted {
     std::shared_ptr<Offer> offer;
@@ -141,6 +146,9 @@ struct Meeting::State {
   std::uint64_t refused = 0;
   std::uint64_t wake_ups = 0;
   std::optional<Clock::time_point> closed_until;  // nobody is let in
+  RecentSet<uid_t> told_users{kToldUsers};
+  bool told_share = false;
+  std::vector<std::string> untold;  // for the log, once unlocked
   std::thread thread;
 
   explicit State(Rules rules_) : rules(std::move(rules_)) {
@@ -180,6 +188,7 @@ struct Meeting::State {
       const int count = epoll_wait(epoll.get(), events, 32, time_left());
       std::vector<Admitted> admitted;
       std::vector<std::shared_ptr<Link>> gone;
+      std::vector<std::string> news;
       {
         std::lock_guard lock(mutex);
         if (stopping) return;
@@ -195,7 +204,9 @@ struct Meeting::State {
           let_in(offers.at(event->data.u64));
         }
         expire();
+        news.swap(untold);
       }
+      for (const auto& text : news) log(LogLevel::Warning, "same host", text);
       for (const auto& link : gone) link->note_end();
       for (const auto& guest : admitted) welcome(guest);
     }
@@ -241,14 +252,31 @@ struct Meeting::State {
       const auto owner = other_end(accepted);
       const std::uint64_t id = ++last_id;
       const auto socket = std::make_shared<const FileDescriptor>(std::move(accepted));
+      if (owner && !knows(owner->uid)) note_stranger(*owner);
       if (!owner || !knows(owner->uid) || newcomers.size() >= rules.newcomers ||
           !control(EPOLL_CTL_ADD, *socket, id, EPOLLIN)) {
         ++refused;
         continue;
       }
-      newcomers.emplace(id, Newcomer{offer, socket, Clock::now() + rules.patience});
+      newcomers.emplace(id, Newcomer{offer, socket, owner->pid, Clock::now() + rules.patience});
     }
     if (refused > before) let_nobody_in(kAfterRefusal);
+  }
+
+  void note_stranger(const ucred& who) {
+    if (told_users.contains(who.uid)) return;
+    told_users.insert(who.uid);
+    untold.push_back("process " + std::to_string(who.pid) + " of user " + std::to_string(who.uid) +
+                     " is turned away: calls through shared memory are for this entity's user and "
+                     "root; further ones of that user are not logged");
+  }
+
+  void note_share(pid_t process) {
+    if (std::exchange(told_share, true)) return;
+    untold.push_back("process " + std::to_string(process) + " wants more than its share of " +
+                     std::to_string(rules.guests_of_process) +
+                     " connections through shared memory, and gets the others over DDS; further "
+                     "ones like it are not logged");
   }
 
   // Who waits meanwhile costs nothing.
@@ -292,16 +320,24 @@ struct Meeting::State {
     if (guests >= rules.guests) {
       throw Unavailable("it has " + std::to_string(guests) + " connections of this kind already");
     }
+    std::size_t of_process = 0;
     for (const auto& [id, other] : watched) {
-      const auto link = other.guest ? other.link.lock() : nullptr;
+      if (!other.guest) continue;
+      of_process += *other.guest == newcomer.process;
+      const auto link = other.link.lock();
       if (link && link->peer() == hello.client) throw Unavailable("that client is here already");
+    }
+    if (of_process >= rules.guests_of_process) {
+      note_share(newcomer.process);
+      throw Unavailable("this process has its share of connections of this kind already (at most " +
+                        std::to_string(rules.guests_of_process) + ")");
     }
     auto memory = SharedMemory::make(Link::kMemory);
     FileDescriptor descriptor = memory.take_descriptor();
     const auto link =
         std::make_shared<Link>(Link::Side::Provider, newcomer.socket, std::move(memory),
                                newcomer.offer->server, hello.client, newcomer.offer->notify);
-    watch(link, newcomer.socket, true);
+    watch(link, newcomer.socket, newcomer.process);
     ++guests;
     admitted.push_back({newcomer.offer, link, newcomer.socket, std::move(descriptor)});
   }
@@ -324,7 +360,7 @@ struct Meeting::State {
 
   /// Under the lock.
   void watch(const std::shared_ptr<Link>& link, const std::shared_ptr<const FileDescriptor>& socket,
-             bool guest) {
+             std::optional<pid_t> guest) {
     const std::uint64_t id = ++last_id;
     if (!control(EPOLL_CTL_ADD, *socket, id, EPOLLRDHUP)) refuse();
     watched.emplace(id, Watched{socket, link, guest});
@@ -410,13 +446,16 @@ struct Meeting::State {
       answer.refusal[sizeof answer.refusal - 1] = '\0';
       refuse_to_join(printable(answer.refusal));
     }
+    if (answer.server.participant() != provider.participant()) {
+      refuse_to_join("another participant answers under the provider's name");
+    }
     auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
     memory.take_descriptor();
     const auto socket = std::make_shared<const FileDescriptor>(std::move(connected));
     const auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
                                              answer.server, std::move(notify));
     std::lock_guard lock(mutex);
-    watch(link, socket, false);
+    watch(link, socket, std::nullopt);
     return link;
   }
 };

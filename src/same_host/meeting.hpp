@@ -19,14 +19,17 @@ namespace skein::same_host {
 /// `skein-meeting`. Thread-safe.
 ///
 /// The kernel says who is at the other end, and the rules whether that user is spoken to; anybody
-/// may take any name.
+/// may take any name. A user who is turned away, and the first process that wants more than its
+/// share, are told of in the log, once each.
 class Meeting {
  public:
   struct Rules {
     /// Who is let in, and whom one connects to.
     std::vector<uid_t> users{geteuid(), 0};
-    /// Connections from others at a time.
+    /// Connections from others at a time, and from one of their processes. Each takes a descriptor
+    /// and Link::kMemory.
     std::size_t guests = 120;
+    std::size_t guests_of_process = 60;
     /// Of those that have not said yet who they are.
     std::size_t newcomers = 64;
     /// How long they may take for it, and how long a client waits for the answer.
@@ -42,7 +45,8 @@ class Meeting {
   /// Nobody is let in any more; links that are left hear of no end.
   ~Meeting();
 
-  /// Lets clients in to `provider`, whose endpoint is `server`; the links notify by `notify`.
+  /// Lets clients in to `provider`, whose endpoint is `server`, of the same participant; the links
+  /// notify by `notify`.
   /// Throws as the constructor.
   void offer(const Guid& provider, const Guid& server, std::function<void()> notify,
              Welcome welcome);
@@ -50,7 +54,8 @@ class Meeting {
   void withdraw(const Guid& provider);
 
   /// A link to `provider` for the endpoint `client`. Blocks for Rules::patience at most. Throws
-  /// Unavailable with the reason why there is none.
+  /// Unavailable with the reason why there is none, also where somebody else than the provider's
+  /// participant answers under its name.
   std::shared_ptr<Link> join(const Guid& provider, const Guid& client,
                              std::function<void()> notify);
 

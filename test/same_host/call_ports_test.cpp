@@ -240,7 +240,7 @@ TEST_CASE("a provider that has damaged what it shared is not met there again") {
   ClientPort clients(meeting, {participant()});
   std::shared_ptr<Link> link;  // the meeting's thread's
   meeting.offer(
-      id, Guid::random(), [] {}, [&](std::shared_ptr<Link> made) { link = made; });
+      id, id, [] {}, [&](std::shared_ptr<Link> made) { link = made; });
   Story at_client;
   const auto request = clients.create_writer(kRequests, in_partition(id), {});
   const auto replies =

@@ -1,20 +1,24 @@
 #include "same_host/meeting.hpp"
 
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "../tools/eventually.hpp"
+#include "../tools/log.hpp"
 #include "core/abstract_socket.hpp"
 #include "skein/error.hpp"
 
@@ -25,10 +29,19 @@ using namespace std::chrono_literals;
 
 namespace {
 
+/// Another endpoint of the participant that has this one.
+Guid beside(const Guid& endpoint) {
+  Guid other = endpoint;
+  other.bytes.back() ^= 1;
+  return other;
+}
+
 /// A provider that keeps its guests.
 struct Host {
   explicit Host(Meeting::Rules rules = {}, const Guid& id = Guid::random())
-      : provider(id), meeting(std::move(rules)) {
+      : Host(std::move(rules), id, beside(id)) {}
+  Host(Meeting::Rules rules, const Guid& id, const Guid& endpoint)
+      : provider(id), server(endpoint), meeting(std::move(rules)) {
     meeting.offer(
         provider, server, [] {},
         [this](std::shared_ptr<Link> link) {
@@ -45,7 +58,7 @@ struct Host {
   std::string address() const { return "skein-call/" + provider.hex(); }
 
   const Guid provider;
-  const Guid server = Guid::random();
+  const Guid server;
   std::mutex mutex;
   std::vector<std::shared_ptr<Link>> guests;
   Meeting meeting;  // last: its thread goes first
@@ -67,6 +80,30 @@ FileDescriptor stranger(const Host& host) {
   FileDescriptor socket = local_socket(SOCK_SEQPACKET);
   connect_to(socket, host.address());
   return socket;
+}
+
+/// What a client says first.
+std::array<char, 24> hello_of(const Guid& client) {
+  std::array<char, 24> hello{"skein1"};
+  std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
+  return hello;
+}
+
+/// What a process of another user makes of `action`, which must do nothing but system calls.
+/// Nothing where this one may not become somebody else.
+constexpr uid_t kAnother = 65'534;
+template <class Action>
+std::optional<int> as_another_user(Action&& action) {
+  if (geteuid() != 0) return std::nullopt;
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    _exit(setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 98;
 }
 
 bool hung_up(const FileDescriptor& socket) {
@@ -192,6 +229,100 @@ TEST_CASE("there is room for so many connections, and the next one is told so") 
   CHECK_NOTHROW(join());
 }
 
+TEST_CASE("a process has its share of the connections, and the log tells once who wants more") {
+  const skein::test::Log log;
+  Meeting::Rules rules;
+  rules.guests_of_process = 2;
+  Host host(rules);
+  Meeting meeting;
+  const auto join = [&] { return meeting.join(host.provider, Guid::random(), [] {}); };
+  auto one = join();
+  const auto other = join();
+  for (int i = 0; i < 3; ++i) {
+    CHECK_THROWS_WITH(
+        join(), Catch::Contains("has its share of connections of this kind already (at most 2)"));
+  }
+  CHECK(eventually([&] { return log.count("wants more than its share of 2 connections") == 1; }));
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const FileDescriptor socket = stranger(host);
+    const auto hello = hello_of(Guid::random());
+    char answer[128] = {};
+    send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL);
+    pollfd answered{socket.get(), POLLIN, 0};
+    poll(&answered, 1, 20'000);
+    _exit(recv(socket.get(), answer, sizeof answer, 0) == sizeof answer && answer[24] == 0 ? 0 : 1);
+  }
+  int status = 1;
+  waitpid(child, &status, 0);
+  CHECK(status == 0);  // another process has a share of its own
+  one->close();
+  CHECK(eventually([&] {
+    try {
+      return join() != nullptr;
+    } catch (const Unavailable&) {
+      return false;
+    }
+  }));
+}
+
+TEST_CASE("another user is turned away whichever side he is on, and told of in the log once") {
+  const skein::test::Log log;
+  Host host;
+  const auto turned_away = [&] {
+    const FileDescriptor socket = stranger(host);
+    pollfd answered{socket.get(), POLLIN, 0};
+    char octet;
+    poll(&answered, 1, 20'000);
+    return recv(socket.get(), &octet, 1, MSG_DONTWAIT) <= 0 ? 0 : 1;
+  };
+  const auto code = as_another_user(turned_away);
+  if (!code) {
+    WARN("not shown: only root can become another user");
+    return;
+  }
+  CHECK(*code == 0);
+  CHECK(as_another_user(turned_away) == 0);
+  CHECK(host.meeting.counters().guests == 0);
+  CHECK(eventually([&] { return log.count("of user 65534 is turned away") == 1; }));
+
+  Meeting meeting;
+  const Guid claimed = Guid::random();
+  int go[2];
+  REQUIRE(pipe(go) == 0);
+  int ready[2];
+  REQUIRE(pipe(ready) == 0);
+  std::thread asker([&] {
+    char octet;
+    CHECK(read(ready[0], &octet, 1) == 1);
+    CHECK_THROWS_WITH(meeting.join(claimed, Guid::random(), [] {}),
+                      Catch::Contains("another user offers it"));
+    CHECK(write(go[1], "x", 1) == 1);
+  });
+  const auto offered = as_another_user([&] {
+    const FileDescriptor listening = local_socket(SOCK_SEQPACKET);
+    sockaddr_un name;
+    const socklen_t length = fill_address(name, "skein-call/" + claimed.hex());
+    char octet;
+    if (bind(listening.get(), reinterpret_cast<sockaddr*>(&name), length) != 0) return 1;
+    if (listen(listening.get(), 4) != 0 || write(ready[1], "x", 1) != 1) return 2;
+    return read(go[0], &octet, 1) == 1 ? 0 : 3;
+  });
+  asker.join();
+  CHECK(offered == 0);
+  for (const int end : {go[0], go[1], ready[0], ready[1]}) close(end);
+}
+
+TEST_CASE("who answers under a provider's name as another participant is refused") {
+  const Guid provider = Guid::random();
+  Host host({}, provider, Guid::random());
+  Meeting meeting;
+  CHECK_THROWS_WITH(meeting.join(provider, Guid::random(), [] {}),
+                    Catch::Contains("another participant answers under the provider's name"));
+  CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+}
+
 TEST_CASE("many clients that come at once are all let in") {
   Host host;
   Meeting meeting;
@@ -255,6 +386,7 @@ TEST_CASE("a stranger who says what nobody says is put out") {
 TEST_CASE("a stranger who comes again and again costs some wake-ups a second, whatever it does") {
   Meeting::Rules rules;
   rules.users = {};
+  const skein::test::Log log;
   Host host(rules);
   const auto begin = std::chrono::steady_clock::now();
   const auto before = host.meeting.counters();
@@ -267,6 +399,7 @@ TEST_CASE("a stranger who comes again and again costs some wake-ups a second, wh
   CHECK(attempts >= 100);
   CHECK(host.meeting.counters().wake_ups - before.wake_ups <=
         static_cast<std::uint64_t>(3 * pauses + 3));
+  CHECK(log.count("is turned away") == 1);
 }
 
 TEST_CASE("a provider that hands over what can be taken away again is refused") {
@@ -288,6 +421,7 @@ TEST_CASE("a provider that hands over what can be taken away again is refused") 
     eventually([&] { return recv(accepted.get(), packet, sizeof packet, MSG_DONTWAIT) > 0; });
     std::memset(packet, 0, sizeof packet);
     std::strcpy(packet, "skein1");
+    std::memcpy(packet + 8, provider.bytes.data(), provider.bytes.size());
     iovec content{packet, sizeof packet};
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof number)] = {};
     msghdr message{};

@@ -43,7 +43,7 @@ struct Notes final : Inbox {
 /// A provider whose receiver takes what its guests send.
 struct Host {
   Host() {
-    meeting.offer(provider, Guid::random(), receiver.notifier(),
+    meeting.offer(provider, provider, receiver.notifier(),
                   [this](std::shared_ptr<Link> link) { receiver.add(std::move(link), notes); });
   }
   ~Host() { meeting.withdraw(provider); }
