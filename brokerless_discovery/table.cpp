@@ -35,8 +35,14 @@ bool wanted(const ServiceDescription& description, const Query& query) {
   return query.provider.is_nil() || query.provider == provider_of(description);
 }
 
-// No component declares an attribute of that name: it would be no name of the dictionary.
+// No component declares an attribute of these names: they would be no names of the dictionary.
 constexpr std::string_view kLeaving = "skein:leaving";
+constexpr std::string_view kSharedMemoryCalls = "skein:shared_memory_calls";
+
+bool has_attribute(const ServiceDescription& description, std::string_view name) noexcept {
+  return std::any_of(description.attributes.begin(), description.attributes.end(),
+                     [&](const auto& attribute) { return attribute.name == name; });
+}
 
 bool is_own(const Entry& entry) { return entry.writer.is_nil(); }
 
@@ -57,13 +63,20 @@ void canonicalise(ServiceDescription& description) {
 }  // namespace
 
 bool is_leaving(const ServiceDescription& description) noexcept {
-  return std::any_of(description.attributes.begin(), description.attributes.end(),
-                     [](const auto& attribute) { return attribute.name == kLeaving; });
+  return has_attribute(description, kLeaving);
 }
 
 // Nobody finds it by its attributes any more, so they make room.
 void mark_leaving(ServiceDescription& description) {
   description.attributes = {{std::string(kLeaving), "true"}};
+}
+
+bool offers_shared_memory_calls(const ServiceDescription& description) noexcept {
+  return has_attribute(description, kSharedMemoryCalls);
+}
+
+void offer_shared_memory_calls(ServiceDescription& description) {
+  description.attributes.push_back({std::string(kSharedMemoryCalls), "true"});
 }
 
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {

@@ -50,6 +50,11 @@ bool is_leaving(const ServiceDescription& description) noexcept;
 /// Makes it say so.
 void mark_leaving(ServiceDescription& description);
 
+/// Whether the provider says that peers of its host may call it through shared memory (R29).
+bool offers_shared_memory_calls(const ServiceDescription& description) noexcept;
+/// Makes it say so.
+void offer_shared_memory_calls(ServiceDescription& description);
+
 /// Why a description is no longer in the table.
 enum class Departure { Left, Lost, Died };
 

@@ -136,7 +136,8 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
     return rpc::DdsChannel::open(participant, parts.control, parts.continuations, parts.clock,
                                  address, std::move(how));
   };
-  if (parts.same_host && provider.host == brokerless_discovery::ProcessWatch::host()) {
+  if (parts.same_host && provider.host == brokerless_discovery::ProcessWatch::host() &&
+      brokerless_discovery::offers_shared_memory_calls(provider)) {
     const Instant begin = parts.clock->now();
     auto shared = options;
     shared.transport = "shared memory";

@@ -426,10 +426,15 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
                                 .on_load = state_->loads.notifier()});
   }
   if (provided->server && state_->same_host) {
-    provided->same_host_server = std::make_unique<rpc::DdsServer>(
-        state_->same_host->providers, state_->control, state_->process->clock(), provided->service,
-        rpc::DdsServer::Options{
-            .foreign_clients = false, .may_run = true, .on_load = state_->loads.notifier()});
+    try {
+      provided->same_host_server = std::make_unique<rpc::DdsServer>(
+          state_->same_host->providers, state_->control, state_->process->clock(),
+          provided->service,
+          rpc::DdsServer::Options{
+              .foreign_clients = false, .may_run = true, .on_load = state_->loads.notifier()});
+    } catch (const Unavailable& why) {
+      log(LogLevel::Warning, name, std::string("is called over DDS alone: ") + why.what());
+    }
   }
   if (owner.empty()) {
     provided->load = state_->loads.tell(id, [&provided = *provided] { return provided.active(); });
@@ -438,6 +443,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   ServiceDescription description = describe(interface, id, options);
   description.entity = name;
   description.owner = owner;
+  if (provided->same_host_server) brokerless_discovery::offer_shared_memory_calls(description);
   provided->registration = state_->broker.add_service(std::move(description));
   std::lock_guard lock(state_->mutex);
   state_->provided.emplace(id, std::move(provided));

@@ -11,6 +11,7 @@
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
 #include "core/file_descriptor.hpp"
+#include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "same_host/ring.hpp"
 #include "skein/entity.hpp"
@@ -88,6 +89,28 @@ TEST_CASE("calls go through shared memory where both sides are told to, and over
   CHECK(echo.echo("hello") == "hello");
   CHECK(transports(*client) ==
         std::vector<std::string>{by_server && by_client ? "shared memory" : "DDS"});
+}
+
+TEST_CASE("a provider says in its description whether it is called through shared memory",
+          "[R29]") {
+  const bool by_server = GENERATE(false, true);
+  const auto server = make_entity("server", by_server);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto& broker = server->broker();
+  const auto found = broker.find_service(broker.query("test::Echo"));
+  REQUIRE(found.size() == 1);
+  CHECK(brokerless_discovery::offers_shared_memory_calls(*found.front()) == by_server);
+}
+
+TEST_CASE("a provider that only says that it is called through shared memory is called over DDS",
+          "[R29]") {
+  const auto server = make_entity("server", false);
+  ServiceOptions options;
+  options.attributes = {{"skein:shared_memory_calls", "true"}};
+  server->provide<LouderEcho>(std::make_shared<EchoService>(), options);
+  const auto client = make_entity("client", true);
+  CHECK(client->connect<Echo>().echo("hello") == "hello");
+  CHECK(transports(*client) == std::vector<std::string>{"DDS"});
 }
 
 TEST_CASE("a call runs on the thread that takes it where the service says so, a stream never") {
