@@ -86,6 +86,7 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
   options.spin = owner.threads.settings.spin;
   options.network = network_of(mission, peer);
   options.network.shared_memory = owner.shared_memory;
+  options.shared_memory_calls = owner.shared_memory_calls;
   if (!peer.topics.empty()) {
     options.adjust_topic = [rules = peer.topics](const std::string& topic, TopicQos& qos) {
       if (const auto* found = profile::find_topic(rules, topic)) found->change(qos);

@@ -172,6 +172,7 @@ class MissionReader {
     peer.multicast = read_boolean(element, "multicast", false);
     peer.allowed_sources = allowed_sources_of(element);
     peer.shared_memory = shared_memory_of(element, peer.vendor, false);
+    peer.shared_memory_calls = read_boolean(element, "shared_memory_calls", false);
     peer.plugin = value_or(element, "plugin", "");
     peer.runs_mission = runs_mission(element);
     peer.rules = read_process_rules(element, LossPolicy::Abort);
@@ -247,6 +248,8 @@ class MissionReader {
     csp.process = process_of(element);
     csp.vendor = vendor_of(element, peer.vendor);
     csp.shared_memory = shared_memory_of(element, csp.vendor, peer.shared_memory);
+    csp.shared_memory_calls =
+        read_boolean(element, "shared_memory_calls", peer.shared_memory_calls);
     csp.plugin = value_or(element, "plugin", peer.plugin);
     csp.rules = read_process_rules(element, LossPolicy::Continue);
     csp.threads = read_thread_rules(element);

@@ -37,8 +37,8 @@ Notation topic() { return leaf("topic", joined(Names{"name"}, kTopicAttributes))
 
 Notation csp() {
   return {"csp",
-          joined(Names{"name", "component", "process", "vendor", "shared_memory", "plugin",
-                       "process_cpus"},
+          joined(Names{"name", "component", "process", "vendor", "shared_memory",
+                       "shared_memory_calls", "plugin", "process_cpus"},
                  kProcessAttributes, kThreadAttributes),
           {parameter(), environment(), argument()}};
 }
@@ -93,9 +93,10 @@ const std::vector<std::string_view>& mission_defaults() {
 }
 
 const std::vector<std::string_view>& group_defaults() {
-  static const Names kNames = joined(Names{"component", "program", "ready"}, mission_defaults(),
-                                     Names{"shared_memory", "process_cpus"}, kProcessAttributes,
-                                     kThreadCountAttributes, kThreadAttributes, kHeadAttributes);
+  static const Names kNames =
+      joined(Names{"component", "program", "ready"}, mission_defaults(),
+             Names{"shared_memory", "shared_memory_calls", "process_cpus"}, kProcessAttributes,
+             kThreadCountAttributes, kThreadAttributes, kHeadAttributes);
   return kNames;
 }
 

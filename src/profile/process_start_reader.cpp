@@ -108,8 +108,8 @@ void refuse_peer_options(const XmlElement& element) {
       if (attribute && !attribute->inherited) refuse(attribute->where, name);
     }
   };
-  refuse_all(std::array{"plugin", "shared_memory", "vendor", "peers", "multicast", "interface",
-                        "allowed_sources"});
+  refuse_all(std::array{"plugin", "shared_memory", "shared_memory_calls", "vendor", "peers",
+                        "multicast", "interface", "allowed_sources"});
   refuse_all(kThreadAttributes);
   refuse_all(kThreadCountAttributes);
   refuse_all(kHeadAttributes);

@@ -269,6 +269,24 @@ TEST_CASE("Shared memory is the peer's word, and holds for its CSPs on the same 
   CHECK_FALSE(peer.csps.at(2).shared_memory);
 }
 
+TEST_CASE("Calls through shared memory are the peer's word, and its CSPs' whatever their vendor") {
+  ProfileFolder folder;
+  folder.write("m.xml", R"(<mission name="m">
+    <peer name="plain" component="n.xml">
+      <csp component="p.xml" process="own" shared_memory_calls="true"/></peer>
+    <peer name="shared" component="n.xml" shared_memory_calls="true">
+      <csp component="p.xml" process="own" vendor="cyclonedds"/>
+      <csp name="none" component="p.xml" process="own" shared_memory_calls="false"/></peer>
+  </mission>)");
+  const auto mission = read_mission_profile(folder.path() / "m.xml");
+  CHECK_FALSE(mission.peers.at(0).shared_memory_calls);
+  CHECK(mission.peers.at(0).csps.at(0).shared_memory_calls);
+  const auto& peer = mission.peers.at(1);
+  CHECK(peer.shared_memory_calls);
+  CHECK(peer.csps.at(0).shared_memory_calls);
+  CHECK_FALSE(peer.csps.at(1).shared_memory_calls);
+}
+
 TEST_CASE("Shared memory of a vendor that has none is found, with its place and the remedy") {
   ProfileFolder folder;
   const auto text =
