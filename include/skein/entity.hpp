@@ -61,9 +61,9 @@ struct ServiceOptions {
   /// that misses one of these two by a letter is logged.
   std::vector<ServiceAttribute> attributes{};
   /// Where blocking calls from the same process run; all others run on the service's own threads.
-  /// With CallThread::Caller, calls run one at a time, and `threads` must be 1; those that come
-  /// through shared memory, streams apart, run on the thread that takes them, and must not call
-  /// other services.
+  /// With CallThread::Caller, calls run one at a time, `threads` is 1, and those through shared
+  /// memory, once a hundred in a row took a millisecond at most, run on the thread that takes the
+  /// service's requests, which then hears of no cancellation; streams never do.
   CallThread thread = CallThread::Own;
   /// Number of own threads that run this service's calls; 1 or more.
   std::size_t threads = 1;

@@ -257,8 +257,9 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 }
 
 DdsServer::~DdsServer() {
-  state_->requests.reset();
+  // A call that runs on the reader's thread ends by it, and then the reader can.
   state_->service->close();
+  state_->requests.reset();
   std::vector<TimerId> timers;
   {
     // The writers end here, where their listeners can be waited for: a listener that still runs may

@@ -45,7 +45,7 @@ class DdsServer {
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
-    /// Calls to a service with CallThread::Caller run on the thread that brings them.
+    /// Calls to a service with CallThread::Caller may run on the thread that brings them.
     bool may_run = false;
     /// Called when a request has come, or has been answered, on the thread that sees it:
     /// Counters::active has changed. May be empty; must return soon.

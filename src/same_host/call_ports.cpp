@@ -184,33 +184,33 @@ Guid EndpointIdentities::next() {
 class ProviderPort::RequestReader final : public LinkReader {
  public:
   RequestReader(ProviderPort& port, const dds::Qos& qos, dds::ReaderListener listener)
-      : LinkReader(port.identities_.next(), qos, std::move(listener)), port_(port) {
+      : LinkReader(port.identities_.next(), qos, std::move(listener)),
+        port_(port),
+        receiver_("skein-requests", port.options_.spin) {
     for (const std::string& partition : qos.partitions) {
       if (!partition.empty()) providers_.push_back(identity_in(partition));
     }
     for (const Guid& provider : providers_) {
-      port_.meeting_.offer(provider, guid(), port_.receiver_.notifier(),
+      port_.meeting_.offer(provider, guid(), receiver_.notifier(),
                            [this](std::shared_ptr<Link> link) {
                              port_.add(link);
-                             port_.receiver_.add(std::move(link), *this);
+                             receiver_.add(std::move(link), *this);
                            });
     }
   }
   ~RequestReader() override {
     for (const Guid& provider : providers_) port_.meeting_.withdraw(provider);
-    port_.receiver_.remove(*this);
+    receiver_.remove(*this);
   }
 
  private:
   ProviderPort& port_;
   std::vector<Guid> providers_;
+  Receiver receiver_;
 };
 
 ProviderPort::ProviderPort(Meeting& meeting, const PortOptions& options)
-    : meeting_(meeting),
-      options_(options),
-      identities_(options.participant),
-      receiver_("skein-requests", options.spin) {}
+    : meeting_(meeting), options_(options), identities_(options.participant) {}
 
 ProviderPort::~ProviderPort() = default;
 

@@ -37,8 +37,9 @@ class EndpointIdentities {
 /// requests, its writers each write the replies to one client. What is read and written are the
 /// same bytes as over DDS, reliable, in order, and for who is connected now. A reader offers itself
 /// to clients under each of its partitions but "", which must be the identity of a provider; a
-/// writer's partition must be the identity of a client's writer. Listeners run on one thread,
-/// `skein-requests`, or inside create_writer().
+/// writer's partition must be the identity of a client's writer. Listeners run inside
+/// create_writer(), or on a thread that each reader has for itself from its first client on,
+/// `skein-requests`: what takes long there holds up no other reader.
 class ProviderPort final : public dds::Participant {
  public:
   /// `meeting` outlives it.
@@ -63,7 +64,6 @@ class ProviderPort final : public dds::Participant {
   EndpointIdentities identities_;
   std::mutex mutex_;
   std::map<Guid, std::weak_ptr<Link>> links_;  // by client
-  Receiver receiver_;
 };
 
 /// The same for who calls: a writer writes requests to the provider that its partition names, and

@@ -10,8 +10,8 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
-#include "core/file_descriptor.hpp"
 #include "brokerless_discovery/broker.hpp"
+#include "core/file_descriptor.hpp"
 #include "echo_service.hpp"
 #include "same_host/ring.hpp"
 #include "skein/entity.hpp"
@@ -109,11 +109,14 @@ TEST_CASE("a provider that only says that it is called through shared memory is 
   options.attributes = {{"skein:shared_memory_calls", "true"}};
   server->provide<LouderEcho>(std::make_shared<EchoService>(), options);
   const auto client = make_entity("client", true);
-  CHECK(client->connect<Echo>().echo("hello") == "hello");
+  auto echo = client->connect<Echo>();
+  CHECK(echo.echo("hello") == "hello");
   CHECK(transports(*client) == std::vector<std::string>{"DDS"});
 }
 
-TEST_CASE("a call runs on the thread that takes it where the service says so, a stream never") {
+TEST_CASE(
+    "a call runs on the thread that takes it where the service says so and has shown that it is "
+    "quick, a stream never") {
   const auto server = make_entity("server", true);
   ServiceOptions options;
   const bool on_caller = GENERATE(false, true);
@@ -121,11 +124,51 @@ TEST_CASE("a call runs on the thread that takes it where the service says so, a 
   server->provide<LouderEcho>(std::make_shared<Placed>(), options);
   const auto client = make_entity("client", true);
   auto echo = client->connect<Echo>();
+  for (int i = 0; i < 100; ++i) CHECK(echo.echo("") == "server");
   CHECK(echo.echo("") == (on_caller ? "skein-requests" : "server"));
   auto stream = echo.burst(1);
   const auto name = stream.next();
   REQUIRE(name);
   CHECK(std::string(name->begin(), name->end()) == "server");
+}
+
+TEST_CASE("a call that takes long on the thread that takes it holds up no other service") {
+  const auto server = make_entity("server", true);
+  ServiceOptions options;
+  options.thread = CallThread::Caller;
+  const auto slow = std::make_shared<Placed>();
+  const auto slow_id = server->provide<LouderEcho>(slow, options);
+  const auto quick_id = server->provide<LouderEcho>(std::make_shared<Placed>(), options);
+  const auto client = make_entity("client", true);
+  auto slow_echo = client->connect<Echo>({.provider = slow_id});
+  auto quick_echo = client->connect<Echo>({.provider = quick_id});
+  const auto on_arrival = [](Echo::Proxy& echo) {
+    return eventually([&] { return echo.within(20s).echo("") == "skein-requests"; });
+  };
+  REQUIRE(on_arrival(slow_echo));
+  REQUIRE(on_arrival(quick_echo));
+  auto call = slow_echo.within(60s).async_wait(600'000);
+  REQUIRE(eventually([&] { return slow->inside == 1; }));
+  CHECK(on_arrival(quick_echo));
+  CHECK(client->connect<Echo>({.provider = quick_id}).within(20s).echo("") != "");
+  CHECK(slow->inside == 1);
+  CHECK(transports(*client) == std::vector<std::string>(2, "shared memory"));
+}
+
+TEST_CASE("a service ends also while a call runs on the thread that takes its requests") {
+  const auto server = make_entity("server", true);
+  ServiceOptions options;
+  options.thread = CallThread::Caller;
+  const auto service = std::make_shared<Placed>();
+  const auto id = server->provide<LouderEcho>(service, options);
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  REQUIRE(eventually([&] { return echo.within(20s).echo("") == "skein-requests"; }));
+  auto call = echo.within(60s).async_wait(600'000);
+  REQUIRE(eventually([&] { return service->inside == 1; }));
+  server->withdraw(id);
+  CHECK(service->saw_cancellation);
+  CHECK(service->inside == 0);
 }
 
 TEST_CASE("a provider that damages the memory ends the call, and is called over DDS from then on") {

@@ -60,6 +60,45 @@ const OperationInfo* operation_of(const rpc::Service& service, std::string_view 
   return nullptr;
 }
 
+/// A service whose calls may run on the thread that brings them; what is said to it runs inside.
+struct OnArrival {
+  struct Hearer : skein::test::EchoService {
+    std::string echo(const std::string& text) override {
+      inside(text);
+      return text;
+    }
+    std::function<void(const std::string&)> inside;
+  };
+
+  OnArrival() {
+    hearer->inside = [this](const std::string& text) { heard += text; };
+    rpc::Service::Options options;
+    options.thread = CallThread::Caller;
+    service = std::make_shared<rpc::Service>(std::make_shared<::test::LouderEcho::Skeleton>(hearer),
+                                             executor, clock, options);
+  }
+
+  void show_quick_calls() {
+    for (int i = 0; i < 100; ++i) bring("");
+    executor.run_all();
+  }
+
+  void bring(const std::string& text) {
+    auto invocation = std::make_shared<rpc::Invocation>();
+    invocation->operation = operation_of(*service, "echo");
+    invocation->in = {new ::test::Echo_echo_In{text}, invocation->operation->in->destroy};
+    invocation->deadline = clock.now() + 1h;
+    invocation->respond = [](const void*, const std::exception_ptr&) {};
+    service->submit(invocation, true);
+  }
+
+  ManualClock clock;
+  ManualExecutor executor;
+  const std::shared_ptr<Hearer> hearer = std::make_shared<Hearer>();
+  std::shared_ptr<rpc::Service> service;
+  std::string heard;
+};
+
 void refuse_self_wait(const rpc::Service& service) {
   rpc::Invocation invocation;
   invocation.chain = {service.id()};
@@ -133,4 +172,44 @@ TEST_CASE("a service that is to finish waits for each answer, and then refuses w
   CHECK(answers == 1);
   CHECK(finished());
   CHECK_THROWS_AS(service->submit(invocation), NotSent);
+}
+
+TEST_CASE("a call that could run on arrival does not overtake one that waits") {
+  OnArrival on_arrival;
+  on_arrival.show_quick_calls();
+  on_arrival.hearer->inside = [&](const std::string& text) {
+    if (text == "1") on_arrival.bring("2");  // while the first has its turn
+    on_arrival.heard += text;
+  };
+  on_arrival.bring("1");
+  CHECK(on_arrival.heard == "1");
+  on_arrival.bring("3");
+  CHECK(on_arrival.heard == "1");
+  on_arrival.executor.run_all();
+  CHECK(on_arrival.heard == "123");
+  on_arrival.bring("4");
+  CHECK(on_arrival.heard == "1234");
+}
+
+TEST_CASE(
+    "calls run on arrival after a hundred quick ones in a row, and no more after a long one") {
+  OnArrival on_arrival;
+  const auto runs_on_arrival = [&](Duration time) {
+    on_arrival.hearer->inside = [&on_arrival, time](const std::string& text) {
+      on_arrival.clock.advance(time);
+      on_arrival.heard += text;
+    };
+    on_arrival.heard.clear();
+    on_arrival.bring("x");
+    const bool at_once = on_arrival.heard == "x";
+    on_arrival.executor.run_all();
+    CHECK(on_arrival.heard == "x");
+    return at_once;
+  };
+  for (int i = 0; i < 99; ++i) CHECK_FALSE(runs_on_arrival(1ms));
+  CHECK_FALSE(runs_on_arrival(2ms));
+  for (int i = 0; i < 100; ++i) CHECK_FALSE(runs_on_arrival(1ms));
+  CHECK(runs_on_arrival(1ms));
+  CHECK(runs_on_arrival(2ms));
+  CHECK_FALSE(runs_on_arrival(1ms));
 }
