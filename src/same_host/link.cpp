@@ -63,7 +63,12 @@ Link::Sent Link::send(std::span<const std::byte> message, Duration patience) {
 
 bool Link::await_taken(Instant deadline) {
   std::lock_guard lock(out_mutex_);
-  return out_.await_empty(deadline, [this] { return ended(); });
+  try {
+    return out_.await_empty(deadline, [this] { return ended(); });
+  } catch (const BrokenRing&) {
+    break_off();
+    return false;
+  }
 }
 
 std::optional<std::span<const std::byte>> Link::receive() {

@@ -56,7 +56,8 @@ class Link {
   /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. A ring
   /// that is found broken ends the link; throws BrokenRing then.
   Sent send(std::span<const std::byte> message, Duration patience);
-  /// Waits until the other side has taken everything; false at the deadline and at the end.
+  /// Waits until the other side has taken everything; false at the deadline and at the end, also
+  /// where the ring is found broken.
   bool await_taken(Instant deadline);
 
   /// The reader's thread: the next whole message, which is valid until release(), after which the

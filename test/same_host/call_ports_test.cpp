@@ -90,16 +90,22 @@ class Story {
   Guid last_writer_;
 };
 
-/// Writes where a hostile provider would, in every memory that this process shares.
-void damage_replies() {
+/// Does with every memory that this process shares what a hostile peer would.
+void damage(const std::function<void(RingState& requests, RingState& replies)>& how) {
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
     if (line.find("memfd:skein") == std::string::npos) continue;
     auto* const states = reinterpret_cast<RingState*>(std::stoull(line, nullptr, 16));
-    states[1].written = 12;
-    states[1].reader_sleeps = 0;
-    futex_wake(states[1].reader_sleeps);
+    how(states[0], states[1]);
   }
+}
+
+void damage_replies() {
+  damage([](RingState&, RingState& replies) {
+    replies.written = 12;
+    replies.reader_sleeps = 0;
+    futex_wake(replies.reader_sleeps);
+  });
 }
 
 struct Pair {
@@ -251,4 +257,15 @@ TEST_CASE("a provider that has damaged what it shared is not met there again") {
   CHECK_THROWS_WITH(clients.create_writer(kRequests, in_partition(id), {}),
                     Catch::Contains("has damaged the memory"));
   meeting.withdraw(id);
+}
+
+TEST_CASE("who waits until all is taken is let go where the other side damages the memory") {
+  Pair pair;
+  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
+  request->write(message("hello"));
+  REQUIRE(pair.at_provider.becomes({"matched", "hello"}));
+  REQUIRE(request->wait_for_acknowledgments(20s));
+  damage([](RingState& requests, RingState&) { requests.read = 12; });
+  CHECK_FALSE(request->wait_for_acknowledgments(1h));
+  CHECK_THROWS_AS(request->write(message("more")), Unavailable);
 }
