@@ -71,14 +71,16 @@ bool Link::await_taken(Instant deadline) {
   }
 }
 
-std::optional<std::span<const std::byte>> Link::receive() {
+std::optional<std::span<const std::byte>> Link::receive(Bytes& spare) {
+  if (message_.empty()) message_.swap(spare);
   try {
-    if (!in_.take(message_)) return std::nullopt;
+    if (in_.take(message_)) return std::span<const std::byte>(message_);
   } catch (const BrokenRing&) {
     break_off();
     throw;
   }
-  return std::span<const std::byte>(message_);
+  if (message_.empty()) message_.swap(spare);
+  return std::nullopt;
 }
 
 void Link::break_off() {
@@ -86,8 +88,10 @@ void Link::break_off() {
   close();
 }
 
-void Link::release() {
+void Link::release(Bytes& spare) {
+  message_.clear();
   if (message_.capacity() > kKeptCapacity) message_ = Bytes();
+  spare = std::move(message_);
 }
 
 void Link::close() {

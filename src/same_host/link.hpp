@@ -61,9 +61,12 @@ class Link {
   bool await_taken(Instant deadline);
 
   /// The reader's thread: the next whole message, which is valid until release(), after which the
-  /// next one may be asked for; or nothing. Throws BrokenRing.
-  std::optional<std::span<const std::byte>> receive();
-  void release();
+  /// next one may be asked for; or nothing. `spare` is memory that links of one reader lend each
+  /// other: only a message that has not come to its end keeps some. Throws BrokenRing.
+  std::optional<std::span<const std::byte>> receive(Bytes& spare);
+  void release(Bytes& spare);
+  /// Octets that have come of a message without its end.
+  std::size_t unfinished() const noexcept { return message_.size(); }
   RingReader& in() noexcept { return in_; }
 
   /// Both sides learn of the end. Twice is no error.

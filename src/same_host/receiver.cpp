@@ -33,8 +33,8 @@ struct Receiver::Entry {
   std::atomic<bool> over{false};
 };
 
-Receiver::Receiver(std::string name, Duration spin)
-    : name_(std::move(name)), spin_limit_(spin), spin_(spin) {}
+Receiver::Receiver(std::string name, Duration spin, std::size_t most_unfinished)
+    : name_(std::move(name)), spin_limit_(spin), most_unfinished_(most_unfinished), spin_(spin) {}
 
 Receiver::~Receiver() {
   {
@@ -106,12 +106,12 @@ void Receiver::run() {
 
 bool Receiver::look_at_all(const Entries& entries) {
   bool any = false;
-  for (const auto& entry : entries) any |= look_at(*entry);
+  for (const auto& entry : entries) any |= look_at(*entry, entries);
   return any;
 }
 
 // Whether there was something to do.
-bool Receiver::look_at(Entry& entry) {
+bool Receiver::look_at(Entry& entry, const Entries& entries) {
   Link& link = *entry.link;
   if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return false;
   std::lock_guard lock(entry.mutex);
@@ -121,21 +121,38 @@ bool Receiver::look_at(Entry& entry) {
   int taken = 0;
   try {
     for (; taken < kMessagesInARow; ++taken) {
-      const auto message = link.receive();
+      const auto message = link.receive(spare_);
       if (!message) break;
       entry.inbox.on_message(link, *message);
-      link.release();
+      link.release(spare_);
     }
   } catch (const BrokenRing& error) {
     log(LogLevel::Warning, "same host", error.what());
   }
   const bool drained = taken == 0 && !link.in().ready();
-  if (link.broken() || (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
+  const bool too_much = brings_too_much(link, entries);
+  if (too_much) link.close();
+  if (link.broken() || too_much ||
+      (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
     entry.inbox.on_end(link);
     link.ending().run();
     entry.over = true;
     notify();
   }
+  return true;
+}
+
+bool Receiver::brings_too_much(const Link& link, const Entries& entries) const {
+  if (link.unfinished() == 0) return false;
+  std::size_t others = 0;
+  for (const auto& entry : entries) {
+    if (!entry->over && entry->link.get() != &link) others += entry->link->unfinished();
+  }
+  if (link.unfinished() <= most_unfinished_ - std::min(most_unfinished_, others)) return false;
+  log(LogLevel::Warning, "same host",
+      "a connection is ended: of a message without its end " + std::to_string(link.unfinished()) +
+          " octets have come, and of others' " + std::to_string(others) +
+          "; all together may have " + std::to_string(most_unfinished_));
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "dds/largest_sample.hpp"
 #include "futex.hpp"
 #include "link.hpp"
 #include "skein/clock.hpp"
@@ -50,9 +51,12 @@ class Receiver {
  public:
   /// How many links one thread can wait for.
   static constexpr std::size_t kMostLinks = kMostWords - 1;
+  /// Octets in all of messages that have not come to their end. A link may have no more than are
+  /// left, so that a lone one may bring the largest; one that brings more is ended.
+  static constexpr std::size_t kMostUnfinished = 2 * std::size_t{dds::kLargestSample};
 
   /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
-  Receiver(std::string name, Duration spin);
+  Receiver(std::string name, Duration spin, std::size_t most_unfinished = kMostUnfinished);
   /// No function of an inbox runs any more.
   ~Receiver();
   Receiver(const Receiver&) = delete;
@@ -72,7 +76,8 @@ class Receiver {
   using Entries = std::vector<std::shared_ptr<Entry>>;
 
   void run();
-  bool look_at(Entry& entry);
+  bool look_at(Entry& entry, const Entries& entries);
+  bool brings_too_much(const Link& link, const Entries& entries) const;
   bool look_at_all(const Entries& entries);
   void drop_ended();
   void await(const Entries& entries);
@@ -81,12 +86,15 @@ class Receiver {
 
   const std::string name_;
   const Duration spin_limit_;
+  const std::size_t most_unfinished_;
   const std::shared_ptr<Word> notified_ = std::make_shared<Word>(0);
   mutable std::mutex mutex_;
   Entries entries_;
   bool stopping_ = false;
   std::thread thread_;
-  SpinPolicy spin_;  // the thread's
+  // The thread's.
+  SpinPolicy spin_;
+  Bytes spare_;
 };
 
 }  // namespace skein::same_host

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <vector>
@@ -50,7 +51,7 @@ struct Host {
 
   const Guid provider = Guid::random();
   Notes notes;
-  Receiver receiver{"test-requests", 0us};
+  Receiver receiver{"test-requests", 0us, 1 << 20};
   Meeting meeting;
 };
 
@@ -62,6 +63,36 @@ struct Client {
 
   const Guid id = Guid::random();
   Meeting meeting;
+  std::shared_ptr<Link> link;
+};
+
+/// A client without a process of its own, which begins a message and does not end it.
+struct Hostile {
+  explicit Hostile(Host& host) {
+    auto memory = SharedMemory::make(Link::kMemory);
+    theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
+    link = std::make_shared<Link>(Link::Side::Provider,
+                                  std::make_shared<const FileDescriptor>(local_socket()),
+                                  std::move(memory), Guid::random(), id, host.receiver.notifier());
+    host.receiver.add(link, host.notes);
+  }
+  /// So many frames of it, of 32 KiB each, are taken; or the link has ended.
+  void bring(int frames) {
+    constexpr std::uint64_t kFrame = 32 << 10;
+    auto& ring = *reinterpret_cast<RingState*>(theirs.data());
+    std::byte* const content = theirs.data() + (Link::kMemory - 2 * Link::kCapacity);
+    for (int i = 0; i < frames && !link->ended(); ++i) {
+      const std::uint64_t written = ring.written;
+      const std::uint64_t header = std::uint64_t{written == 0} << 32 | (kFrame - 8);
+      std::memcpy(content + written % Link::kCapacity, &header, sizeof header);
+      ring.written = written + kFrame;
+      if (ring.reader_sleeps.exchange(0) != 0) futex_wake(ring.reader_sleeps);
+      REQUIRE(eventually([&] { return link->ended() || ring.read == ring.written; }));
+    }
+  }
+
+  const Guid id = Guid::random();
+  SharedMemory theirs;
   std::shared_ptr<Link> link;
 };
 
@@ -114,6 +145,27 @@ TEST_CASE("a link that is found broken ends, is told of, and the others go on") 
   sound.send("after");
   CHECK(eventually([&] {
     return host.notes.about(sound.id) == std::vector<std::string>{"begin", "before", "after"};
+  }));
+}
+
+TEST_CASE("messages without an end take no more memory than is left, and others go on") {
+  Host host;
+  const test::Log log;
+  Client sound(host);
+  Hostile first(host);
+  Hostile second(host);
+  first.bring(14);
+  second.bring(4);
+  CHECK_FALSE(second.link->ended());
+  second.bring(16);
+  CHECK(eventually([&] {
+    return host.notes.about(second.id) == std::vector<std::string>{"begin", "end"};
+  }));
+  CHECK(log.count("of a message without its end") == 1);
+  CHECK_FALSE(first.link->ended());
+  sound.send("after");
+  CHECK(eventually([&] {
+    return host.notes.about(sound.id) == std::vector<std::string>{"begin", "after"};
   }));
 }
 
