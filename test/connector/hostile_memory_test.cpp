@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -11,8 +12,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <new>
 #include <random>
+#include <vector>
 
 #include "../tools/eventually.hpp"
 #include "../tools/invariant.hpp"
@@ -42,110 +45,39 @@ struct Shared {
   Guid provider;
 };
 
-std::unique_ptr<Entity> make_entity(const std::string& name) {
+std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory_calls = true) {
   EntityOptions options;
   options.name = name;
   options.vendor = dds::load_vendor("loopback");
   options.domain = 19;
-  options.shared_memory_calls = true;
+  options.shared_memory_calls = shared_memory_calls;
   return std::make_unique<Entity>(std::move(options));
 }
 
-/// A client that joins as it should, and then writes what it likes into the memory it was given.
+/// A side of a connection that writes what it likes into the memory that both share.
 class Attacker {
  public:
-  Attacker(const Guid& provider, std::uint64_t seed) : provider_(provider), random_(seed) {}
+  /// `out`: the ring that it writes to, 0 for requests and 1 for replies.
+  Attacker(std::uint64_t seed, int out) : random_(seed), out_(out) {}
 
-  void attack() {
-    const Guid client = Guid::random();
-    const FileDescriptor socket = local_socket(SOCK_SEQPACKET);
-    if (connect_to(socket, "skein-call/" + provider_.hex()) != Reached::Yes) return;
-    const FileDescriptor descriptor = handed_over(socket, client);
-    if (!descriptor) return;
+ protected:
+  bool chance(std::uint64_t one_in) { return random_() % one_in == 0; }
+  std::uint64_t random() { return random_(); }
+
+  bool map(const FileDescriptor& descriptor) {
     void* const mapped =
         mmap(nullptr, Link::kMemory, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor.get(), 0);
-    if (mapped == MAP_FAILED) return;
-    memory_ = static_cast<std::byte*>(mapped);
-    send(open_request(client));
-    for (std::uint64_t number = 1; number < 40; ++number) {
-      if (chance(2)) send(request(client, number));
-      if (chance(3)) damage();
-      eat_replies();
-      look_alive();
-    }
-    munmap(mapped, Link::kMemory);
+    memory_ = mapped == MAP_FAILED ? nullptr : static_cast<std::byte*>(mapped);
+    return memory_ != nullptr;
   }
-
- private:
-  bool chance(std::uint64_t one_in) { return random_() % one_in == 0; }
-
-  static FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
-    std::array<char, 24> hello{"skein1"};
-    std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
-    if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
-    pollfd answered{socket.get(), POLLIN, 0};
-    poll(&answered, 1, 20'000);
-    char packet[128];
-    iovec content{packet, sizeof packet};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-    msghdr message{};
-    message.msg_iov = &content;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    if (recvmsg(socket.get(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC) < 0) return {};
-    const cmsghdr* const header = CMSG_FIRSTHDR(&message);
-    if (header == nullptr) return {};
-    int number = -1;
-    std::memcpy(&number, CMSG_DATA(header), sizeof number);
-    return FileDescriptor(number);
-  }
-
-  static Bytes open_request(const Guid& client) {
-    Bytes message;
-    rpc::wire::begin_request(message, {client, 0}, rpc::wire::kOpen);
-    rpc::wire::append_default_branch(message);
-    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{10s});
-    return message;
-  }
-
-  /// Not one that takes as long as its arguments say.
-  std::uint32_t any_operation() {
-    const auto& operations = LouderEcho::interface_info().operations;
-    while (true) {
-      const auto& operation = operations[random_() % operations.size()];
-      if (operation.name != "wait" && operation.name != "who") return operation.hash;
-    }
-  }
-
-  // One in two is as it should be, but for its arguments.
-  Bytes request(const Guid& client, std::uint64_t number) {
-    Bytes message;
-    rpc::wire::begin_request(message, {client, number}, any_operation());
-    for (std::uint64_t i = random_() % 64; i > 0; --i) {
-      const auto octet = static_cast<std::byte>(chance(2) ? 0 : random_());
-      message.append({&octet, 1});
-    }
-    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{chance(2) ? 1s : 1ms});
-    if (chance(2)) {
-      for (int i = 0; i < 4; ++i)
-        message.data()[random_() % message.size()] = static_cast<std::byte>(random_());
-    }
-    return message;
-  }
-
-  RingState& state(int which) { return reinterpret_cast<RingState*>(memory_)[which]; }
-  std::byte* content(int which) {
-    return memory_ + (Link::kMemory - 2 * Link::kCapacity) +
-           static_cast<std::size_t>(which) * Link::kCapacity;
-  }
+  void unmap() { munmap(memory_, Link::kMemory); }
 
   void send(const Bytes& message) {
-    RingState& ring = state(0);
+    RingState& ring = state(out_);
     const std::uint64_t at = written_;
     const std::size_t frame = 8 + ((message.size() + 7) & ~std::size_t{7});
     if (at % Link::kCapacity + frame > Link::kCapacity) return;
-    std::byte* const place = content(0) + at % Link::kCapacity;
+    std::byte* const place = content(out_) + at % Link::kCapacity;
     const std::uint64_t header = std::uint64_t{3} << 32 | message.size();
     std::memcpy(place + 8, message.data(), message.size());
     std::memcpy(place, &header, sizeof header);
@@ -185,31 +117,227 @@ class Attacker {
     same_host::futex_wake(ring.writer_sleeps);
   }
 
-  void scribble(int which) {
-    const std::uint64_t value = chance(2) ? random_() : (random_() % 6) << 32 | random_() % 256;
-    std::memcpy(content(which) + random_() % 512 * 8, &value, sizeof value);
-  }
-
-  void eat_replies() {
-    RingState& ring = state(1);
+  /// Takes what the other side sends, mostly.
+  void eat() {
+    RingState& ring = state(1 - out_);
     if (!chance(3)) ring.read = ring.written.load();
     ring.writer_sleeps = 0;
     same_host::futex_wake(ring.writer_sleeps);
   }
 
+  void append_body(Bytes& message) {
+    for (std::uint64_t i = random_() % 64; i > 0; --i) {
+      const auto octet = static_cast<std::byte>(chance(2) ? 0 : random_());
+      message.append({&octet, 1});
+    }
+  }
+  /// Leaves one in two as it is.
+  void damage(Bytes& message) {
+    if (chance(2)) return;
+    for (int i = 0; i < 4; ++i)
+      message.data()[random_() % message.size()] = static_cast<std::byte>(random_());
+  }
+
+  /// Not one that takes as long, or as much memory, as its arguments say.
+  std::uint32_t any_operation() {
+    const auto& operations = LouderEcho::interface_info().operations;
+    while (true) {
+      const auto& operation = operations[random_() % operations.size()];
+      const auto& name = operation.name;
+      if (name != "wait" && name != "who" && name != "burst") return operation.hash;
+    }
+  }
+
   // So that some of it comes while the other side looks.
   static void look_alive() { sched_yield(); }
 
-  const Guid provider_;
+ private:
+  RingState& state(int which) { return reinterpret_cast<RingState*>(memory_)[which]; }
+  std::byte* content(int which) {
+    return memory_ + (Link::kMemory - 2 * Link::kCapacity) +
+           static_cast<std::size_t>(which) * Link::kCapacity;
+  }
+  void scribble(int which) {
+    const std::uint64_t value = chance(2) ? random_() : (random_() % 6) << 32 | random_() % 256;
+    std::memcpy(content(which) + random_() % 512 * 8, &value, sizeof value);
+  }
+
   std::mt19937_64 random_;
+  const int out_;
   std::byte* memory_ = nullptr;
   std::uint64_t written_ = 0;
+};
+
+std::string address_of(const Guid& provider) { return "skein-call/" + provider.hex(); }
+
+/// A client that joins as it should, and then is hostile.
+class HostileClient : Attacker {
+ public:
+  HostileClient(const Guid& provider, std::uint64_t seed)
+      : Attacker(seed, 0), provider_(provider) {}
+
+  void attack() {
+    const Guid client = Guid::random();
+    const FileDescriptor socket = local_socket(SOCK_SEQPACKET);
+    if (connect_to(socket, address_of(provider_)) != Reached::Yes) return;
+    const FileDescriptor descriptor = handed_over(socket, client);
+    if (!descriptor || !map(descriptor)) return;
+    send(open_request(client));
+    for (std::uint64_t number = 1; number < 40; ++number) {
+      if (chance(2)) send(request(client, number));
+      if (chance(3)) Attacker::damage();
+      eat();
+      look_alive();
+    }
+    unmap();
+  }
+
+ private:
+  static FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
+    std::array<char, 24> hello{"skein1"};
+    std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
+    if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
+    pollfd answered{socket.get(), POLLIN, 0};
+    poll(&answered, 1, 20'000);
+    char packet[128];
+    iovec content{packet, sizeof packet};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+    msghdr message{};
+    message.msg_iov = &content;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    if (recvmsg(socket.get(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC) < 0) return {};
+    const cmsghdr* const header = CMSG_FIRSTHDR(&message);
+    if (header == nullptr) return {};
+    int number = -1;
+    std::memcpy(&number, CMSG_DATA(header), sizeof number);
+    return FileDescriptor(number);
+  }
+
+  static Bytes open_request(const Guid& client) {
+    Bytes message;
+    rpc::wire::begin_request(message, {client, 0}, rpc::wire::kOpen);
+    rpc::wire::append_default_branch(message);
+    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{10s});
+    return message;
+  }
+
+  Bytes request(const Guid& client, std::uint64_t number) {
+    Bytes message;
+    rpc::wire::begin_request(message, {client, number}, any_operation());
+    append_body(message);
+    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{chance(2) ? 1s : 1ms});
+    damage(message);
+    return message;
+  }
+
+  const Guid provider_;
+};
+
+/// A provider that lets a client in, mostly as it should, and then is hostile.
+class HostileProvider : Attacker {
+ public:
+  HostileProvider(const Guid& provider, std::uint64_t seed)
+      : Attacker(seed, 1), provider_(provider) {}
+
+  /// Of the address under which clients look for it.
+  static FileDescriptor listen_as(const Guid& provider) {
+    FileDescriptor socket = local_socket(SOCK_SEQPACKET);
+    sockaddr_un address;
+    const socklen_t length = fill_address(address, address_of(provider));
+    if (bind(socket.get(), reinterpret_cast<sockaddr*>(&address), length) != 0) return {};
+    if (listen(socket.get(), SOMAXCONN) != 0) return {};
+    return socket;
+  }
+
+  /// Whether a client came.
+  bool attack(const FileDescriptor& listening) {
+    if (!readable(listening, 100)) return false;
+    const FileDescriptor socket(accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    std::array<char, 24> hello{};
+    if (!socket || !readable(socket, 20'000) ||
+        recv(socket.get(), hello.data(), hello.size(), 0) != ssize_t{hello.size()})
+      return false;
+    Guid client;
+    std::memcpy(client.bytes.data(), hello.data() + 8, client.bytes.size());
+    const bool sound = !chance(8);
+    const FileDescriptor descriptor(memfd_create("hostile", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    const auto size = static_cast<off_t>(sound || chance(2) ? Link::kMemory : random() % 8192);
+    if (ftruncate(descriptor.get(), size) != 0) return false;
+    if (sound || chance(2)) fcntl(descriptor.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
+    if (!answer(socket, descriptor) || !sound || !map(descriptor)) return true;
+    send(opened(client));
+    for (std::uint64_t i = 1; i < 60; ++i) {
+      if (chance(2)) send(reply(client, 1 + random() % 12));
+      if (chance(6)) Attacker::damage();
+      eat();
+      look_alive();
+    }
+    unmap();
+    return true;
+  }
+
+ private:
+  static bool readable(const FileDescriptor& socket, int time_ms) {
+    pollfd polled{socket.get(), POLLIN, 0};
+    return poll(&polled, 1, time_ms) > 0;
+  }
+
+  bool answer(const FileDescriptor& socket, const FileDescriptor& descriptor) {
+    std::array<char, 128> packet{"skein1"};
+    std::memcpy(packet.data() + 8, provider_.bytes.data(), provider_.bytes.size());
+    if (chance(16)) packet[random() % packet.size()] = static_cast<char>(random());
+    iovec content{packet.data(), packet.size()};
+    const std::array<int, 2> handed{descriptor.get(), descriptor.get()};
+    const std::size_t size = sizeof(int) * (chance(8) ? 2 : 1);
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof handed)] = {};
+    msghdr message{};
+    message.msg_iov = &content;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = CMSG_SPACE(size);
+    cmsghdr* const header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(size);
+    std::memcpy(CMSG_DATA(header), handed.data(), size);
+    return sendmsg(socket.get(), &message, MSG_NOSIGNAL) == ssize_t{packet.size()};
+  }
+
+  static Bytes opened(const Guid& client) {
+    Bytes message;
+    rpc::wire::begin_reply(message, {client, 0}, rpc::wire::RemoteException::Ok, rpc::wire::kOpen);
+    rpc::wire::append_default_branch(message);
+    return message;
+  }
+
+  Bytes reply(const Guid& client, std::uint64_t number) {
+    Bytes message;
+    const auto exception = static_cast<rpc::wire::RemoteException>(chance(2) ? 0 : random() % 7);
+    rpc::wire::begin_reply(message, {client, number}, exception, any_operation());
+    if (chance(2)) rpc::wire::append_discriminator(message, 0);
+    append_body(message);
+    if (chance(2)) {
+      rpc::wire::ReplyTrailer trailer;
+      trailer.part = static_cast<rpc::wire::StreamPart>(random() % 4);
+      trailer.position = random() % 3;
+      rpc::wire::append_trailer(message, trailer);
+    }
+    damage(message);
+    return message;
+  }
+
+  const Guid provider_;
 };
 
 /// A process that attacks until it is told to end. Forked before this one has threads.
 class AttackingProcess {
  public:
-  explicit AttackingProcess(std::uint64_t seed) {
+  /// Attacks that provider's clients, or the provider, once that is known; whether it did.
+  using Attack = std::function<bool(const Guid& provider, std::uint64_t seed)>;
+
+  explicit AttackingProcess(const Attack& attack, std::uint64_t seed) {
     void* const memory =
         mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     REQUIRE(memory != MAP_FAILED);
@@ -219,10 +347,8 @@ class AttackingProcess {
     if (pid_ > 0) return;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     while (!shared_->begin) sched_yield();
-    for (std::uint64_t round = 0; !shared_->end; ++round) {
-      Attacker attacker(shared_->provider, seed + round);
-      attacker.attack();
-      ++shared_->rounds;
+    while (!shared_->end) {
+      if (attack(shared_->provider, seed + shared_->rounds)) ++shared_->rounds;
     }
     _exit(0);
   }
@@ -262,7 +388,7 @@ std::ptrdiff_t open_descriptors() {
 int mapped_rings() {
   std::ifstream maps("/proc/self/maps");
   int count = 0;
-  for (std::string line; std::getline(maps, line);) count += line.find("memfd:skein") != line.npos;
+  for (std::string line; std::getline(maps, line);) count += line.find("memfd:") != line.npos;
   return count;
 }
 
@@ -270,8 +396,12 @@ int mapped_rings() {
 
 TEST_CASE(
     "a process that writes anything into the memory it shares harms neither provider nor others") {
-  const std::uint64_t seed = seed_of_this_run();
-  AttackingProcess attacker(seed);
+  AttackingProcess attacker(
+      [](const Guid& provider, std::uint64_t seed) {
+        HostileClient(provider, seed).attack();
+        return true;
+      },
+      seed_of_this_run());
   const Log log;
   const auto server = make_entity("server");
   ServiceOptions service;
@@ -293,6 +423,61 @@ TEST_CASE(
   }));
   CHECK(attacker.stop() == 0);
   CHECK(client->connector().connections().front().transport == "shared memory");
+  CHECK(log.count("has damaged the memory that it shares") > 10);
+  CHECK(eventually([&] { return mapped_rings() == 2; }));
+  CHECK(eventually([&] { return open_descriptors() == descriptors; }));
+}
+
+TEST_CASE("a provider that writes anything into the memory it shares harms its clients alone") {
+  FileDescriptor listening;  // of the process that attacks
+  AttackingProcess attacker(
+      [&](const Guid& provider, std::uint64_t seed) {
+        if (!listening) listening = HostileProvider::listen_as(provider);
+        return HostileProvider(provider, seed).attack(listening);
+      },
+      seed_of_this_run());
+  const Log log;
+  const auto sound = make_entity("sound");
+  const Guid sound_id = sound->provide<LouderEcho>(std::make_shared<EchoService>());
+  // What takes its calls through shared memory is the process that attacks.
+  const auto hostile = make_entity("hostile", false);
+  ServiceOptions says_so;
+  says_so.attributes = {{"skein:shared_memory_calls", "true"}};
+  const Guid hostile_id = hostile->provide<LouderEcho>(std::make_shared<EchoService>(), says_so);
+  attacker.begin(hostile_id);
+  const auto bystander = make_entity("bystander");
+  auto echo = bystander->connect<Echo>({.provider = sound_id});
+  const auto descriptors = open_descriptors();
+
+  constexpr std::uint64_t kRounds = 100;
+  std::uint64_t answered = 0;
+  while (attacker.rounds() < kRounds) {
+    const auto client = make_entity("client");  // none that knows its provider already
+    auto sound_echo = client->connect<Echo>({.provider = sound_id});
+    try {
+      auto victim = client->connect<Echo>({.provider = hostile_id, .timeout = 300ms});
+      std::vector<Call<std::string>> calls;
+      for (int i = 0; i < 8; ++i) calls.push_back(victim.within(100ms).async_echo("hello"));
+      auto numbers = victim.within(100ms).count_up(1000, -1);
+      try {
+        while (numbers.next()) continue;
+      } catch (const Error&) {
+      }
+      for (auto& call : calls) {
+        try {
+          call.get();
+        } catch (const Error&) {
+        }
+      }
+    } catch (const Error&) {
+    }
+    for (auto* each : {&echo, &sound_echo}) {
+      const std::string text = std::to_string(++answered);
+      INVARIANT(each->within(20s).echo(text) == text);
+    }
+  }
+  CHECK(attacker.stop() == 0);
+  CHECK(bystander->connector().connections().front().transport == "shared memory");
   CHECK(log.count("has damaged the memory that it shares") > 10);
   CHECK(eventually([&] { return mapped_rings() == 2; }));
   CHECK(eventually([&] { return open_descriptors() == descriptors; }));
