@@ -186,7 +186,8 @@ struct Meeting::State {
     pthread_setname_np(pthread_self(), "skein-meeting");
     while (true) {
       epoll_event events[32];
-      const int count = epoll_wait(epoll.get(), events, 32, time_left());
+      // None where a signal interrupts it: one that stops the process does so, too.
+      const int count = std::max(epoll_wait(epoll.get(), events, 32, time_left()), 0);
       std::vector<Admitted> admitted;
       std::vector<std::shared_ptr<Link>> gone;
       std::vector<std::string> news;

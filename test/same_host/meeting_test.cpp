@@ -3,7 +3,9 @@
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,8 +14,10 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -114,6 +118,16 @@ bool hung_up(const FileDescriptor& socket) {
   });
 }
 
+/// The meeting's, where this process has but one; 0 while it has no name yet.
+pid_t meeting_thread() {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(thread.path() / "comm"), name);
+    if (name == "skein-meeting") return std::stoi(thread.path().filename());
+  }
+  return 0;
+}
+
 }  // namespace
 
 TEST_CASE("a client that joins a provider exchanges messages with it both ways") {
@@ -156,6 +170,26 @@ TEST_CASE(
   CHECK(other->receive(spare));
   CHECK(other->send(octets(10), 20s) == Link::Sent::Ended);
   CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+}
+
+TEST_CASE("a signal that interrupts the meeting's thread is nobody's end") {
+  struct sigaction ignoring {};
+  struct sigaction before {};
+  ignoring.sa_handler = [](int) {};
+  REQUIRE(sigaction(SIGUSR1, &ignoring, &before) == 0);
+  Host host;
+  const auto wake_ups = [&] { return host.meeting.counters().wake_ups; };
+  REQUIRE(eventually([&] { return meeting_thread() != 0; }));
+  for (int i = 0; i < 3; ++i) {
+    const auto earlier = wake_ups();
+    REQUIRE(eventually([&] {
+      syscall(SYS_tgkill, getpid(), meeting_thread(), SIGUSR1);
+      return wake_ups() > earlier;
+    }));
+  }
+  Meeting meeting;
+  CHECK(meeting.join(host.provider, Guid::random(), [] {}));
+  sigaction(SIGUSR1, &before, nullptr);
 }
 
 TEST_CASE("a link ends with the process at its other end, also one that is killed") {
