@@ -1,4 +1,6 @@
+#include <chrono>
 #include <cstdio>
+#include <map>
 #include <optional>
 
 #include "brokerless_discovery/broker.hpp"
@@ -9,10 +11,14 @@
 #include "json_output.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
+#include "skein/inspector.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::command {
 namespace {
+
+// Of who is asked for its connections; who hangs is left out.
+constexpr std::chrono::seconds kPatience{1};
 
 double microseconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1000; }
 
@@ -21,6 +27,40 @@ void print_latency(const char* what, const introspection::Latency& latency) {
   std::printf("      %-7s mean %.1f  p50 %.1f  p90 %.1f  p99 %.1f  greatest %.1f us\n", what,
               microseconds(latency.mean), microseconds(latency.p50), microseconds(latency.p90),
               microseconds(latency.p99), microseconds(latency.greatest));
+}
+
+/// Who has connected to a service, and how.
+struct Client {
+  std::string name;  ///< `system/entity`.
+  inspection::Connection connection;
+};
+using Clients = std::multimap<Guid, Client>;  // by provider
+
+Clients clients_in(std::vector<Inspected>&& answers) {
+  Clients clients;
+  for (auto& [participant, answer] : answers) {
+    for (auto& connection : answer.connections) {
+      clients.emplace(connection.provider, Client{answer.entity, std::move(connection)});
+    }
+  }
+  return clients;
+}
+
+void print(const Client& client) {
+  const inspection::Connection& connection = client.connection;
+  std::printf("    from %s: %s, %llu calls%s%s\n", printable(client.name).c_str(),
+              printable(connection.transport).c_str(),
+              static_cast<unsigned long long>(connection.calls),
+              connection.not_faster.empty() ? "" : "; not faster: ",
+              printable(connection.not_faster).c_str());
+}
+
+nlohmann::ordered_json to_json(const Client& client) {
+  return {{"client", client.name},
+          {"transport", client.connection.transport},
+          {"not_faster", client.connection.not_faster},
+          {"pending", client.connection.pending},
+          {"calls", client.connection.calls}};
 }
 
 void print(const introspection::ServiceStatistics& service) {
@@ -50,10 +90,27 @@ nlohmann::ordered_json to_json(const discovery::ServiceDescription& service) {
           {"vendor", service.vendor},   {"attributes", attributes}};
 }
 
-void print_statistics(const std::vector<introspection::ServiceStatistics>& services, bool json) {
+void print_statistics(const std::vector<introspection::ServiceStatistics>& services,
+                      const Clients& clients) {
+  for (const auto& service : services) {
+    print(service);
+    const auto [first, last] = clients.equal_range(Guid{service.provider});
+    for (auto client = first; client != last; ++client) print(client->second);
+  }
+}
+
+void print_statistics_as_json(const std::vector<introspection::ServiceStatistics>& services,
+                              const Clients& clients) {
   auto list = nlohmann::ordered_json::array();
-  for (const auto& service : services) json ? list.push_back(json_of(service)) : print(service);
-  if (json) print_json(list, true);
+  for (const auto& service : services) {
+    auto& json = list.emplace_back(json_of(service));
+    json["connections"] = nlohmann::ordered_json::array();
+    const auto [first, last] = clients.equal_range(Guid{service.provider});
+    for (auto client = first; client != last; ++client) {
+      json["connections"].push_back(to_json(client->second));
+    }
+  }
+  print_json(list, true);
 }
 
 void print(const brokerless_discovery::Table::Found& services, const std::string& place) {
@@ -82,10 +139,17 @@ int list_services(const ServicesArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "services");
   std::optional<introspection::StatisticsReader> statistics;
-  if (arguments.statistics) statistics.emplace(entity.participant());
+  std::optional<Inspector> inspector;
+  if (arguments.statistics) {
+    statistics.emplace(entity.participant());
+    inspector.emplace(entity);
+  }
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   if (statistics) {
-    print_statistics(statistics->latest(), arguments.json);
+    const Clients clients =
+        clients_in(inspector->ask_all(inspection::Subject::Connections, kPatience));
+    arguments.json ? print_statistics_as_json(statistics->latest(), clients)
+                   : print_statistics(statistics->latest(), clients);
     return 0;
   }
   const auto services = entity.broker().all();

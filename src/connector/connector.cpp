@@ -125,6 +125,19 @@ void arrange(Table::Found& providers, const ProviderQuery& wanted, const Query& 
   put_less_loaded_first(providers, static_cast<std::size_t>(equals - providers.begin()), loads);
 }
 
+// Empty where it may be.
+std::string why_not_shared_memory(const Connector::Parts& parts,
+                                  const ServiceDescription& provider) {
+  if (provider.host != brokerless_discovery::ProcessWatch::host()) {
+    return "the provider is on another host";
+  }
+  if (!parts.same_host) return "the caller does not use shared memory for calls";
+  if (!brokerless_discovery::offers_shared_memory_calls(provider)) {
+    return "the provider does not use shared memory for calls";
+  }
+  return {};
+}
+
 // Through shared memory where both sides have it; otherwise, and where the provider is not reached
 // in that way, over DDS. Who has answered there is not asked again.
 std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
@@ -136,8 +149,8 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
     return rpc::DdsChannel::open(participant, parts.control, parts.continuations, parts.clock,
                                  address, std::move(how));
   };
-  if (parts.same_host && provider.host == brokerless_discovery::ProcessWatch::host() &&
-      brokerless_discovery::offers_shared_memory_calls(provider)) {
+  options.not_faster = why_not_shared_memory(parts, provider);
+  if (options.not_faster.empty()) {
     const Instant begin = parts.clock->now();
     auto shared = options;
     shared.transport = "shared memory";
@@ -151,6 +164,7 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
     } catch (const Unavailable& why) {
       if (*reached) throw;
       log(LogLevel::Debug, "connector", options.peer + " is called over DDS: " + why.what());
+      options.not_faster = why.what();
     }
     options.timeout -= std::min(options.timeout, parts.clock->now() - begin);
   }
@@ -274,6 +288,7 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
   rpc::DdsChannel::Options dds_options;
   const std::string service = options.name.empty() ? std::string(interface.name) : options.name;
   dds_options.peer = "the foreign server of " + service;
+  dds_options.not_faster = "the provider is not built with Skein";
   dds_options.timeout = options.timeout;
   dds_options.spin = parts_.spin;
   dds_options.journal = parts_.journal;

@@ -101,8 +101,12 @@ inspection::TopicEndpoint report_of(const topics::Endpoint& endpoint) {
 }
 
 inspection::Connection report_of(const ConnectionInfo& connection) {
-  return {connection.service, connection.provider.bytes, connection.transport,
-          static_cast<std::uint32_t>(connection.pending), connection.calls};
+  return {connection.service,
+          connection.provider.bytes,
+          connection.transport,
+          connection.not_faster,
+          static_cast<std::uint32_t>(connection.pending),
+          connection.calls};
 }
 
 }  // namespace skein::introspection

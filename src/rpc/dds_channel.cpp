@@ -243,7 +243,7 @@ Executor& DdsChannel::continuations() const noexcept { return *state_->continuat
 std::string DdsChannel::peer() const { return state_->options.peer; }
 std::optional<ConnectionInfo> DdsChannel::info() const {
   ConnectionInfo info{state_->address.service, state_->address.provider, state_->options.transport,
-                      pending()};
+                      state_->options.not_faster, pending()};
   std::lock_guard lock(state_->mutex);
   info.calls = state_->last_number;
   return info;

@@ -20,7 +20,8 @@ class DdsChannel final : public Channel, public std::enable_shared_from_this<Dds
   struct Options {
     std::string strategy;           ///< See OpenRequest.
     std::string peer;               ///< For messages.
-    std::string transport = "DDS";  ///< See ConnectionInfo.
+    std::string transport = "DDS";  ///< See ConnectionInfo, as the next.
+    std::string not_faster{};
     /// The provider's participant, which alone is believed. Nil: whoever serves the address is.
     Guid participant;
     Duration timeout = std::chrono::seconds(5);

@@ -257,9 +257,13 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 }
 
 DdsServer::~DdsServer() {
-  // A call that runs on the reader's thread ends by it, and then the reader can.
-  state_->service->close();
+  // Clients learn of the reader's end before a call that is told to end could answer them. Where a
+  // call runs on the reader's thread, the reader ends after it.
+  const bool on_readers_thread =
+      state_->options.may_run && state_->service->thread() == CallThread::Caller;
+  if (on_readers_thread) state_->service->close();
   state_->requests.reset();
+  if (!on_readers_thread) state_->service->close();
   std::vector<TimerId> timers;
   {
     // The writers end here, where their listeners can be waited for: a listener that still runs may

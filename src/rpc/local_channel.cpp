@@ -139,8 +139,12 @@ std::optional<ConnectionInfo> LocalChannel::info() const {
     const auto queued = weak.lock();
     return queued && !queued->call->finished();
   });
-  return ConnectionInfo{std::string(service->interface_info().name), service->id(), "process",
-                        static_cast<std::size_t>(pending), calls_.load(std::memory_order_relaxed)};
+  return ConnectionInfo{std::string(service->interface_info().name),
+                        service->id(),
+                        "process",
+                        "",
+                        static_cast<std::size_t>(pending),
+                        calls_.load(std::memory_order_relaxed)};
 }
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {

@@ -51,8 +51,8 @@ DomainPicture mission() {
   DomainPicture picture{peer("gs/client", 1), peer("uav-1/navigator", 2)};
   provide(picture[1], "AE/INavigator", 10);
   provide(picture[1], "AE/IPlanner", 11, "uav-1/navigator", "AStar");
-  picture[0].connections.push_back({"AE/INavigator", guid(10).bytes, "DDS", 0, 0});
-  picture[0].connections.push_back({"AE/INavigator", guid(10).bytes, "DDS", 0, 0});
+  picture[0].connections.push_back({"AE/INavigator", guid(10).bytes, "DDS", "", 0, 0});
+  picture[0].connections.push_back({"AE/INavigator", guid(10).bytes, "DDS", "", 0, 0});
   publish(picture[1], "pose", true);
   return picture;
 }
@@ -115,7 +115,7 @@ TEST_CASE("a topic joins its publishers and subscribers, of one system") {
 
 TEST_CASE("connections to those that nobody knows are left out") {
   DomainPicture picture = mission();
-  picture[0].connections = {{"AE/IGone", guid(99).bytes, "DDS", 0, 0}};
+  picture[0].connections = {{"AE/IGone", guid(99).bytes, "DDS", "", 0, 0}};
   CHECK(graph_of(picture).edges.size() == 1);
 }
 

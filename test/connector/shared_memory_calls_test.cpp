@@ -87,8 +87,13 @@ TEST_CASE("calls go through shared memory where both sides are told to, and over
   const auto client = make_entity("client", by_client);
   auto echo = client->connect<Echo>();
   CHECK(echo.echo("hello") == "hello");
-  CHECK(transports(*client) ==
-        std::vector<std::string>{by_server && by_client ? "shared memory" : "DDS"});
+  const auto connections = client->connector().connections();
+  REQUIRE(connections.size() == 1);
+  CHECK(connections.front().transport == (by_server && by_client ? "shared memory" : "DDS"));
+  CHECK(connections.front().not_faster ==
+        (!by_client   ? "the caller does not use shared memory for calls"
+         : !by_server ? "the provider does not use shared memory for calls"
+                      : ""));
 }
 
 TEST_CASE("a provider says in its description whether it is called through shared memory",
@@ -111,7 +116,10 @@ TEST_CASE("a provider that only says that it is called through shared memory is 
   const auto client = make_entity("client", true);
   auto echo = client->connect<Echo>();
   CHECK(echo.echo("hello") == "hello");
-  CHECK(transports(*client) == std::vector<std::string>{"DDS"});
+  const auto connections = client->connector().connections();
+  REQUIRE(connections.size() == 1);
+  CHECK(connections.front().transport == "DDS");
+  CHECK(connections.front().not_faster == "no connection through shared memory: nobody offers one");
 }
 
 TEST_CASE(

@@ -192,6 +192,41 @@ TEST_CASE("the graph shows who has connected to whom, in each notation") {
   CHECK(wrong.wait() == 64);
 }
 
+TEST_CASE("the statistics of a service tell how its clients reach it, and why not faster") {
+  if (!installed("fastdds") || !installed("cyclonedds")) return;
+  const auto vendor = dds::load_vendor("fastdds");
+  Entity desk({.name = "desk",
+               .system = "hq",
+               .vendor = vendor,
+               .domain = 64,
+               .shared_memory_calls = true});
+  desk.provide<crew::Desk>(std::make_shared<Desk>());
+  Entity near({.name = "near",
+               .system = "hq",
+               .vendor = vendor,
+               .domain = 64,
+               .shared_memory_calls = true});
+  Entity plain({.name = "plain", .system = "hq", .vendor = vendor, .domain = 64});
+  auto near_desk = near.connect<crew::Desk>();
+  auto plain_desk = plain.connect<crew::Desk>();
+  CHECK(near_desk.ask("one") == "one");
+  const std::vector<std::string> words{"services", "--statistics", "--domain", "64"};
+  CHECK_THAT(output_with(words, "from hq/plain"),
+             Contains("from hq/near: shared memory, 1 calls\n") &&
+                 Contains("from hq/plain: DDS, 0 calls; not faster: the caller does not use shared "
+                          "memory for calls\n"));
+  auto as_json = words;
+  as_json.emplace_back("--json");
+  const auto json = nlohmann::json::parse(output_with(as_json, "hq/plain"));
+  REQUIRE(json.size() == 1);
+  const auto& connections = json[0]["connections"];
+  REQUIRE(connections.size() == 2);
+  const auto& of_near = connections[connections[0]["client"] == "hq/near" ? 0 : 1];
+  CHECK(of_near["transport"] == "shared memory");
+  CHECK(of_near["not_faster"] == "");
+  CHECK(of_near["calls"] == 1);
+}
+
 TEST_CASE("top prints one frame with what each process uses and how often services are called") {
   if (!installed("fastdds") || !installed("cyclonedds")) return;
   Entity desk(

@@ -99,9 +99,10 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
 
 /// An open connection to one provider, for those who look at it.
 struct ConnectionInfo {
-  std::string service;  ///< Canonical interface name.
-  Guid provider;        ///< Nil: a foreign server.
-  std::string transport;
+  std::string service;      ///< Canonical interface name.
+  Guid provider;            ///< Nil: a foreign server.
+  std::string transport;    ///< "process", "shared memory" or "DDS", the fastest first.
+  std::string not_faster;   ///< Why none of the faster ones; empty where there is none.
   std::size_t pending = 0;  ///< Calls that wait for their answer.
   std::uint64_t calls = 0;  ///< That were begun.
 };

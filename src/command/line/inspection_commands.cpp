@@ -84,12 +84,15 @@ void add_services(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "services", "List what is provided on a domain now",
       {{"skein services --domain 47", "Who provides what, with which attributes"},
-       {"skein services --domain 47 --statistics", "What became of the calls, and their times"},
+       {"skein services --domain 47 --statistics",
+        "What became of the calls, their times, and the way that each client takes"},
        {"skein services --interface eth0 --multicast", "On a network, not within this host"}});
   auto& arguments = arguments_of(command, list_services, result);
   add_onlooker(command, arguments);
-  command.add_flag("--statistics", arguments.statistics,
-                   "Show what became of the calls of each service, and how long they took");
+  command.add_flag(
+      "--statistics", arguments.statistics,
+      "Show what became of the calls of each service, how long they took, and by which "
+      "transport its clients reach it, with the reason where a faster one is not taken");
   add_wait(command, arguments.seconds);
   add_json(command, arguments.json, "a list");
 }
