@@ -23,12 +23,12 @@ profile::MissionProfile mission_of(const RunningArguments& arguments) {
 
 /// The launcher knows peers by their own names; `skein peers` prints their system, too.
 std::string without_system(const profile::MissionProfile& mission, const std::string& process) {
-  for (const profile::PeerProfile& peer : mission.peers) {
-    const std::string name = peer.system + "/" + peer.name;
-    if (process == name || process.starts_with(name + "/"))
-      return process.substr(peer.system.size() + 1);
-  }
-  return process;
+  const std::string first = process.substr(0, process.find('/'));
+  const auto& peers = mission.peers;
+  if (std::ranges::count(peers, first, &profile::PeerProfile::name) > 0 ||
+      std::ranges::count(peers, first, &profile::PeerProfile::system) == 0)
+    return process;
+  return process.substr(std::min(process.size(), first.size() + 1));
 }
 
 constexpr std::size_t kLongestReason = 4096;
@@ -57,7 +57,7 @@ void print(const launch::MissionStatus& status) {
     std::printf("  ends: %s\n", printable(status.ending, kLongestReason).c_str());
   for (const auto& process : status.processes) print(process);
   for (const auto& name : status.elsewhere)
-    std::printf("  %s: not started here\n", printable(name).c_str());
+    std::printf("  not started here: %s\n", printable(name).c_str());
 }
 
 int show_all(bool json) {

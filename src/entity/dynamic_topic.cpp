@@ -37,7 +37,8 @@ struct DynamicTopicType {
 
   idl::DynamicTypes types;
   DynamicSupport support;
-  topics::TopicType type{&support, idl::is_keyed(support.type) ? key_of : nullptr};
+  topics::TopicType type{&support, idl::is_keyed(support.type) ? key_of : nullptr,
+                         &types.described()};
 };
 
 /// Made once and kept until the process ends: vendors' threads may decode until then.

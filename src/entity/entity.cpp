@@ -309,6 +309,13 @@ struct Entity::State {
       const TypeSupport& type = *endpoint.type.support;
       if (type.name == name && !type.description.declaration.empty()) return skein::describe(type);
     }
+    // Where nobody has it in its code, it is known to those who publish it again.
+    for (const topics::Endpoint& endpoint : topic_register.endpoints()) {
+      if (endpoint.publishes && endpoint.type.described != nullptr &&
+          endpoint.type.support->name == name) {
+        return *endpoint.type.described;
+      }
+    }
     return std::nullopt;
   }
 };

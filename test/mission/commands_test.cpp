@@ -619,6 +619,7 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK(echo.code() == 0);
     CHECK(echo.json_lines().size() == 1);
     Command topics({"topics", "--json", "--domain", "80"});
+    CHECK(topics.code() == 0);
     CHECK_THAT(topics.printed(), Contains("\"plot\""));
     replay.signal(SIGINT);
     CHECK(replay.code() == 128 + SIGINT);

@@ -5,6 +5,10 @@
 
 namespace skein {
 
+namespace types {
+struct TypeSystem;
+}
+
 /// A generated type with a `@key`: its topics have one instance per key.
 template <class T>
 concept Keyed = requires(const T& value) {
@@ -24,6 +28,8 @@ struct TopicType {
   const TypeSupport* support;
   /// nullptr if the type has no keys.
   Guid (*key_of)(const void* value);
+  /// Of a type that is known by its description alone: the description, with all that it names.
+  const types::TypeSystem* described = nullptr;
 };
 
 template <class T>
