@@ -11,6 +11,7 @@
 #include "json_output.hpp"
 #include "local_time.hpp"
 #include "rpc/introspection_topic.hpp"
+#include "service_names.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 #include "wrapped.hpp"
@@ -56,19 +57,22 @@ void print_as_json(const introspection::CallEvent& event) { print_json(json_of(e
 /// Tells of drops where there are more than the last time.
 class Narration {
  public:
-  explicit Narration(bool json) : print_(json ? print_as_json : print) {}
+  Narration(std::string entity, bool json)
+      : entity_(std::move(entity)), print_(json ? print_as_json : print) {}
 
   void tell(const introspection::CallEvents& batch) {
-    for (const introspection::CallEvent& event : batch.values) print_(event);
-    std::fflush(stdout);
     if (batch.values.empty()) return;
     const std::string& entity = batch.values.front().entity;
+    if (!entity_.empty() && !is_entity_named(entity, entity_)) return;
+    for (const introspection::CallEvent& event : batch.values) print_(event);
+    std::fflush(stdout);
     if (std::exchange(dropped_[entity], batch.dropped) >= batch.dropped) return;
     std::fprintf(stderr, "skein: %s has dropped %llu events\n", printable(entity).c_str(),
                  static_cast<unsigned long long>(batch.dropped));
   }
 
  private:
+  const std::string entity_;  // empty: all
   void (*const print_)(const introspection::CallEvent&);
   std::map<std::string, std::uint64_t> dropped_;
 };
@@ -78,7 +82,7 @@ class Narration {
 int show_calls(const CallsArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "calls");
-  Narration narration(arguments.json);
+  Narration narration(arguments.entity, arguments.json);
   introspection::Reader<introspection::CallEvents> reader(
       entity.participant(), introspection::kCalls,
       [&](const introspection::CallEvents& batch) { narration.tell(batch); });

@@ -43,6 +43,7 @@ struct BenchCompareArguments {
 int bench_compare(const BenchCompareArguments& arguments);
 
 struct CallsArguments : Onlooker {
+  std::string entity;  ///< NAME or SYSTEM/NAME; empty: all.
   double seconds = 0;  ///< 0: until interrupted.
   bool json = false;
 };
@@ -57,6 +58,7 @@ struct MissionArguments {
 };
 
 struct DecisionsArguments : Onlooker {
+  std::string entity;  ///< NAME or SYSTEM/NAME; empty: all.
   double seconds = 0;  ///< 0: until interrupted.
   std::string log;     ///< Empty: live.
   bool replays = false;

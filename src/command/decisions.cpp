@@ -12,6 +12,7 @@
 #include "json_output.hpp"
 #include "recording/reader.hpp"
 #include "rpc/introspection_topic.hpp"
+#include "service_names.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/decision.hpp"
 #include "skein/detail/codec.hpp"
@@ -35,11 +36,19 @@ void print(const introspection::Decision& record) {
 
 void print_as_json(const introspection::Decision& record) { print_json(json_of(record), false); }
 
+bool is_wanted(const introspection::Decision& record, const DecisionsArguments& arguments) {
+  return arguments.entity.empty() || is_entity_named(record.entity, arguments.entity);
+}
+
 void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "decisions");
   introspection::Reader<introspection::Decision> reader(
-      entity.participant(), introspection::kDecisions, arguments.json ? print_as_json : print);
+      entity.participant(), introspection::kDecisions,
+      [&arguments](const introspection::Decision& record) {
+        if (!is_wanted(record, arguments)) return;
+        arguments.json ? print_as_json(record) : print(record);
+      });
   tell_waiting(arguments, "the next decision");
   interruption.wait(arguments.seconds);
 }
@@ -148,6 +157,7 @@ int read(const DecisionsArguments& arguments) {
   const StrategyFactory strategies = strategies_of(arguments);
   std::size_t count = 0, different = 0;
   const auto read_one = [&](const introspection::Decision& record, const std::string& place) {
+    if (!is_wanted(record, arguments)) return;
     ++count;
     if (!arguments.replays) {
       arguments.json ? print_as_json(record) : print(record);
@@ -158,9 +168,11 @@ int read(const DecisionsArguments& arguments) {
   };
   arguments.log.ends_with(".mcap") ? for_each_in_recording(arguments.log, read_one)
                                    : for_each_in_log(arguments.log, read_one);
-  if (count == 0)
-    std::fprintf(stderr, "skein: %s holds no decisions\n",
-                 printable(arguments.log, kLongestPlace).c_str());
+  if (count == 0) {
+    const std::string whose = arguments.entity.empty() ? "" : " of " + printable(arguments.entity);
+    std::fprintf(stderr, "skein: %s holds no decisions%s\n",
+                 printable(arguments.log, kLongestPlace).c_str(), whose.c_str());
+  }
   if (!arguments.replays) return 0;
   print_counts(count, different, arguments.json);
   return different == 0 ? 0 : 1;

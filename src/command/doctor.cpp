@@ -81,14 +81,18 @@ Onlooker place_of(const DoctorArguments& arguments, const doctor::Purpose& purpo
   return place;
 }
 
-/// Takes those out of the mission that its launcher was told to leave out, and says so.
-Symptoms leave_out(profile::MissionProfile& mission, const std::string& host) {
-  launch::MissionStatus status;
+/// What its launcher says; nothing where it does not fly here, or its launcher hangs.
+std::optional<launch::MissionStatus> status_of(const profile::MissionProfile& mission,
+                                               const std::string& host) {
   try {
-    status = idl::from_json<launch::MissionStatus>(launch::ask_launcher(mission, host, "status"));
+    return idl::from_json<launch::MissionStatus>(launch::ask_launcher(mission, host, "status"));
   } catch (const Error&) {
-    return {};  // it does not fly, or its launcher hangs: other findings tell
+    return std::nullopt;  // other findings tell
   }
+}
+
+/// Takes those out of the mission that its launcher was told to leave out, and says so.
+Symptoms leave_out(profile::MissionProfile& mission, const launch::MissionStatus& status) {
   std::string names;
   std::erase_if(mission.peers, [&](const profile::PeerProfile& peer) {
     if (std::ranges::count(status.elsewhere, peer.name + launch::kLeftOut) == 0) return false;
@@ -120,9 +124,10 @@ int examine(const DoctorArguments& arguments) {
   };
   if (!arguments.profile.empty()) add(findings(arguments));
   auto expected = mission;
-  if (expected) add(leave_out(*expected, arguments.host));
+  const auto status = expected ? status_of(*expected, arguments.host) : std::nullopt;
+  if (status) add(leave_out(*expected, *status));
   add(doctor::encounter(place_of(arguments, purpose, sound), usable_vendors(facts),
-                        expected ? &*expected : nullptr, interruption));
+                        expected ? &*expected : nullptr, status.has_value(), interruption));
   if (arguments.json) {
     doctor::print_as_json(symptoms);
   } else {

@@ -150,7 +150,7 @@ int launch(const LaunchArguments& arguments) {
   narrator->tell_error("* mission: " + place_of(mission));
   if (!beside.empty()) narrator->tell_error("* mission: " + beside);
   for (const std::string& name : plan.elsewhere)
-    narrator->tell_error("* mission: " + name + " is not started here");
+    narrator->tell_error("* mission: not started here: " + name);
   const auto journal = std::make_shared<Journal>(make_log(arguments, mission, *narrator), narrator);
   for (const std::string& fact : launch::environment_record(mission, SKEIN_VERSION))
     journal->add_event(fact);

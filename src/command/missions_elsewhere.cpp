@@ -1,5 +1,6 @@
 #include "missions_elsewhere.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "doctor/reading.hpp"
@@ -20,6 +21,11 @@ std::string missions_elsewhere(std::uint32_t domain) {
   for (const doctor::Launcher& launcher : doctor::read_launchers({}))
     flying.push_back(launcher.domain);
   return missions_elsewhere(domain, flying);
+}
+
+bool mission_flies_on(std::uint32_t domain) {
+  const auto launchers = doctor::read_launchers({});
+  return std::ranges::count(launchers, domain, &doctor::Launcher::domain) > 0;
 }
 
 std::string missions_beside(std::uint32_t domain, const std::vector<doctor::Launcher>& launchers) {

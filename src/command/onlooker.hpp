@@ -55,7 +55,8 @@ inline constexpr std::array kLookingExitCodes{
     launch::ExitCode{"1",
                      "call: it ended with an exception that its interface declares; echo: fewer "
                      "values than --count came; info: the file holds nothing; param set: the "
-                     "component refuses the value"},
+                     "component refuses the value; decisions --replay, replay --decisions: one "
+                     "comes out differently"},
     launch::ExitCode{"64", "the command line is wrong; nothing was done"},
     launch::ExitCode{"69",
                      "no service, entity or topic of that name is there, or it has gone; record: "
@@ -64,6 +65,7 @@ inline constexpr std::array kLookingExitCodes{
     launch::ExitCode{"74", "the output, or a file, could not be made or written"},
     launch::ExitCode{"78", "a file, a name, JSON or a parameter's value is wrong"},
     launch::ExitCode{"124", "no answer came in time"},
+    launch::ExitCode{"128 + N", "interrupted by signal N before it was done"},
 };
 
 /// Runs a command that looks. What it did not find is told with the domain, and with those on which

@@ -6,6 +6,7 @@
 #include "core/printable.hpp"
 #include "interruption.hpp"
 #include "json_output.hpp"
+#include "missions_elsewhere.hpp"
 #include "recording/player.hpp"
 #include "skein/entity.hpp"
 
@@ -15,11 +16,18 @@ namespace {
 /// Until those who listen have found the replay.
 constexpr double kDiscovery = 1.5;
 
-void print(const std::vector<std::string>& topics, std::uint64_t published, bool json) {
+void print(const recording::Player& player, std::uint64_t published, std::uint32_t domain,
+           bool json) {
   if (json) {
-    print_json({{"topics", topics}, {"published", published}}, false);
+    print_json({{"topics", player.topics()},
+                {"published", published},
+                {"domain", domain},
+                {"subscribers", player.subscribers()}},
+               false);
   } else {
-    std::printf("%llu values published\n", static_cast<unsigned long long>(published));
+    std::printf("%llu values published on domain %u, to %zu subscriber%s\n",
+                static_cast<unsigned long long>(published), domain, player.subscribers(),
+                player.subscribers() == 1 ? "" : "s");
   }
 }
 
@@ -38,8 +46,15 @@ int replay_recording(const ReplayArguments& arguments) {
   const recording::Reader reader(arguments.file);
   Entity entity = join(arguments, "replay");
   recording::Player player(entity, reader, {arguments.topics, arguments.rate});
+  const std::uint32_t domain = arguments.watched_domain();
   for (const std::string& topic : player.topics()) {
     std::fprintf(stderr, "skein: publishes %s\n", printable(topic).c_str());
+  }
+  if (mission_flies_on(domain)) {
+    std::fprintf(stderr,
+                 "skein: a mission flies on domain %u: its peers hear what is replayed beside what "
+                 "they publish\n",
+                 domain);
   }
   if (interruption.wait(kDiscovery)) {
     throw Interrupted("interrupted before it published", interruption.signal());
@@ -48,7 +63,8 @@ int replay_recording(const ReplayArguments& arguments) {
     return interruption.came() || (time > Duration::zero() &&
                                    interruption.wait(std::chrono::duration<double>(time).count()));
   });
-  print(player.topics(), published, arguments.json);
+  print(player, published, domain, arguments.json);
+  if (player.subscribers() == 0) tell_missions_elsewhere(arguments);
   if (interruption.signal() != 0) {
     throw Interrupted("interrupted before all was published", interruption.signal());
   }

@@ -11,6 +11,10 @@ std::string entity_name_of(const discovery::ServiceDescription& service) {
   return service.system + "/" + service.entity;
 }
 
+bool is_entity_named(const std::string& entity, const std::string& name) {
+  return entity == name || entity.substr(entity.find('/') + 1) == name;
+}
+
 brokerless_discovery::Table::Found services_of(const brokerless_discovery::Broker& broker,
                                                const std::string& entity) {
   auto services = broker.all();

@@ -11,6 +11,9 @@ namespace skein::command {
 /// `SYSTEM/ENTITY`, as `skein peers` and `skein services` print it.
 std::string entity_name_of(const discovery::ServiceDescription& service);
 
+/// Whether people may mean the entity SYSTEM/ENTITY: by all of it, or by ENTITY.
+bool is_entity_named(const std::string& entity, const std::string& name);
+
 /// What the entity of that name, SYSTEM/ENTITY, provides for others, but for services of Skein's.
 brokerless_discovery::Table::Found services_of(const brokerless_discovery::Broker& broker,
                                                const std::string& entity);

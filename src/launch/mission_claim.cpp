@@ -149,6 +149,19 @@ FileDescriptor patient_socket() {
   return socket;
 }
 
+/// `; missions of this user fly here on domain 42`, where some do.
+std::string flown_instead() {
+  std::set<std::uint32_t> domains;
+  for (const auto& [name, inode] : bound_sockets()) {
+    if (!name.starts_with(own_prefix())) continue;
+    if (const auto domain = claimed_domain("@" + name)) domains.insert(*domain);
+  }
+  std::string list;
+  for (const std::uint32_t domain : domains)
+    list += (list.empty() ? "" : ", ") + std::to_string(domain);
+  return list.empty() ? "" : "; missions of this user fly here on domain " + list;
+}
+
 /// What the launcher at the other end answers. Throws as ask_launcher().
 std::string ask(const FileDescriptor& socket, pid_t launcher, const std::string& request) {
   const std::string line = request + "\n";
@@ -180,7 +193,7 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
     throw Unavailable("the mission '" + mission.name + "' is not flown here on domain " +
                       std::to_string(mission.domain) +
                       (host.empty() ? "" : " as host '" + host + "'") +
-                      "; start it by skein launch, and ask as the same user");
+                      "; start it by skein launch, and ask as the same user" + flown_instead());
   }
   return ask(socket, holder->pid, request);
 }

@@ -84,7 +84,7 @@ class Attending {
       ::poll(watched.data(), watched.size(), static_cast<int>((kHeartbeat / 2).count()));
       if (watched[0].revents != 0) read(ssh_.output, output_lines_, true);
       if (watched[1].revents != 0) read(ssh_.errors, error_lines_, false);
-      while (signals_.take() != 0) stop();
+      while (signals_.take().number != 0) stop();
       if (started_ && now() >= next_heartbeat_) say(kAlive);
     }
     int status = 0;

@@ -265,11 +265,14 @@ class MissionRun {
 
   void heed_signals() {
     if (stop_.take() && !state_.verdict()) stop(SIGTERM, "it was asked to stop");
-    while (const int signal = signals_.take()) {
-      if (signal == signal_ && now() - signalled_ < kSameSignal) continue;
+    for (auto signal = signals_.take(); signal.number != 0; signal = signals_.take()) {
+      if (signal.number == signal_ && now() - signalled_ < kSameSignal) continue;
       signalled_ = now();
-      stop(signal,
-           "interrupted by signal " + std::to_string(signal) + " (" + ::sigdescr_np(signal) + ")");
+      stop(signal.number,
+           "interrupted by signal " + std::to_string(signal.number) + " (" +
+               ::sigdescr_np(signal.number) + ")" +
+               (signal.sender == 0 ? ""
+                                   : ", which process " + std::to_string(signal.sender) + " sent"));
     }
   }
 

@@ -58,10 +58,13 @@ SignalReader::~SignalReader() {
   if (signals_) pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
-int SignalReader::take() noexcept {
+SignalReader::Signal SignalReader::take() noexcept {
   signalfd_siginfo information{};
   const auto size = ::read(signals_.get(), &information, sizeof information);
-  return size == sizeof information ? static_cast<int>(information.ssi_signo) : 0;
+  if (size != sizeof information) return {};
+  const bool from_process = information.ssi_code <= 0;  // SI_USER, SI_QUEUE, SI_TKILL
+  return {static_cast<int>(information.ssi_signo),
+          from_process ? static_cast<pid_t>(information.ssi_pid) : 0};
 }
 
 }  // namespace skein::launch

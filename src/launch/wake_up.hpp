@@ -43,7 +43,11 @@ class SignalReader {
   SignalReader(const SignalReader&) = delete;
   SignalReader& operator=(const SignalReader&) = delete;
   ~SignalReader();
-  int take() noexcept;  ///< The next signal's number, or 0.
+  struct Signal {
+    int number = 0;    ///< 0: none.
+    pid_t sender = 0;  ///< 0: the kernel, as for Ctrl-C.
+  };
+  Signal take() noexcept;  ///< The next one.
   int descriptor() const noexcept { return signals_.get(); }
 
  private:

@@ -116,6 +116,12 @@ std::vector<std::string> Player::topics() const {
   return names;
 }
 
+std::size_t Player::subscribers() const {
+  std::size_t count = 0;
+  for (const auto& [id, track] : state_->tracks) count += track.subscribers();
+  return count;
+}
+
 std::uint64_t Player::play(const std::function<bool(Duration)>& pause) {
   using std::chrono::steady_clock;
   Selection selection;

@@ -34,6 +34,8 @@ class Player {
 
   /// The topics, for people.
   std::vector<std::string> topics() const;
+  /// Who hears them now, of all topics together.
+  std::size_t subscribers() const;
 
   /// Publishes all of it. `pause` is called before each value and waits as long as it is told,
   /// which may be nothing; true from it ends the replay. Returns how many values were published.

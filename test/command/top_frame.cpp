@@ -115,6 +115,13 @@ TEST_CASE("a name that is too long is cut with a mark") {
   CHECK_THAT(text, Contains("1234"));
 }
 
+TEST_CASE("a decision is cut with a mark on a screen, and whole as text") {
+  Figures figures = some_figures(1);
+  figures.decisions = {std::string(100, 'd') + "184 us"};
+  CHECK_THAT(text_of(draw(figures, {}, 80, 24)), Contains("ddd~") && !Contains("184"));
+  CHECK_THAT(text_of(draw(figures, {}, 80, std::nullopt)), Contains("d184 us"));
+}
+
 TEST_CASE("rows are ordered as the keys say, of the pane that is chosen") {
   Figures figures = some_figures(0);
   figures.peers = {peer("a", 1, 300), peer("b", 3, 200), peer("c", 2, 100)};

@@ -358,6 +358,8 @@ TEST_CASE("a second launcher of a mission is refused and names the first") {
                                        std::to_string(first.pid())));
   first.signal(SIGTERM);
   CHECK(first.wait() == 128 + SIGTERM);
+  CHECK_THAT(first.output(), Contains("interrupted by signal 15 (Terminated), which process " +
+                                      std::to_string(getpid()) + " sent"));
   CommandRun third({"launch", profile});
   CHECK(third.writes("all 1 processes are ready"));
 }

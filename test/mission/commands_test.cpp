@@ -602,7 +602,8 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     Field other(vendor);
     Command text = other.start({"replay", file, "--topics", "plot", "--rate", "20"});
     CHECK(text.code() == 0);
-    CHECK_THAT(text.printed(), Contains(" values published\n"));
+    CHECK_THAT(text.printed(),
+               Contains(" values published on domain ") && Contains(", to 1 subscriber\n"));
     CHECK(other.station().expect("heard") == "2");
     Command json = other.start({"replay", file, "--topics", "plot", "--rate", "20", "--json"});
     CHECK(json.code() == 0);

@@ -153,6 +153,22 @@ TEST_CASE("a peer that does not answer while others do is named") {
   CHECK_THAT(finding["cause"].get<std::string>(), Contains("the peer 'branch' does not answer"));
 }
 
+TEST_CASE("where no peer of a mission answers, though its launcher runs, the mission flies") {
+  if (!installed("fastdds") || !installed("cyclonedds")) return;
+  const Errand errand;
+  const std::string profile = errand.profile("", kOffice);
+  CommandRun mission({"launch", "--verbose", profile});
+  REQUIRE(mission.writes("all 1 processes are ready"));
+  CommandRun status({"status", "--json", profile});
+  REQUIRE(status.wait() == 0);
+  const auto pid = nlohmann::json::parse(status.output())["processes"][0]["pid"].get<pid_t>();
+  REQUIRE(kill(pid, SIGSTOP) == 0);
+  CommandRun run({"doctor", profile, "--json"});
+  CHECK(run.wait() == 1);
+  CHECK_THAT(run.output(), Contains("no peer of the mission answers, though its launcher runs"));
+  CHECK(kill(pid, SIGCONT) == 0);
+}
+
 TEST_CASE("a peer that --only leaves out is not missed") {
   if (!installed("fastdds") || !installed("cyclonedds")) return;
   const Errand errand;

@@ -107,9 +107,15 @@ std::vector<const profile::PeerProfile*> absent_peers(const DomainPicture& pictu
 }
 
 Symptoms of_mission(const DomainPicture& picture, const profile::MissionProfile& mission,
-                    const std::string& place) {
+                    bool flies, const std::string& place) {
   const auto absent = absent_peers(picture, mission);
   const std::size_t wanted = visible_peers(mission).size();
+  if (absent.size() == wanted && flies) {
+    return {{Severity::Warning, "peers", "no peer of the mission answers, though its launcher runs",
+             "nothing of them is known in " + place,
+             "see whether another finding tells that processes are stopped, and what `skein "
+             "status` says"}};
+  }
   if (absent.size() == wanted)
     return {
         {Severity::Note, "peers", "no peer of the mission answers: it does not fly now", "", ""}};
@@ -162,7 +168,8 @@ std::vector<KnownTopic::Endpoint> endpoints_of(const DomainPicture& picture) {
 }  // namespace
 
 Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
-                   const profile::MissionProfile* mission, const Interruption& interruption) {
+                   const profile::MissionProfile* mission, bool flies,
+                   const Interruption& interruption) {
   if (vendors.empty()) return {};
   std::vector<Peer> peers;
   try {
@@ -188,7 +195,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
   };
   Inspector inspector(looking);
   add(diagnose_peers(picture, types_told_by(inspector)));
-  if (mission) add(of_mission(picture, *mission, looking.broker().options().place));
+  if (mission) add(of_mission(picture, *mission, flies, looking.broker().options().place));
   return symptoms;
 }
 

@@ -12,10 +12,12 @@
 namespace skein::command::doctor {
 
 /// Joins the domain with one peer on each of `vendors`, and tells which of them do not find each
-/// other; then which peers of the mission (null: of none) do not answer. Takes a second, or five
+/// other; then which peers of the mission (null: of none), whose launcher runs where it `flies`, do
+/// not answer. Takes a second, or five
 /// where somebody is not found; an interruption ends it sooner.
 Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
-                   const profile::MissionProfile* mission, const Interruption& interruption);
+                   const profile::MissionProfile* mission, bool flies,
+                   const Interruption& interruption);
 
 /// What is odd about peers that are there: those that do not answer, or do not work, or are of
 /// another version of Skein, or do not hear each other since types, QoS or names of their topics

@@ -10,6 +10,11 @@ void add_watching(CLI::App& command, double& seconds) {
                Zero::Refused);
 }
 
+void add_entity(CLI::App& command, std::string& entity, const std::string& what) {
+  command.add_option("--entity", entity, what + " NAME or SYSTEM/NAME; default: all")
+      ->type_name(kEntity);
+}
+
 void add_calls(CLI::App& app, int& result) {
   auto& command =
       add_command(app, "calls", "Show what happens to each call on a domain, live",
@@ -17,8 +22,10 @@ void add_calls(CLI::App& app, int& result) {
                    {"skein calls --profile mission.xml --for 10", "Ten seconds of a mission"}});
   auto& arguments = arguments_of(command, show_calls, result);
   add_onlooker(command, arguments);
+  add_entity(command, arguments.entity, "Steps that this entity tells of:");
   add_watching(command, arguments.seconds);
   add_json(command, arguments.json, "each step a line");
+  add_exit_codes(command);
 }
 
 void add_decisions(CLI::App& app, int& result) {
@@ -28,11 +35,13 @@ void add_decisions(CLI::App& app, int& result) {
       "Live, it prints each decision from now on, and nothing until the next one; those "
       "before are in a Head's log. Of a log that was cut off, whole lines are read.",
       {{"skein decisions --domain 47", "Why each CSP was chosen, until Ctrl-C"},
+       {"skein decisions --domain 47 --entity navigator", "Of one Head"},
        {"skein decisions --log decisions.jsonl", "The same, of a past mission"},
        {"skein decisions --log decisions.jsonl --replay",
         "Make the choices again; exit code 1 where one comes out differently"}});
   auto& arguments = arguments_of(command, show_decisions, result);
   add_onlooker(command, arguments);
+  add_entity(command, arguments.entity, "Decisions of this entity's Head:");
   add_watching(command, arguments.seconds);
   auto* log =
       command
@@ -49,6 +58,7 @@ void add_decisions(CLI::App& app, int& result) {
                   "default: Skein's own strategies alone")
       ->type_name("NAME")
       ->needs(replays);
+  add_exit_codes(command);
 }
 
 void add_graph(CLI::App& app, int& result) {
@@ -67,6 +77,7 @@ void add_graph(CLI::App& app, int& result) {
   command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
   add_wait(command, arguments.seconds);
   add_json(command, arguments.json, "as --format json")->excludes(format);
+  add_exit_codes(command);
 }
 
 void add_peers(CLI::App& app, int& result) {
@@ -78,6 +89,7 @@ void add_peers(CLI::App& app, int& result) {
   add_onlooker(command, arguments);
   add_wait(command, arguments.seconds);
   add_json(command, arguments.json, "a list");
+  add_exit_codes(command);
 }
 
 void add_services(CLI::App& app, int& result) {
@@ -95,6 +107,7 @@ void add_services(CLI::App& app, int& result) {
       "transport its clients reach it, with the reason where a faster one is not taken");
   add_wait(command, arguments.seconds);
   add_json(command, arguments.json, "a list");
+  add_exit_codes(command);
 }
 
 void add_top(CLI::App& app, int& result) {
@@ -117,6 +130,7 @@ void add_top(CLI::App& app, int& result) {
                                 "Print one frame as plain text, after three seconds");
   add_json(command, arguments.json, "one frame")->needs(once);
   command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
+  add_exit_codes(command);
 }
 
 void add_view(CLI::App& app, int& result) {
@@ -142,6 +156,7 @@ void add_view(CLI::App& app, int& result) {
       ->type_name("URL");
   command.add_flag("--calls", arguments.calls,
                    "Let those who look also call services: they can then steer the mission");
+  add_exit_codes(command);
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ void add_record(CLI::App& app, int& result) {
       ->type_name("MEGABYTES")
       ->check(above_zero());
   add_json(command, arguments.json, "what was recorded");
+  add_exit_codes(command);
 }
 
 void add_replay(CLI::App& app, int& result) {
@@ -67,6 +68,7 @@ void add_replay(CLI::App& app, int& result) {
       ->needs(decisions);
   add_json(command, arguments.json,
            "what was published; with --decisions a line for each that differs, and the counts");
+  add_exit_codes(command);
 }
 
 void add_info(CLI::App& app, int& result) {
@@ -90,6 +92,7 @@ void add_export(CLI::App& app, int& result) {
       ->type_name(kFile)
       ->required();
   add_json(command, arguments.json, "what was written");
+  add_exit_codes(command);
 }
 
 }  // namespace

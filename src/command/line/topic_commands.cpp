@@ -126,6 +126,7 @@ void add_topics(CLI::App& app, int& result) {
   add_wait(command, arguments.seconds);
   auto* names = command.add_flag("--names", arguments.names, "Print the topics' names alone");
   add_json(command, arguments.json)->excludes(names);
+  add_exit_codes(command);
 }
 
 void add_topic(CLI::App& command, TopicArguments& arguments) {
@@ -161,6 +162,7 @@ void add_rate(CLI::App& app, int& result) {
   auto& arguments = arguments_of(command, show_rate, result);
   add_topic(command, arguments);
   add_watching(command, arguments, "End after so many lines; default: no limit");
+  add_exit_codes(command);
 }
 
 void add_publish(CLI::App& app, int& result) {
@@ -183,6 +185,7 @@ void add_publish(CLI::App& app, int& result) {
       ->type_name("NUMBER")
       ->check(above_zero());
   add_json(command, arguments.json, "what was published");
+  add_exit_codes(command);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ std::size_t first_column(std::size_t width, std::size_t others) {
 }
 
 Line cut(Line line, std::size_t width) {
-  line.text.resize(std::min(line.text.size(), width));
+  if (line.text.size() > width) line.text = left(std::move(line.text), width);
   while (line.style == Line::Style::Plain && line.text.ends_with(' ')) line.text.pop_back();
   return line;
 }
@@ -239,7 +239,9 @@ std::vector<Line> draw(const Figures& figures, const View& view, std::size_t wid
          Line::Style::Head});
     lines.resize(std::min(lines.size(), *height));
   }
-  for (Line& line : lines) line = cut(std::move(line), width);
+  // A screen ends at the right; of text, only the tables do.
+  const std::size_t uncut = height ? 0 : room.decisions;
+  for (std::size_t i = 0; i + uncut < lines.size(); ++i) lines[i] = cut(std::move(lines[i]), width);
   return lines;
 }
 
