@@ -268,6 +268,7 @@ std::vector<Call> calls_of_reconnaissance() {
           {controller, "limits", nothing, limits, ""},
           {controller, "take_off", {{"from", runway}, {"tick", 0}}, nothing, ""},
           {controller, "follow", {{"route", route}, {"tick", 0}}, nothing, ""},
+          {controller, "loiter", {{"about", to}, {"radius_m", 800}, {"tick", 0}}, nothing, ""},
           {controller, "land", {{"route", route}, {"to", runway}, {"tick", 0}}, nothing, ""},
           {navigator, "plan", request(Json::array({next})), route, ""},
           {navigator, "plan", request(Json::array()), {}, "recon::NoRoute"},

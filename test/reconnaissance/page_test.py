@@ -84,6 +84,20 @@ class Report(unittest.TestCase):
         self.page.press("Home", 36)
         self.assertEqual(self.of(shown), [0, 0, 0])
 
+    def test_a_followed_target_and_an_emitter_are_told_by_what_was_wanted_of_them(self):
+        self.open("pursuit.html")
+        rows = self.of("[...document.querySelectorAll('#targets tbody tr')].map(row => [...row.children].slice(0, 3).map(cell => cell.textContent))")
+        self.assertEqual(rows, [["convoy", "followed 300 s", "300 s"], ["van", "followed 300 s", "not found"], ["north", "within 100 m", "80 m"]])
+        self.assertTrue(self.of("document.getElementById('targets_note').hidden"))
+        # Its path grows with the time, and so does that of where it truly was.
+        paths = "['#map .followed', '#map .truth path'].map(each => document.querySelector(each).getAttribute('d').length)"
+        at_the_end = self.of(paths)
+        self.of("document.getElementById('slider').focus()")
+        self.page.press("Home", 36)
+        self.assertEqual(self.of(paths)[0], 0)
+        self.assertLess(self.of(paths)[1], at_the_end[1] / 10)
+        self.assertGreater(at_the_end[0], 1000)
+
     def test_playing_moves_the_time_until_it_is_paused(self):
         self.open()
         self.page.click("#play")

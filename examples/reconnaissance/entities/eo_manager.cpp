@@ -27,6 +27,8 @@ constexpr double kAlong_rad = 0.35;
 constexpr double kLevel_rad = 0.1;
 // Of a pattern that is worth beginning.
 constexpr double kLeastCoverage = 0.5;
+// An object that the last image showed, ten of which are taken a second, is in view.
+constexpr double kShownNow_s = 0.15;
 
 Local on_ground(const Hills& ground, Local place) {
   place.height_m = ground(place.north_m, place.east_m);
@@ -60,6 +62,7 @@ bool put_along(std::vector<Local>& line, double course_rad) {
 }  // namespace
 
 double EoManager::Seen::achieved_m() const {
+  if (sample_m.empty()) return 0;
   const double coarsest = *std::ranges::max_element(sample_m);
   return std::isinf(coarsest) ? 0 : coarsest;
 }
@@ -73,11 +76,10 @@ EoManager::EoManager(skein::Entity& entity, const skein::ParameterValues& values
       truth_(entity, topic::kTruth),
       elements_(entity, topic::kElements, skein::TopicQos::state()),
       images_(entity.publisher<recon::Images>(topic::kImages.name)),
+      truths_(entity.publisher<recon::ObjectTruths>(topic::kObjects.name)),
       member_(entity, values, [this](Tick tick) { work(tick); }) {
   for (const ObjectText& each : parse_objects(values.find<std::string>("Objects").value_or(""))) {
-    objects_.push_back({frame_.to_local(each.place), each.size_m,
-                        each.speed_m_s * std::cos(each.course_rad),
-                        each.speed_m_s * std::sin(each.course_rad)});
+    objects_.push_back({frame_.to_local(each.place), each.size_m, each.legs, -kNever});
   }
 }
 
@@ -89,10 +91,13 @@ void EoManager::work(Tick tick) {
   const auto list = elements_.at(tick - 1);
   const double now_s = seconds_of(tick);
   if (collection_ && now_s > collection_->begin_s + collection_->plan.seconds) collection_.reset();
+  const recon::Element* next =
+      !list || list->next < 0 ? nullptr : &list->elements.at(static_cast<std::size_t>(list->next));
+  const bool watches = next && next->found;
   const bool waits = !collection_ || now_s < collection_->begin_s;
-  if (state && list && waits && is_due(topic::kElements.period, tick)) {
-    const recon::Element* next =
-        list->next < 0 ? nullptr : &list->elements.at(static_cast<std::size_t>(list->next));
+  if (state && watches && is_due(topic::kElements.period, tick)) {
+    watch(now_s, seconds_of(list->tick), *state, *next);
+  } else if (state && list && waits && is_due(topic::kElements.period, tick)) {
     // What is planned stays in a gust, and when it is too late to plan it anew.
     if (collection_ && (!next || next->name != collection_->element)) collection_.reset();
     if (next) prepare(now_s, *state, *next);
@@ -101,6 +106,27 @@ void EoManager::work(Tick tick) {
     if (auto image = take(now_s, *state, *truth)) taken.images.push_back(std::move(*image));
   }
   images_.publish(taken);
+  if (is_due(topic::kObjects.period, tick)) tell_truth(tick);
+}
+
+/// Stays with a target that was found, wherever the aircraft flies.
+void EoManager::watch(double now_s, double known_s, const recon::FlightState& state,
+                      const recon::Element& element) {
+  const Local aircraft = local(frame_, state.position);
+  Local place = local(frame_, element.line.front());
+  place.north_m += (now_s - known_s) * element.north_m_s;
+  place.east_m += (now_s - known_s) * element.east_m_s;
+  place = on_ground(ground_, place);
+  recon::CollectionTask task;
+  task.line = {local_place(place)};
+  task.height_m = aircraft.height_m - place.height_m;
+  task.offset_m = std::hypot(place.north_m - aircraft.north_m, place.east_m - aircraft.east_m);
+  task.ground_speed_m_s = std::hypot(state.north_m_s, state.east_m_s);
+  task.course_rad = std::atan2(state.east_m_s, state.north_m_s);
+  task.watched = true;
+  task.north_m_s = element.north_m_s;
+  task.east_m_s = element.east_m_s;
+  if (const auto plan = ask_plan(task, element)) collection_ = {element.name, *plan, now_s};
 }
 
 /// Plans the collection of an element that the present flight leads past.
@@ -137,7 +163,7 @@ void EoManager::prepare(double now_s, const recon::FlightState& state,
 std::optional<recon::CollectionPlan> EoManager::ask_plan(const recon::CollectionTask& task,
                                                          const recon::Element& element) {
   skein::Task<recon::ICollectionPattern, recon::CollectionPlan> wanted;
-  wanted.request = "collect " + element.name;
+  wanted.request = (task.watched ? "watch " : "collect ") + element.name;
   wanted.features = {{"height_m", task.height_m}, {"offset_m", task.offset_m}};
   wanted.execution = skein::Execution::All;
   wanted.enough = skein::TaskOptions::kAll;
@@ -186,15 +212,27 @@ std::optional<recon::Image> EoManager::take(double now_s, const recon::FlightSta
 
 void EoManager::find_objects(double now_s, const CameraPose& pose, recon::Image& image) {
   std::vector<Object> objects;
-  for (const TrueObject& each : objects_) {
-    const Local place{each.place.north_m + now_s * each.north_m_s,
-                      each.place.east_m + now_s * each.east_m_s, 0};
-    objects.push_back({on_ground(ground_, place), each.size_m});
+  for (TrueObject& each : objects_) {
+    objects.push_back({place_of(each, now_s), each.size_m});
+    if (ground_sample_of(pose, kCamera, objects.back().place, ground_)) each.shown_s = now_s;
   }
   for (const Detection& each : detect(pose, kCamera, objects, {}, ground_, random_)) {
     const auto& [mean, covariance] = each.position;
     image.found.push_back({mean[0], mean[1], covariance[0], covariance[1], covariance[3]});
   }
+}
+
+Local EoManager::place_of(const TrueObject& object, double now_s) const {
+  return on_ground(ground_, moved(object.place, object.legs, now_s));
+}
+
+void EoManager::tell_truth(Tick tick) const {
+  recon::ObjectTruths told{tick, {}};
+  const double now_s = seconds_of(tick);
+  for (const TrueObject& each : objects_)
+    told.objects.push_back(
+        {position(frame_, place_of(each, now_s)), now_s - each.shown_s < kShownNow_s});
+  truths_.publish(told);
 }
 
 void EoManager::look_at_parts(const CameraPose& pose, Seen& seen) const {

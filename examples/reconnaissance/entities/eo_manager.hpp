@@ -43,11 +43,13 @@ class EoManager {
   struct TrueObject {
     Local place;
     double size_m;
-    double north_m_s;
-    double east_m_s;
+    std::vector<ObjectText::Leg> legs;
+    double shown_s;  // in an image, when last
   };
 
   void work(Tick tick);
+  void watch(double now_s, double known_s, const recon::FlightState& state,
+             const recon::Element& element);
   void prepare(double now_s, const recon::FlightState& state, const recon::Element& element);
   std::optional<recon::CollectionPlan> ask_plan(const recon::CollectionTask& task,
                                                 const recon::Element& element);
@@ -55,6 +57,8 @@ class EoManager {
                                    const recon::Truth& truth);
   void find_objects(double now_s, const CameraPose& pose, recon::Image& image);
   void look_at_parts(const CameraPose& pose, Seen& seen) const;
+  Local place_of(const TrueObject& object, double now_s) const;
+  void tell_truth(Tick tick) const;
   std::vector<Local> line_of(const recon::Element& element) const;
 
   skein::Entity& entity_;
@@ -69,6 +73,7 @@ class EoManager {
   Stream<recon::Truth> truth_;
   Stream<recon::ElementList> elements_;
   skein::Publisher<recon::Images> images_;
+  mutable skein::Publisher<recon::ObjectTruths> truths_;
   Member member_;
 };
 

@@ -9,6 +9,7 @@
 #include "convert.hpp"
 #include "deciding.hpp"
 #include "mission/elements.hpp"
+#include "skein/error.hpp"
 #include "target_conversion.hpp"
 #include "topics.hpp"
 
@@ -20,8 +21,16 @@ constexpr double kOrderedDeviation_m = 50;
 // What was found so near belongs to the element.
 constexpr double kBelongs_m = 200;
 
-double greatest_deviation_m(const Track& track) {
-  const Eigen::Matrix2d place = track.estimate.covariance.topLeftCorner<2, 2>();
+recon::ElementTask task_of(const std::string& text) {
+  if (text == "images") return recon::ElementTask::TakeImages;
+  if (text == "follow") return recon::ElementTask::FollowTarget;
+  if (text == "locate") return recon::ElementTask::LocateEmitter;
+  throw skein::InvalidArgument("parameter 'Task': '" + text +
+                               "' is no task; there are images, follow and locate");
+}
+
+double greatest_deviation_m(const GroundEstimate& estimate) {
+  const Eigen::Matrix2d place = estimate.covariance.topLeftCorner<2, 2>();
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(place).eigenvalues().maxCoeff());
 }
 
@@ -29,6 +38,7 @@ double greatest_deviation_m(const Track& track) {
 
 EoiManager::EoiManager(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
+      task_(task_of(values.find<std::string>("Task").value_or("images"))),
       flight_(entity, topic::kFlightState),
       images_(entity, topic::kImages, {}),
       tracks_(entity, topic::kTracks, skein::TopicQos::state()),
@@ -43,13 +53,28 @@ EoiManager::EoiManager(skein::Entity& entity, const skein::ParameterValues& valu
     element.priority = each.priority;
     element.size_m = each.size_m;
     element.wanted_ground_sample_m = each.wanted_sample_m;
+    element.task = task_;
+    element.stand_off_m = values.find<double>("Stand off").value_or(0);
+    element.wanted_deviation_m = values.find<double>("Located within").value_or(0);
+    if (const auto wanted = values.find<std::chrono::duration<double>>("Follow for"))
+      element.wanted_s = wanted->count();
     elements_.push_back(std::move(element));
   }
+  ordered_ = elements_;
+  if (task_ == recon::ElementTask::LocateEmitter)
+    pictures_.emplace(entity, topic::kThreats, skein::TopicQos::state());
 }
 
 void EoiManager::manage(Tick tick) {
   for (const recon::Images& batch : images_.take(tick)) see(batch);
-  if (const auto tracks = tracks_.at(tick)) locate(*tracks);
+  if (const auto tracks = tracks_.at(tick)) {
+    if (task_ == recon::ElementTask::FollowTarget)
+      follow(seconds_of(tick), *tracks);
+    else
+      locate(*tracks);
+  }
+  if (pictures_)
+    if (const auto picture = pictures_->at(tick)) place(*picture);
   const auto state = flight_.at(tick);
   lists_.publish({tick, elements_, state ? choose(tick, *state) : -1});
 }
@@ -58,6 +83,7 @@ void EoiManager::see(const recon::Images& images) {
   for (const recon::Image& image : images.images) {
     for (recon::Element& element : elements_) {
       if (element.name != image.element || image.achieved_ground_sample_m == 0) continue;
+      if (task_ != recon::ElementTask::TakeImages) continue;
       element.achieved_ground_sample_m = image.achieved_ground_sample_m;
       element.collected = element.achieved_ground_sample_m <= element.wanted_ground_sample_m;
     }
@@ -74,15 +100,72 @@ void EoiManager::locate(const recon::ObjectTracks& told) {
       const bool belongs = std::ranges::any_of(line, [&](const Local& part) {
         return std::hypot(part.north_m - place[0], part.east_m - place[1]) < kBelongs_m;
       });
-      const double deviation_m = greatest_deviation_m(each);
+      const double deviation_m = greatest_deviation_m(each.estimate);
       if (belongs && (element.deviation_m == 0 || deviation_m < element.deviation_m))
         element.deviation_m = deviation_m;
     }
   }
 }
 
-/// Of those that are not collected and lie ahead.
+void EoiManager::follow(double now_s, const recon::ObjectTracks& told) {
+  if (told.tracks.empty() && targets_.empty()) return;
+  const LocalFrame frame(geodetic(told.origin));
+  const std::vector<Track> all = tracks(told.tracks);
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    recon::Element& element = elements_[i];
+    if (targets_.size() == i) {
+      // Anywhere on a road.
+      const std::vector<Local> line = locals(frame, element.line);
+      const Local reported = middle_of(line);
+      double half_m = 0;
+      for (const Local& each : line)
+        half_m = std::max(
+            half_m, std::hypot(each.north_m - reported.north_m, each.east_m - reported.east_m));
+      targets_.emplace_back(Eigen::Vector2d(reported.north_m, reported.east_m),
+                            half_m + element.margin_m + kBelongs_m);
+    }
+    if (element.collected) continue;
+    FollowedTarget& target = targets_[i];
+    target.look(now_s, all);
+    element.followed_s = target.followed_s();
+    element.collected = element.followed_s >= element.wanted_s;
+    const bool was_found = element.found;
+    element.found = target.found() && !element.collected;
+    if (!was_found && !element.found) continue;
+    const GroundState& state = target.estimate().mean;
+    element.line = {position(frame, Local{state[0], state[1], 0})};
+    element.north_m_s = element.found ? state[2] : 0;
+    element.east_m_s = element.found ? state[3] : 0;
+    element.deviation_m = greatest_deviation_m(target.estimate());
+  }
+}
+
+/// The threat that is nearest to where an emitter was reported.
+void EoiManager::place(const recon::ThreatPicture& picture) {
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    recon::Element& element = elements_[i];
+    const LocalFrame frame(geodetic(ordered_[i].line.front()));
+    double nearest_m = element.margin_m;
+    for (const recon::Threat& threat : picture.threats) {
+      const Local site = local(frame, threat.position);
+      const double distance_m = std::hypot(site.north_m, site.east_m);
+      if (distance_m > nearest_m) continue;
+      nearest_m = distance_m;
+      element.found = true;
+      element.line = {threat.position};
+      element.deviation_m = threat.deviation_m;
+    }
+    const bool certain = element.found && element.deviation_m <= element.wanted_deviation_m;
+    element.collected = element.collected || certain;
+  }
+}
+
+/// A target that was found is not let out of sight. Else of those that are not collected and lie
+/// ahead.
 std::int32_t EoiManager::choose(Tick tick, const recon::FlightState& state) {
+  if (task_ == recon::ElementTask::LocateEmitter) return -1;
+  const auto watched = std::ranges::find(elements_, true, &recon::Element::found);
+  if (watched != elements_.end()) return static_cast<std::int32_t>(watched - elements_.begin());
   recon::ElementChoice choice{{}, seconds_of(tick)};
   const LocalFrame frame(geodetic(state.position));
   const double course_rad = std::atan2(state.east_m_s, state.north_m_s);

@@ -1,18 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "flight.idl.hpp"
 #include "member.hpp"
+#include "sensing/tracking/followed_target.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
 #include "targets.idl.hpp"
+#include "threats.idl.hpp"
 
 namespace reconnaissance {
 
 /// Knows the elements of interest, and how well each has been seen. Its CSPs are policies which one
-/// is next; its Head takes the best.
+/// is next; its Head takes the best. Where the order is to follow targets or to place emitters, it
+/// takes them from tracks and from the threat picture instead of images.
 class EoiManager {
  public:
   EoiManager(skein::Entity& entity, const skein::ParameterValues& values);
@@ -22,15 +26,21 @@ class EoiManager {
   void manage(Tick tick);
   void see(const recon::Images& images);
   void locate(const recon::ObjectTracks& tracks);
+  void follow(double now_s, const recon::ObjectTracks& tracks);
+  void place(const recon::ThreatPicture& picture);
   std::int32_t choose(Tick tick, const recon::FlightState& state);
   std::int32_t ask_policy(const recon::ElementChoice& choice);
 
   skein::Entity& entity_;
+  recon::ElementTask task_;
   std::vector<recon::Element> elements_;
+  std::vector<recon::Element> ordered_;  // as they were
+  std::vector<FollowedTarget> targets_;
 
   Stream<recon::FlightState> flight_;
   Stream<recon::Images> images_;
   Stream<recon::ObjectTracks> tracks_;
+  std::optional<Stream<recon::ThreatPicture>> pictures_;  // where it is to place emitters
   skein::Publisher<recon::ElementList> lists_;
   Member member_;
 };

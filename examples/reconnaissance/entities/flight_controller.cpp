@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "convert.hpp"
@@ -88,6 +89,13 @@ void FlightController::follow(const recon::Route& route, std::int64_t tick) {
   accept(tick, route.number, [this, route] {
     if (!frame_) return std::string("the aircraft is on the ground");
     return pilot_.follow(locals(*frame_, route.points));
+  });
+}
+
+void FlightController::loiter(const recon::Position& about, double radius_m, std::int64_t tick) {
+  accept(tick, 0, [this, about, radius_m] {
+    if (!frame_) return std::string("the aircraft is on the ground");
+    return pilot_.loiter({local(*frame_, about), std::abs(radius_m), radius_m > 0});
   });
 }
 

@@ -27,6 +27,7 @@ class FlightController : public recon::IFlightController {
   recon::FlightLimits limits() override;
   void take_off(const recon::Runway& from, std::int64_t tick) override;
   void follow(const recon::Route& route, std::int64_t tick) override;
+  void loiter(const recon::Position& about, double radius_m, std::int64_t tick) override;
   void land(const recon::Route& route, const recon::Runway& to, std::int64_t tick) override;
 
  private:

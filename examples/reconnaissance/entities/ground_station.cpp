@@ -86,6 +86,7 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
       frame_(geodetic(order_.runway.threshold)),
       results_(values.find<std::string>("Results").value_or("reconnaissance")),
       patience_(values.find<skein::Duration>("Patience").value_or(2min)),
+      mission_(values.find<std::string>("Mission").value_or("reconnaissance")),
       command_(values.find<std::string>("Command").value_or("")),
       ground_(ground_of(values)),
       judge_(judge_of(frame_, order_.runway, values)),
@@ -117,6 +118,7 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
           topic::kDecisions, decisions_qos(),
           [this](const skein::introspection::Decision& decision) { show(decision); })),
       recorder_(entity, frame_),
+      scoring_(entity, frame_, values),
       member_(entity, values) {
   try_writing(results_.string() + ".json");
 }
@@ -131,7 +133,7 @@ int GroundStation::run(const std::stop_token& told_to_end) {
   const std::chrono::duration<double> took = entity_.clock().now() - begun;
 
   std::lock_guard lock(mutex_);
-  const Verdict verdict = judge_.conclude(ended);
+  const Verdict verdict = judge_.conclude(ended, scoring_.checks());
   for (const Check& check : verdict.checks)
     fmt::print("{:6} {}: {}\n", check.passed ? "ok" : "FAILED", check.name, check.text);
   fmt::print(
@@ -320,29 +322,37 @@ void GroundStation::show(const recon::ElementList& list) {
   {
     std::lock_guard lock(mutex_);
     const auto collected = std::ranges::count_if(list.elements, &recon::Element::collected);
-    judge_.count(static_cast<std::size_t>(collected), list.elements.size());
+    const auto task =
+        list.elements.empty() ? recon::ElementTask::TakeImages : list.elements.front().task;
+    judge_.count(static_cast<std::size_t>(collected), list.elements.size(), how_collected(task));
   }
   for (const recon::Element& element : list.elements) {
+    bool found = false, collected = false;
     {
       std::lock_guard lock(mutex_);
-      if (!element.collected || !collected_.insert(element.name).second) continue;
+      found = element.found && found_.insert(element.name).second;
+      collected = element.collected && collected_.insert(element.name).second;
     }
-    fmt::print("{}  {} collected: {:.2f} m a pixel, wanted {:.2f}\n", clock_of(list.tick),
-               element.name, element.achieved_ground_sample_m, element.wanted_ground_sample_m);
+    if (found)
+      fmt::print("{}  {} found at {:.4f} {:.4f} within {:.1f} m\n", clock_of(list.tick),
+                 element.name, element.line.front().latitude_deg,
+                 element.line.front().longitude_deg, element.deviation_m);
+    if (collected)
+      fmt::print("{}  {} {}\n", clock_of(list.tick), element.name, collected_text(element));
   }
   std::fflush(stdout);
 }
 
 void GroundStation::write(const Verdict& verdict) const {
   MissionRecord record = recorder_.record();
-  record.mission = "reconnaissance";
+  record.mission = mission_;
   record.command = command_;
   record.origin = geodetic(order_.runway.threshold);
   record.verdict = verdict;
   record.ground = ground_around(record, 180, ground_);
   write_whole(results_.string() + ".json", to_json(record));
   write_whole(results_.string() + ".html", to_html(record));
-  write_whole(results_.string() + ".junit.xml", to_junit(verdict, "reconnaissance"));
+  write_whole(results_.string() + ".junit.xml", to_junit(verdict, mission_));
   write_whole(
       results_.string() + ".csv",
       "time_s,aircraft,latitude_deg,longitude_deg,height_m,height_above_ground_m\n" + tracks_);

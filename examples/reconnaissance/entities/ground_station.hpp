@@ -15,6 +15,7 @@
 #include "mission.idl.hpp"
 #include "mission/verdict.hpp"
 #include "recorder.hpp"
+#include "scoring.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/parameters.hpp"
@@ -57,7 +58,8 @@ class GroundStation {
   std::optional<recon::IFlightSimulator::Proxy> simulator_;
   std::filesystem::path results_;
   skein::Duration patience_;
-  std::string command_;  // that flies the mission again
+  std::string mission_;  // its name, and the command that flies it again
+  std::string command_;
   Hills ground_;
 
   std::mutex mutex_;
@@ -79,6 +81,7 @@ class GroundStation {
   recon::Mode mode_ = recon::Mode::Starting;
   recon::FlightOrder flight_order_ = recon::FlightOrder::FlyAsPlanned;
   std::set<std::uint32_t> threats_;  // that were shown, as were
+  std::set<std::string> found_;
   std::set<std::string> collected_;
   Tick last_tick_ = -1;
   Tick last_moving_tick_ = -1;
@@ -94,6 +97,7 @@ class GroundStation {
   skein::Subscription<recon::FlightState> states_;
   skein::Subscription<skein::introspection::Decision> decisions_;
   Recorder recorder_;
+  Scoring scoring_;
   Member member_;
 };
 

@@ -7,6 +7,8 @@
 
 #include "convert.hpp"
 #include "deciding.hpp"
+#include "mission/elements.hpp"
+#include "pursuit.hpp"
 #include "skein/error.hpp"
 #include "topics.hpp"
 #include "tour_csps.hpp"
@@ -23,49 +25,24 @@ constexpr double kCollectionHeight_m = 750;
 constexpr double kLeastSurvival = 0.97;
 // What bars a way: less is the uncertainty of a place that moves.
 constexpr double kBarringHazard = 0.03;
+// Of the straight way home, what it takes with turns, wind and the approach.
+constexpr double kWayHomeShare = 2.5;
+// A circle that has moved so far is told anew.
+constexpr double kDrawn_m = 150;
+// At both ends of a flight past an emitter, of the distance from it: its bearings shall cross.
+constexpr double kBaselineShare = 0.5;
 // An element that is missed is passed once more.
 constexpr int kTries = 2;
 
 recon::Phase phase_of(MissionPhase phase) {
-  switch (phase) {
-    case MissionPhase::BuiltInTest:
-      return recon::Phase::BuiltInTest;
-    case MissionPhase::TakeOff:
-      return recon::Phase::TakeOff;
-    case MissionPhase::Ingress:
-      return recon::Phase::Ingress;
-    case MissionPhase::Collection:
-      return recon::Phase::Collection;
-    case MissionPhase::Egress:
-      return recon::Phase::Egress;
-    case MissionPhase::Landing:
-      return recon::Phase::Landing;
-    case MissionPhase::Complete:
-      return recon::Phase::Complete;
-    case MissionPhase::Aborted:
-      break;
-  }
-  return recon::Phase::Aborted;
+  static_assert(static_cast<int>(MissionPhase::Aborted) == static_cast<int>(recon::Phase::Aborted));
+  return static_cast<recon::Phase>(static_cast<int>(phase));
 }
 
 Pilot::Mode mode_of(recon::FlightMode mode) {
-  switch (mode) {
-    case recon::FlightMode::Parked:
-      return Pilot::Mode::Parked;
-    case recon::FlightMode::TakingOff:
-      return Pilot::Mode::TakingOff;
-    case recon::FlightMode::Following:
-      return Pilot::Mode::Following;
-    case recon::FlightMode::Waiting:
-      return Pilot::Mode::Waiting;
-    case recon::FlightMode::Approaching:
-      return Pilot::Mode::Approaching;
-    case recon::FlightMode::Rolling:
-      return Pilot::Mode::Rolling;
-    case recon::FlightMode::Landed:
-      break;
-  }
-  return Pilot::Mode::Landed;
+  static_assert(static_cast<int>(Pilot::Mode::Landed) ==
+                static_cast<int>(recon::FlightMode::Landed));
+  return static_cast<Pilot::Mode>(static_cast<int>(mode));
 }
 
 std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const LocalFrame& frame) {
@@ -168,19 +145,93 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
                                                  const Conduct::Situation& now) {
   const MissionPhase phase = conduct_->phase();
   if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
-  if (phase == MissionPhase::BuiltInTest)
+  if (phase == MissionPhase::BuiltInTest) {
+    if (const auto cause = contradiction(state, elements))
+      return conduct_->give_up("the order contradicts itself: " + *cause);
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
+  }
   const bool barred = now.legs > 0 && is_barred(state);
   if (phase == MissionPhase::Egress)
     return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
   if (phase != MissionPhase::Ingress && phase != MissionPhase::Collection) return {};
+  if (Order order = pursue(state, elements)) return order;
+  if (circle_) return {};
   if (barred) return tour(state, elements, "a threat bars the way");
+  // No more bearings are wanted of an emitter that is placed.
+  for (std::size_t i = passed_; i < tour_.size(); ++i) {
+    const auto found = std::ranges::find(elements.elements, tour_[i], &recon::Element::name);
+    if (found != elements.elements.end() && found->task == recon::ElementTask::LocateEmitter &&
+        found->collected)
+      return tour(state, elements, found->name + " is located");
+  }
   const bool flown = now.legs > 0 && now.leg >= now.legs;
   const bool missed = std::ranges::any_of(elements.elements, [&](const recon::Element& each) {
     return !each.collected && tries_[each.name] < kTries;
   });
   return flown && missed && !nothing_new_ ? tour(state, elements, "an element was missed")
                                           : Order{};
+}
+
+MissionManager::Order MissionManager::pursue(const recon::FlightState& state,
+                                             const recon::ElementList& elements) {
+  const auto target = std::ranges::find_if(elements.elements, [](const recon::Element& each) {
+    return each.task == recon::ElementTask::FollowTarget && each.found && !each.collected;
+  });
+  if (target == elements.elements.end()) {
+    if (!circle_) return {};
+    circle_.reset();
+    const bool any_left = std::ranges::any_of(
+        elements.elements, [](const recon::Element& each) { return !each.collected; });
+    return tour(state, elements, any_left ? "the target is lost" : "followed as long as ordered");
+  }
+  if (circle_ && !is_due(topic::kElements.period, state.tick)) return {};
+  const Local own = local(*frame_, state.position), place = local(*frame_, target->line.front());
+  const double height_m = runway_.threshold.height_m + kCollectionHeight_m;
+  const double left_s = endurance_s_ - seconds_of(state.tick - took_off_.value_or(state.tick));
+  if (left_s < kWayHomeShare * std::hypot(own.north_m, own.east_m) / cruise_.speed_m_s)
+    return conduct_->give_up("the endurance suffices for the way home and no more");
+  const auto circle =
+      ask_circle(entity_, target->name,
+                 {{place.north_m, place.east_m, target->north_m_s, target->east_m_s},
+                  {own.north_m, own.east_m, state.north_m_s, state.east_m_s},
+                  target->stand_off_m,
+                  greatest_distance_m(*target, kCollectionHeight_m),
+                  cruise_.turn_radius_m,
+                  threats_});
+  if (!circle) {
+    circle_.reset();
+    return conduct_->give_up(target->name + " cannot be watched from any safe circle");
+  }
+  const bool begins = !circle_;
+  circle_ = circle;
+  circle_->centre.height_m = height_m;
+  return conduct_->loiter(*circle_,
+                          begins ? target->name + " is found, and followed" : conduct_->reason());
+}
+
+std::optional<std::string> MissionManager::contradiction(const recon::FlightState& state,
+                                                         const recon::ElementList& elements) const {
+  const Local own = local(*frame_, state.position);
+  for (const recon::Element& each : elements.elements) {
+    const Local place = middle_of(locals(*frame_, each.line));
+    const auto cause =
+        contradiction_in(each, std::hypot(place.north_m - own.north_m, place.east_m - own.east_m),
+                         cruise_, endurance_s_, kCollectionHeight_m);
+    if (cause) return cause;
+  }
+  return std::nullopt;
+}
+
+void MissionManager::loiter(const Circle& circle, Tick tick) {
+  controller_->loiter(position(*frame_, circle.centre),
+                      circle.clockwise ? circle.radius_m : -circle.radius_m, tick);
+  if (!route_.points.empty() && route_.planner == kCircle &&
+      std::hypot(told_circle_.north_m - circle.centre.north_m,
+                 told_circle_.east_m - circle.centre.east_m) < kDrawn_m)
+    return;
+  told_circle_ = circle.centre;
+  route_ = drawn(circle, *frame_, route_.number + 1);
+  taken_.publish({tick, route_});
 }
 
 /// Whether the rest of the route leads through what a weapon reaches, where a way around would be
@@ -206,7 +257,12 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
   for (const recon::Element& each : elements.elements) {
     if (each.collected || tries_[each.name] >= kTries) continue;
     recon::TourTask& task = problem.tasks.emplace_back(each.name, each.priority);
-    for (const CollectionPass& pass : passes_by(locals(*frame_, each.line), wide, cruise_))
+    PassRules rules;
+    if (each.task == recon::ElementTask::LocateEmitter) {
+      rules.aside_m = each.stand_off_m;
+      rules.before_m = rules.after_m = kBaselineShare * each.stand_off_m;
+    }
+    for (const CollectionPass& pass : passes_by(locals(*frame_, each.line), wide, cruise_, rules))
       task.passes.push_back(tour_pass(pass));
   }
   for (const ThreatDisc& each : threats_)
@@ -273,6 +329,8 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
       took_off_ = tick;
       return;
     }
+    if (const auto* circling = std::get_if<Conduct::Loiter>(&order))
+      return loiter(circling->circle, tick);
     if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
       controller_->follow(ask_route(follow->through, tick, state, kLeastSurvival), tick);
     } else {

@@ -22,8 +22,8 @@ namespace reconnaissance {
 
 /// Leads the mission through its phases. Which elements are collected, in which order and past
 /// which side, its CSPs plan and its Head chooses; again when a threat bars the way, and when an
-/// element was missed. The navigator makes routes of it, which the flight controller is ordered to
-/// fly.
+/// element was missed. A target that is found is circled, as long as was ordered. The navigator
+/// makes routes of it, which the flight controller is ordered to fly.
 class MissionManager : public recon::IMissionManager {
  public:
   MissionManager(skein::Entity& entity, const skein::ParameterValues& values);
@@ -42,6 +42,11 @@ class MissionManager : public recon::IMissionManager {
                    const Conduct::Situation& now);
   Order tour(const recon::FlightState& state, const recon::ElementList& elements,
              const std::string& why);
+  /// What is flown while a target that was found is watched, or when it is no longer.
+  Order pursue(const recon::FlightState& state, const recon::ElementList& elements);
+  std::optional<std::string> contradiction(const recon::FlightState& state,
+                                           const recon::ElementList& elements) const;
+  void loiter(const Circle& circle, Tick tick);
   std::optional<recon::Tour> ask_tour(const recon::TourProblem& problem);
   bool is_barred(const recon::FlightState& state) const;
   void carry_out(const Conduct::Order& order, Tick tick, const recon::FlightState& state);
@@ -73,6 +78,8 @@ class MissionManager : public recon::IMissionManager {
   std::size_t passed_ = 0;                  // of which so many were passed
   std::map<std::string, int> tries_;        // and how often, each
   std::optional<std::string> return_home_;  // as the executive wants, and why
+  std::optional<Circle> circle_;            // that is flown about a target
+  Local told_circle_{};                     // the centre of that which was told last
   bool nothing_new_ = false;                // likewise
   std::optional<Tick> took_off_;
   int tours_ = 0;  // that were asked for

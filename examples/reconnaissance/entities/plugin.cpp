@@ -16,6 +16,7 @@
 #include "navigator.hpp"
 #include "nhp.hpp"
 #include "object_tracker.hpp"
+#include "pursuit.hpp"
 #include "radar_warner.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
@@ -59,6 +60,8 @@ void add_csp(ComponentRegistry& registry, const char* name, Arguments... argumen
   });
 }
 
+std::optional<Circle> always_about(const StandOffTask& task) { return circle_about(task); }
+
 void add_all(ComponentRegistry& registry) {
   add_body<recon::IFlightSimulator, FlightSimulator>(registry, "FlightSimulator");
   add_csp<recon::IFlightModel, FlightModel>(registry, "PointMass", &advance);
@@ -76,6 +79,9 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::ITourPlanner, TourPlanner>(registry, "BranchAndBound", &bounded_search);
   add_csp<recon::ITourPlanner, TourPlanner>(registry, "Heuristic", &heuristic_plan);
 
+  add_csp<recon::IStandOff, StandOff>(registry, "CircleAbout", &always_about);
+  add_csp<recon::IStandOff, StandOff>(registry, "CircleBeside", &circle_beside);
+
   add_activity<Nhp>(registry, "Nhp");
   add_csp<recon::IExecutive, Executive<RuleTableExecutive>>(registry, "RuleTable");
   add_csp<recon::IExecutive, Executive<UtilityExecutive>>(registry, "ExpectedUtility");
@@ -83,6 +89,7 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "StepStare", &plan_step_stare);
   add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "LineScan", &plan_line_scan);
   add_csp<recon::ICollectionPattern, CollectionPattern>(registry, "Spot", &plan_spot);
+  add_csp<recon::ICollectionPattern, Watch>(registry, "Watch");
   add_activity<RadarWarner>(registry, "RadarWarner");
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "TableMatch", &by_table);
   add_csp<recon::IEmitterClassifier, EmitterClassifier>(registry, "Bayesian", &by_bayes);

@@ -49,6 +49,8 @@ Recorder::Recorder(skein::Entity& entity, const LocalFrame& frame)
                                                         [this](const auto& list) { see(list); })),
       images_(entity.subscription<recon::Images>(topic::kImages.name, {},
                                                  [this](const auto& images) { see(images); })),
+      objects_(entity.subscription<recon::ObjectTruths>(
+          topic::kObjects.name, {}, [this](const auto& truths) { see(truths); })),
       threat_truths_(entity.subscription<recon::ThreatTruth>(
           topic::kThreatTruth.name, {}, [this](const auto& truth) { see(truth); })),
       traffic_(entity.subscription<recon::Traffic>(topic::kTrafficTruth.name, {},
@@ -184,6 +186,11 @@ void Recorder::see(const recon::ElementList& list) {
     target->achieved_sample_m = element.achieved_ground_sample_m;
     target->deviation_m = element.deviation_m;
     if (element.collected && !target->collected_s) target->collected_s = seconds_of(list.tick);
+    target->wanted_s = element.wanted_s;
+    target->followed_s = element.followed_s;
+    target->wanted_deviation_m = element.wanted_deviation_m;
+    if (element.found && element.wanted_s > 0)
+      target->path.push_back({seconds_of(list.tick), target->line.front()});
   }
 }
 
@@ -199,8 +206,25 @@ void Recorder::see(const recon::Images& images) {
   }
 }
 
+/// The first one, where it is to be followed.
+void Recorder::see(const recon::ObjectTruths& truths) {
+  std::lock_guard lock(mutex_);
+  const bool followed = std::ranges::any_of(
+      record_.targets, [](const Target& target) { return target.wanted_s > 0; });
+  if (!followed || truths.objects.empty()) return;
+  if (record_.truths.empty()) record_.truths.push_back({"where the target truly was", {}});
+  record_.truths.front().points.push_back(
+      {seconds_of(truths.tick), local(frame_, truths.objects.front().position)});
+}
+
 void Recorder::see(const recon::ThreatTruth& truth) {
   std::lock_guard lock(mutex_);
+  const bool placed = std::ranges::any_of(
+      record_.targets, [](const Target& target) { return target.wanted_deviation_m > 0; });
+  if (placed && record_.truths.empty())
+    for (const recon::SiteTruth& each : truth.sites)
+      record_.truths.push_back({"where the " + each.kind + " truly is",
+                                {{seconds_of(truth.tick), local(frame_, each.position)}}});
   record_.tracked_s = truth.tracked_s;
   record_.survival = truth.survival;
   sites_.resize(truth.sites.size());

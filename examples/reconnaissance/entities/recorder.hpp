@@ -35,6 +35,7 @@ class Recorder {
   void see(const recon::ThreatPicture& picture);
   void see(const recon::ElementList& list);
   void see(const recon::Images& images);
+  void see(const recon::ObjectTruths& truths);
   void see(const recon::ThreatTruth& truth);
   void see(const recon::Traffic& traffic);
   void see(const recon::ResolutionAdvisory& advisory);
@@ -71,6 +72,7 @@ class Recorder {
   skein::Subscription<recon::ThreatPicture> pictures_;
   skein::Subscription<recon::ElementList> elements_;
   skein::Subscription<recon::Images> images_;
+  skein::Subscription<recon::ObjectTruths> objects_;
   skein::Subscription<recon::ThreatTruth> threat_truths_;
   skein::Subscription<recon::Traffic> traffic_;
   skein::Subscription<recon::ResolutionAdvisory> advisories_;

@@ -27,12 +27,23 @@ bool is_inside(const std::vector<recon::LocalPlace>& outline, const Eigen::Vecto
 
 recon::CollectionPlan CollectionPattern::plan(const recon::CollectionTask& task) {
   if (task.line.empty()) throw recon::NoPlan("there is no place to look at");
+  if (task.watched) throw recon::NoPlan("it passes its objective, and does not stay with it");
   Objective objective{{}, task.margin_m};
   for (const recon::LocalPlace& each : task.line) objective.line.push_back(local(each));
   const auto plan =
       plan_(objective, {task.height_m, task.offset_m, task.ground_speed_m_s, task.course_rad},
             kCamera, kCameraMount);
   if (!plan) throw recon::NoPlan("the frame shows the horizon, or the flight is too fast for it");
+  return collection_plan(*plan);
+}
+
+recon::CollectionPlan Watch::plan(const recon::CollectionTask& task) {
+  if (!task.watched || task.line.empty())
+    throw recon::NoPlan("it stays with what has been found already");
+  const auto plan =
+      plan_watch(local(task.line.front()), task.north_m_s, task.east_m_s,
+                 {task.height_m, task.offset_m, task.ground_speed_m_s, task.course_rad}, kCamera);
+  if (!plan) throw recon::NoPlan("the frame shows the horizon");
   return collection_plan(*plan);
 }
 

@@ -23,6 +23,12 @@ class CollectionPattern : public recon::ICollectionPattern {
   Plan plan_;
 };
 
+/// Stays with a target instead of passing it: a CSP of the EO manager, too.
+class Watch : public recon::ICollectionPattern {
+ public:
+  recon::CollectionPlan plan(const recon::CollectionTask& task) override;
+};
+
 /// A policy which element is next: a CSP of the EOI manager.
 class ElementPolicy : public recon::IElementPolicy {
  public:

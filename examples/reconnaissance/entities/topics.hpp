@@ -24,6 +24,7 @@ inline constexpr StreamTopic kThreats{"threat/picture", 25};
 inline constexpr StreamTopic kElements{"target/elements", 50};
 inline constexpr StreamTopic kImages{"target/images", 5};
 inline constexpr StreamTopic kTracks{"target/tracks", 5};
+inline constexpr StreamTopic kObjects{"simulation/objects", 50};
 inline constexpr StreamTopic kTraffic{"traffic/others", 5};
 inline constexpr StreamTopic kTrafficTruth{"simulation/traffic", 5};
 inline constexpr StreamTopic kAdvisory{"traffic/advisory", 50};

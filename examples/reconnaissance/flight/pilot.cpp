@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "angles.hpp"
@@ -46,10 +47,18 @@ std::string Pilot::land(std::vector<Local> route, const Strip& to) {
   return reason;
 }
 
+std::string Pilot::loiter(const Circle& circle) {
+  if (is_on_ground()) return "the aircraft is on the ground";
+  route_.clear();
+  leg_ = 0;
+  circle_ = circle;
+  mode_ = Mode::Waiting;
+  return "";
+}
+
 std::string Pilot::begin(std::vector<Local> route, Mode mode) {
   if (route.size() < 2) return "a route has two points or more";
-  if (mode_ == Mode::Parked || mode_ == Mode::Rolling || mode_ == Mode::Landed)
-    return "the aircraft is on the ground";
+  if (is_on_ground()) return "the aircraft is on the ground";
   route_ = std::move(route);
   leg_ = 0;
   mode_ = mode;
@@ -93,6 +102,8 @@ Demand Pilot::fly_route(const Sight& sight) {
   const Motion motion = motion_of(sight.measured);
   if (!advance_leg(motion)) {
     mode_ = Mode::Waiting;
+    circle_ = {route_.back(), 1.5 * turn_radius_m(rules_.cruise_m_s, rules_.greatest_bank_rad),
+               true};
     return fly_circle(sight);
   }
   return limited(
@@ -103,10 +114,9 @@ Demand Pilot::fly_route(const Sight& sight) {
 
 Demand Pilot::fly_circle(const Sight& sight) {
   const Motion motion = motion_of(sight.measured);
-  const Line level{route_.back(), route_.back()};
-  const double radius = 1.5 * turn_radius_m(rules_.cruise_m_s, rules_.greatest_bank_rad);
+  const Line level{circle_.centre, circle_.centre};
   return limited(
-      guidance_.around(motion, {route_.back(), radius, true}),
+      guidance_.around(motion, circle_),
       climb_rad(level, motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
       rules_.cruise_m_s);
 }
@@ -155,6 +165,11 @@ Demand Pilot::limited(double bank_rad, double climb_rad, double airspeed_m_s) co
 }
 
 double Pilot::route_course_rad(const Local& from) const {
+  if (route_.empty() && mode_ == Mode::Waiting) {
+    const double outward_rad =
+        std::atan2(from.east_m - circle_.centre.east_m, from.north_m - circle_.centre.north_m);
+    return outward_rad + (circle_.clockwise ? 1 : -1) * std::numbers::pi / 2;
+  }
   if (route_.empty()) return strip_.course_rad;
   const Local& to = route_[std::min(leg_ + 1, route_.size() - 1)];
   return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);

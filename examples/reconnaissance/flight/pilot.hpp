@@ -66,6 +66,8 @@ class Pilot {
   /// These return the reason why they cannot be done now; empty if they are.
   std::string take_off(const Strip& from);
   std::string follow(std::vector<Local> route);
+  /// Circles at the height of the centre, until something else is ordered.
+  std::string loiter(const Circle& circle);
   /// The route's last leg leads down to the strip.
   std::string land(std::vector<Local> route, const Strip& to);
 
@@ -73,13 +75,17 @@ class Pilot {
   Demand fly(const Sight& sight);
 
   Mode mode() const { return mode_; }
-  /// Towards the end of the present leg, from a place; that of the runway while there is no route.
+  /// Towards the end of the present leg, from a place; along the circle that was ordered; that of
+  /// the runway before there is either.
   double route_course_rad(const Local& from) const;
   /// Which leg of the route is flown, from 0; after the last one their number.
   std::size_t leg() const { return leg_; }
   std::size_t legs() const { return route_.empty() ? 0 : route_.size() - 1; }
 
  private:
+  bool is_on_ground() const {
+    return mode_ == Mode::Parked || mode_ == Mode::Rolling || mode_ == Mode::Landed;
+  }
   std::string begin(std::vector<Local> route, Mode mode);
   Demand fly_take_off(const Sight& sight);
   Demand fly_route(const Sight& sight);
@@ -95,6 +101,7 @@ class Pilot {
   Mode mode_ = Mode::Parked;
   Strip strip_{};
   std::vector<Local> route_;
+  Circle circle_{};  // that is flown while it waits
   std::size_t leg_ = 0;
 };
 

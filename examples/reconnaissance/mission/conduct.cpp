@@ -67,6 +67,12 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
   return Follow{tour_};
 }
 
+std::optional<Conduct::Order> Conduct::loiter(const Circle& circle, const std::string& reason) {
+  if (phase_ != MissionPhase::Ingress && phase_ != MissionPhase::Collection) return std::nullopt;
+  enter(MissionPhase::Collection, reason);
+  return Loiter{circle};
+}
+
 std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
   if (phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection) return go_home(reason);
   if (phase_ == MissionPhase::BuiltInTest) enter(MissionPhase::Aborted, reason);

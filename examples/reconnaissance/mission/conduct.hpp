@@ -48,10 +48,13 @@ class Conduct {
   struct Follow {
     std::vector<WayPoint> through;
   };
+  struct Loiter {
+    Circle circle;  ///< At the height of its centre.
+  };
   struct Land {
     std::vector<WayPoint> through;
   };
-  using Order = std::variant<TakeOff, Follow, Land>;
+  using Order = std::variant<TakeOff, Follow, Loiter, Land>;
 
   /// What is so.
   struct Situation {
@@ -68,6 +71,10 @@ class Conduct {
 
   /// What is flown from now on, in place of what was: at once, where that is under way.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
+
+  /// A circle is flown until something else is, in place of what is left of the tour, if that is
+  /// under way.
+  std::optional<Order> loiter(const Circle& circle, const std::string& reason);
 
   /// What is left of the tour is given up, if it is under way; before the take-off all is.
   std::optional<Order> give_up(const std::string& reason);

@@ -12,7 +12,9 @@ namespace {
 
 constexpr const char* kElement =
     "element; write `name priority size resolution margin latitude longitude ...`";
-constexpr const char* kObject = "object; write `latitude longitude size course speed`";
+constexpr const char* kObject =
+    "object; write `latitude longitude size course speed`, then `seconds course speed` for each "
+    "change";
 
 [[noreturn]] void refuse(const std::string& part, const char* what) {
   throw skein::InvalidArgument("'" + part + "' is no " + what);
@@ -74,10 +76,28 @@ std::vector<ObjectText> parse_objects(const std::string& text) {
   for (const std::string& part : split(text)) {
     std::istringstream words(part);
     const auto numbers = numbers_of(words, part, kObject);
-    if (numbers.size() != 5 || numbers[2] <= 0) refuse(part, kObject);
-    objects.push_back({{numbers[0], numbers[1], 0}, numbers[2], radians(numbers[3]), numbers[4]});
+    if (numbers.size() < 5 || (numbers.size() - 5) % 3 != 0 || numbers[2] <= 0)
+      refuse(part, kObject);
+    ObjectText object{
+        {numbers[0], numbers[1], 0}, numbers[2], {{0, radians(numbers[3]), numbers[4]}}};
+    for (std::size_t i = 5; i < numbers.size(); i += 3) {
+      if (numbers[i] <= object.legs.back().from_s) refuse(part, kObject);
+      object.legs.push_back({numbers[i], radians(numbers[i + 1]), numbers[i + 2]});
+    }
+    objects.push_back(std::move(object));
   }
   return objects;
+}
+
+Local moved(const Local& start, const std::vector<ObjectText::Leg>& legs, double now_s) {
+  Local place = start;
+  for (std::size_t i = 0; i < legs.size() && legs[i].from_s < now_s; ++i) {
+    const double until_s = i + 1 < legs.size() ? std::min(now_s, legs[i + 1].from_s) : now_s;
+    const double seconds = until_s - legs[i].from_s;
+    place.north_m += seconds * (legs[i].speed_m_s * std::cos(legs[i].course_rad));
+    place.east_m += seconds * (legs[i].speed_m_s * std::sin(legs[i].course_rad));
+  }
+  return place;
 }
 
 Passage passage(const Local& aircraft, double course_rad, const Local& place) {

@@ -22,15 +22,23 @@ struct ElementText {
 /// Throws skein::InvalidArgument with what is wrong.
 std::vector<ElementText> parse_elements(const std::string& text);
 
-/// What truly is on the ground, as a profile names it: `latitude longitude size course speed`;
-/// separated by semicolons. It moves on along its course from the mission's beginning.
+/// What truly is on the ground, as a profile names it: `latitude longitude size course speed`, then
+/// `seconds course speed` for each change; separated by semicolons. It moves on along its course
+/// from the mission's beginning, or from so many seconds after it.
 struct ObjectText {
+  struct Leg {
+    double from_s = 0;
+    double course_rad = 0;
+    double speed_m_s = 0;
+  };
   Geodetic place{};
   double size_m = 0;
-  double course_rad = 0;
-  double speed_m_s = 0;
+  std::vector<Leg> legs;
 };
 std::vector<ObjectText> parse_objects(const std::string& text);
+
+/// Where an object is that began at `start`.
+Local moved(const Local& start, const std::vector<ObjectText::Leg>& legs, double now_s);
 
 /// Where an aircraft passes a place if it flies straight on.
 struct Passage {

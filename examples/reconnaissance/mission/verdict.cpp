@@ -38,7 +38,8 @@ std::string xml(const std::string& text) {
 Judge::Judge(const PassConditions& conditions, const Local& aim)
     : conditions_(conditions), aim_(aim) {}
 
-void Judge::count(std::size_t collected, std::size_t wanted) {
+void Judge::count(std::size_t collected, std::size_t wanted, const std::string& what) {
+  how_collected_ = what;
   collected_ = collected;
   wanted_ = wanted;
 }
@@ -76,7 +77,7 @@ void Judge::measure_clearance(const Sample& sample) {
     clearance_m_ = std::min(clearance_m_, sample.height_above_ground_m);
 }
 
-Verdict Judge::conclude(const std::string& ended) const {
+Verdict Judge::conclude(const std::string& ended, const std::vector<Check>& more) const {
   Verdict verdict;
   verdict.flown = standing();
   verdict.duration_s = took_off_s_ ? duration_s() : 0;
@@ -91,8 +92,8 @@ Verdict Judge::conclude(const std::string& ended) const {
         fmt::format("{:.0f} s in the air and on the runway, at most {:.0f}", verdict.duration_s,
                     conditions_.longest_s));
   check("targets", collected_ >= wanted_,
-        fmt::format("{} of {} elements collected as finely as they were ordered", collected_,
-                    wanted_));
+        fmt::format("{} of {} elements {}", collected_, wanted_, how_collected_));
+  verdict.checks.insert(verdict.checks.end(), more.begin(), more.end());
   check("survival", survival_ >= conditions_.least_survival,
         fmt::format("survived the air defence with a probability of {:.3f}, at least {:.3f}; "
                     "tracked for {:.0f} s",

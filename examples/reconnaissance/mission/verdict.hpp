@@ -56,8 +56,9 @@ class Judge {
 
   void see(const Sample& sample);
 
-  /// So many elements of interest are to be collected, and have been.
-  void count(std::size_t collected, std::size_t wanted);
+  /// So many elements of interest are to be collected, and have been; `what` says in which way.
+  void count(std::size_t collected, std::size_t wanted,
+             const std::string& what = "collected as finely as they were ordered");
 
   /// Another aircraft, at the instant of the last sample.
   void meet(const Local& other);
@@ -72,8 +73,9 @@ class Judge {
   double duration_s() const { return last_.time_s - took_off_s_.value_or(last_.time_s); }
   bool too_long() const { return duration_s() > conditions_.longest_s; }
 
-  /// The verdict as of now; `ended` says why it is not flown on, if it was not to the end.
-  Verdict conclude(const std::string& ended = "") const;
+  /// The verdict as of now; `ended` says why it is not flown on, if it was not to the end. `more`
+  /// are conditions of the targets.
+  Verdict conclude(const std::string& ended = "", const std::vector<Check>& more = {}) const;
 
  private:
   void measure_clearance(const Sample& sample);
@@ -82,6 +84,7 @@ class Judge {
   Local aim_;
   std::size_t collected_ = 0;
   std::size_t wanted_ = 0;
+  std::string how_collected_ = "collected";
   /// The least of all: the greater of both distances as a share of what is well clear.
   double separation_ = std::numeric_limits<double>::infinity();
   Local nearest_{};  ///< Of the other from the aircraft, then.

@@ -64,6 +64,7 @@ function viewOf() {
   const show = ([north, east]) => { norths.push(north); easts.push(east); };
   record.targets.forEach(target => target.line.forEach(show));
   record.zones.forEach(zone => zone.outline.forEach(show));
+  record.truths.forEach(thing => thing.points.forEach(([, north, east]) => show([north, east])));
   const least = values => values.reduce((a, b) => Math.min(a, b)), most = values => values.reduce((a, b) => Math.max(a, b));
   const box = {south: least(norths) - margin_m, north: most(norths) + margin_m, west: least(easts) - margin_m, east: most(easts) + margin_m};
   for (const {place: [north, east]} of record.threats)  // which are near enough to be on the map themselves
@@ -155,6 +156,10 @@ function drawMap() {
       svg("text", {class: "halo", x: x + 10, y: y + 4}, target.name));
   });
   all.push(...map.targets);
+  // What truly was there, under what was known of it.
+  map.truths = record.truths.map(thing => svg("g", {class: "truth"}, svg("title", {}, thing.name), svg("path", {}), svg("path", {class: "cross", d: "M-5 -5L5 5M-5 5L5 -5"})));
+  map.paths = record.targets.map(() => svg("path", {class: "followed"}));
+  all.push(...map.truths, ...map.paths);
   record.decisions.forEach((decision, i) => { const state = at(decision.time_s); all.push(decisionMark(i, ...map.xy([state.north_m, state.east_m]), 3.6)); });
   map.others = record.others.map(() => svg("g", {}, svg("path", {class: "intruder"}), svg("path", {class: "intruder_now", d: "M0 -8L5 7L0 4L-5 7Z"})));
   map.aircraft = svg("path", {class: "aircraft", d: "M0 -12L2.2 -4L12 2V4.5L2.2 2L1.6 8L5 10.5V12L0 11L-5 12V10.5L-1.6 8L-2.2 2L-12 4.5V2L-2.2 -4Z"});
@@ -255,6 +260,11 @@ function explained(decision) {
     ` ${each.outcome} after ${span(each.took_s)}`, html("div", {class: "note"}, each.reason)))));
   return parts;
 }
+// A target is followed for some time, an emitter placed, of anything else images are taken.
+const takesImages = target => !target.wanted_s && !target.wanted_deviation_m;
+const wantedOf = target => target.wanted_s ? `followed ${fixed(target.wanted_s, 0, "s")}` : target.wanted_deviation_m ? `within ${fixed(target.wanted_deviation_m, 0, "m")}` : fixed(target.wanted_sample_m, 2, "m");
+const achievedOf = target => target.wanted_s ? (target.path.length ? fixed(target.followed_s, 0, "s") : "not found")
+  : target.wanted_deviation_m ? (target.deviation_m ? fixed(target.deviation_m, 0, "m") : "not found") : target.achieved_sample_m ? fixed(target.achieved_sample_m, 2, "m") : "not seen";
 function drawLists() {
   $("flags").append(...record.flags.map(flag => {
     const button = html("button", {type: "button"}, html("time", {}, clock(flag.time_s)), html("span", flag.severe ? {class: "severe"} : {}, flag.text));
@@ -264,8 +274,9 @@ function drawLists() {
   if (!record.flags.length) $("flags").append(html("li", {}, "–", html("span", {}, "Nothing.")));
   $("checks").append(...record.checks.map(check => html("li", {}, html("span", {class: `mark ${check.passed ? "kept" : "broken"}`}, check.passed ? "✓" : "✗"),
     html("span", {}, html("strong", {}, check.name), ` ${check.text}`))));
+  $("targets_note").hidden = !record.targets.some(takesImages);
   $("targets").append(head(["target"], ["wanted", 1], ["achieved", 1], ["place", 1], ["at", 1]), html("tbody", {}, ...record.targets.map(target => html("tr", {},
-    cell(target.name), cell(fixed(target.wanted_sample_m, 2, "m"), 1), cell(target.achieved_sample_m ? fixed(target.achieved_sample_m, 2, "m") : "not seen", 1),
+    cell(target.name), cell(wantedOf(target), 1), cell(achievedOf(target), 1),
     cell(target.deviation_m ? `± ${fixed(target.deviation_m, 0, "m")}` : "–", 1), cell(target.collected_s === null ? "–" : clock(target.collected_s), 1)))));
   $("faults").append(...record.faults.map(fault => html("li", {}, html("time", {}, clock(fault.from_s)), html("span", {}, html("strong", {}, `${fault.what}. `),
     `Noticed by ${words(fault.noticed_by)} ${fault.noticed_s > fault.from_s ? `after ${span(fault.noticed_s - fault.from_s)}` : "at once"}. ${fault.answer} `,
@@ -335,6 +346,12 @@ function moveMap(state) {
   map.threats.forEach((group, i) => { group.style.opacity = record.threats[i].from_s <= now ? 1 : 0.25; });
   map.images.forEach((path, i) => { path.style.display = record.footprints[i].time_s <= now ? "" : "none"; });
   map.targets.forEach((group, i) => group.firstChild.classList.toggle("seen", record.targets[i].collected_s !== null && record.targets[i].collected_s <= now));
+  record.truths.forEach(({points}, i) => {
+    const there = points.slice(0, Math.max(points.findLastIndex(point => point[0] <= now) + 1, 1)).map(point => map.xy([point[1], point[2]])), [tx, ty] = there.at(-1);
+    map.truths[i].children[1].setAttribute("d", line(there));
+    map.truths[i].lastChild.setAttribute("transform", `translate(${tx.toFixed(1)} ${ty.toFixed(1)})`);
+  });
+  record.targets.forEach(({path}, i) => map.paths[i].setAttribute("d", line(path.filter(point => point[0] <= now).map(point => map.xy([point[1], point[2]])))));
   map.others.forEach((group, i) => {
     const points = record.others[i].points, count = points.findLastIndex(point => point[0] <= now) + 1;
     const there = count > 0 && now <= points.at(-1)[0] + 2;

@@ -69,6 +69,16 @@ struct Target {
   double achieved_sample_m = 0;  ///< 0: not all of it was seen.
   double deviation_m = 0;        ///< Of what was found there; 0: nothing was.
   std::optional<double> collected_s;
+  double wanted_s = 0;  ///< It is to be followed for so long, where it is not 0, and was
+  double followed_s = 0;
+  double wanted_deviation_m = 0;  ///< It is an emitter that is to be placed so, where it is not 0.
+  std::vector<OtherTrack::Point> path;  ///< Where it was followed.
+};
+
+/// What truly was on the ground, and where it went.
+struct TrueThing {
+  std::string name;
+  std::vector<OtherTrack::Point> points;
 };
 
 /// The ground that an image shows.
@@ -155,6 +165,7 @@ struct MissionRecord {
   std::vector<KnownThreat> threats;
   std::vector<NoFlyZone> zones;
   std::vector<Target> targets;
+  std::vector<TrueThing> truths;  ///< Where the order is to follow or to place.
   std::vector<ImagedGround> footprints;
   std::vector<Stage> phases;
   std::vector<Stage> modes;

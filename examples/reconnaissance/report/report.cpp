@@ -75,12 +75,15 @@ Json columns_of(const std::vector<TrackPoint>& track) {
       {"fuel_kg", column(2, [](const TrackPoint& p) { return p.fuel_kg; })}};
 }
 
+Json json(const std::vector<OtherTrack::Point>& points) {
+  return list(points, [](const OtherTrack::Point& at) {
+    return Json{rounded(at.time_s, 2), rounded(at.place.north_m, 1), rounded(at.place.east_m, 1),
+                rounded(at.place.height_m, 1)};
+  });
+}
+
 Json json(const OtherTrack& other) {
-  return {{"number", other.number},
-          {"points", list(other.points, [](const OtherTrack::Point& at) {
-             return Json{rounded(at.time_s, 2), rounded(at.place.north_m, 1),
-                         rounded(at.place.east_m, 1), rounded(at.place.height_m, 1)};
-           })}};
+  return {{"number", other.number}, {"points", json(other.points)}};
 }
 
 Json json(const PlannedRoute& route) {
@@ -108,8 +111,14 @@ Json json(const Target& target) {
           {"wanted_sample_m", rounded(target.wanted_sample_m, 3)},
           {"achieved_sample_m", rounded(target.achieved_sample_m, 3)},
           {"deviation_m", rounded(target.deviation_m, 1)},
-          {"collected_s", seconds(target.collected_s)}};
+          {"collected_s", seconds(target.collected_s)},
+          {"wanted_s", rounded(target.wanted_s, 1)},
+          {"followed_s", rounded(target.followed_s, 1)},
+          {"wanted_deviation_m", rounded(target.wanted_deviation_m, 1)},
+          {"path", json(target.path)}};
 }
+
+Json json(const TrueThing& thing) { return {{"name", thing.name}, {"points", json(thing.points)}}; }
 
 Json json(const ImagedGround& footprint) {
   return {{"time_s", rounded(footprint.time_s, 2)},
@@ -193,6 +202,7 @@ Json json(const MissionRecord& record) {
           {"phases", list(record.phases)},
           {"modes", list(record.modes)},
           {"targets", list(record.targets)},
+          {"truths", list(record.truths)},
           {"threats", list(record.threats)},
           {"zones", list(record.zones)},
           {"decisions", list(record.decisions)},

@@ -216,6 +216,19 @@ std::optional<CollectionPlan> plan_spot(const Objective& objective, const Flyby&
   });
 }
 
+std::optional<CollectionPlan> plan_watch(const Local& place, double north_m_s, double east_m_s,
+                                         const Flyby& flyby, const Camera& camera) {
+  constexpr double kTrusted_s = 3;
+  if (!view({{place}, 0}, flyby, camera, 0)) return std::nullopt;
+  const Local then{place.north_m + kTrusted_s * north_m_s, place.east_m + kTrusted_s * east_m_s,
+                   place.height_m};
+  return CollectionPlan{{{0, kTrusted_s, place, then}},
+                        kTrusted_s,
+                        0,
+                        1,
+                        sample_distance_m(flyby.height_m, flyby.offset_m, camera)};
+}
+
 double collection_cost(const CollectionPlan& plan, double required_m) {
   return plan.seconds + 1000 * (1 - plan.coverage) +
          1000 * std::max(0.0, plan.sample_distance_m / required_m - 1);

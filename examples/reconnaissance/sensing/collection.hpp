@@ -69,6 +69,11 @@ std::optional<CollectionPlan> plan_line_scan(const Objective& objective, const F
 std::optional<CollectionPlan> plan_spot(const Objective& objective, const Flyby& flyby,
                                         const Camera& camera, const CameraMount& mount);
 
+/// A look that stays with one place, which moves so: as long as a velocity that is estimated anew
+/// once a second can be trusted. nullopt if the frame shows the horizon.
+std::optional<CollectionPlan> plan_watch(const Local& place, double north_m_s, double east_m_s,
+                                         const Flyby& flyby, const Camera& camera);
+
 /// What a plan costs, for skein::best_by_cost(): its seconds; a thousand more for all of the
 /// objective that it leaves out, and for each multiple of `required_m` that its sample is coarser.
 double collection_cost(const CollectionPlan& plan, double required_m);

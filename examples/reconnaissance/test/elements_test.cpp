@@ -23,9 +23,22 @@ TEST_CASE("elements and objects are what a profile names") {
 
   const auto objects = parse_objects("53.4 27.6 3 90 2.5");
   REQUIRE(objects.size() == 1);
-  CHECK(objects[0].course_rad == Approx(std::numbers::pi / 2));
-  CHECK(objects[0].speed_m_s == 2.5);
+  CHECK(objects[0].legs[0].course_rad == Approx(std::numbers::pi / 2));
+  CHECK(objects[0].legs[0].speed_m_s == 2.5);
   CHECK_THROWS_AS(parse_objects("53.4 27.6 3 90"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_objects("53.4 27.6 3 90 2.5 100 0"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_objects("53.4 27.6 3 90 2.5 100 0 5 100 0 6"), skein::InvalidArgument);
+}
+
+TEST_CASE("an object drives, stops and turns when the profile says so") {
+  const auto legs = parse_objects("53.4 27.6 3 90 2.5 100 90 0 160 0 5")[0].legs;
+  const auto at = [&](double now_s) { return moved({10, 20, 0}, legs, now_s); };
+  CHECK(at(0).east_m == 20);
+  CHECK(at(40).east_m == Approx(120));
+  CHECK(at(130).east_m == Approx(270));
+  CHECK(at(130).north_m == Approx(10));
+  CHECK(at(180).east_m == Approx(270));
+  CHECK(at(180).north_m == Approx(110));
 }
 
 TEST_CASE("a place is passed where it is abeam, to the right or to the left") {

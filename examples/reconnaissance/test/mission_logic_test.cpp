@@ -84,6 +84,26 @@ TEST_CASE("a mission goes through its phases, each begun by what has been reache
   CHECK(conduct.phase() == MissionPhase::Complete);
 }
 
+TEST_CASE("a target that is found is circled in place of the tour, and the mission goes on after") {
+  Conduct conduct(kStrip);
+  const Circle circle{{9000, 0, 900}, 1200, true};
+  conduct.fly(kTour, "planned");
+  CHECK_FALSE(conduct.loiter(circle, "found"));  // before the take-off nothing is
+  conduct.decide({.all_fine = true});
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  REQUIRE(conduct.phase() == MissionPhase::Ingress);
+  const auto order = conduct.loiter(circle, "found");
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Loiter>(*order).circle.radius_m == 1200);
+  CHECK(conduct.phase() == MissionPhase::Collection);
+  CHECK(conduct.reason() == "found");
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Waiting, 900}));  // as long as it is not told
+  const auto home = conduct.fly({}, "followed: home");
+  REQUIRE(home);
+  CHECK(std::holds_alternative<Conduct::Land>(*home));
+  CHECK_FALSE(conduct.loiter(circle, "found"));
+}
+
 TEST_CASE("another tour is flown at once where one is under way, and none leads home") {
   Conduct conduct(kStrip);
   conduct.fly(kTour, "planned");
@@ -252,4 +272,16 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 93.5 27.7 0"), skein::InvalidArgument);
+}
+
+TEST_CASE("what is judged of targets stands among the conditions, and fails the mission") {
+  Flown flown;
+  flown.judge.count(1, 1, "followed as long as was ordered");
+  flown.fly();
+  CHECK(flown.judge.conclude("", {{"found", true, "after 400 s"}}).passed);
+  const Verdict failed = flown.judge.conclude("", {{"found", false, "the target was never found"}});
+  CHECK_FALSE(failed.passed);
+  CHECK(failed.reason == "found: the target was never found");
+  CHECK(failed.checks[2].text == "1 of 1 elements followed as long as was ordered");
+  CHECK(failed.checks[3].name == "found");
 }

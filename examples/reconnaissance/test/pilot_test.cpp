@@ -123,3 +123,31 @@ TEST_CASE("orders that cannot be obeyed are refused with the reason") {
   CHECK(flight.pilot.follow({Local{}}) == "a route has two points or more");
   CHECK(flight.pilot.mode() == Pilot::Mode::TakingOff);
 }
+
+TEST_CASE("a pilot circles about a place that it is ordered, and anew when that has moved") {
+  Flight flight;
+  CHECK(flight.pilot.loiter({{0, 0, 600}, 1200, true}) == "the aircraft is on the ground");
+  flight.pilot.take_off(flight.strip);
+  REQUIRE(flight.fly_until([&] { return flight.height_m() > 290; }));
+  Local centre{4000, 6000, 700};
+  REQUIRE(flight.pilot.loiter({centre, 1200, false}).empty());
+  CHECK(flight.pilot.mode() == Pilot::Mode::Waiting);
+  CHECK(flight.pilot.legs() == 0);
+  const auto away_m = [&] {
+    return std::hypot(flight.aircraft.position.north_m - centre.north_m,
+                      flight.aircraft.position.east_m - centre.east_m);
+  };
+  REQUIRE(flight.fly_until([&] { return std::abs(away_m() - 1200) < 30; }));
+  flight.fly_until([] { return false; }, 60);
+  for (int i = 0; i < 200; ++i) {
+    centre.east_m += 8;  // once a second, as far as a vehicle drives
+    REQUIRE(flight.pilot.loiter({centre, 1200, false}).empty());
+    flight.fly_until([] { return false; }, 1);
+    CHECK(away_m() == Approx(1200).margin(150));
+  }
+  CHECK(flight.aircraft.position.height_m == Approx(700).margin(15));
+  // To the left about it, so that its course is a quarter turn from the way to the centre.
+  const Local& place = flight.aircraft.position;
+  const double course = std::atan2(flight.aircraft.east_m_s, flight.aircraft.north_m_s);
+  CHECK(wrapped(flight.pilot.route_course_rad(place) - course) == Approx(0).margin(0.25));
+}

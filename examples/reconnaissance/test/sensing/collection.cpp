@@ -259,3 +259,16 @@ TEST_CASE("The cheapest plan depends on what is to be seen, and on the camera") 
   CHECK(choose({kRoad.line, 10}, narrow) == "line scan");
   CHECK(collection_cost({{}, 3, 1, 0.5, 0.6}, 0.3) == 3 + 500 + 1000);
 }
+
+TEST_CASE("a look that stays with a target aims at where it will be") {
+  const Local place{5000, 3000, 100};
+  const auto plan = plan_watch(place, 2, -8, kFlyby, kCamera);
+  REQUIRE(plan);
+  CHECK(aim_at(*plan, 0)->north_m == 5000);
+  CHECK(aim_at(*plan, 1)->north_m == Approx(5002));
+  CHECK(aim_at(*plan, 1)->east_m == Approx(2992));
+  CHECK(plan->coverage == 1);
+  CHECK(plan->sample_distance_m ==
+        Approx(plan_spot({{place}, 0}, kFlyby, kCamera, kMount)->sample_distance_m).epsilon(0.05));
+  CHECK_FALSE(plan_watch(place, 0, 0, {800, 60000, 60, 0}, kCamera));
+}

@@ -1,0 +1,84 @@
+#include "planning/stand_off.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace reconnaissance {
+namespace {
+
+// A follower of a circle that moves lags behind by about as much.
+constexpr double kAhead_s = 5;
+// Between a circle and a weapon's reach: the guidance swings over, and the wind blows.
+constexpr double kRoom_m = 200;
+constexpr int kMoves = 20;
+
+double distance_m(const Local& a, double north_m, double east_m) {
+  return std::hypot(a.north_m - north_m, a.east_m - east_m);
+}
+
+bool is_clear(const Circle& circle, const ThreatDisc& weapon) {
+  return distance_m(circle.centre, weapon.north_m, weapon.east_m) >=
+         weapon.radius_m + circle.radius_m;
+}
+
+double furthest_m(const Circle& circle, const Motion& target) {
+  return distance_m(circle.centre, target.north_m, target.east_m) + circle.radius_m;
+}
+
+}  // namespace
+
+Circle circle_about(const StandOffTask& task) {
+  const Motion &target = task.target, &own = task.aircraft;
+  const double north = target.north_m - own.north_m, east = target.east_m - own.east_m;
+  const bool on_the_right = east * own.north_m_s - north * own.east_m_s >= 0;
+  return {
+      {target.north_m + kAhead_s * target.north_m_s, target.east_m + kAhead_s * target.east_m_s, 0},
+      task.radius_m,
+      on_the_right};
+}
+
+std::optional<Circle> circle_beside(const StandOffTask& task) {
+  Circle circle = circle_about(task);
+  // Away from one weapon may be towards another one.
+  for (int move = 0; move < kMoves; ++move) {
+    const auto weapon = std::ranges::find_if_not(
+        task.weapons, [&](const ThreatDisc& each) { return is_clear(circle, each); });
+    if (weapon == task.weapons.end()) {
+      if (furthest_m(circle, task.target) > task.greatest_distance_m) return std::nullopt;
+      return circle;
+    }
+    const double away_m = weapon->radius_m + circle.radius_m + kRoom_m;
+    const double north = circle.centre.north_m - weapon->north_m;
+    const double east = circle.centre.east_m - weapon->east_m;
+    const double length = std::hypot(north, east);
+    if (length < 1) return std::nullopt;
+    circle.centre.north_m = weapon->north_m + away_m / length * north;
+    circle.centre.east_m = weapon->east_m + away_m / length * east;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> flaw_of(const Circle& circle, const StandOffTask& task) {
+  if (!(circle.radius_m >= task.turn_radius_m))
+    return fmt::format("its radius is {:.0f} m, and the aircraft turns with {:.0f}",
+                       circle.radius_m, task.turn_radius_m);
+  const double furthest = furthest_m(circle, task.target);
+  // A lead over a fast target is no flaw.
+  const double lead_m = kAhead_s * std::hypot(task.target.north_m_s, task.target.east_m_s);
+  if (!(furthest <= task.greatest_distance_m + lead_m))
+    return fmt::format("the target is up to {:.0f} m away, and can be seen as wanted from {:.0f}",
+                       furthest, task.greatest_distance_m);
+  for (const ThreatDisc& weapon : task.weapons)
+    if (!is_clear(circle, weapon)) return "it leads into the reach of a weapon";
+  return std::nullopt;
+}
+
+double greatest_distance_m(double ground_sample_m, double pixel_rad, double height_m) {
+  // The longer side of a pixel is slant range squared times its angle, over the height.
+  const double squared = ground_sample_m * height_m / pixel_rad - height_m * height_m;
+  return squared > 0 ? std::sqrt(squared) : 0;
+}
+
+}  // namespace reconnaissance

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "sensing/tracking/tracker.hpp"
+
+namespace reconnaissance {
+
+struct FollowRules {
+  double fresh_s = 2;       ///< A track whose target was not detected for longer is a memory.
+  double gate_m = 150;      ///< A track belongs to the target so near to where that should be,
+  double wanders_m_s = 10;  ///< and so much further for each second since it was seen.
+  double patience_s = 15;   ///< Unseen for longer the target is lost.
+};
+
+/// Of the tracks of all that moves about, that of one target: which was reported somewhere, is
+/// found when there is a track near that place, and lost when there has been none for a while.
+/// Then it is looked for where it was last. A pure object.
+class FollowedTarget {
+ public:
+  FollowedTarget(const Eigen::Vector2d& reported_m, double margin_m, const FollowRules& rules = {})
+      : rules_(rules), margin_m_(margin_m) {
+    estimate_.mean.head<2>() = reported_m;
+  }
+
+  /// All tracks at a time no earlier than that of the last look.
+  void look(double now_s, const std::vector<Track>& tracks);
+
+  bool found() const { return found_; }
+  /// Where it is, or was reported or lost, at the last look.
+  const GroundEstimate& estimate() const { return estimate_; }
+  /// For how long there was a fresh track of it.
+  double followed_s() const { return followed_s_; }
+
+ private:
+  FollowRules rules_;
+  double margin_m_;
+  GroundEstimate estimate_;
+  bool found_ = false;
+  double now_s_ = 0;
+  double seen_s_ = 0;
+  double followed_s_ = 0;
+};
+
+}  // namespace reconnaissance
