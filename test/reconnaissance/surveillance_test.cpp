@@ -19,10 +19,10 @@ const std::filesystem::path kMission = project_file("mission_profiles/surveillan
 /// A road near the runway, on which the target drives, stops, and drives on; a site far away.
 const std::vector<std::string> kShort{
     "--variable", "elements=van 1 3 0.3 30 53.3160 27.4700 53.3160 27.4900",
-    "--variable", "objects=53.3160 27.4690 3 90 4 200 90 0 230 20 8",
+    "--variable", "objects=53.3160 27.4720 3 90 3 200 90 0 300 20 8",
     "--variable", "sites=short-range site 53.4800 27.5000 0",
     "--variable", "follow_for=100 s",
-    "--variable", "failures=2 wrong 40 300"};
+    "--variable", "failures=2 wrong 40 100"};
 
 std::vector<std::string> with(std::vector<std::string> arguments,
                               const std::vector<std::string>& more) {
