@@ -235,7 +235,7 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
 }
 
 /// The process of who works for the Head now.
-void Navigator::strike(int signal) const {
+void Navigator::signal_planner(int signal) const {
   for (const skein::Head::Current& each : entity_.head().running()) {
     const auto process = static_cast<pid_t>(each.pid);
     if (process != getpid() && is_sibling(process)) ::kill(process, signal);
@@ -248,12 +248,12 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
   task.request = fmt::format("route {}", routes_ + 1);
   task.only = instead_;
   const auto failure = std::ranges::find(failures_, ++asked_, &PlannerFailureText::request);
-  bool strikes = failure != failures_.end();
+  bool fails_now = failure != failures_.end();
   task.features = {{"threats", static_cast<double>(problem.missile_sites.size())},
                    {"length_m", std::hypot(problem.goal.north_m - problem.start.north_m,
                                            problem.goal.east_m - problem.start.east_m)}};
   task.run = [&](AE_navigator::IPlanner::Proxy& planner, skein::Duration) {
-    if (std::exchange(strikes, false)) strike(failure->stopped ? SIGSTOP : SIGKILL);
+    if (std::exchange(fails_now, false)) signal_planner(failure->stopped ? SIGSTOP : SIGKILL);
     return planner.plan(problem);
   };
   task.evaluate.check("leads from end to end", [&](const AE_navigator::Route& route) {

@@ -32,7 +32,7 @@ class Navigator : public recon::INavigator {
   AE_navigator::Problem problem_of(const recon::RouteRequest& request);
   void pose(AE_navigator::Problem& problem, const recon::Position& from,
             const recon::Position& to) const;
-  void strike(int signal) const;
+  void signal_planner(int signal) const;
   AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
   std::vector<Local> way_in_tile(const std::vector<Local>& way) const;
   double clearance_m(const std::vector<Local>& way) const;
