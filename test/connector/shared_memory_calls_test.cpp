@@ -133,7 +133,9 @@ TEST_CASE(
   const auto client = make_entity("client", true);
   auto echo = client->connect<Echo>();
   for (int i = 0; i < 100; ++i) CHECK(echo.echo("") == "server");
-  CHECK(echo.echo("") == (on_caller ? "skein-requests" : "server"));
+  // On a busy machine one of them took longer than a quick one may.
+  if (on_caller) CHECK(eventually([&] { return echo.echo("") == "skein-requests"; }));
+  if (!on_caller) CHECK(echo.echo("") == "server");
   auto stream = echo.burst(1);
   const auto name = stream.next();
   REQUIRE(name);
