@@ -120,6 +120,23 @@ struct ReceiveCounters {
   std::uint64_t replaced = 0;
 };
 
+/// Delivery on the thread that waits for a sample, in place of the reader's own thread: a wake-up
+/// less. It may outlive its reader, and delivers nothing then. Thread-safe.
+class CallerDelivery {
+ public:
+  virtual ~CallerDelivery() = default;
+  /// What comes next is for who will call deliver_until(): the reader's thread leaves it alone for
+  /// a while.
+  virtual void lend() = 0;
+  /// What comes next is for the reader's thread.
+  virtual void take_back() = 0;
+  /// Calls the reader's listener on this thread as samples come, until `over`, which wake() makes
+  /// it look at. Returns earlier, after take_back(), where another thread is in it, or the reader
+  /// or its writer has ended.
+  virtual void deliver_until(const std::function<bool()>& over) = 0;
+  virtual void wake() = 0;
+};
+
 /// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
 class Reader {
  public:
@@ -136,6 +153,9 @@ class Reader {
 
   /// Since creation.
   virtual ReceiveCounters counters() const = 0;
+
+  /// Null where samples are delivered by threads of the reader's alone.
+  virtual std::shared_ptr<CallerDelivery> caller_delivery() { return nullptr; }
 };
 
 struct ParticipantOptions {

@@ -60,6 +60,7 @@ void DdsChannel::State::create_endpoints() {
                                           call_qos(address.representation, std::move(partitions)),
                                           std::move(reply_listener));
   std::lock_guard lock(mutex);
+  caller_delivery = reader->caller_delivery();
   replies = std::move(reader);
 }
 
@@ -235,7 +236,12 @@ void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in)
 }
 
 void DdsChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
-  state_->start_here(call, in);
+  state_->start_here(call, in, State::Waiting::Elsewhere);
+}
+
+void DdsChannel::call(const OperationInfo& operation, const void* in, void* out,
+                      const CallTime& time) {
+  state_->call(operation, in, out, time);
 }
 
 Clock& DdsChannel::clock() const noexcept { return state_->clock; }

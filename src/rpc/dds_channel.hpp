@@ -13,8 +13,8 @@
 namespace skein::rpc {
 
 /// The transport over DDS: one request writer into the provider's partition, one reply reader in a
-/// partition of its own. Replies are decoded on the vendor's thread straight into the caller's
-/// result.
+/// partition of its own. Replies are decoded on the vendor's thread, or on the caller's where the
+/// reader lends its delivery to it, straight into the caller's result.
 class DdsChannel final : public Channel, public std::enable_shared_from_this<DdsChannel> {
  public:
   struct Options {
@@ -50,6 +50,8 @@ class DdsChannel final : public Channel, public std::enable_shared_from_this<Dds
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   void start_here(const std::shared_ptr<PendingCall>& call, const void* in) override;
+  void call(const OperationInfo& operation, const void* in, void* out,
+            const CallTime& time) override;
   Clock& clock() const noexcept override;
   Executor& continuations() const noexcept override;
   std::string peer() const override;

@@ -13,38 +13,52 @@ namespace skein::rpc {
 
 void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   try {
-    start_here(call, in);
+    start_here(call, in, Waiting::Elsewhere);
   } catch (...) {
     call->fail(std::current_exception());
   }
 }
 
-void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+void DdsChannel::State::call(const OperationInfo& operation, const void* in, void* out,
+                             const CallTime& time) {
+  const auto call = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
+  if (const auto delivery = start_here(call, in, Waiting::Here)) {
+    call->on_finished([delivery] { delivery->wake(); });
+    delivery->deliver_until([&call] { return call->finished(); });
+  }
+  call->wait();
+  if (auto error = call->take_error()) std::rethrow_exception(std::move(error));
+}
+
+// What the calling thread is to take its answer from, if anything.
+std::shared_ptr<dds::CallerDelivery> DdsChannel::State::start_here(
+    const std::shared_ptr<PendingCall>& call, const void* in, Waiting waiting) {
   if (options.spin.count() > 0) call->set_spin(options.spin);
-  std::uint64_t number = 0;
   bool sent = false;
-  std::shared_ptr<dds::Writer> writer;
+  Entered entered;
   try {
-    writer = enter(call, number);
+    entered = enter(call, waiting);
   } catch (const NotSent&) {
     throw;
   } catch (...) {
     call->fail(std::current_exception());
-    return;
+    return nullptr;
   }
+  const std::uint64_t number = entered.number;
   call->attempt([&] {
-    send(*writer, *call, number, in);
+    send(*entered.writer, *call, number, in);
     sent = true;
   });
   if (!sent || call->operation().oneway) remove(number);
-  if (!sent || !call->operation().oneway || !call->claim()) return;
+  if (!sent || !call->operation().oneway || !call->claim()) return std::move(entered.delivery);
   note_end(number, call->operation(), nullptr);
   call->finish();
+  return nullptr;
 }
 
 // The call is known before its request leaves: a reply may be here before write() returns.
-std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
-                                                      std::uint64_t& number) {
+DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
+                                                    Waiting waiting) {
   std::unique_lock lock(mutex);
   if (phase == Phase::Lost) throw NotSent("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
@@ -54,7 +68,7 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
     throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
                      " already wait for their answers; the call was not sent");
   }
-  number = ++last_number;
+  const std::uint64_t number = ++last_number;
   entries.emplace(number, call);
   const TimerId outdated = look_at(call->deadline());
   if (!call->blocking()) {
@@ -68,10 +82,16 @@ std::shared_ptr<dds::Writer> DdsChannel::State::enter(const std::shared_ptr<Pend
           if (const auto self = state.lock()) self->grant(number, count);
         });
   }
-  auto writer = requests;
+  Entered entered{number, requests, nullptr};
+  if (caller_delivery && waiting == Waiting::Here && entries.size() == 1) {
+    caller_delivery->lend();
+    entered.delivery = caller_delivery;
+  } else if (caller_delivery) {
+    caller_delivery->take_back();  // several threads wait, or none
+  }
   lock.unlock();
   if (outdated != 0) clock.cancel(outdated);  // unlocked: it may be running
-  return writer;
+  return entered;
 }
 
 // Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any

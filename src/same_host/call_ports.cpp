@@ -97,7 +97,7 @@ class LinkReader : public dds::Reader, public Inbox {
   const Guid guid_;
   const dds::DataRepresentation representation_;
   const dds::ReaderListener listener_;
-  const dds::Sample* current_ = nullptr;  // the receiver's thread's
+  const dds::Sample* current_ = nullptr;  // within on_message()
   std::atomic<std::uint64_t> malformed_{0};
   mutable std::mutex mutex_;
   std::vector<Guid> matched_;
@@ -250,10 +250,13 @@ class ClientPort::ReplyReader final : public LinkReader {
     LinkReader::on_end(link);
   }
 
-  void read(std::shared_ptr<Link> link) { port_.receiver_.add(std::move(link), *this); }
+  /// Before others know of this reader.
+  void read(std::shared_ptr<Link> link) { delivery_ = port_.receiver_.add(std::move(link), *this); }
+  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return delivery_; }
 
  private:
   ClientPort& port_;
+  std::shared_ptr<dds::CallerDelivery> delivery_;
 };
 
 ClientPort::ClientPort(Meeting& meeting, const PortOptions& options)

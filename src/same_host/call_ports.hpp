@@ -68,8 +68,8 @@ class ProviderPort final : public dds::Participant {
 
 /// The same for who calls: a writer writes requests to the provider that its partition names, and
 /// connects to it; a reader's partition must be the identity of such a writer, whose replies it
-/// takes. Listeners run on one thread, `skein-replies`, or inside create_writer(). The connection
-/// ends with its writer.
+/// takes. Listeners run on one thread, `skein-replies`, on those that wait by CallerDelivery, or
+/// inside create_writer(). The connection ends with its writer.
 class ClientPort final : public dds::Participant {
  public:
   ClientPort(Meeting& meeting, const PortOptions& options);

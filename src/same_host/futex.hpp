@@ -55,10 +55,12 @@ inline futex_waitv while_it_is(const Word& word, std::uint32_t value) {
 /// As many words as the kernel lets a thread sleep on at once.
 inline constexpr std::size_t kMostWords = FUTEX_WAITV_MAX;
 
-/// Sleeps while all words have their values, until somebody wakes one; kMostWords at most. It may
-/// return early.
-inline void futex_wait(std::span<futex_waitv> words) {
-  syscall(SYS_futex_waitv, words.data(), words.size(), 0, nullptr, CLOCK_MONOTONIC);
+/// Sleeps while all words have their values, until somebody wakes one or the deadline has come;
+/// kMostWords at most. It may return early.
+inline void futex_wait(std::span<futex_waitv> words, Instant deadline = Instant::max()) {
+  const auto until = to_timespec(deadline);
+  syscall(SYS_futex_waitv, words.data(), words.size(), 0, until ? &*until : nullptr,
+          CLOCK_MONOTONIC);
 }
 
 /// Whether the kernel has that: Linux 5.16 and later do.

@@ -80,6 +80,7 @@ std::optional<std::span<const std::byte>> Link::receive(Bytes& spare) {
     throw;
   }
   if (message_.empty()) message_.swap(spare);
+  if (unfinished_ != message_.size()) unfinished_ = message_.size();
   return std::nullopt;
 }
 
@@ -90,6 +91,7 @@ void Link::break_off() {
 
 void Link::release(Bytes& spare) {
   message_.clear();
+  if (unfinished_ != 0) unfinished_ = 0;
   if (message_.capacity() > kKeptCapacity) message_ = Bytes();
   spare = std::move(message_);
 }

@@ -60,13 +60,13 @@ class Link {
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
 
-  /// The reader's thread: the next whole message, which is valid until release(), after which the
-  /// next one may be asked for; or nothing. `spare` is memory that links of one reader lend each
+  /// One thread at a time: the next whole message, which is valid until release(), after which the
+  /// next one may be asked for; or nothing. `spare` is memory that links of one thread lend each
   /// other: only a message that has not come to its end keeps some. Throws BrokenRing.
   std::optional<std::span<const std::byte>> receive(Bytes& spare);
   void release(Bytes& spare);
   /// Octets that have come of a message without its end.
-  std::size_t unfinished() const noexcept { return message_.size(); }
+  std::size_t unfinished() const noexcept { return unfinished_; }
   RingReader& in() noexcept { return in_; }
 
   /// Both sides learn of the end. Twice is no error.
@@ -89,6 +89,7 @@ class Link {
   const Guid peer_;
   RingReader in_;
   Bytes message_;
+  std::atomic<std::size_t> unfinished_{0};
   std::atomic<bool> ended_{false};
   std::atomic<bool> broken_{false};
   const std::function<void()> notify_;

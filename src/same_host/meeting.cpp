@@ -36,7 +36,7 @@ constexpr std::uint64_t kWake = 0;
 
 // What both sides say to each other once; each is a packet. A change of the memory's layout is
 // another version.
-constexpr char kVersion[8] = "skein1";
+constexpr char kVersion[8] = "skein2";
 
 struct Hello {
   char version[8];

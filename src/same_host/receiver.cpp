@@ -15,6 +15,8 @@ namespace {
 constexpr int kMessagesInARow = 16;
 // More than a ring holds: who goes on after the end is not listened to.
 constexpr int kTurnsAfterEnd = 2048;
+// What comes to a link that callers have left is heard of this late at most.
+constexpr std::chrono::milliseconds kLent{20};
 
 }  // namespace
 
@@ -22,16 +24,80 @@ void SpinPolicy::note(Duration waited) {
   score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
 }
 
-struct Receiver::Entry {
-  Entry(std::shared_ptr<Link> link_, Inbox& inbox_) : link(std::move(link_)), inbox(inbox_) {}
+class Receiver::Entry final : public dds::CallerDelivery {
+ public:
+  Entry(Receiver& receiver_, std::shared_ptr<Link> link_, Inbox& inbox_)
+      : link(std::move(link_)), inbox(inbox_), receiver(receiver_), spin(receiver_.spin_limit_) {}
+
+  void lend() override {
+    if (!used) used = true;
+    if (!lent) lent = true;
+  }
+  void take_back() override {
+    if (lent && lent.exchange(false)) notify();
+  }
+  void deliver_until(const std::function<bool()>& over_) override;
+  void wake() override {
+    called = 1;
+    if (sleeps) futex_wake(called);
+  }
 
   const std::shared_ptr<Link> link;
   Inbox& inbox;
   std::mutex mutex;  // held while a function of the inbox runs
-  bool begun = false;
+  std::atomic<bool> begun{false};
   int turns_after_end = 0;
+  // Once it is so, the inbox and the receiver may be gone.
   std::atomic<bool> over{false};
+  std::atomic<bool> lent{false};
+  std::atomic<bool> used{false};        // since the receiver's thread last looked
+  std::atomic<bool> has_caller{false};  // which is in deliver_until()
+
+ private:
+  void sleep(const std::function<bool()>& over_);
+
+  Receiver& receiver;
+  const std::function<void()> notify = receiver.notifier();
+  // The caller's. The word in the ring is the other side's as well: this one it cannot reach.
+  SpinPolicy spin;
+  Word called{0};
+  std::atomic<bool> sleeps{false};
 };
+
+void Receiver::Entry::deliver_until(const std::function<bool()>& over_) {
+  thread_local Bytes spare;
+  if (has_caller.exchange(true)) return take_back();
+  while (!over && !over_()) {
+    if (!receiver.look_at(*this, spare)) sleep(over_);
+  }
+  has_caller = false;
+  if (over) take_back();
+}
+
+void Receiver::Entry::sleep(const std::function<bool()>& over_) {
+  called = 0;
+  if (over || over_()) return;
+  RingReader& in = link->in();
+  const bool may_spin = spin.limit() > Duration::zero();
+  const Instant begin = may_spin ? std::chrono::steady_clock::now() : Instant();
+  const Instant give_up = begin + spin.budget();
+  bool come = false;
+  while (!come && spin.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
+    come = in.ready() || called != 0;
+  }
+  if (!come) {
+    sleeps = true;
+    const bool idle = in.prepare_to_sleep(RingReader::Who::Caller);
+    if (idle && !over && !over_()) {
+      futex_waitv words[] = {while_it_is(called, 0),
+                             while_it_is(in.word(RingReader::Who::Caller), 1)};
+      futex_wait(words);
+    }
+    in.stay_awake(RingReader::Who::Caller);
+    sleeps = false;
+  }
+  if (may_spin) spin.note(std::chrono::steady_clock::now() - begin);
+}
 
 Receiver::Receiver(std::string name, Duration spin, std::size_t most_unfinished)
     : name_(std::move(name)), spin_limit_(spin), most_unfinished_(most_unfinished), spin_(spin) {}
@@ -53,7 +119,8 @@ std::function<void()> Receiver::notifier() const {
 
 void Receiver::notify() const { notifier()(); }
 
-void Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
+std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
+  const auto entry = std::make_shared<Entry>(*this, std::move(link), inbox);
   {
     std::lock_guard lock(mutex_);
     if (entries_.size() >= kMostLinks) {
@@ -61,9 +128,10 @@ void Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
                         " connections through shared memory already");
     }
     if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(); });
-    entries_.push_back(std::make_shared<Entry>(std::move(link), inbox));
+    entries_.push_back(entry);
   }
   notify();
+  return entry;
 }
 
 void Receiver::remove(Inbox& inbox) {
@@ -76,8 +144,11 @@ void Receiver::remove(Inbox& inbox) {
     entries_.erase(first, entries_.end());
   }
   for (const auto& entry : removed) {
-    std::lock_guard lock(entry->mutex);
-    entry->over = true;
+    {
+      std::lock_guard lock(entry->mutex);
+      entry->over = true;
+    }
+    entry->wake();
   }
   notify();
 }
@@ -106,47 +177,53 @@ void Receiver::run() {
 
 bool Receiver::look_at_all(const Entries& entries) {
   bool any = false;
-  for (const auto& entry : entries) any |= look_at(*entry, entries);
+  for (const auto& entry : entries) {
+    if (!entry->lent || !entry->begun || entry->link->ended()) any |= look_at(*entry, spare_);
+  }
   return any;
 }
 
-// Whether there was something to do.
-bool Receiver::look_at(Entry& entry, const Entries& entries) {
+// Whether there was something to do. On the receiver's thread, or a caller's.
+bool Receiver::look_at(Entry& entry, Bytes& spare) {
   Link& link = *entry.link;
   if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return false;
   std::lock_guard lock(entry.mutex);
   if (entry.over) return false;
-  if (!std::exchange(entry.begun, true)) entry.inbox.on_begin(link);
+  if (!entry.begun.exchange(true)) entry.inbox.on_begin(link);
   const bool ended = link.ended();  // looked at first: what came before the end is taken
   int taken = 0;
   try {
     for (; taken < kMessagesInARow; ++taken) {
-      const auto message = link.receive(spare_);
+      const auto message = link.receive(spare);
       if (!message) break;
       entry.inbox.on_message(link, *message);
-      link.release(spare_);
+      link.release(spare);
     }
   } catch (const BrokenRing& error) {
     log(LogLevel::Warning, "same host", error.what());
   }
   const bool drained = taken == 0 && !link.in().ready();
-  const bool too_much = brings_too_much(link, entries);
+  const bool too_much = brings_too_much(link);
   if (too_much) link.close();
   if (link.broken() || too_much ||
       (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
     entry.inbox.on_end(link);
     link.ending().run();
     entry.over = true;
+    entry.wake();
     notify();
   }
   return true;
 }
 
-bool Receiver::brings_too_much(const Link& link, const Entries& entries) const {
+bool Receiver::brings_too_much(const Link& link) const {
   if (link.unfinished() == 0) return false;
   std::size_t others = 0;
-  for (const auto& entry : entries) {
-    if (!entry->over && entry->link.get() != &link) others += entry->link->unfinished();
+  {
+    std::lock_guard lock(mutex_);
+    for (const auto& entry : entries_) {
+      if (!entry->over && entry->link.get() != &link) others += entry->link->unfinished();
+    }
   }
   if (link.unfinished() <= most_unfinished_ - std::min(most_unfinished_, others)) return false;
   log(LogLevel::Warning, "same host",
@@ -164,7 +241,7 @@ void Receiver::drop_ended() {
 void Receiver::await(const Entries& entries) {
   const auto ready = [&] {
     return notified_->load() != 0 || std::ranges::any_of(entries, [](const auto& entry) {
-             return !entry->over && entry->link->in().ready();
+             return !entry->over && !entry->lent && entry->link->in().ready();
            });
   };
   const Instant begin =
@@ -184,14 +261,32 @@ void Receiver::sleep(const Entries& entries) {
   std::size_t count = 0;
   words[count++] = while_it_is(*notified_, 0);
   bool idle = true;
+  bool any_lent = false;
   for (const auto& entry : entries) {
     if (entry->over) continue;
+    if (entry->lent) {
+      any_lent = true;
+      continue;
+    }
     idle = entry->link->in().prepare_to_sleep() && idle;
     words[count++] = while_it_is(entry->link->in().word(), 1);
   }
-  if (idle) futex_wait(std::span(words, count));
+  if (!any_lent) {
+    look_at_lent_ = Instant::max();
+  } else if (look_at_lent_ == Instant::max()) {
+    look_at_lent_ = std::chrono::steady_clock::now() + kLent;
+  }
+  if (idle) futex_wait(std::span(words, count), look_at_lent_);
   for (const auto& entry : entries) {
     if (!entry->over) entry->link->in().stay_awake();
+  }
+  if (any_lent && std::chrono::steady_clock::now() >= look_at_lent_) take_back_unused(entries);
+}
+
+void Receiver::take_back_unused(const Entries& entries) {
+  look_at_lent_ = Instant::max();
+  for (const auto& entry : entries) {
+    if (!entry->used.exchange(false) && !entry->has_caller) entry->lent = false;
   }
 }
 

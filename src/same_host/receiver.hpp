@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "dds/largest_sample.hpp"
+#include "dds/port.hpp"
 #include "futex.hpp"
 #include "link.hpp"
 #include "skein/clock.hpp"
 
 namespace skein::same_host {
 
-/// Who gets what comes through links. Called on the receiver's thread, one at a time; must return
-/// soon.
+/// Who gets what comes through links. Called on the receiver's thread, or a caller's, one at a time
+/// for each link; must return soon.
 class Inbox {
  public:
   virtual ~Inbox() = default;
@@ -33,6 +34,7 @@ class SpinPolicy {
   /// `limit`: how long to look at most; 0: never.
   explicit SpinPolicy(Duration limit) : limit_(limit) {}
 
+  Duration limit() const { return limit_; }
   /// How long to look now.
   Duration budget() const { return score_ >= kEnough ? limit_ : Duration::zero(); }
   /// Something came this long after the wait for it had begun.
@@ -46,7 +48,8 @@ class SpinPolicy {
   int score_ = 0;
 };
 
-/// One thread that takes messages from many links, and sleeps while none has any. Thread-safe.
+/// One thread that takes messages from many links, and sleeps while none has any. A thread that
+/// waits for a message of one link may take it itself. Thread-safe.
 class Receiver {
  public:
   /// How many links one thread can wait for.
@@ -65,23 +68,25 @@ class Receiver {
   /// For Link: makes the thread look at all of them. It may outlive the receiver.
   std::function<void()> notifier() const;
 
-  /// Throws Unavailable where there is no room, or no thread.
-  void add(std::shared_ptr<Link> link, Inbox& inbox);
+  /// Throws Unavailable where there is no room, or no thread. What it returns is for threads that
+  /// wait for what this link brings.
+  std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
   /// None of its functions runs, or will run. Not from one of them.
   void remove(Inbox& inbox);
   std::size_t links() const;
 
  private:
-  struct Entry;
+  class Entry;
   using Entries = std::vector<std::shared_ptr<Entry>>;
 
   void run();
-  bool look_at(Entry& entry, const Entries& entries);
-  bool brings_too_much(const Link& link, const Entries& entries) const;
+  bool look_at(Entry& entry, Bytes& spare);
+  bool brings_too_much(const Link& link) const;
   bool look_at_all(const Entries& entries);
   void drop_ended();
   void await(const Entries& entries);
   void sleep(const Entries& entries);
+  void take_back_unused(const Entries& entries);
   void notify() const;
 
   const std::string name_;
@@ -95,6 +100,7 @@ class Receiver {
   // The thread's.
   SpinPolicy spin_;
   Bytes spare_;
+  Instant look_at_lent_ = Instant::max();
 };
 
 }  // namespace skein::same_host

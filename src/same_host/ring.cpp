@@ -98,6 +98,7 @@ bool RingWriter::put(Part& part) {
 void RingWriter::publish() {
   place_.state->written.store(written_);
   if (wake(place_.state->reader_sleeps)) ++wakes_;
+  if (wake(place_.state->caller_sleeps)) ++wakes_;
 }
 
 bool RingWriter::wake(Word& sleeps) {
@@ -194,16 +195,17 @@ bool RingReader::take(Bytes& message) {
 }
 
 void RingReader::release(std::uint64_t size) {
-  read_ += size;
-  place_.state->read.store(read_);
+  const std::uint64_t read = read_ + size;
+  read_.store(read, std::memory_order_relaxed);
+  place_.state->read.store(read);
   Word& sleeps = place_.state->writer_sleeps;
   if (sleeps.load() != 0 && sleeps.exchange(0) != 0) futex_wake(sleeps);
 }
 
-bool RingReader::prepare_to_sleep() {
-  place_.state->reader_sleeps.store(1);
+bool RingReader::prepare_to_sleep(Who who) {
+  word(who).store(1);
   if (place_.state->written.load() == read_) return true;
-  stay_awake();
+  stay_awake(who);
   return false;
 }
 

@@ -28,6 +28,7 @@ struct RingState {
   alignas(64) std::atomic<std::uint64_t> written{0};  ///< Octets, ever.
   alignas(64) std::atomic<std::uint64_t> read{0};     ///< Of those.
   alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep on this word.
+  Word caller_sleeps{0};  ///< As much of a thread that reads for itself.
   alignas(64) Word writer_sleeps{0};
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && sizeof(RingState) == 256);
@@ -96,9 +97,12 @@ class RingWriter {
   std::uint64_t wakes_ = 0;
 };
 
-/// Takes messages out. Not thread-safe.
+/// Takes messages out. take() is for one thread at a time; the rest is thread-safe.
 class RingReader {
  public:
+  /// Two threads may wait: the one whose work it is, and one in its place.
+  enum class Who { Reader, Caller };
+
   /// A message that takes more than `largest` octets breaks the ring.
   RingReader(const RingPlace& place, std::size_t largest) : place_(place), largest_(largest) {}
 
@@ -110,9 +114,11 @@ class RingReader {
   bool ready() const { return place_.state->written.load(std::memory_order_acquire) != read_; }
 
   /// False where something has come already: else the writer wakes who sleeps while `word()` is 1.
-  bool prepare_to_sleep();
-  void stay_awake() { place_.state->reader_sleeps.store(0); }
-  const Word& word() const noexcept { return place_.state->reader_sleeps; }
+  bool prepare_to_sleep(Who who = Who::Reader);
+  void stay_awake(Who who = Who::Reader) { word(who).store(0); }
+  Word& word(Who who = Who::Reader) const noexcept {
+    return who == Who::Reader ? place_.state->reader_sleeps : place_.state->caller_sleeps;
+  }
 
  private:
   std::uint64_t available();
@@ -120,8 +126,8 @@ class RingReader {
 
   const RingPlace place_;
   const std::size_t largest_;
-  std::uint64_t read_ = 0;
-  std::uint64_t written_ = 0;  // as last seen
+  std::atomic<std::uint64_t> read_{0};  // changed by take()
+  std::uint64_t written_ = 0;           // as last seen
   bool begun_ = false;
 };
 
