@@ -83,15 +83,14 @@ class Attacker {
     std::memcpy(place, &header, sizeof header);
     written_ += frame;
     ring.written = written_;
-    ring.reader_sleeps = 0;
-    same_host::futex_wake(ring.reader_sleeps);
+    wake_readers(ring);
   }
 
   /// Of all that both sides read: positions, words, headers, content.
   void damage() {
     const int which = static_cast<int>(random_() % 2);
     RingState& ring = state(which);
-    switch (random_() % 7) {
+    switch (random_() % 8) {
       case 0:
         ring.written += random_() % 8 * 8;
         break;
@@ -107,13 +106,17 @@ class Attacker {
       case 4:
         ring.writer_sleeps = static_cast<std::uint32_t>(random_());
         break;
-      case 5:  // again and again, while the other side reads
+      case 5:
+        ring.caller_sleeps = static_cast<std::uint32_t>(random_() % 3);
+        break;
+      case 6:  // again and again, while the other side reads
         for (int i = 0; i < 2000; ++i) scribble(which);
         break;
       default:
         scribble(which);
     }
     same_host::futex_wake(ring.reader_sleeps);
+    same_host::futex_wake(ring.caller_sleeps);
     same_host::futex_wake(ring.writer_sleeps);
   }
 
@@ -152,6 +155,12 @@ class Attacker {
   static void look_alive() { sched_yield(); }
 
  private:
+  static void wake_readers(RingState& ring) {
+    for (same_host::Word* word : {&ring.reader_sleeps, &ring.caller_sleeps}) {
+      *word = 0;
+      same_host::futex_wake(*word);
+    }
+  }
   RingState& state(int which) { return reinterpret_cast<RingState*>(memory_)[which]; }
   std::byte* content(int which) {
     return memory_ + (Link::kMemory - 2 * Link::kCapacity) +
@@ -194,7 +203,7 @@ class HostileClient : Attacker {
 
  private:
   static FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
-    std::array<char, 24> hello{"skein1"};
+    std::array<char, 24> hello{"skein2"};
     std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
     if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
     pollfd answered{socket.get(), POLLIN, 0};
@@ -285,7 +294,7 @@ class HostileProvider : Attacker {
   }
 
   bool answer(const FileDescriptor& socket, const FileDescriptor& descriptor) {
-    std::array<char, 128> packet{"skein1"};
+    std::array<char, 128> packet{"skein2"};
     std::memcpy(packet.data() + 8, provider_.bytes.data(), provider_.bytes.size());
     if (chance(16)) packet[random() % packet.size()] = static_cast<char>(random());
     iovec content{packet.data(), packet.size()};

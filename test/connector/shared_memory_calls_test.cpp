@@ -3,10 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
@@ -49,6 +53,21 @@ struct Placed final : EchoService {
   }
 };
 
+/// How often threads of this process with that name have slept.
+std::uint64_t wake_ups_of(const std::string& name) {
+  std::uint64_t wake_ups = 0;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream file(task.path() / "status");
+    bool meant = false;
+    for (std::string line; std::getline(file, line);) {
+      if (line == "Name:\t" + name) meant = true;
+      if (meant && line.starts_with("voluntary_ctxt_switches:"))
+        wake_ups += std::stoull(line.substr(line.find('\t')));
+    }
+  }
+  return wake_ups;
+}
+
 std::vector<std::string> transports(const Entity& entity) {
   std::vector<std::string> names;
   for (const auto& each : const_cast<Entity&>(entity).connector().connections()) {
@@ -71,8 +90,10 @@ void damage_replies() {
     if (line.find("memfd:skein") == std::string::npos) continue;
     auto& replies = reinterpret_cast<same_host::RingState*>(std::stoull(line, nullptr, 16))[1];
     if (write(replies.written, std::uint64_t{12})) ++damaged;
-    write(replies.reader_sleeps, std::uint32_t{0});
-    same_host::futex_wake(replies.reader_sleeps);
+    for (auto* word : {&replies.reader_sleeps, &replies.caller_sleeps}) {
+      write(*word, std::uint32_t{0});
+      same_host::futex_wake(*word);
+    }
   }
   REQUIRE(damaged > 0);
 }
@@ -196,6 +217,56 @@ TEST_CASE("a provider that damages the memory ends the call, and is called over 
   CHECK(echo.within(20s).echo("again") == "again");
   CHECK(transports(*client) == std::vector<std::string>{"DDS"});
   CHECK(log.count("has damaged the memory that it shares") > 0);
+}
+
+TEST_CASE("damaged memory also ends the call of a thread that takes its answer itself") {
+  const Log log;
+  const auto server = make_entity("server", true);
+  const auto service = std::make_shared<EchoService>();
+  server->provide<LouderEcho>(service);
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  std::thread caller([&] { CHECK_THROWS_AS(echo.within(60s).wait(600'000), Disconnected); });
+  const bool inside = eventually([&] { return service->inside == 1; });
+  CHECK(inside);
+  if (inside) damage_replies();
+  caller.join();
+}
+
+TEST_CASE("who calls and waits takes the answer itself") {
+  const auto server = make_entity("server", true);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  const std::uint64_t before = wake_ups_of("skein-replies");
+  constexpr int kCalls = 2000;
+  for (int i = 0; i < kCalls; ++i) REQUIRE(echo.echo(std::to_string(i)) == std::to_string(i));
+  // It looks now and then whether somebody else than those who wait is written to.
+  CHECK(wake_ups_of("skein-replies") - before < kCalls / 2);
+}
+
+TEST_CASE("each of many that call at once on one connection gets its own answer") {
+  const auto server = make_entity("server", true);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([&, caller] {
+      for (int i = 0; i < 200; ++i) {
+        const std::string text = std::to_string(caller) + ": " + std::to_string(i);
+        if (caller == 0 && i % 3 == 0) {
+          auto asked = echo.within(20s).async_echo(text);
+          if (asked.get() != text) ++wrong;
+        } else if (echo.within(20s).echo(text) != text) {
+          ++wrong;
+        }
+      }
+    });
+  }
+  for (auto& caller : callers) caller.join();
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("a service that is withdrawn and provided again is found through shared memory again") {

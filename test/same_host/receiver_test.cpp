@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -31,25 +32,49 @@ struct Notes final : Inbox {
   void note(Link& link, std::string what) {
     std::lock_guard lock(mutex);
     of[link.peer()].push_back(std::move(what));
+    last = std::this_thread::get_id();
   }
   std::vector<std::string> about(const Guid& peer) {
     std::lock_guard lock(mutex);
     return of[peer];
   }
 
+  std::thread::id last_thread() {
+    std::lock_guard lock(mutex);
+    return last;
+  }
+
   std::mutex mutex;
   std::map<Guid, std::vector<std::string>> of;
+  std::thread::id last;
 };
 
 /// A provider whose receiver takes what its guests send.
 struct Host {
   Host() {
-    meeting.offer(provider, provider, receiver.notifier(),
-                  [this](std::shared_ptr<Link> link) { receiver.add(std::move(link), notes); });
+    meeting.offer(provider, provider, receiver.notifier(), [this](std::shared_ptr<Link> link) {
+      const Guid client = link->peer();
+      auto delivery = receiver.add(std::move(link), notes);
+      std::lock_guard lock(mutex);
+      deliveries[client] = std::move(delivery);
+    });
   }
   ~Host() { meeting.withdraw(provider); }
 
+  /// Of what the client brings.
+  std::shared_ptr<dds::CallerDelivery> delivery(const Guid& client) {
+    std::shared_ptr<dds::CallerDelivery> found;
+    REQUIRE(eventually([&] {
+      std::lock_guard lock(mutex);
+      found = deliveries[client];
+      return found != nullptr && !notes.about(client).empty();
+    }));
+    return found;
+  }
+
   const Guid provider = Guid::random();
+  std::mutex mutex;
+  std::map<Guid, std::shared_ptr<dds::CallerDelivery>> deliveries;
   Notes notes;
   Receiver receiver{"test-requests", 0us, 1 << 20};
   Meeting meeting;
@@ -167,6 +192,116 @@ TEST_CASE("messages without an end take no more memory than is left, and others 
   CHECK(eventually([&] {
     return host.notes.about(sound.id) == std::vector<std::string>{"begin", "after"};
   }));
+}
+
+TEST_CASE("a thread that waits for what a link brings takes it itself") {
+  Host host;
+  Client client(host);
+  const auto delivery = host.delivery(client.id);
+  int taken_here = 0;
+  for (std::size_t i = 0; i < 50; ++i) {
+    std::thread other([&] { client.send("x"); });
+    delivery->lend();
+    delivery->deliver_until([&] { return host.notes.about(client.id).size() == i + 2; });
+    other.join();
+    if (host.notes.last_thread() == std::this_thread::get_id()) ++taken_here;
+  }
+  // A busy machine may keep this thread from waiting for so long that the receiver takes one.
+  CHECK(taken_here > 25);
+}
+
+TEST_CASE("what comes when nobody waits any more is taken by the receiver") {
+  Host host;
+  Client client(host);
+  const auto delivery = host.delivery(client.id);
+  delivery->lend();
+  const bool taken_back = GENERATE(false, true);
+  if (taken_back) delivery->take_back();
+  client.send("x");
+  CHECK(eventually([&] {
+    return host.notes.about(client.id) == std::vector<std::string>{"begin", "x"};
+  }));
+  CHECK(host.notes.last_thread() != std::this_thread::get_id());
+}
+
+TEST_CASE("a thread that waits for a link is woken, by its own side and by the link's end") {
+  Host host;
+  Client client(host);
+  const auto delivery = host.delivery(client.id);
+  std::atomic<bool> over{false};
+  std::atomic<bool> asked{false};
+  std::atomic<bool> left{false};
+  std::thread waiting([&] {
+    delivery->lend();
+    delivery->deliver_until([&] {
+      asked = true;
+      return over.load();
+    });
+    left = true;
+  });
+  const bool began = eventually([&] { return asked.load(); });
+  SECTION("by its own side") {
+    over = true;
+    delivery->wake();
+  }
+  SECTION("by the end of the link") { client.link->close(); }
+  SECTION("by the end of the inbox") { host.receiver.remove(host.notes); }
+  const bool woken = eventually([&] { return left.load(); });
+  over = true;
+  delivery->wake();
+  waiting.join();
+  CHECK(began);
+  CHECK(woken);
+}
+
+TEST_CASE("of two threads that wait for one link, one takes what comes, and the other goes away") {
+  Host host;
+  Client client(host);
+  const auto delivery = host.delivery(client.id);
+  std::atomic<bool> asked{false};
+  std::thread first([&] {
+    delivery->lend();
+    delivery->deliver_until([&] {
+      asked = true;
+      return host.notes.about(client.id).size() == 2;
+    });
+  });
+  const bool began = eventually([&] { return asked.load(); });
+  if (began) delivery->deliver_until([] { return false; });
+  client.send("x");
+  first.join();
+  CHECK(began);
+  CHECK(host.notes.about(client.id) == std::vector<std::string>{"begin", "x"});
+}
+
+TEST_CASE("a thread that waits is woken by its own side also where the other one lies about it") {
+  Host host;
+  const Guid id = Guid::random();
+  auto memory = SharedMemory::make(Link::kMemory);
+  const auto theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
+  auto& ring = *reinterpret_cast<RingState*>(theirs.data());
+  const auto delivery = host.receiver.add(
+      std::make_shared<Link>(Link::Side::Provider,
+                             std::make_shared<const FileDescriptor>(local_socket()),
+                             std::move(memory), Guid::random(), id, host.receiver.notifier()),
+      host.notes);
+  REQUIRE(eventually([&] { return host.notes.about(id).size() == 1; }));
+  std::atomic<bool> over{false};
+  std::atomic<bool> left{false};
+  std::thread waiting([&] {
+    delivery->lend();
+    delivery->deliver_until([&] { return over.load(); });
+    left = true;
+  });
+  const bool sleeps = eventually([&] { return ring.caller_sleeps == 1; });
+  ring.caller_sleeps = 0;
+  over = true;
+  delivery->wake();
+  const bool woken = eventually([&] { return left.load(); });
+  futex_wake(ring.caller_sleeps);
+  waiting.join();
+  CHECK(sleeps);
+  CHECK(woken);
 }
 
 TEST_CASE("once an inbox is removed, nothing more is put in") {
