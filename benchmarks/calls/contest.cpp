@@ -126,4 +126,18 @@ Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count)
           }};
 }
 
+std::string words(std::initializer_list<std::size_t> numbers) {
+  std::string text;
+  for (const std::size_t number : numbers) text += " " + std::to_string(number);
+  return text;
+}
+
+Trial paced(const std::string& claim, std::size_t count, std::size_t interval_us) {
+  constexpr std::size_t kSmall = 64;
+  return {claim, {{"calls_per_second", 1'000'000 / interval_us}}, [=](Running& running) {
+            running.call(kSmall, 10);
+            return running.times("paced" + words({kSmall, count, interval_us}));
+          }};
+}
+
 }  // namespace skein::benchmarks

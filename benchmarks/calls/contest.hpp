@@ -19,6 +19,10 @@ struct Trial {
 
 /// One call after the other, after some that wake the processes up.
 Trial closed_loop(const std::string& claim, std::size_t size_bytes, std::size_t count);
+/// Calls of 64 octets at a fixed rate; a call's time starts when it should have been sent.
+Trial paced(const std::string& claim, std::size_t count, std::size_t interval_us);
+/// For a command to a peer: each with a space before it.
+std::string words(std::initializer_list<std::size_t> numbers);
 
 /// A promise to compare with, instead of a rival.
 struct Limit {

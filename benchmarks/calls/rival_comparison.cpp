@@ -9,21 +9,6 @@ namespace {
 
 constexpr std::size_t kSmall = 64;
 
-std::string words(std::initializer_list<std::size_t> numbers) {
-  std::string text;
-  for (const std::size_t number : numbers) text += " " + std::to_string(number);
-  return text;
-}
-
-Trial paced(std::size_t count, std::size_t interval_us) {
-  return {"at a fixed rate, from the intended send",
-          {{"calls_per_second", 1'000'000 / interval_us}},
-          [=](Running& running) {
-            running.call(kSmall, 10);
-            return running.times("paced" + words({kSmall, count, interval_us}));
-          }};
-}
-
 Trial crowd(std::size_t clients, std::size_t count) {
   return {"clients that call at once", {{"clients", clients}}, [=](Running& running) {
             running.times("crowd" + words({clients, kSmall, 2}));
@@ -51,7 +36,7 @@ std::vector<Trial> trials_of(const RivalPlan& plan) {
   std::vector<Trial> trials;
   for (const auto& size : plan.sizes)
     trials.push_back(closed_loop("one call after the other", size.size_bytes, size.calls_per_turn));
-  trials.push_back(paced(plan.paced_calls, 500));
+  trials.push_back(paced("at a fixed rate, from the intended send", plan.paced_calls, 500));
   for (const std::size_t clients : {1, 4, 32}) trials.push_back(crowd(clients, plan.crowd_calls));
   trials.push_back(pipelined(plan.pipelined_calls, 64));
   for (const std::size_t size : {std::size_t{64}, std::size_t{65'536}}) {
@@ -69,7 +54,15 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
     rivals.push_back(rival.name);
     contest.enter(rival);
   };
-  for (const char* vendor : kVendors) contest.enter(configurations.skein(vendor, vendor));
+  std::vector<std::string> subjects;
+  const auto enter_subject = [&](const Configuration& skein) {
+    subjects.push_back(skein.name);
+    contest.enter(skein);
+  };
+  for (const char* vendor : kVendors) enter_subject(configurations.skein(vendor, vendor));
+  using Memory = Configurations::SharedMemory;
+  enter_subject(configurations.skein_same_host(Memory::OwnThread));
+  enter_subject(configurations.skein_same_host(Memory::OnArrival));
   for (const char* transport : {"unix", "tcp"})
     enter_rival(configurations.rival("omniorb", transport));
   for (const char* transport : {"unix", "tcp"})
@@ -80,8 +73,7 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
   contest.enter(configurations.shared_memory());
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
-  for (const char* vendor : kVendors) {
-    const std::string skein = std::string("skein ") + vendor;
+  for (const std::string& skein : subjects) {
     for (const std::string& rival : rivals) append(comparisons, contest.compare(skein, rival));
     for (const char* floor : {"unix socket", "spinning shared memory"}) {
       append(comparisons, contest.compare(skein, std::string(floor)));

@@ -8,6 +8,9 @@ std::vector<Comparison> compare_same_host(Configurations& configurations, const 
   std::vector<Trial> trials;
   for (const auto& size : plan.sizes) {
     trials.push_back(closed_loop(kCallThroughSharedMemory, size.size_bytes, size.calls_per_turn));
+    // With pauses both sides fall asleep between calls, and processors rest.
+    trials.push_back(paced(kCallThroughSharedMemory, size.calls_per_turn / 10 + 1, 1'000));
+    trials.push_back(paced(kCallThroughSharedMemory, size.calls_per_turn / 100 + 1, 10'000));
   }
   Contest contest("same host", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
   std::vector<std::string> rivals;
@@ -33,6 +36,7 @@ std::vector<Comparison> compare_same_host(Configurations& configurations, const 
       append(comparisons, contest.compare(subject.name, rival));
     }
   }
+  append(comparisons, contest.compare(subjects.back().name, Limit{"limit 1 us", kSpinningCallUs}));
   return comparisons;
 }
 

@@ -9,10 +9,15 @@ bool is_vendor_alone(const std::string& rival) {
   return rival == "raw fastdds" || rival == "raw cyclonedds";
 }
 
-/// A call to another process; the others have claims of their own.
-bool is_call_beside(const Comparison& comparison, const char* rival) {
+/// A call to another process, over DDS or not; the others have claims of their own.
+bool is_call_beside(const Comparison& comparison, const char* rival, bool shared_memory) {
   return comparison.claim != "a call in the same process" &&
-         comparison.claim != kCallThroughSharedMemory && comparison.rival.starts_with(rival);
+         comparison.claim != kCallThroughSharedMemory && comparison.rival.starts_with(rival) &&
+         comparison.subject.starts_with("skein shared memory") == shared_memory;
+}
+
+bool is_through_shared_memory(const Comparison& comparison, const char* rival) {
+  return comparison.claim == kCallThroughSharedMemory && comparison.rival == rival;
 }
 
 bool is_look_up(const Comparison& comparison) {
@@ -86,17 +91,44 @@ const std::vector<Goal>& goals() {
       {"Calls to another process are ahead of omniORB",
        1.0,
        {},
-       [](const Comparison& c) { return is_call_beside(c, "omniorb "); },
+       [](const Comparison& c) { return is_call_beside(c, "omniorb ", false); },
        Goal::Kind::Aim},
       {"Calls to another process are ahead of gRPC",
        1.0,
        {},
-       [](const Comparison& c) { return is_call_beside(c, "grpc "); },
+       [](const Comparison& c) { return is_call_beside(c, "grpc ", false); },
        Goal::Kind::Aim},
       {"Calls to another process are ahead of ZeroMQ",
        1.0,
        {},
-       [](const Comparison& c) { return is_call_beside(c, "zeromq "); },
+       [](const Comparison& c) { return is_call_beside(c, "zeromq ", false); },
+       Goal::Kind::Aim},
+      {"Calls through shared memory are ahead of omniORB",
+       1.0,
+       {},
+       [](const Comparison& c) { return is_call_beside(c, "omniorb ", true); },
+       Goal::Kind::Aim},
+      {"Calls through shared memory are ahead of gRPC",
+       1.0,
+       {},
+       [](const Comparison& c) { return is_call_beside(c, "grpc ", true); },
+       Goal::Kind::Aim},
+      {"Calls through shared memory are ahead of ZeroMQ",
+       1.0,
+       {},
+       [](const Comparison& c) { return is_call_beside(c, "zeromq ", true); },
+       Goal::Kind::Aim},
+      {"A call through shared memory takes no longer than a plain Unix socket's ping-pong",
+       1.0,
+       {},
+       [](const Comparison& c) { return is_through_shared_memory(c, "unix socket"); },
+       Goal::Kind::Aim},
+      {"A call through shared memory whose both sides spin takes at most 1 µs",
+       1.0,
+       {},
+       [](const Comparison& c) {
+         return is_through_shared_memory(c, "limit 1 us") && c.parameters.contains("size_bytes");
+       },
        Goal::Kind::Aim},
       {"32 idle clients of the same service cost a call nothing",
        1.05,

@@ -11,6 +11,7 @@ namespace skein::benchmarks {
 
 /// Promises that are times, in microseconds: rivals with one sample.
 inline constexpr double kCallInProcessUs = 1;
+inline constexpr double kSpinningCallUs = 1;
 inline constexpr double kHeadUs = 2;
 inline constexpr double kLearnedDecisionUs = 20;
 inline constexpr double kLookUpUs = 1;
@@ -20,7 +21,7 @@ inline constexpr double kOverdueUs = 50'000;
 inline constexpr double kHealedUs = 2'000'000;
 inline constexpr double kLateAnswerUs = 5'000;
 
-/// What has no goal yet, though it stands beside rivals.
+/// Has goals of its own, though it stands beside other middleware, too.
 inline constexpr const char* kCallThroughSharedMemory = "a call through shared memory";
 
 /// One goal, and the comparisons that it speaks of.
