@@ -1,0 +1,407 @@
+// Either side of a call is killed at some instruction of it, single-stepped up to there. The other
+// side, in this process, has whole messages or none, is told, keeps nothing, and calls others.
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "../tools/eventually.hpp"
+#include "../tools/invariant.hpp"
+#include "../tools/prepare.hpp"
+#include "../tools/seed.hpp"
+#include "same_host/call_ports.hpp"
+#include "skein/error.hpp"
+
+using namespace skein;
+using namespace skein::same_host;
+using skein::test::eventually;
+using namespace std::chrono_literals;
+
+namespace {
+
+const dds::Topic kRequests{"Test_Request", "Test_Request"};
+const dds::Topic kReplies{"Test_Reply", "Test_Reply"};
+
+/// From here on, on the thread that comes first, instructions are counted.
+constexpr int kMark = SIGUSR1;
+
+dds::Qos in_partition(const Guid& peer) {
+  dds::Qos qos;
+  qos.partitions = {peer.hex()};
+  return qos;
+}
+
+std::vector<std::byte> message(const std::string& text) {
+  std::vector<std::byte> content{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  for (const char letter : text) content.push_back(static_cast<std::byte>(letter));
+  return content;
+}
+
+std::string text_of(std::span<const std::byte> cdr) {
+  return {reinterpret_cast<const char*>(cdr.data()) + 4, cdr.size() - 4};
+}
+
+const std::string kQuestion(300, 'q');
+const std::string kAnswer(300, 'a');
+
+/// Answers what its clients ask. `on_request` is called before each answer.
+class Provider {
+ public:
+  Provider(const Guid& id, std::function<void()> on_request)
+      : on_request_(std::move(on_request)), ports_(meeting_, {id.participant()}) {
+    dds::ReaderListener listener;
+    listener.on_data = [this](dds::Reader& reader) { answer(reader); };
+    listener.on_matched = [this](const Guid& client, bool matched) {
+      if (!matched) forget(client);
+    };
+    reader_ = ports_.create_reader(kRequests, in_partition(id), std::move(listener));
+  }
+
+  std::size_t clients() const {
+    std::lock_guard lock(mutex_);
+    return writers_.size();
+  }
+  bool heard_nonsense() const { return nonsense_; }
+
+ private:
+  void answer(dds::Reader& reader) {
+    on_request_();
+    reader.take([this](const dds::Sample& sample) {
+      if (text_of(sample.cdr) != kQuestion) nonsense_ = true;
+      std::lock_guard lock(mutex_);
+      auto& writer = writers_[sample.writer];
+      if (!writer) writer = ports_.create_writer(kReplies, in_partition(sample.writer), {});
+      writer->write(message(kAnswer));
+    });
+  }
+  void forget(const Guid& client) {
+    std::unique_ptr<dds::Writer> gone;
+    std::lock_guard lock(mutex_);
+    gone = std::move(writers_[client]);
+    writers_.erase(client);
+  }
+
+  const std::function<void()> on_request_;
+  std::atomic<bool> nonsense_{false};
+  mutable std::mutex mutex_;
+  Meeting meeting_;
+  ProviderPort ports_;
+  std::map<Guid, std::unique_ptr<dds::Writer>> writers_;
+  std::unique_ptr<dds::Reader> reader_;
+};
+
+enum class Outcome { Answered, Ended, Nonsense };
+
+/// Calls a provider, and takes the answers on the calling thread.
+class Client {
+ public:
+  explicit Client(const Guid& provider) : ports_(meeting_, {Guid::random().participant()}) {
+    dds::WriterListener listener;
+    listener.on_matched = [this](const Guid&, bool matched) {
+      if (!matched) ended_ = true;
+    };
+    writer_ = ports_.create_writer(kRequests, in_partition(provider), std::move(listener));
+    dds::ReaderListener reader;
+    reader.on_data = [this](dds::Reader& from) {
+      from.take([this](const dds::Sample& sample) {
+        (text_of(sample.cdr) == kAnswer ? answers_ : nonsense_)++;
+      });
+    };
+    reader_ = ports_.create_reader(kReplies, in_partition(writer_->guid()), std::move(reader));
+  }
+
+  Outcome call() {
+    const int before = answers_ + nonsense_;
+    const auto delivery = reader_->caller_delivery();
+    delivery->lend();
+    try {
+      writer_->write(message(kQuestion));
+    } catch (const Error&) {
+      return Outcome::Ended;
+    }
+    delivery->deliver_until([&] { return answers_ + nonsense_ > before; });
+    if (nonsense_ > 0) return Outcome::Nonsense;
+    return answers_ > before ? Outcome::Answered : Outcome::Ended;
+  }
+  bool told() {
+    return eventually([&] { return ended_.load(); });
+  }
+
+ private:
+  Meeting meeting_;
+  ClientPort ports_;
+  std::atomic<int> answers_{0};
+  std::atomic<int> nonsense_{0};
+  std::atomic<bool> ended_{false};
+  std::unique_ptr<dds::Writer> writer_;
+  std::unique_ptr<dds::Reader> reader_;
+};
+
+std::unique_ptr<Client> connect(const Guid& provider) {
+  std::unique_ptr<Client> client;
+  const bool connected = eventually([&] {
+    try {
+      client = std::make_unique<Client>(provider);
+      return true;
+    } catch (const Unavailable&) {
+      return false;
+    }
+  });
+  return connected ? std::move(client) : nullptr;
+}
+
+/// What this process has open, and shares.
+struct Kept {
+  std::size_t descriptors = 0;
+  std::size_t memories = 0;
+  bool operator==(const Kept&) const = default;
+};
+
+Kept kept() {
+  Kept now;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator("/proc/self/fd")) {
+    ++now.descriptors;
+  }
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find("memfd:skein") != std::string::npos) ++now.memories;
+  }
+  return now;
+}
+
+/// A process whose instructions are counted from its first mark on, on the thread that makes it.
+/// All members on one thread, which the kernel takes for its tracer.
+class Victim {
+ public:
+  explicit Victim(const std::function<void()>& body) : pid_(fork()) {
+    if (pid_ < 0) throw std::runtime_error("fork failed");
+    if (pid_ == 0) {
+      ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+      raise(SIGSTOP);
+      body();
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(pid_, &status, __WALL);
+    ptrace(PTRACE_SETOPTIONS, pid_, nullptr, PTRACE_O_TRACECLONE | PTRACE_O_EXITKILL);
+    ptrace(PTRACE_CONT, pid_, nullptr, nullptr);
+  }
+  ~Victim() { kill(); }
+  Victim(const Victim&) = delete;
+  Victim& operator=(const Victim&) = delete;
+
+  /// Lets all threads run until one of them makes a mark; false where the process ends first.
+  bool run_to_mark() {
+    while (!ended_) {
+      const auto stop = next_stop(-1);
+      if (!stop) continue;
+      if (stop->signal == kMark) {
+        marked_ = stop->thread;
+        return true;
+      }
+      go_on(*stop);
+    }
+    return false;
+  }
+
+  /// Lets the thread that stands at its mark run, too.
+  void resume() { ptrace(PTRACE_CONT, marked_, nullptr, nullptr); }
+
+  /// Of that thread, while the others run. It stops at the next mark, and where the process ends.
+  std::size_t step(std::size_t most) {
+    std::size_t steps = 0;
+    while (steps < most && !ended_) {
+      ptrace(PTRACE_SINGLESTEP, marked_, nullptr, nullptr);
+      const auto stop = next_stop(marked_);
+      if (!stop || stop->signal == kMark) break;
+      ++steps;
+    }
+    return steps;
+  }
+
+  void kill() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    while (!ended_) next_stop(-1);
+    pid_ = 0;
+  }
+
+ private:
+  struct Stop {
+    pid_t thread;
+    int signal;
+  };
+
+  // Nothing where a thread has ended, which may be the last.
+  std::optional<Stop> next_stop(pid_t of) {
+    int status = 0;
+    const pid_t thread = waitpid(of, &status, __WALL);
+    if (thread < 0 || (thread == pid_ && !WIFSTOPPED(status))) ended_ = true;
+    if (thread < 0 || !WIFSTOPPED(status)) return std::nullopt;
+    return Stop{thread, WSTOPSIG(status)};
+  }
+
+  // A new thread begins with SIGSTOP, and SIGTRAP tells of it: neither is for the process.
+  static void go_on(const Stop& stop) {
+    const bool ours = stop.signal == SIGSTOP || stop.signal == SIGTRAP;
+    ptrace(PTRACE_CONT, stop.thread, nullptr, ours ? 0 : stop.signal);
+  }
+
+  pid_t pid_;
+  pid_t marked_ = 0;
+  bool ended_ = false;
+};
+
+void mark() { raise(kMark); }
+
+std::size_t kills() {
+  const char* given = std::getenv("SKEIN_CRASH_POINTS");
+  return given ? std::stoul(given) : 150;
+}
+
+/// Anywhere in so many instructions.
+class Points {
+ public:
+  explicit Points(std::size_t instructions) : among_(0, instructions - 1) {}
+  std::size_t next() { return among_(random_); }
+
+ private:
+  std::uniform_int_distribution<std::size_t> among_;
+  std::mt19937_64 random_{test::seed_of_this_run()};
+};
+
+/// Counts from its second call on: what is done once only, such as finding symbols, is done.
+std::unique_ptr<Victim> start_client(const Guid& provider) {
+  return std::make_unique<Victim>([&] {
+    Client client(provider);
+    client.call();
+    mark();
+    client.call();
+    mark();
+  });
+}
+
+/// A provider that counts from its second answer to its third, and who calls it.
+class CalledVictim {
+ public:
+  CalledVictim()
+      : victim_([this] {
+          Provider provider(id_, mark);
+          pause();
+        }) {
+    caller_ = std::thread([this] { call(); });
+    began_ = victim_.run_to_mark() && (victim_.resume(), victim_.run_to_mark());
+  }
+  ~CalledVictim() { end(); }
+
+  bool began() const { return began_; }
+  std::size_t step(std::size_t most) { return victim_.step(most); }
+  /// Kills it, and waits for its caller.
+  void end() {
+    victim_.kill();
+    if (caller_.joinable()) caller_.join();
+  }
+  Outcome outcome() const { return outcome_; }
+  bool told() const { return told_; }
+
+ private:
+  void call() {
+    const auto client = connect(id_);
+    if (!client) return;
+    while ((outcome_ = client->call()) == Outcome::Answered) {
+    }
+    told_ = client->told();
+  }
+
+  const Guid id_ = Guid::random();
+  Victim victim_;
+  std::thread caller_;
+  bool began_ = false;
+  // The caller's, until end().
+  Outcome outcome_ = Outcome::Nonsense;
+  bool told_ = false;
+};
+
+bool may_trace() {
+  const pid_t child = fork();
+  if (child == 0) _exit(ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0 ? 0 : 1);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+int test::prepare() { return may_trace() ? 0 : 77; }
+
+TEST_CASE("a client may be killed at any instruction of a call") {
+  const Guid id = Guid::random();
+  Provider provider(id, [] {});
+  const auto steady = connect(id);
+  REQUIRE(steady);
+  REQUIRE(steady->call() == Outcome::Answered);
+  const Kept before = kept();
+  const auto is_alone = [&] { return provider.clients() == 1 && kept() == before; };
+  std::size_t instructions = 0;
+  {
+    const auto whole = start_client(id);
+    REQUIRE(whole->run_to_mark());
+    instructions = whole->step(SIZE_MAX);
+  }
+  REQUIRE(instructions > 500);
+  REQUIRE(eventually(is_alone));
+  Points points(instructions);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < kills(); ++i) {
+    const std::size_t point = points.next();
+    CAPTURE(point, instructions);
+    const auto victim = start_client(id);
+    REQUIRE(victim->run_to_mark());
+    if (victim->step(point) == point) ++inside;
+    victim->kill();
+    INVARIANT(eventually(is_alone));
+    INVARIANT(!provider.heard_nonsense());
+    INVARIANT(steady->call() == Outcome::Answered);
+  }
+  CHECK(inside > kills() / 2);
+}
+
+TEST_CASE("a provider may be killed at any instruction of a call") {
+  std::size_t instructions = 0;
+  {
+    CalledVictim whole;
+    REQUIRE(whole.began());
+    instructions = whole.step(SIZE_MAX);
+  }
+  REQUIRE(instructions > 500);
+  const Kept before = kept();
+  Points points(instructions);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < kills(); ++i) {
+    const std::size_t point = points.next();
+    CAPTURE(point, instructions);
+    CalledVictim victim;
+    REQUIRE(victim.began());
+    if (victim.step(point) == point) ++inside;
+    victim.end();
+    INVARIANT(victim.outcome() == Outcome::Ended);
+    INVARIANT(victim.told());
+    INVARIANT(eventually([&] { return kept() == before; }));
+  }
+  CHECK(inside > kills() / 2);
+}
