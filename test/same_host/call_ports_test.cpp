@@ -108,6 +108,19 @@ void damage_replies() {
   });
 }
 
+/// KiB of the greatest mapping of memory that this process shares.
+std::size_t most_resident_kib() {
+  std::ifstream maps("/proc/self/smaps");
+  std::size_t most = 0;
+  bool ours = false;
+  for (std::string line; std::getline(maps, line);) {
+    const bool begins = line.find(':') != std::string::npos && line.find('-') < line.find(' ');
+    if (begins) ours = line.find("memfd:skein") != std::string::npos;
+    if (ours && line.starts_with("Rss:")) most = std::max(most, std::stoul(line.substr(4)));
+  }
+  return most;
+}
+
 struct Pair {
   const Guid id = provider_of(participant());
   Meeting meeting;
@@ -146,6 +159,31 @@ TEST_CASE("a request reaches the provider, and its reply the client alone that h
   CHECK(at_client.last_writer().participant() == pair.id.participant());
   CHECK(at_other.becomes({"matched"}));
   CHECK(request->wait_for_acknowledgments(1s));
+}
+
+TEST_CASE("a connection that has carried small calls keeps at most 64 KiB of memory") {
+  Pair pair;
+  Story at_client;
+  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
+  const auto replies =
+      pair.clients.create_reader(kReplies, in_partition(request->guid()), at_client.reader());
+  std::vector<std::string> at_provider{"matched"};
+  std::vector<std::string> received{"matched"};
+  REQUIRE(pair.at_provider.becomes(at_provider));
+  const auto reply = pair.providers.create_writer(kReplies, in_partition(request->guid()), {});
+  for (int i = 0; i < 1000; ++i) {
+    request->write(message(std::string(1024, 'q')));
+    at_provider.push_back(std::string(1024, 'q'));
+    REQUIRE(request->wait_for_acknowledgments(20s));
+    reply->write(message(std::string(1024, 'a')));
+    received.push_back(std::string(1024, 'a'));
+    REQUIRE(reply->wait_for_acknowledgments(20s));
+  }
+  CHECK(pair.at_provider.becomes(at_provider));
+  CHECK(at_client.becomes(received));
+  const std::size_t kib = most_resident_kib();
+  CHECK(kib > 0);
+  CHECK(kib <= 64);
 }
 
 TEST_CASE("whichever side goes, the other one is told once, after all that was sent") {
