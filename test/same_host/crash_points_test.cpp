@@ -1,9 +1,12 @@
-// Either side of a call is killed at some instruction of it, single-stepped up to there. The other
-// side, in this process, has whole messages or none, is told, keeps nothing, and calls others.
+// Either side of a call is killed at some instruction of it: one call is followed step by step,
+// others run to a breakpoint. The other side, in this process, has whole messages or none, is told,
+// keeps nothing, and calls others.
 #include <sys/ptrace.h>
+#include <sys/user.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -37,7 +40,7 @@ namespace {
 const dds::Topic kRequests{"Test_Request", "Test_Request"};
 const dds::Topic kReplies{"Test_Reply", "Test_Reply"};
 
-/// From here on, on the thread that comes first, instructions are counted.
+/// The thread that makes it is followed from there to its next one.
 constexpr int kMark = SIGUSR1;
 
 dds::Qos in_partition(const Guid& peer) {
@@ -184,8 +187,10 @@ Kept kept() {
   return now;
 }
 
-/// A process whose instructions are counted from its first mark on, on the thread that makes it.
-/// All members on one thread, which the kernel takes for its tracer.
+using Address = unsigned long;
+
+/// A process of which one thread is followed from its mark on. All members on one thread, which the
+/// kernel takes for its tracer.
 class Victim {
  public:
   explicit Victim(const std::function<void()>& body) : pid_(fork()) {
@@ -222,16 +227,28 @@ class Victim {
   /// Lets the thread that stands at its mark run, too.
   void resume() { ptrace(PTRACE_CONT, marked_, nullptr, nullptr); }
 
-  /// Of that thread, while the others run. It stops at the next mark, and where the process ends.
-  std::size_t step(std::size_t most) {
-    std::size_t steps = 0;
-    while (steps < most && !ended_) {
-      ptrace(PTRACE_SINGLESTEP, marked_, nullptr, nullptr);
-      const auto stop = next_stop(marked_);
+  /// Where that thread is before each instruction until the next mark, while the others run.
+  std::vector<Address> trace() {
+    std::vector<Address> places;
+    while (!ended_) {
+      places.push_back(place(marked_));
+      const auto stop = step(marked_);
       if (!stop || stop->signal == kMark) break;
-      ++steps;
     }
-    return steps;
+    return places;
+  }
+
+  /// Lets that thread run until it is where the other one of the trace was at `point`; false where
+  /// it takes another way, and comes to its next mark.
+  bool run_to(const std::vector<Address>& places, std::size_t point) {
+    const Address wanted = places.at(point);
+    auto times = std::count(places.begin(), places.begin() + static_cast<int>(point) + 1, wanted);
+    while (true) {
+      if (place(marked_) == wanted && --times == 0) return true;
+      const auto stepped = step(marked_);
+      if (!stepped || stepped->signal == kMark) return false;
+      if (place(marked_) != wanted && !run_to_break(wanted)) return false;
+    }
   }
 
   void kill() {
@@ -246,6 +263,51 @@ class Victim {
     pid_t thread;
     int signal;
   };
+
+  std::optional<Stop> step(pid_t thread) {
+    ptrace(PTRACE_SINGLESTEP, thread, nullptr, nullptr);
+    return next_stop(thread);
+  }
+
+  // Every thread stops there: others are helped over it.
+  bool run_to_break(Address wanted) {
+    const long text = ptrace(PTRACE_PEEKTEXT, marked_, wanted, nullptr);
+    const auto arm = [&](pid_t by) { ptrace(PTRACE_POKETEXT, by, wanted, (text & ~0xFFL) | 0xCC); };
+    const auto disarm = [&](pid_t by) { ptrace(PTRACE_POKETEXT, by, wanted, text); };
+    arm(marked_);
+    resume();
+    while (!ended_) {
+      const auto stop = next_stop(-1);
+      if (!stop) continue;
+      if (stop->signal == kMark) {
+        disarm(stop->thread);
+        return false;
+      }
+      if (stop->signal != SIGTRAP || place(stop->thread) != wanted + 1) {
+        go_on(*stop);
+        continue;
+      }
+      disarm(stop->thread);
+      set_place(stop->thread, wanted);
+      if (stop->thread == marked_) return true;
+      step(stop->thread);
+      arm(stop->thread);
+      ptrace(PTRACE_CONT, stop->thread, nullptr, nullptr);
+    }
+    return false;
+  }
+
+  static Address place(pid_t thread) {
+    user_regs_struct registers{};
+    ptrace(PTRACE_GETREGS, thread, nullptr, &registers);
+    return registers.rip;
+  }
+  static void set_place(pid_t thread, Address place) {
+    user_regs_struct registers{};
+    ptrace(PTRACE_GETREGS, thread, nullptr, &registers);
+    registers.rip = place;
+    ptrace(PTRACE_SETREGS, thread, nullptr, &registers);
+  }
 
   // Nothing where a thread has ended, which may be the last.
   std::optional<Stop> next_stop(pid_t of) {
@@ -274,18 +336,7 @@ std::size_t kills() {
   return given ? std::stoul(given) : 150;
 }
 
-/// Anywhere in so many instructions.
-class Points {
- public:
-  explicit Points(std::size_t instructions) : among_(0, instructions - 1) {}
-  std::size_t next() { return among_(random_); }
-
- private:
-  std::uniform_int_distribution<std::size_t> among_;
-  std::mt19937_64 random_{test::seed_of_this_run()};
-};
-
-/// Counts from its second call on: what is done once only, such as finding symbols, is done.
+/// Marks its second call: what is done once only, such as finding symbols, is done.
 std::unique_ptr<Victim> start_client(const Guid& provider) {
   return std::make_unique<Victim>([&] {
     Client client(provider);
@@ -296,7 +347,8 @@ std::unique_ptr<Victim> start_client(const Guid& provider) {
   });
 }
 
-/// A provider that counts from its second answer to its third, and who calls it.
+/// A provider that marks its answers, and who calls it. It is followed from the second one on: to
+/// its end, and while the third request is taken.
 class CalledVictim {
  public:
   CalledVictim()
@@ -310,7 +362,7 @@ class CalledVictim {
   ~CalledVictim() { end(); }
 
   bool began() const { return began_; }
-  std::size_t step(std::size_t most) { return victim_.step(most); }
+  Victim& operator*() { return victim_; }
   /// Kills it, and waits for its caller.
   void end() {
     victim_.kill();
@@ -357,22 +409,22 @@ TEST_CASE("a client may be killed at any instruction of a call") {
   REQUIRE(steady->call() == Outcome::Answered);
   const Kept before = kept();
   const auto is_alone = [&] { return provider.clients() == 1 && kept() == before; };
-  std::size_t instructions = 0;
+  std::vector<Address> whole;
   {
-    const auto whole = start_client(id);
-    REQUIRE(whole->run_to_mark());
-    instructions = whole->step(SIZE_MAX);
+    const auto traced = start_client(id);
+    REQUIRE(traced->run_to_mark());
+    whole = traced->trace();
   }
-  REQUIRE(instructions > 500);
+  REQUIRE(whole.size() > 500);
   REQUIRE(eventually(is_alone));
-  Points points(instructions);
+  std::mt19937_64 random(test::seed_of_this_run());
   std::size_t inside = 0;
   for (std::size_t i = 0; i < kills(); ++i) {
-    const std::size_t point = points.next();
-    CAPTURE(point, instructions);
+    const std::size_t point = random() % whole.size();
+    CAPTURE(point, whole.size());
     const auto victim = start_client(id);
     REQUIRE(victim->run_to_mark());
-    if (victim->step(point) == point) ++inside;
+    if (victim->run_to(whole, point)) ++inside;
     victim->kill();
     INVARIANT(eventually(is_alone));
     INVARIANT(!provider.heard_nonsense());
@@ -382,22 +434,22 @@ TEST_CASE("a client may be killed at any instruction of a call") {
 }
 
 TEST_CASE("a provider may be killed at any instruction of a call") {
-  std::size_t instructions = 0;
+  std::vector<Address> whole;
   {
-    CalledVictim whole;
-    REQUIRE(whole.began());
-    instructions = whole.step(SIZE_MAX);
+    CalledVictim traced;
+    REQUIRE(traced.began());
+    whole = (*traced).trace();
   }
-  REQUIRE(instructions > 500);
+  REQUIRE(whole.size() > 500);
   const Kept before = kept();
-  Points points(instructions);
+  std::mt19937_64 random(test::seed_of_this_run());
   std::size_t inside = 0;
   for (std::size_t i = 0; i < kills(); ++i) {
-    const std::size_t point = points.next();
-    CAPTURE(point, instructions);
+    const std::size_t point = random() % whole.size();
+    CAPTURE(point, whole.size());
     CalledVictim victim;
     REQUIRE(victim.began());
-    if (victim.step(point) == point) ++inside;
+    if ((*victim).run_to(whole, point)) ++inside;
     victim.end();
     INVARIANT(victim.outcome() == Outcome::Ended);
     INVARIANT(victim.told());
