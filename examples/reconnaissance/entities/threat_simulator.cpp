@@ -1,6 +1,7 @@
 #include "threat_simulator.hpp"
 
 #include "convert.hpp"
+#include "flight/angles.hpp"
 #include "threat_conversion.hpp"
 #include "threats/sites.hpp"
 #include "topics.hpp"
@@ -18,6 +19,7 @@ ThreatSimulator::ThreatSimulator(skein::Entity& entity, const skein::ParameterVa
       ground_(ground_of(values)),
       sites_(sites_of(parse_sites(values.get<std::string>("Sites")), frame_, ground_,
                       values.find<std::uint64_t>("Seed").value_or(1))),
+      receiver_{.bearing_bias_rad = radians(values.find<double>("Bearing error").value_or(0))},
       random_(values.find<std::uint64_t>("Seed").value_or(1)),
       truth_(entity, topic::kTruth),
       intercepts_(entity.publisher<recon::Intercepts>(topic::kIntercepts.name)),
@@ -33,7 +35,8 @@ std::vector<ThreatSimulator::Site> ThreatSimulator::sites_of(const std::vector<S
     const auto number = static_cast<std::uint32_t>(sites.size() + 1);
     Local foot = frame.to_local(text.place);
     foot.height_m = ground(foot.north_m, foot.east_m);
-    const RadarSite site = site_of_type(text.type, number, foot, text.active_from_s);
+    RadarSite site = site_of_type(text.type, number, foot, text.active_from_s);
+    site.silent_beyond_m = text.silent_beyond_m;
     // Another random course for each site, and in each run.
     sites.push_back({text.type, site, Radar(site, seed * 1000 + number)});
   }
@@ -55,8 +58,10 @@ void ThreatSimulator::simulate(Tick tick) {
       survival_.pass(hazard_per_s(each.site, mode, target.place), passed_s);
       tracked |= each.site.zone.kills_per_s > 0 && mode > RadarMode::Search;
       if (!emission) continue;
-      if (const auto heard = receive(*emission, target.place, receiver_, ground_, random_))
+      if (const auto heard = receive(*emission, target.place, receiver_, ground_, random_)) {
         received.intercepts.push_back(intercept(*heard, each.site.emitter));
+        each.heard = true;
+      }
     }
     if (tracked) tracked_s_ += passed_s;
     simulated_ = tick;
@@ -69,7 +74,8 @@ void ThreatSimulator::tell_truth(Tick tick) {
   recon::ThreatTruth told{tick, {}, tracked_s_, survival_.probability()};
   for (const Site& each : sites_) {
     told.sites.push_back({each.type, position(frame_, each.site.antenna),
-                          radar_mode(each.radar.mode()), each.radar.last_detection_probability()});
+                          radar_mode(each.radar.mode()), each.radar.last_detection_probability(),
+                          each.heard});
   }
   threat_truth_.publish(told);
 }

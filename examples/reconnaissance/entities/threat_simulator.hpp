@@ -29,6 +29,7 @@ class ThreatSimulator {
     std::string type;
     RadarSite site;
     Radar radar;
+    bool heard = false;
   };
 
   static std::vector<Site> sites_of(const std::vector<SiteText>& texts, const LocalFrame& frame,

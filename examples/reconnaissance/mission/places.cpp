@@ -10,12 +10,13 @@
 namespace reconnaissance {
 namespace {
 
-/// Exactly so many numbers.
-std::vector<double> numbers_in(const std::string& text, std::size_t count, const char* what) {
+/// So many numbers, or so many more.
+std::vector<double> numbers_in(const std::string& text, std::size_t count, const char* what,
+                               std::size_t more = 0) {
   std::istringstream words(text);
   std::vector<double> numbers;
   for (double number = 0; words >> number;) numbers.push_back(number);
-  if (words.eof() && numbers.size() == count) return numbers;
+  if (words.eof() && numbers.size() >= count && numbers.size() <= count + more) return numbers;
   throw skein::InvalidArgument("'" + text + "' is no " + what);
 }
 
@@ -56,9 +57,17 @@ std::vector<SiteText> parse_sites(const std::string& text) {
       if (word.find_first_not_of("-.0123456789") == std::string::npos) break;
       split = part.find(word, split) + word.size();
     }
-    const auto numbers =
-        numbers_in(part.substr(split), 3, "site; write `type latitude longitude active`");
-    sites.push_back({part.substr(0, split), place({numbers[0], numbers[1], 0}, part), numbers[2]});
+    const auto numbers = numbers_in(part.substr(split), 3,
+                                    "site; write `type latitude longitude active`, and behind it "
+                                    "how near one that lies in wait "
+                                    "lets the aircraft come",
+                                    1);
+    SiteText& site = sites.emplace_back();
+    site = {part.substr(0, split), place({numbers[0], numbers[1], 0}, part), numbers[2]};
+    if (numbers.size() == 3) continue;
+    site.silent_beyond_m = numbers[3];
+    if (site.silent_beyond_m <= 0)
+      throw skein::InvalidArgument("'" + part + "': no aircraft comes nearer to a site than that");
   }
   return sites;
 }

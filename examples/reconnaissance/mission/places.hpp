@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,14 @@ struct RunwayText {
 RunwayText parse_runway(const std::string& text);
 
 /// Sites of the air defence as a profile names them: `type latitude longitude active`, in degrees,
-/// and from how many seconds of the mission on it transmits; separated by semicolons. Their height
-/// is 0. Throws likewise.
+/// and from how many seconds of the mission on it transmits; behind that, for one that lies in
+/// wait, to how many metres the aircraft has to come before it does. Separated by semicolons. Their
+/// height is 0. Throws likewise.
 struct SiteText {
   std::string type;
   Geodetic place{};
   double active_from_s = 0;
+  double silent_beyond_m = std::numeric_limits<double>::infinity();
 };
 std::vector<SiteText> parse_sites(const std::string& text);
 

@@ -1,5 +1,6 @@
 // The course of a mission, its verdict, and how a profile names places.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "flight/angles.hpp"
 #include "mission/conduct.hpp"
@@ -246,6 +247,14 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK(sites[1].type == "coast radar");
   CHECK(sites[1].place.longitude_deg == -27.7);
   CHECK(sites[1].active_from_s == 420);
+  CHECK(std::isinf(sites[1].silent_beyond_m));
+  const auto waiting = parse_sites("mobile gun 53.4 27.5 0 9000; coast radar 53.5 27.7 420");
+  REQUIRE(waiting.size() == 2);
+  CHECK(waiting[0].type == "mobile gun");
+  CHECK(waiting[0].silent_beyond_m == 9000);
+  CHECK(std::isinf(waiting[1].silent_beyond_m));
+  CHECK_THROWS_AS(parse_sites("mobile gun 53.4 27.5 0 0"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_sites("mobile gun 53.4 27.5 0 9000 1"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7"), skein::InvalidArgument);
   const auto intruders = parse_intruders("300 90 9000 70");
   REQUIRE(intruders.size() == 1);

@@ -61,7 +61,9 @@ double look_probability(const RadarSite& site, const RadarTarget& target,
 std::optional<Emission> Radar::step(double time_s, const RadarTarget& target,
                                     const GroundHeight& ground) {
   if (mode_ == RadarMode::Off) {
-    if (time_s < site_.active_from_s) return std::nullopt;
+    if (time_s < site_.active_from_s ||
+        slant_range_m(site_.antenna, target.place) > site_.silent_beyond_m)
+      return std::nullopt;
     enter(RadarMode::Search, time_s);
   }
   if (time_s + kTickTolerance_s >= next_look_s_) look(time_s, target, ground);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "geodesy/line_of_sight.hpp"
@@ -47,7 +48,9 @@ struct RadarSite {
   std::uint32_t emitter;
   Local antenna;
   double active_from_s = 0;  ///< When a site that pops up begins to search.
-  double constant_j_m2_k;    ///< As of radar_constant().
+  /// A site that lies in wait begins when the aircraft has come so near: others tell it.
+  double silent_beyond_m = std::numeric_limits<double>::infinity();
+  double constant_j_m2_k;  ///< As of radar_constant().
   double false_alarm_probability = 1e-6;
   double radiated_power_w;
   Waveform search;
@@ -69,10 +72,11 @@ struct RadarTarget {
 
 /// The modes of a radar in the presence of one aircraft.
 ///
-/// Off, until the site is active. Search: one look a turn of the antenna; confirmed by m of n looks
-/// it becomes Track: two looks a second. When a track has lasted for the time of reaction and the
-/// target is in the weapon's zone, Guidance: ten looks a second. Back to Track when the target
-/// leaves the zone, back to Search when too many looks in a row have missed.
+/// Off, until the site is active and the target near enough; it does not fall silent again. Search:
+/// one look a turn of the antenna; confirmed by m of n looks it becomes Track: two looks a second.
+/// When a track has lasted for the time of reaction and the target is in the weapon's zone,
+/// Guidance: ten looks a second. Back to Track when the target leaves the zone, back to Search when
+/// too many looks in a row have missed.
 ///
 /// One thread at a time may use it.
 class Radar {

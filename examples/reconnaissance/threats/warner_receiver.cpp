@@ -36,8 +36,8 @@ std::optional<Intercept> receive(const Emission& emission, const Local& aircraft
                                     emission.antenna.north_m - aircraft.north_m);
   const auto noisy = [&](double value, double sigma) { return value + sigma * random.normal(); };
   const Waveform& sent = emission.waveform;
-  const double measured_bearing =
-      std::remainder(noisy(bearing, receiver.bearing_sigma_rad), 2 * std::numbers::pi);
+  const double measured_bearing = std::remainder(
+      noisy(bearing + receiver.bearing_bias_rad, receiver.bearing_sigma_rad), 2 * std::numbers::pi);
   const Waveform measured{
       .radio_frequency_hz = noisy(sent.radio_frequency_hz, receiver.radio_frequency_sigma_hz),
       .pulse_interval_s =

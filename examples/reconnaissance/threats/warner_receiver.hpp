@@ -12,6 +12,7 @@ namespace reconnaissance {
 /// defaults are those of an interferometer on a small aircraft.
 struct WarnerReceiver {
   double bearing_sigma_rad = 0.035;  ///< 2 degrees.
+  double bearing_bias_rad = 0;       ///< Clockwise, of all bearings; nobody knows of it.
   double radio_frequency_sigma_hz = 20e6;
   double pulse_interval_sigma_share = 0.02;  ///< Of the interval.
   double scan_sigma_s = 0.2;

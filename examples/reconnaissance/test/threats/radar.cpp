@@ -143,3 +143,18 @@ TEST_CASE("The same seed gives the same emissions, another one others") {
   CHECK(modes(5) == modes(5));
   CHECK(modes(5) != modes(6));
 }
+
+TEST_CASE("A radar that lies in wait is silent until the target is near, and not any more after") {
+  RadarSite waiting = site();
+  waiting.active_from_s = 100;
+  waiting.silent_beyond_m = 9000;
+  Radar radar(waiting, 1);
+  CHECK(watch(radar, 0, 50, at(5000)).empty());  // it is not there yet
+  CHECK(watch(radar, 100, 150, at(9100)).empty());
+  CHECK(radar.mode() == RadarMode::Off);
+  const auto emissions = watch(radar, 150, 160, at(8900));
+  REQUIRE_FALSE(emissions.empty());
+  CHECK(emissions.front().time_s == Approx(150));
+  CHECK_FALSE(watch(radar, 160, 200, at(40000)).empty());
+  CHECK(radar.mode() == RadarMode::Search);
+}

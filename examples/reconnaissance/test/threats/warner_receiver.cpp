@@ -39,6 +39,23 @@ TEST_CASE("A warner's bearings scatter about the true one as it says") {
   CHECK(std::sqrt(squares / kRuns) == Approx(0.035).epsilon(0.05));
 }
 
+TEST_CASE(
+    "A warner whose antennas are turned is wrong by the same in each bearing, and does not say "
+    "so") {
+  Random random(1);
+  WarnerReceiver turned;
+  turned.bearing_bias_rad = 0.1;
+  constexpr int kRuns = 400;
+  double sum = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto intercept = receive(kEmission, {0, 20000, 800}, turned, flat, random);
+    REQUIRE(intercept);
+    CHECK(intercept->bearing_sigma_rad == turned.bearing_sigma_rad);
+    sum += intercept->bearing_rad + std::numbers::pi / 4;
+  }
+  CHECK(sum / kRuns == Approx(0.1).margin(4 * 0.035 / std::sqrt(kRuns)));
+}
+
 TEST_CASE("A warner measures the waveform, and keeps bearings between -pi and pi") {
   Random random(2);
   bool west = false;
