@@ -13,6 +13,9 @@ Scoring::Scoring(skein::Entity& entity, const LocalFrame& frame,
                  const skein::ParameterValues& values)
     : frame_(frame),
       within_m_(values.find<double>("Located within").value_or(500)),
+      within_s_(values.find<std::chrono::duration<double>>("Reported within")
+                    .value_or(std::chrono::duration<double>(120))
+                    .count()),
       score_({values.find<std::chrono::duration<double>>("Follow for")
                   .value_or(std::chrono::duration<double>(PursuitConditions{}.ordered_s))
                   .count(),
@@ -35,8 +38,11 @@ std::vector<Check> Scoring::checks() const {
   switch (task_) {
     case recon::ElementTask::FollowTarget:
       return score_.checks();
-    case recon::ElementTask::LocateEmitter:
-      return site_checks(sites_, reported_, within_m_);
+    case recon::ElementTask::LocateEmitter: {
+      std::vector<Check> checks = site_checks(sites_, reported_, within_m_);
+      checks.push_back(delays_.check(within_s_));
+      return checks;
+    }
     case recon::ElementTask::TakeImages:
       break;
   }
@@ -64,8 +70,12 @@ void Scoring::see(const recon::ObjectTruths& truths) {
 void Scoring::see(const recon::ThreatTruth& truth) {
   std::lock_guard lock(mutex_);
   sites_.clear();
-  for (const recon::SiteTruth& each : truth.sites)
+  std::vector<ReportDelays::Heard> heard;
+  for (const recon::SiteTruth& each : truth.sites) {
     sites_.push_back({each.kind, local(frame_, each.position)});
+    heard.push_back({sites_.back(), each.heard});
+  }
+  delays_.truth(seconds_of(truth.tick), heard);
 }
 
 void Scoring::see(const recon::ThreatPicture& picture) {
@@ -73,6 +83,7 @@ void Scoring::see(const recon::ThreatPicture& picture) {
   reported_.clear();
   for (const recon::Threat& each : picture.threats)
     reported_.push_back({each.kind, local(frame_, each.position)});
+  delays_.report(seconds_of(picture.tick), reported_);
 }
 
 std::string how_collected(recon::ElementTask task) {

@@ -31,12 +31,14 @@ class Scoring {
 
   LocalFrame frame_;
   double within_m_;
+  double within_s_;
 
   mutable std::mutex mutex_;
   recon::ElementTask task_ = recon::ElementTask::TakeImages;
   PursuitScore score_;
   std::vector<Site> sites_;     // as they are,
   std::vector<Site> reported_;  // and as they are reported
+  ReportDelays delays_;
 
   skein::Subscription<recon::ElementList> lists_;
   skein::Subscription<recon::ObjectTruths> objects_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace reconnaissance {
@@ -14,6 +15,21 @@ constexpr double kNoSite_m = 5000;
 
 double distance_m(const Local& a, const Local& b) {
   return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m);
+}
+
+/// The one that is nearest to a place, unless it is too far away.
+template <class Item, class SiteOf = std::identity>
+std::optional<std::size_t> nearest_to(const Local& place, const std::vector<Item>& sites,
+                                      SiteOf site_of = {}) {
+  std::optional<std::size_t> nearest;
+  double least_m = kNoSite_m;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const double distance = distance_m(std::invoke(site_of, sites[i]).place, place);
+    if (distance > least_m) continue;
+    least_m = distance;
+    nearest = i;
+  }
+  return nearest;
 }
 
 std::string joined(const std::vector<std::string>& parts) {
@@ -65,24 +81,20 @@ std::vector<Check> PursuitScore::checks() const {
 std::vector<Check> site_checks(const std::vector<Site>& truth, const std::vector<Site>& reported,
                                double within_m) {
   std::vector<std::string> missed, mistaken, displaced;
-  std::vector<bool> belongs(reported.size());
+  // For each report the site that it is nearest to.
+  std::vector<std::optional<std::size_t>> belongs;
+  for (const Site& each : reported) belongs.push_back(nearest_to(each.place, truth));
   std::size_t found = 0;
   double worst_m = 0;
-  for (const Site& site : truth) {
-    // The nearest report of those that are nearest to this site.
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Site& site = truth[i];
     const Site* best = nullptr;
     double nearest_m = kNoSite_m;
-    for (std::size_t i = 0; i < reported.size(); ++i) {
-      const double distance = distance_m(site.place, reported[i].place);
-      const bool nearer_to_another = std::ranges::any_of(truth, [&](const Site& other) {
-        return distance_m(other.place, reported[i].place) < distance;
-      });
-      if (nearer_to_another || distance > kNoSite_m) continue;
-      if (distance < nearest_m) {
-        nearest_m = distance;
-        best = &reported[i];
-      }
-      belongs[i] = true;
+    for (std::size_t j = 0; j < reported.size(); ++j) {
+      const double distance = distance_m(site.place, reported[j].place);
+      if (belongs[j] != i || distance > nearest_m) continue;
+      nearest_m = distance;
+      best = &reported[j];
     }
     if (!best) {
       missed.push_back(site.kind);
@@ -94,7 +106,7 @@ std::vector<Check> site_checks(const std::vector<Site>& truth, const std::vector
     if (nearest_m > within_m)
       displaced.push_back(fmt::format("{} by {:.0f} m", site.kind, nearest_m));
   }
-  const auto strangers = std::ranges::count(belongs, false);
+  const std::size_t strangers = reported.size() - found;
   const bool all = missed.empty() && !truth.empty();
   const std::string others =
       strangers ? fmt::format("; {} reported where there is none", strangers) : "";
@@ -110,6 +122,43 @@ std::vector<Check> site_checks(const std::vector<Site>& truth, const std::vector
                                     "{:.0f}{}",
                                     found, truth.size(), worst_m, within_m,
                                     displaced.empty() ? "" : ": " + joined(displaced))}};
+}
+
+void ReportDelays::truth(double now_s, const std::vector<Heard>& sites) {
+  sites_.resize(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    sites_[i].site = sites[i].site;
+    if (sites[i].heard && !sites_[i].heard_s) sites_[i].heard_s = now_s;
+  }
+}
+
+void ReportDelays::report(double now_s, const std::vector<Site>& reported) {
+  for (const Site& each : reported) {
+    const auto nearest = nearest_to(each.place, sites_, &Times::site);
+    if (nearest && !sites_[*nearest].reported_s) sites_[*nearest].reported_s = now_s;
+  }
+}
+
+Check ReportDelays::check(double within_s) const {
+  std::vector<std::string> late;
+  double longest_s = 0;
+  std::size_t reported = 0;
+  for (const Times& each : sites_) {
+    if (!each.heard_s || !each.reported_s) {
+      late.push_back(each.site.kind + (each.heard_s ? " never" : " never heard"));
+      continue;
+    }
+    ++reported;
+    const double delay_s = std::max(0.0, *each.reported_s - *each.heard_s);
+    longest_s = std::max(longest_s, delay_s);
+    if (delay_s > within_s)
+      late.push_back(fmt::format("{} after {:.0f} s", each.site.kind, delay_s));
+  }
+  return {
+      "sites reported", !sites_.empty() && late.empty(),
+      fmt::format(
+          "{} of {} reported, at most {:.0f} s after they could first be heard, allowed {:.0f}{}",
+          reported, sites_.size(), longest_s, within_s, late.empty() ? "" : ": " + joined(late))};
 }
 
 }  // namespace reconnaissance

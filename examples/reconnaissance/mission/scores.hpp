@@ -48,8 +48,32 @@ struct Site {
 };
 
 /// Whether all sites were found and no others, taken for what they are, and placed within a
-/// distance of where they are. What is reported belongs to the nearest site.
+/// distance of where they are. What is reported belongs to the nearest site; a second report of the
+/// same one is one where there is none.
 std::vector<Check> site_checks(const std::vector<Site>& truth, const std::vector<Site>& reported,
                                double within_m);
+
+/// How long after what each site transmits had first reached the aircraft it was first reported,
+/// wherever that was in the picture: nearer to it than to any other, and not far off.
+class ReportDelays {
+ public:
+  /// All sites as they are at a time, always in the same order. A report counts from the first of
+  /// these on.
+  struct Heard {
+    Site site;
+    bool heard = false;
+  };
+  void truth(double now_s, const std::vector<Heard>& sites);
+  void report(double now_s, const std::vector<Site>& reported);
+
+  Check check(double within_s) const;
+
+ private:
+  struct Times {
+    Site site;
+    std::optional<double> heard_s, reported_s;
+  };
+  std::vector<Times> sites_;
+};
 
 }  // namespace reconnaissance

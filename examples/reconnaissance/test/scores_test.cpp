@@ -112,6 +112,40 @@ TEST_CASE("a site that is reported where there is none fails") {
   CHECK_THAT(checks[0].text, Contains("1 reported where there is none"));
 }
 
+TEST_CASE("a site that is reported twice is reported once where there is none") {
+  const auto checks = site_checks(kSites,
+                                  {{"short-range site", {20000, 0, 0}},
+                                   {"short-range site", {20800, 0, 0}},
+                                   {"mobile gun", {20000, 12000, 0}}},
+                                  300);
+  CHECK(passed(checks) == Passed{false, true, true});
+}
+
+TEST_CASE("a report is in time by when the site could first be heard") {
+  ReportDelays delays;
+  const auto at = [&](double now_s, bool first, bool second) {
+    delays.truth(now_s, {{kSites[0], first}, {kSites[1], second}});
+  };
+  at(1, false, false);
+  CHECK_FALSE(delays.check(1000).passed);
+  at(100, true, false);
+  // Far off, but it is the nearest one.
+  delays.report(130, {{"coast radar", {20000, 4000, 0}}});
+  CHECK_FALSE(delays.check(1000).passed);
+  CHECK_THAT(delays.check(1000).text, Contains("1 of 2") && Contains("mobile gun never heard"));
+  at(400, true, true);
+  CHECK_THAT(delays.check(1000).text, Catch::EndsWith(": mobile gun never"));
+  // Somewhere else there is another one.
+  delays.report(410, {{"short-range site", {20000, 0, 0}}, {"mobile gun", {50000, 12000, 0}}});
+  CHECK_FALSE(delays.check(1000).passed);
+  delays.report(450, {{"short-range site", {20000, 0, 0}}, {"mobile gun", {20500, 12000, 0}}});
+  delays.report(900, {{"short-range site", {20000, 0, 0}}, {"mobile gun", {20000, 12000, 0}}});
+  CHECK(delays.check(60).passed);
+  CHECK_THAT(delays.check(60).text, Contains("2 of 2 reported, at most 50 s"));
+  CHECK_FALSE(delays.check(40).passed);
+  CHECK_THAT(delays.check(40).text, Contains("mobile gun after 50 s"));
+}
+
 TEST_CASE("an order that contradicts itself says in what") {
   const Means means{980, 1800, 600, 2300};
   OrderText order{"convoy", true, false, 300, 0, 1200, 30, 0.3};
