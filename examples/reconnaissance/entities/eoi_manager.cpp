@@ -9,6 +9,7 @@
 #include "convert.hpp"
 #include "deciding.hpp"
 #include "mission/elements.hpp"
+#include "mission/emitters.hpp"
 #include "skein/error.hpp"
 #include "target_conversion.hpp"
 #include "topics.hpp"
@@ -44,20 +45,21 @@ EoiManager::EoiManager(skein::Entity& entity, const skein::ParameterValues& valu
       tracks_(entity, topic::kTracks, skein::TopicQos::state()),
       lists_(entity.publisher<recon::ElementList>(topic::kElements.name, skein::TopicQos::state())),
       member_(entity, values, [this](Tick tick) { manage(tick); }) {
+  order_.task = task_;
+  order_.priority = 1;
+  order_.stand_off_m = values.find<double>("Stand off").value_or(0);
+  order_.wanted_deviation_m = values.find<double>("Located within").value_or(0);
+  if (const auto wanted = values.find<std::chrono::duration<double>>("Follow for"))
+    order_.wanted_s = wanted->count();
   for (const ElementText& each :
        parse_elements(values.find<std::string>("Elements").value_or(""))) {
-    recon::Element element;
+    recon::Element element = order_;
     element.name = each.name;
     for (const Geodetic& place : each.line) element.line.push_back(position(place));
     element.margin_m = each.margin_m;
     element.priority = each.priority;
     element.size_m = each.size_m;
     element.wanted_ground_sample_m = each.wanted_sample_m;
-    element.task = task_;
-    element.stand_off_m = values.find<double>("Stand off").value_or(0);
-    element.wanted_deviation_m = values.find<double>("Located within").value_or(0);
-    if (const auto wanted = values.find<std::chrono::duration<double>>("Follow for"))
-      element.wanted_s = wanted->count();
     elements_.push_back(std::move(element));
   }
   ordered_ = elements_;
@@ -70,7 +72,7 @@ void EoiManager::manage(Tick tick) {
   if (const auto tracks = tracks_.at(tick)) {
     if (task_ == recon::ElementTask::FollowTarget)
       follow(seconds_of(tick), *tracks);
-    else
+    else if (task_ == recon::ElementTask::TakeImages)
       locate(*tracks);
   }
   if (pictures_)
@@ -140,24 +142,36 @@ void EoiManager::follow(double now_s, const recon::ObjectTracks& told) {
   }
 }
 
-/// The threat that is nearest to where an emitter was reported.
+/// Emitters that were reported, and those that were heard where none was.
 void EoiManager::place(const recon::ThreatPicture& picture) {
-  for (std::size_t i = 0; i < elements_.size(); ++i) {
-    recon::Element& element = elements_[i];
-    const LocalFrame frame(geodetic(ordered_[i].line.front()));
-    double nearest_m = element.margin_m;
-    for (const recon::Threat& threat : picture.threats) {
-      const Local site = local(frame, threat.position);
-      const double distance_m = std::hypot(site.north_m, site.east_m);
-      if (distance_m > nearest_m) continue;
-      nearest_m = distance_m;
-      element.found = true;
-      element.line = {threat.position};
-      element.deviation_m = threat.deviation_m;
+  if (picture.threats.empty()) return;
+  const LocalFrame frame(geodetic(picture.threats.front().position));
+  std::vector<ReportedEmitter> reports;
+  for (const recon::Element& each : ordered_)
+    reports.push_back({local(frame, each.line.front()), each.margin_m});
+  std::vector<HeardEmitter> heard;
+  for (const recon::Threat& each : picture.threats)
+    heard.push_back({local(frame, each.position), each.deviation_m});
+  const EmitterMatch match = match_emitters(reports, heard);
+  for (std::size_t i = 0; i < reports.size(); ++i)
+    if (match.of_reports[i]) place(elements_[i], picture.threats[*match.of_reports[i]]);
+  for (const std::size_t index : match.unreported) {
+    const recon::Threat& threat = picture.threats[index];
+    const std::string name = fmt::format("{} {}", threat.kind, threat.number);
+    auto element = std::ranges::find(elements_, name, &recon::Element::name);
+    if (element == elements_.end()) {
+      element = elements_.insert(element, order_);
+      element->name = name;
     }
-    const bool certain = element.found && element.deviation_m <= element.wanted_deviation_m;
-    element.collected = element.collected || certain;
+    place(*element, threat);
   }
+}
+
+void EoiManager::place(recon::Element& element, const recon::Threat& threat) {
+  element.found = true;
+  element.line = {threat.position};
+  element.deviation_m = threat.deviation_m;
+  element.collected = element.collected || element.deviation_m <= element.wanted_deviation_m;
 }
 
 /// A target that was found is not let out of sight. Else of those that are not collected and lie

@@ -28,11 +28,13 @@ class EoiManager {
   void locate(const recon::ObjectTracks& tracks);
   void follow(double now_s, const recon::ObjectTracks& tracks);
   void place(const recon::ThreatPicture& picture);
+  static void place(recon::Element& element, const recon::Threat& threat);
   std::int32_t choose(Tick tick, const recon::FlightState& state);
   std::int32_t ask_policy(const recon::ElementChoice& choice);
 
   skein::Entity& entity_;
   recon::ElementTask task_;
+  recon::Element order_;  // what is wanted of each
   std::vector<recon::Element> elements_;
   std::vector<recon::Element> ordered_;  // as they were
   std::vector<FollowedTarget> targets_;

@@ -164,6 +164,8 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
         found->collected)
       return tour(state, elements, found->name + " is located");
   }
+  if (elements.elements.size() > planned_for_ && !nothing_new_)
+    return tour(state, elements, elements.elements.back().name + " was not reported");
   const bool flown = now.legs > 0 && now.leg >= now.legs;
   const bool missed = std::ranges::any_of(elements.elements, [&](const recon::Element& each) {
     return !each.collected && tries_[each.name] < kTries;
@@ -246,6 +248,7 @@ bool MissionManager::is_barred(const recon::FlightState& state) const {
 MissionManager::Order MissionManager::tour(const recon::FlightState& state,
                                            const recon::ElementList& elements,
                                            const std::string& why) {
+  planned_for_ = elements.elements.size();
   recon::TourProblem problem;
   const Local here = local(*frame_, state.position);
   const WayPoint home = approach(strip(*frame_, runway_), {}).front();
@@ -259,8 +262,8 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
     recon::TourTask& task = problem.tasks.emplace_back(each.name, each.priority);
     PassRules rules;
     if (each.task == recon::ElementTask::LocateEmitter) {
-      rules.aside_m = each.stand_off_m;
-      rules.before_m = rules.after_m = kBaselineShare * each.stand_off_m;
+      rules.aside_m = aside_m(local(*frame_, each.line.front()), each.stand_off_m, wide);
+      rules.before_m = rules.after_m = kBaselineShare * rules.aside_m;
     }
     for (const CollectionPass& pass : passes_by(locals(*frame_, each.line), wide, cruise_, rules))
       task.passes.push_back(tour_pass(pass));

@@ -77,6 +77,7 @@ class MissionManager : public recon::IMissionManager {
   std::vector<std::string> tour_;           // the elements that it passes,
   std::size_t passed_ = 0;                  // of which so many were passed
   std::map<std::string, int> tries_;        // and how often, each
+  std::size_t planned_for_ = 0;             // so many were known when it was planned
   std::optional<std::string> return_home_;  // as the executive wants, and why
   std::optional<Circle> circle_;            // that is flown about a target
   Local told_circle_{};                     // the centre of that which was told last

@@ -93,6 +93,18 @@ FlightCost cost_of_leg(const RoutePose& from, const RoutePose& to,
   return cost;
 }
 
+double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs) {
+  // A way along the very edge would be within it by its wind.
+  constexpr double kBeside_m = 200;
+  double aside = ordered_m;
+  for (const ThreatDisc& disc : discs) {
+    if (!contains(disc, emitter.north_m, emitter.east_m)) continue;
+    const double off = std::hypot(disc.north_m - emitter.north_m, disc.east_m - emitter.east_m);
+    aside = std::max(aside, disc.radius_m + off + kBeside_m);
+  }
+  return aside;
+}
+
 std::vector<CollectionPass> passes_by(const std::vector<Local>& line,
                                       std::span<const ThreatDisc> discs,
                                       const CruiseFigures& cruise, const PassRules& rules) {

@@ -51,6 +51,10 @@ struct PassRules {
   int courses = 8;       ///< Past a point.
 };
 
+/// How far aside an emitter is passed: as far as was ordered, and out of reach of its own weapon
+/// and of all others that cover it, on whatever course.
+double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs);
+
 /// The ways to pass an element straight, with what they take: a point on courses that divide the
 /// circle evenly, a road (its corners in order) along its ends, in either direction and on either
 /// side.

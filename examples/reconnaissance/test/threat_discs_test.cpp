@@ -34,6 +34,23 @@ TEST_CASE("a leg that a disc bars is longer, and without hazard; into a disc no 
   CHECK(cost_of_leg(from, within, kOne, kCruise).hazard == Approx(0.02 * 2000 / 60));
 }
 
+TEST_CASE("an emitter is passed as far aside as ordered, or out of reach of what covers it") {
+  CHECK(aside_m({0, 5000, 0}, 6500, {}) == 6500);
+  CHECK(aside_m({0, 9000, 0}, 500, kOne) == 500);  // a weapon that does not reach there
+  CHECK(aside_m({0, 5000, 0}, 6500, kOne) == 6500);
+  // Its own weapon, and that of another one that it stands beside.
+  CHECK(aside_m({0, 5000, 0}, 500, kOne) > 3000);
+  CHECK(aside_m({0, 7000, 0}, 500, kOne) > 5000);
+  // Whatever the course.
+  for (const Local place : {Local{0, 5000, 0}, Local{0, 7000, 0}}) {
+    PassRules rules;
+    rules.aside_m = aside_m(place, 500, kOne);
+    const auto passes = passes_by({place}, kOne, kCruise, rules);
+    CHECK(passes.size() == 8);
+    for (const CollectionPass& pass : passes) CHECK(pass.cost.hazard == 0);
+  }
+}
+
 TEST_CASE("an element is passed straight, as far aside as the camera wants, long enough for it") {
   const auto past_point = passes_by({{1000, 2000, 0}}, {}, kCruise);
   CHECK(past_point.size() == 8);
