@@ -1,13 +1,12 @@
 // All thirteen fly, on both vendors; the verdict is what the conditions in the profile make it.
 #include <catch2/catch.hpp>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
 
-#include "../mission/mission_run.hpp"
 #include "../tools/places.hpp"
+#include "mission_report.hpp"
 #include "track_check.hpp"
 
 using namespace skein::test;
@@ -23,12 +22,6 @@ const std::vector<std::string> kShort{"--variable", "elements=shed 1 5 0.3 20 53
                                       "--variable", "intruders=70 30 7000 60",
                                       "--variable", "failures=2 wrong 40 300",
                                       "--variable", "planner_failures=2 killed"};
-
-std::vector<std::string> with(std::vector<std::string> arguments,
-                              const std::vector<std::string>& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -96,7 +89,7 @@ TEST_CASE(
   CHECK_THAT(run.output(), Contains("planned: shed"));
   // What is to be seen is seen as finely as it was ordered, by a pattern that a Head chose.
   CHECK_THAT(run.output(), Contains("shed collected: 0."));
-  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  const auto verdict = report_of(run, "reconnaissance");
   CHECK(verdict["verdict"] == "passed");
   CHECK(verdict["checks"].size() == 9);
   // What broke is told: who noticed it, and what was done.
@@ -122,7 +115,7 @@ TEST_CASE("a mission whose fuel becomes short goes home, because its executive s
   CHECK(run.exit_code() == 10);
   CHECK_THAT(run.output(), Contains("ReturnHome: fuel suffices for the way home and no more"));
   CHECK_THAT(run.output(), Contains("Egress: fuel suffices for the way home and no more"));
-  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  const auto verdict = report_of(run, "reconnaissance");
   CHECK(verdict["flown"] == true);
   CHECK_THAT(verdict["reason"].get<std::string>(), Contains("targets: 0 of 1"));
   check_tracks(run);
@@ -132,7 +125,7 @@ TEST_CASE("a flight that is not flown to its end says so by its exit code") {
   const MissionRun run(kMission, with(kShort, {"--set", "ground_station.Longest flight=5 s"}));
   INFO(run.output());
   CHECK(run.exit_code() == 11);
-  const auto verdict = nlohmann::json::parse(text_of(run.file("reconnaissance.json")));
+  const auto verdict = report_of(run, "reconnaissance");
   CHECK(verdict["verdict"] == "failed");
   CHECK(verdict["flown"] == false);
   CHECK_THAT(verdict["reason"].get<std::string>(), Contains("takes too long"));

@@ -1,12 +1,9 @@
 // The same thirteen fly surveillance: a target is searched, found, followed, and judged by where it
 // truly was.
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "../mission/mission_run.hpp"
 #include "../tools/places.hpp"
+#include "mission_report.hpp"
 #include "track_check.hpp"
 
 using namespace skein::test;
@@ -24,26 +21,6 @@ const std::vector<std::string> kShort{
     "--variable", "follow_for=100 s",
     "--variable", "failures=2 wrong 40 100"};
 
-std::vector<std::string> with(std::vector<std::string> arguments,
-                              const std::vector<std::string>& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
-nlohmann::json report_of(const MissionRun& run) {
-  std::ostringstream text;
-  text << std::ifstream(run.file("surveillance.json")).rdbuf();
-  return nlohmann::json::parse(text.str());
-}
-
-/// Whether a condition is kept, by its name.
-bool kept(const nlohmann::json& report, const std::string& name) {
-  for (const auto& check : report["checks"])
-    if (check["name"] == name) return check["passed"].get<bool>();
-  FAIL("there is no condition " << name);
-  return false;
-}
-
 }  // namespace
 
 TEST_CASE("a target that was reported on a road is found, and followed while it drives and stops",
@@ -55,7 +32,7 @@ TEST_CASE("a target that was reported on a road is found, and followed while it 
   CHECK_THAT(run.output(), Contains("Collection: van is found, and followed"));
   CHECK_THAT(run.output(), Contains("van followed for 100 s, wanted 100"));
   CHECK_THAT(run.output(), Contains("Egress: followed as long as ordered: home"));
-  const auto report = report_of(run);
+  const auto report = report_of(run, "surveillance");
   for (const char* name : {"targets", "found", "in view", "track"}) CHECK(kept(report, name));
   CHECK(report["targets"][0]["path"].size() > 90);
   CHECK(report["truths"][0]["points"].size() > 200);
@@ -71,7 +48,7 @@ TEST_CASE("a target that is not where it was reported is not found, and the miss
   INFO(run.output());
   CHECK(run.exit_code() == 10);
   CHECK_THAT(run.output(), Contains("an element was missed"));
-  const auto report = report_of(run);
+  const auto report = report_of(run, "surveillance");
   CHECK(report["flown"] == true);
   CHECK(report["reason"] == "targets: 0 of 1 elements followed as long as was ordered");
   CHECK_FALSE(kept(report, "found"));
