@@ -250,7 +250,8 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
                                            const std::string& why) {
   planned_for_ = elements.elements.size();
   recon::TourProblem problem;
-  const Local here = local(*frame_, state.position);
+  // Who is within reach has to get out before anything else, which no tour can spare him.
+  const Local here = out_of_reach(local(*frame_, state.position), threats_);
   const WayPoint home = approach(strip(*frame_, runway_), {}).front();
   problem.start = {here.north_m, here.east_m, state.heading_rad};
   problem.landing = {home.place.north_m, home.place.east_m, runway_.course_rad};
@@ -335,7 +336,10 @@ void MissionManager::carry_out(const Conduct::Order& order, Tick tick,
     if (const auto* circling = std::get_if<Conduct::Loiter>(&order))
       return loiter(circling->circle, tick);
     if (const auto* follow = std::get_if<Conduct::Follow>(&order)) {
-      controller_->follow(ask_route(follow->through, tick, state, kLeastSurvival), tick);
+      // Nor is the way out of reach refused to who is within.
+      const bool within = is_within(local(*frame_, state.position), threats_);
+      controller_->follow(ask_route(follow->through, tick, state, within ? 0 : kLeastSurvival),
+                          tick);
     } else {
       controller_->land(ask_route(std::get<Conduct::Land>(order).through, tick, state, 0), runway_,
                         tick);

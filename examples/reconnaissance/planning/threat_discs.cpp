@@ -93,6 +93,27 @@ FlightCost cost_of_leg(const RoutePose& from, const RoutePose& to,
   return cost;
 }
 
+bool is_within(const Local& place, std::span<const ThreatDisc> discs) {
+  return std::ranges::any_of(
+      discs, [&](const ThreatDisc& disc) { return contains(disc, place.north_m, place.east_m); });
+}
+
+Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs) {
+  constexpr int kSteps = 20;
+  constexpr double kBeside_m = 1;
+  Local out = place;
+  for (int step = 0; step < kSteps; ++step) {
+    const auto disc = std::ranges::find_if(
+        discs, [&](const ThreatDisc& each) { return contains(each, out.north_m, out.east_m); });
+    if (disc == discs.end()) break;
+    // From its very middle all ways are as long.
+    const double away_rad = std::atan2(out.east_m - disc->east_m, out.north_m - disc->north_m);
+    out.north_m = disc->north_m + (disc->radius_m + kBeside_m) * std::cos(away_rad);
+    out.east_m = disc->east_m + (disc->radius_m + kBeside_m) * std::sin(away_rad);
+  }
+  return out;
+}
+
 double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs) {
   // A way along the very edge would be within it by its wind.
   constexpr double kBeside_m = 200;

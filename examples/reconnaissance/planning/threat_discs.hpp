@@ -51,6 +51,13 @@ struct PassRules {
   int courses = 8;       ///< Past a point.
 };
 
+/// Whether a place is within any disc.
+bool is_within(const Local& place, std::span<const ThreatDisc> discs);
+
+/// The place itself, or, within a disc, the nearest one outside of it; where discs overlap, outside
+/// of all, or as far from them as a few steps lead.
+Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs);
+
 /// How far aside an emitter is passed: as far as was ordered, and out of reach of its own weapon
 /// and of all others that cover it, on whatever course.
 double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs);

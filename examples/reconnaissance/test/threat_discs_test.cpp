@@ -34,6 +34,24 @@ TEST_CASE("a leg that a disc bars is longer, and without hazard; into a disc no 
   CHECK(cost_of_leg(from, within, kOne, kCruise).hazard == Approx(0.02 * 2000 / 60));
 }
 
+TEST_CASE("the nearest way out of reach leads away from the site, and out of all") {
+  const Local outside{0, 9000, 700};
+  CHECK_FALSE(is_within(outside, kOne));
+  CHECK(out_of_reach(outside, kOne).east_m == 9000);
+  CHECK(is_within({0, 6000, 700}, kOne));
+  const Local out = out_of_reach({0, 6000, 700}, kOne);
+  CHECK(out.north_m == Approx(0).margin(1e-6));
+  CHECK(out.east_m == Approx(8001));
+  CHECK(out.height_m == 700);
+  CHECK(hazard_of_leg(out_of_reach({0, 5000, 700}, kOne), {20000, 5000, 0}, kOne, 60) ==
+        Approx(0).margin(1e-3));
+  const std::vector<ThreatDisc> two{{0, 5000, 3000, 0.02}, {2000, 9000, 3000, 0.02}};
+  for (const Local inside : {Local{500, 7000, 0}, Local{1500, 7000, 0}, Local{0, 7800, 0}}) {
+    CHECK(is_within(inside, two));
+    CHECK_FALSE(is_within(out_of_reach(inside, two), two));
+  }
+}
+
 TEST_CASE("an emitter is passed as far aside as ordered, or out of reach of what covers it") {
   CHECK(aside_m({0, 5000, 0}, 6500, {}) == 6500);
   CHECK(aside_m({0, 9000, 0}, 500, kOne) == 500);  // a weapon that does not reach there
