@@ -20,8 +20,8 @@ constexpr double kTailWind_m_s = 7;
 // Above ground; below it no advisory leads further down.
 constexpr double kLeastDescent_m = 300;
 
-FlightRules rules_of(const skein::ParameterValues& values) {
-  FlightRules rules;
+FlightRules rules_of(const AircraftType& type, const skein::ParameterValues& values) {
+  FlightRules rules = type.rules;
   rules.cruise_m_s = values.find<double>("Cruising speed").value_or(rules.cruise_m_s);
   if (const auto bank = values.find<double>("Bank angle")) rules.greatest_bank_rad = radians(*bank);
   if (const auto climb = values.find<double>("Climb angle"))
@@ -53,7 +53,8 @@ recon::FlightMode mode_of(Pilot::Mode mode) {
 
 FlightController::FlightController(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
-      rules_(rules_of(values)),
+      type_(aircraft_type(values.find<std::string>("Aircraft").value_or("medium"))),
+      rules_(rules_of(type_, values)),
       pilot_(rules_, {[this](const Motion& motion, const Line& leg) {
                         return ask_guidance(motion, leg, 0);
                       },
@@ -75,7 +76,8 @@ void FlightController::start() {
 
 recon::FlightLimits FlightController::limits() {
   return {rules_.cruise_m_s, rules_.greatest_bank_rad, rules_.greatest_climb_rad,
-          turn_radius_m(rules_.cruise_m_s + kTailWind_m_s, rules_.greatest_bank_rad)};
+          turn_radius_m(rules_.cruise_m_s + kTailWind_m_s, rules_.greatest_bank_rad),
+          type_.fuel_kg_s};
 }
 
 void FlightController::take_off(const recon::Runway& from, std::int64_t tick) {

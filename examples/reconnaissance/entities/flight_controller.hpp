@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flight.idl.hpp"
+#include "flight/aircraft_type.hpp"
 #include "flight/pilot.hpp"
 #include "geodesy/local_frame.hpp"
 #include "member.hpp"
@@ -50,6 +51,7 @@ class FlightController : public recon::IFlightController {
                const recon::Sensors& sensors);
 
   skein::Entity& entity_;
+  const AircraftType& type_;
   FlightRules rules_;
   std::optional<LocalFrame> frame_;  // about the first runway
   std::optional<LocalFrame> stand_;  // about where it stood before that was known

@@ -1,9 +1,14 @@
 #include "flight_models.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "convert.hpp"
+#include "flight/aircraft_type.hpp"
 #include "flight/guidance.hpp"
+#include "jsbsim/failure.hpp"
+#include "mission/places.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -26,6 +31,10 @@ Circle circle_of(const recon::GuidanceInput& input) {
 
 }  // namespace
 
+FlightModel::FlightModel(const skein::ParameterValues& values, Advance advance)
+    : advance_(advance),
+      airframe_(aircraft_type(values.find<std::string>("Aircraft").value_or("medium")).airframe) {}
+
 void FlightModel::place(const recon::ModelState& state) { aircraft_ = aircraft(state); }
 
 recon::ModelState FlightModel::advance(const recon::ModelInput& input) {
@@ -33,6 +42,31 @@ recon::ModelState FlightModel::advance(const recon::ModelInput& input) {
                        {input.wind_north_m_s, input.wind_east_m_s, input.wind_up_m_s},
                        input.ground_m, input.seconds);
   return model_state(aircraft_);
+}
+
+JsbsimModel::JsbsimModel(const skein::ParameterValues& values)
+    : flight_({.program = values.find<std::string>("Program").value_or("JSBSim"),
+               .origin = parse_runway(values.get<std::string>("Runway")).threshold,
+               .tell = [](const std::string& what) { fmt::print(stderr, "{}\n", what); }}) {}
+
+void JsbsimModel::place(const recon::ModelState& state) {
+  try {
+    flight_.place(aircraft(state));
+  } catch (const JsbsimFailure& failure) {
+    throw recon::Refused(failure.what());
+  }
+}
+
+recon::ModelState JsbsimModel::advance(const recon::ModelInput& input) {
+  if (std::abs(input.seconds - JsbsimFlight::kTick_s) > 1e-9)
+    throw recon::Refused(fmt::format("JSBSim is stepped by {} s", JsbsimFlight::kTick_s));
+  try {
+    return model_state(flight_.advance(
+        {input.bank_rad, input.climb_rad, input.airspeed_m_s},
+        {input.wind_north_m_s, input.wind_east_m_s, input.wind_up_m_s}, input.ground_m));
+  } catch (const JsbsimFailure& failure) {
+    throw recon::Refused(failure.what());
+  }
 }
 
 double L1Guidance::bank_rad(const recon::GuidanceInput& input) {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <string>
+
 #include "flight.idl.hpp"
 #include "flight/point_mass.hpp"
+#include "jsbsim/flight.hpp"
+#include "skein/parameters.hpp"
 
 namespace reconnaissance {
 
@@ -10,7 +14,8 @@ class FlightModel : public recon::IFlightModel {
  public:
   using Advance = decltype(&reconnaissance::advance);
 
-  explicit FlightModel(Advance advance) : advance_(advance) {}
+  /// `Aircraft` names which one it is.
+  FlightModel(const skein::ParameterValues& values, Advance advance);
 
   void place(const recon::ModelState& state) override;
   recon::ModelState advance(const recon::ModelInput& input) override;
@@ -19,6 +24,18 @@ class FlightModel : public recon::IFlightModel {
   Advance advance_;
   Airframe airframe_;
   Aircraft aircraft_;
+};
+
+/// JSBSim as a CSP: what it cannot do is refused, with the reason.
+class JsbsimModel : public recon::IFlightModel {
+ public:
+  explicit JsbsimModel(const skein::ParameterValues& values);
+
+  void place(const recon::ModelState& state) override;
+  recon::ModelState advance(const recon::ModelInput& input) override;
+
+ private:
+  JsbsimFlight flight_;
 };
 
 /// A guidance along legs and circles: a CSP of the flight controller.

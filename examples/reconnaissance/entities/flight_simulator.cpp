@@ -8,7 +8,6 @@
 #include "convert.hpp"
 #include "flight/angles.hpp"
 #include "skein/error.hpp"
-#include "skein/head.hpp"
 #include "topics.hpp"
 #include "traffic/encounter.hpp"
 
@@ -59,8 +58,7 @@ Aircraft parked(const RunwayText& runway, double fuel_kg) {
 }  // namespace
 
 FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterValues& values)
-    : entity_(entity),
-      runway_(parse_runway(values.get<std::string>("Runway"))),
+    : runway_(parse_runway(values.get<std::string>("Runway"))),
       frame_(runway_.threshold),
       ground_(ground_of(values)),
       mean_wind_(wind_from(radians(values.find<double>("Wind from").value_or(0)),
@@ -72,6 +70,7 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
       others_(intruders_.size()),
       traffic_random_(values.find<std::uint64_t>("Seed").value_or(1) + kOtherNumbers),
       aircraft_(parked(runway_, values.find<double>("Fuel").value_or(80))),
+      model_(entity, parse_names(values.find<std::string>("Flight models").value_or(""))),
       health_(entity),
       time_(entity, values.get<std::size_t>("Participants"),
             values.find<double>("Speed limit").value_or(0)),
@@ -82,8 +81,6 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
       traffic_truth_(entity.publisher<recon::Traffic>(topic::kTrafficTruth.name)) {}
 
 void FlightSimulator::start() {
-  model_ = entity_.head().preselect<recon::IFlightModel>();
-  model_->place(model_state(aircraft_));
   thread_ = std::jthread([this](const std::stop_token& stop) { simulate(stop); });
 }
 
@@ -107,7 +104,7 @@ void FlightSimulator::limit_speed(double times_real_time) {
 void FlightSimulator::simulate(const std::stop_token& stop) {
   while (const auto tick = time_.await_next(stop)) {
     try {
-      simulate(*tick);
+      simulate(*tick, stop);
       health_.set(recon::Condition::Fine);
     } catch (const skein::Error& error) {
       health_.set(recon::Condition::Failed, error.what());
@@ -118,8 +115,8 @@ void FlightSimulator::simulate(const std::stop_token& stop) {
   }
 }
 
-void FlightSimulator::simulate(Tick tick) {
-  if (tick == 0) return;
+void FlightSimulator::simulate(Tick tick, const std::stop_token& stop) {
+  if (tick == 0) return model_.place(model_state(aircraft_), stop);
   const auto command = commands_.at(tick - 1);
   const Wind wind = blow();
   recon::ModelInput input;
@@ -133,7 +130,7 @@ void FlightSimulator::simulate(Tick tick) {
   input.wind_up_m_s = wind.up_m_s;
   input.ground_m = ground_m();
   input.seconds = kTick_s;
-  aircraft_ = aircraft(model_->advance(input));
+  aircraft_ = aircraft(model_.advance(input, stop));
 }
 
 /// The mean wind, and gusts about it: a first-order Gauss-Markov process in each direction.

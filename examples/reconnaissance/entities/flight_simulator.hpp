@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "chosen_model.hpp"
 #include "flight.idl.hpp"
 #include "flight/sensors.hpp"
 #include "geodesy/hills.hpp"
@@ -39,7 +40,7 @@ class FlightSimulator : public recon::IFlightSimulator {
 
  private:
   void simulate(const std::stop_token& stop);
-  void simulate(Tick tick);
+  void simulate(Tick tick, const std::stop_token& stop);
   Wind blow();
   void publish(Tick tick);
   SensorFailure failure_of(std::size_t set, Tick tick) const;
@@ -47,7 +48,6 @@ class FlightSimulator : public recon::IFlightSimulator {
   double ground_m() const;
   void fly_others(Tick tick);
 
-  skein::Entity& entity_;
   RunwayText runway_;
   LocalFrame frame_;
   Hills ground_;
@@ -62,7 +62,7 @@ class FlightSimulator : public recon::IFlightSimulator {
   std::vector<std::optional<TrafficState>> others_;  // of each intruder, once it is there
   Random traffic_random_;
   Aircraft aircraft_;
-  std::optional<recon::IFlightModel::Proxy> model_;
+  ChosenModel model_;
 
   HealthReport health_;
   TimeKeeper time_;

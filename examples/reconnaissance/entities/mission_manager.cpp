@@ -81,6 +81,7 @@ void MissionManager::start() {
   limits_ = controller_->limits();
   cruise_.speed_m_s = limits_.speed_m_s;
   cruise_.turn_radius_m = limits_.turn_radius_m;
+  cruise_.fuel_kg_s = limits_.fuel_kg_s;
   member_.start();
 }
 

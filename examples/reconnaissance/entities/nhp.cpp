@@ -8,6 +8,7 @@
 
 #include "convert.hpp"
 #include "deciding.hpp"
+#include "flight/aircraft_type.hpp"
 #include "mission/places.hpp"
 #include "topics.hpp"
 
@@ -21,8 +22,12 @@ constexpr Tick kHealthPeriod = 50;
 constexpr Tick kGivenUp = 60 * kHealthPeriod;
 // What somebody has told in the tick before is on its way here.
 constexpr auto kOnTheWay = 1s;
-// Of the way home before it is planned: at 60 m/s, with a third more for turns and wind.
-constexpr double kFuel_kg_m = 0.006 / 60 * 1.33;
+// Of the way home before it is planned, what turns and wind add.
+constexpr double kTurnsAndWind = 1.33;
+
+double fuel_kg_m(const AircraftType& type) {
+  return type.fuel_kg_s / type.rules.cruise_m_s * kTurnsAndWind;
+}
 
 }  // namespace
 
@@ -31,6 +36,7 @@ Nhp::Nhp(skein::Entity& entity, const skein::ParameterValues& values)
       crew_(parse_names(values.get<std::string>("Crew"))),
       required_(parse_names(values.find<std::string>("Required").value_or(""))),
       fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
+      fuel_kg_m_(fuel_kg_m(aircraft_type(values.find<std::string>("Aircraft").value_or("medium")))),
       flight_(entity, topic::kFlightState),
       healths_(entity.subscription<recon::Health>(
           topic::kHealth, skein::TopicQos::state(),
@@ -79,7 +85,7 @@ void Nhp::order_flight(Tick tick, recon::MissionMode& mode) {
   const Local place = local(*home_, state->position);
   recon::ExecutiveSituation situation;
   situation.fuel_kg = state->fuel_kg;
-  situation.fuel_home_kg = kFuel_kg_m * std::hypot(place.north_m, place.east_m);
+  situation.fuel_home_kg = fuel_kg_m_ * std::hypot(place.north_m, place.east_m);
   situation.fuel_for_mission_kg = situation.fuel_home_kg;
   situation.fuel_reserve_kg = fuel_reserve_kg_;
   situation.sensors = 3;

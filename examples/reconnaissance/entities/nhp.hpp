@@ -38,6 +38,7 @@ class Nhp {
   std::vector<std::string> crew_;
   std::vector<std::string> required_;
   double fuel_reserve_kg_;
+  double fuel_kg_m_;                // of the way home before it is planned
   std::optional<LocalFrame> home_;  // about the first place of the aircraft
   std::vector<recon::MissingEntity> missing_;
   mutable std::mutex mutex_;

@@ -60,12 +60,22 @@ void add_csp(ComponentRegistry& registry, const char* name, Arguments... argumen
   });
 }
 
+/// One that has parameters.
+template <class Interface, class Csp, class... Arguments>
+void add_csp_of_values(ComponentRegistry& registry, const char* name, Arguments... arguments) {
+  registry.add_csp<Interface>(name, [=](const ParameterValues& values) {
+    return std::make_shared<typename Interface::Skeleton>(
+        std::make_shared<Csp>(values, arguments...));
+  });
+}
+
 std::optional<Circle> always_about(const StandOffTask& task) { return circle_about(task); }
 
 void add_all(ComponentRegistry& registry) {
   add_body<recon::IFlightSimulator, FlightSimulator>(registry, "FlightSimulator");
-  add_csp<recon::IFlightModel, FlightModel>(registry, "PointMass", &advance);
-  add_csp<recon::IFlightModel, FlightModel>(registry, "Kinematic", &advance_kinematic);
+  add_csp_of_values<recon::IFlightModel, FlightModel>(registry, "PointMass", &advance);
+  add_csp_of_values<recon::IFlightModel, FlightModel>(registry, "Kinematic", &advance_kinematic);
+  add_csp_of_values<recon::IFlightModel, JsbsimModel>(registry, "JSBSim");
 
   add_body<recon::IFlightController, FlightController>(registry, "FlightController");
   add_csp<recon::IGuidance, L1Guidance>(registry, "L1");
