@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct Threat {
   bool heard;                        ///< By our own warner,
   bool linked;                       ///< over the link.
   double last_heard_s;               ///< 0 if only linked.
+  /// As our own warner alone has it, which is what others may be told; none if only linked.
+  std::optional<skein::fusion::Estimate> own = std::nullopt;
 };
 
 /// Places an emitter by the bearings of its track, of which the first had it within the distances;
@@ -66,6 +69,12 @@ class AirDefencePicture {
 
   /// Takes the place of an earlier report with the same id.
   void report(const LinkTrack& track) { links_.insert_or_assign(track.id, track); }
+
+  /// Takes the place of all earlier reports: a site that is not among them is no longer reported.
+  void report_all(const std::vector<LinkTrack>& tracks) {
+    links_.clear();
+    for (const LinkTrack& each : tracks) report(each);
+  }
 
   /// All of which the place is known: ours that `locate` places, which is called for each confirmed
   /// track in order of its number. Ours first; those of the link that none of ours is, with numbers
