@@ -48,6 +48,12 @@ RunwayText parse_runway(const std::string& text) {
   return {place(numbers, text), course(radians(numbers[3])), numbers[4]};
 }
 
+std::vector<RunwayText> parse_runways(const std::string& text) {
+  std::vector<RunwayText> runways;
+  for (const std::string& each : parts_of(text, ';')) runways.push_back(parse_runway(each));
+  return runways;
+}
+
 std::vector<SiteText> parse_sites(const std::string& text) {
   std::vector<SiteText> sites;
   for (const std::string& part : parts_of(text, ';')) {

@@ -20,6 +20,9 @@ struct RunwayText {
 };
 RunwayText parse_runway(const std::string& text);
 
+/// Several, separated by semicolons.
+std::vector<RunwayText> parse_runways(const std::string& text);
+
 /// Sites of the air defence as a profile names them: `type latitude longitude active`, in degrees,
 /// and from how many seconds of the mission on it transmits; behind that, for one that lies in
 /// wait, to how many metres the aircraft has to come before it does. Separated by semicolons. Their

@@ -128,6 +128,21 @@ Verdict Judge::conclude(const std::string& ended, const std::vector<Check>& more
   return verdict;
 }
 
+Verdict joint_verdict(const std::vector<OfAircraft<Verdict>>& verdicts) {
+  Verdict joint{true, true, "", 0, 0, {}};
+  for (const auto& [aircraft, verdict] : verdicts) {
+    joint.flown = joint.flown && verdict.flown;
+    joint.passed = joint.passed && verdict.passed;
+    if (joint.reason.empty() && !verdict.reason.empty())
+      joint.reason = aircraft + " " + verdict.reason;
+    joint.duration_s = std::max(joint.duration_s, verdict.duration_s);
+    joint.distance_m += verdict.distance_m;
+    for (const Check& each : verdict.checks)
+      joint.checks.push_back({aircraft + " " + each.name, each.passed, each.text});
+  }
+  return joint;
+}
+
 int exit_code(const Verdict& verdict) {
   if (!verdict.flown) return kNotFlown;
   return verdict.passed ? kPassed : kFailed;

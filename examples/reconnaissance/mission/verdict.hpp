@@ -38,6 +38,17 @@ struct Verdict {
   std::vector<Check> checks;
 };
 
+/// Something of an aircraft, by the aircraft's name.
+template <class What>
+struct OfAircraft {
+  std::string aircraft;
+  What what;
+};
+
+/// One verdict over several aircraft, of which there is one at least: flown and passed if all are.
+/// It lasts as long as the longest; distances are added.
+Verdict joint_verdict(const std::vector<OfAircraft<Verdict>>& verdicts);
+
 /// Judges a flight by where the aircraft truly was. A pure object.
 class Judge {
  public:

@@ -161,7 +161,7 @@ function drawMap() {
   map.paths = record.targets.map(() => svg("path", {class: "followed"}));
   all.push(...map.truths, ...map.paths);
   record.decisions.forEach((decision, i) => { const state = at(decision.time_s); all.push(decisionMark(i, ...map.xy([state.north_m, state.east_m]), 3.6)); });
-  map.others = record.others.map(() => svg("g", {}, svg("path", {class: "intruder"}), svg("path", {class: "intruder_now", d: "M0 -8L5 7L0 4L-5 7Z"})));
+  map.others = record.others.map(other => svg("g", {}, svg("path", {class: other.name ? "intruder companion" : "intruder"}), svg("title", {}, other.name || `aircraft ${other.number}`), svg("path", {class: "intruder_now", d: "M0 -8L5 7L0 4L-5 7Z"})));
   map.aircraft = svg("path", {class: "aircraft", d: "M0 -12L2.2 -4L12 2V4.5L2.2 2L1.6 8L5 10.5V12L0 11L-5 12V10.5L-1.6 8L-2.2 2L-12 4.5V2L-2.2 -4Z"});
   all.push(...map.others, map.aircraft, ...scaleBar(scale, width, height));
   root.replaceChildren(...all);
@@ -238,7 +238,7 @@ function drawLanes() {
   for (const entity of entities) wanted.push([words(entity), (x, top) => record.decisions.flatMap((decision, i) => decision.entity === entity ? [decisionMark(i, x(decision.time_s), top + 9, 4.2)] : [])]);
   const lasting = (style, from, until, text) => (x, top) => svg("rect", {class: `band ${style}`, x: x(from), y: top, width: Math.max(x(until) - x(from), 3), height: 18}, svg("title", {}, text));
   if (record.threats.length) wanted.push(["Threats", (x, top) => record.threats.map(threat => svg("path", {class: "site", d: `M${x(Math.max(threat.from_s, begin)).toFixed(1)} ${top + 3}l6.5 11h-13z`}, svg("title", {}, `${clock(threat.from_s)} ${threat.kind}`)))]);
-  if (record.others.length) wanted.push(["Other aircraft", (x, top) => record.others.filter(each => each.points.length).map(each => lasting("other", each.points[0][0], each.points.at(-1)[0], `aircraft ${each.number}`)(x, top))]);
+  if (record.others.length) wanted.push(["Other aircraft", (x, top) => record.others.filter(each => each.points.length).map(each => lasting("other", each.points[0][0], each.points.at(-1)[0], each.name || `aircraft ${each.number}`)(x, top))]);
   if (record.footprints.length) wanted.push(["Images", (x, top) => record.footprints.map(each => svg("rect", {class: "band image_time", x: x(each.time_s), y: top + 3, width: 2, height: 12}, svg("title", {}, each.target)))]);
   if (record.faults.length) wanted.push(["Faults", (x, top) => record.faults.map(fault => lasting("fault", fault.from_s, fault.until_s ?? end, `${fault.what}. ${fault.answer}`)(x, top))]);
   const tall = beside ? 26 : 40, height = wanted.length * tall + 26, {x, width, ticks, cursor} = timeAxis(root, left, height), all = [];

@@ -34,6 +34,7 @@ struct OtherTrack {
   };
   std::uint32_t number = 0;
   std::vector<Point> points;
+  std::string name = {};  ///< Of one that is of the mission, too.
 };
 
 /// A route that was flown from then on.

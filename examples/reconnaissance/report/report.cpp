@@ -83,7 +83,7 @@ Json json(const std::vector<OtherTrack::Point>& points) {
 }
 
 Json json(const OtherTrack& other) {
-  return {{"number", other.number}, {"points", json(other.points)}};
+  return {{"number", other.number}, {"name", other.name}, {"points", json(other.points)}};
 }
 
 Json json(const PlannedRoute& route) {
