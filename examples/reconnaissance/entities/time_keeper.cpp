@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "in_system.hpp"
 #include "skein/error.hpp"
 
 namespace reconnaissance {
@@ -31,18 +32,19 @@ skein::TopicQos acknowledgment_qos() {
   return qos;
 }
 
-TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time)
+TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time,
+                       const std::vector<std::string>& systems)
     : entity_(entity),
       run_(new_run()),
       lock_step_(expected),
       pace_(times_real_time),
       acknowledgments_(entity.subscription<recon::Acknowledgment>(
-          kAcknowledgments, acknowledgment_qos(),
+          kAcknowledgments, in_systems(systems, acknowledgment_qos()),
           [this](const recon::Acknowledgment& acknowledgment) { hear(acknowledgment); })) {
   // Who is late gets the last one, without which it could not acknowledge it.
   for (const int period : kPeriods) {
-    time_.emplace(
-        period, entity.publisher<recon::MissionTime>(time_topic(period), skein::TopicQos::state()));
+    time_.emplace(period, entity.publisher<recon::MissionTime>(
+                              time_topic(period), in_systems(systems, skein::TopicQos::state())));
   }
 }
 

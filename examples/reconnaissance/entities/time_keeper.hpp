@@ -26,8 +26,10 @@ skein::TopicQos acknowledgment_qos();
 /// Thread-safe.
 class TimeKeeper {
  public:
-  /// Time begins when `expected` take part; `times_real_time` as for Pace.
-  TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time);
+  /// Time begins when `expected` take part; `times_real_time` as for Pace. They are of the systems
+  /// that are named, or else of the entity's own.
+  TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time,
+             const std::vector<std::string>& systems = {});
 
   /// Waits until the next tick may begin; its number, or nothing if the caller is told to stop.
   std::optional<Tick> await_next(const std::stop_token& stop);

@@ -221,6 +221,30 @@ TEST_CASE("time waits for one that works, and goes on without one that leaves") 
   CHECK(simulator.time.participants() == 1);
 }
 
+TEST_CASE("those of several systems take part in one time, and hear nothing of others") {
+  Notes notes;
+  const auto in = [](const std::string& system, const std::string& name) {
+    return std::make_unique<skein::Entity>(skein::EntityOptions{
+        .name = name, .system = system, .vendor = skein::dds::load_vendor("loopback")});
+  };
+  const auto keeper = in("uav-1", "simulator"), one = in("uav-1", "navigator-1"),
+             two = in("uav-2", "navigator-2"), stranger = in("uav-3", "navigator-3");
+  TimeKeeper time(*keeper, 2, 0, {"uav-1", "uav-2"});
+  Participant first(*one, 50, [&](Tick tick) { notes.note("first", tick); });
+  Participant second(*two, 10, [&](Tick tick) { notes.note("second", tick); });
+  Participant third(*stranger, 50, [&](Tick tick) { notes.note("stranger", tick); });
+  third.start();
+  first.start();
+  second.start();
+  const std::jthread passes([&](const std::stop_token& stop) {
+    while (const auto tick = time.await_next(stop)) time.begin(*tick);
+  });
+  REQUIRE(notes.await("first", 50));
+  REQUIRE(notes.await("second", 50));
+  CHECK(time.participants() == 2);
+  CHECK(third.tick() == -1);
+}
+
 TEST_CASE("one that dies without a farewell is out, and time goes on") {
   Notes notes;
   skein::SystemClock clock;
