@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -28,10 +29,14 @@ AdManager::AdManager(skein::Entity& entity, const skein::ParameterValues& values
       emitters_(entity, topic::kEmitters, {}),
       pictures_(
           entity.publisher<recon::ThreatPicture>(topic::kThreats.name, skein::TopicQos::state())),
-      member_(entity, values, [this](Tick tick) { manage(tick); }) {}
+      member_(entity, values, [this](Tick tick) { manage(tick); }) {
+  if (!values.find<bool>("Link").value_or(false)) return;
+  joint_.emplace(entity, topic::kLinkPicture, skein::TopicQos{});
+  reports_.emplace(entity.publisher<recon::LinkedSites>(topic::kLinkReports.name));
+}
 
 void AdManager::manage(Tick tick) {
-  bool heard = false;
+  bool heard = take_in(tick);
   for (const recon::EmitterReports& reports : emitters_.take(tick)) heard |= hear(reports);
   if (heard) {
     threats_ =
@@ -44,6 +49,36 @@ void AdManager::manage(Tick tick) {
     ++epoch_;
   }
   tell(tick);
+  report(tick);
+}
+
+/// The joint picture of half a second before: that of this tick waits for what is reported now.
+/// What nobody but this aircraft has found says nothing new.
+bool AdManager::take_in(Tick tick) {
+  if (!joint_) return false;
+  const auto joint = joint_->at(tick - topic::kLinkPicture.period);
+  const auto state = flight_.at(tick);
+  if (!joint || !state) return false;
+  if (!frame_) frame_.emplace(geodetic(state->position));
+  std::vector<recon::LinkedSite> sites;
+  for (const recon::LinkedSite& each : joint->sites)
+    if (each.reporters != std::vector{entity_.options().system}) sites.push_back(each);
+  if (sites == linked_) return false;
+  linked_ = std::move(sites);
+  std::vector<LinkTrack> tracks;
+  for (const recon::LinkedSite& each : linked_) tracks.push_back(link_track(*frame_, each));
+  picture_.report_all(tracks);
+  return true;
+}
+
+void AdManager::report(Tick tick) {
+  if (!reports_) return;
+  recon::LinkedSites told{tick, {}};
+  for (const Threat& each : threats_)
+    if (each.own)
+      told.sites.push_back(
+          linked_site(*frame_, each.id, each.emitter, *each.own, {entity_.options().system}));
+  reports_->publish(told);
 }
 
 bool AdManager::hear(const recon::EmitterReports& reports) {

@@ -15,7 +15,8 @@
 namespace reconnaissance {
 
 /// The air defence picture: knows where threats are, how certainly, and how far they reach. Its
-/// CSPs place emitters by bearings; its Head chooses among them.
+/// CSPs place emitters by bearings; its Head chooses among them. Over the link it reports what its
+/// own warner has found, and takes in what other aircraft have.
 class AdManager {
  public:
   AdManager(skein::Entity& entity, const skein::ParameterValues& values);
@@ -24,6 +25,8 @@ class AdManager {
  private:
   void manage(Tick tick);
   bool hear(const recon::EmitterReports& reports);
+  bool take_in(Tick tick);
+  void report(Tick tick);
   std::optional<skein::fusion::Estimate> locate(std::span<const Bearing> bearings,
                                                 const Interval& distances_m);
   void tell(Tick tick);
@@ -34,10 +37,14 @@ class AdManager {
   std::vector<Threat> threats_;
   std::vector<Threat> told_;  // of the present epoch
   std::uint32_t epoch_ = 0;
+  std::vector<recon::LinkedSite> linked_;  // that was taken in
 
   Stream<recon::FlightState> flight_;
   Stream<recon::EmitterReports> emitters_;
   skein::Publisher<recon::ThreatPicture> pictures_;
+  /// Where there is a link.
+  std::optional<Stream<recon::LinkedSites>> joint_;
+  std::optional<skein::Publisher<recon::LinkedSites>> reports_;
   Member member_;
 };
 

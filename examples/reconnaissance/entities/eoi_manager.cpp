@@ -10,6 +10,8 @@
 #include "deciding.hpp"
 #include "mission/elements.hpp"
 #include "mission/emitters.hpp"
+#include "mission/places.hpp"
+#include "mission/sharing.hpp"
 #include "skein/error.hpp"
 #include "target_conversion.hpp"
 #include "topics.hpp"
@@ -28,6 +30,24 @@ recon::ElementTask task_of(const std::string& text) {
   if (text == "locate") return recon::ElementTask::LocateEmitter;
   throw skein::InvalidArgument("parameter 'Task': '" + text +
                                "' is no task; there are images, follow and locate");
+}
+
+/// All that are ordered, or the share of this aircraft where there are others.
+std::vector<ElementText> elements_of(const skein::Entity& entity,
+                                     const skein::ParameterValues& values) {
+  auto elements = parse_elements(values.find<std::string>("Elements").value_or(""));
+  const auto aircraft = parse_names(values.find<std::string>("Aircraft").value_or(""));
+  if (aircraft.empty()) return elements;
+  const auto own = std::ranges::find(aircraft, entity.options().system);
+  std::vector<Geodetic> starts;
+  for (const RunwayText& each : parse_runways(values.find<std::string>("Runways").value_or("")))
+    starts.push_back(each.threshold);
+  if (own == aircraft.end() || starts.size() != aircraft.size())
+    throw skein::InvalidArgument(fmt::format(
+        "parameters 'Aircraft' and 'Runways': {} aircraft with {} runways are to share the "
+        "elements, and {} has to be one of them",
+        aircraft.size(), starts.size(), entity.options().system));
+  return share_of(elements, starts, static_cast<std::size_t>(own - aircraft.begin()));
 }
 
 double greatest_deviation_m(const GroundEstimate& estimate) {
@@ -51,8 +71,7 @@ EoiManager::EoiManager(skein::Entity& entity, const skein::ParameterValues& valu
   order_.wanted_deviation_m = values.find<double>("Located within").value_or(0);
   if (const auto wanted = values.find<std::chrono::duration<double>>("Follow for"))
     order_.wanted_s = wanted->count();
-  for (const ElementText& each :
-       parse_elements(values.find<std::string>("Elements").value_or(""))) {
+  for (const ElementText& each : elements_of(entity, values)) {
     recon::Element element = order_;
     element.name = each.name;
     for (const Geodetic& place : each.line) element.line.push_back(position(place));

@@ -7,6 +7,7 @@
 
 #include "convert.hpp"
 #include "flight/angles.hpp"
+#include "in_system.hpp"
 #include "skein/error.hpp"
 #include "topics.hpp"
 #include "traffic/encounter.hpp"
@@ -15,6 +16,7 @@ namespace reconnaissance {
 namespace {
 
 constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
+constexpr int kRate_hz = 50;
 // Gusts of light turbulence change within some seconds.
 constexpr double kGustTime_s = 5;
 // Below this height vertical gusts fade.
@@ -47,18 +49,29 @@ Measurement falsified(Measurement truth) {
   return truth;
 }
 
-Aircraft parked(const RunwayText& runway, double fuel_kg) {
+Aircraft parked(const LocalFrame& frame, const RunwayText& runway, double fuel_kg) {
   Aircraft aircraft;
-  aircraft.position.height_m = runway.threshold.height_m;
+  aircraft.position = frame.to_local(runway.threshold);
   aircraft.heading_rad = runway.course_rad;
   aircraft.fuel_kg = fuel_kg;
   return aircraft;
 }
 
+/// As it truly moved at a tick, a little later. The wind is left out: of its climb that is nothing
+/// that others would notice.
+TrafficState moved_on(const LocalFrame& frame, const recon::Truth& truth, double seconds) {
+  const TrafficState then{local(frame, truth.position),
+                          truth.ground_speed_m_s * std::cos(truth.course_rad),
+                          truth.ground_speed_m_s * std::sin(truth.course_rad),
+                          truth.airspeed_m_s * std::sin(truth.climb_rad)};
+  return straight_on(then, seconds);
+}
+
 }  // namespace
 
 FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterValues& values)
-    : runway_(parse_runway(values.get<std::string>("Runway"))),
+    : name_(entity.id()),
+      runway_(parse_runway(values.get<std::string>("Runway"))),
       frame_(runway_.threshold),
       ground_(ground_of(values)),
       mean_wind_(wind_from(radians(values.find<double>("Wind from").value_or(0)),
@@ -69,53 +82,80 @@ FlightSimulator::FlightSimulator(skein::Entity& entity, const skein::ParameterVa
       intruders_(parse_intruders(values.find<std::string>("Intruders").value_or(""))),
       others_(intruders_.size()),
       traffic_random_(values.find<std::uint64_t>("Seed").value_or(1) + kOtherNumbers),
-      aircraft_(parked(runway_, values.find<double>("Fuel").value_or(80))),
+      aircraft_(parked(
+          frame_,
+          parse_runway(
+              values.find<std::string>("Own runway").value_or(values.get<std::string>("Runway"))),
+          values.find<double>("Fuel").value_or(80))),
       model_(entity, parse_names(values.find<std::string>("Flight models").value_or(""))),
       health_(entity),
-      time_(entity, values.get<std::size_t>("Participants"),
-            values.find<double>("Speed limit").value_or(0)),
       commands_(entity, topic::kFlightCommand),
       sensors_out_(entity.publisher<recon::Sensors>(topic::kSensors.name, stream_qos())),
       truth_(entity.publisher<recon::Truth>(topic::kTruth.name)),
       traffic_(entity.publisher<recon::Traffic>(topic::kTraffic.name)),
-      traffic_truth_(entity.publisher<recon::Traffic>(topic::kTrafficTruth.name)) {}
+      traffic_truth_(entity.publisher<recon::Traffic>(topic::kTrafficTruth.name)) {
+  const auto systems = parse_names(values.find<std::string>("Systems").value_or(""));
+  if (const auto expected = values.get<std::size_t>("Participants"); expected > 0)
+    time_.emplace(entity, expected, values.find<double>("Speed limit").value_or(0), systems);
+  else
+    participant_.emplace(entity, kRate_hz, [this](Tick tick) { pass(tick); });
+  for (const std::string& system :
+       parse_names(values.find<std::string>("Other aircraft").value_or("")))
+    companions_.emplace_back(entity, topic::kTruth, in_systems({system}));
+}
 
 void FlightSimulator::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { simulate(stop); });
+  if (participant_)
+    participant_->start();
+  else
+    thread_ = std::jthread([this] { keep_time(ending_.get_token()); });
+}
+
+TimeKeeper& FlightSimulator::time() {
+  if (!time_)
+    throw skein::Unavailable(name_ +
+                             " takes part in the time of another flight simulator; ask that one");
+  return *time_;
 }
 
 recon::SimulationStatus FlightSimulator::status() {
-  const Pace pace = time_.pace();
-  return {time_.run(),
-          time_.tick(),
+  const TimeKeeper& time = this->time();
+  const Pace pace = time.pace();
+  return {time.run(),
+          time.tick(),
           pace.paused(),
-          static_cast<std::uint32_t>(time_.participants()),
-          time_.awaited(),
+          static_cast<std::uint32_t>(time.participants()),
+          time.awaited(),
           pace.limit(),
-          time_.ticks_per_second()};
+          time.ticks_per_second()};
 }
 
 void FlightSimulator::limit_speed(double times_real_time) {
   if (!(times_real_time >= 0) || std::isinf(times_real_time))
     throw recon::Refused("a speed is 0 (as fast as it can), or so many times real time");
-  time_.limit(times_real_time);
+  time().limit(times_real_time);
 }
 
-void FlightSimulator::simulate(const std::stop_token& stop) {
-  while (const auto tick = time_.await_next(stop)) {
-    try {
-      simulate(*tick, stop);
-      health_.set(recon::Condition::Fine);
-    } catch (const skein::Error& error) {
-      health_.set(recon::Condition::Failed, error.what());
-    }
-    publish(*tick);
-    health_.tell(*tick);
-    time_.begin(*tick);
+void FlightSimulator::keep_time(const std::stop_token& stop) {
+  while (const auto tick = time_->await_next(stop)) {
+    pass(*tick);
+    time_->begin(*tick);
   }
 }
 
-void FlightSimulator::simulate(Tick tick, const std::stop_token& stop) {
+void FlightSimulator::pass(Tick tick) {
+  try {
+    simulate(tick);
+    health_.set(recon::Condition::Fine);
+  } catch (const skein::Error& error) {
+    health_.set(recon::Condition::Failed, error.what());
+  }
+  publish(tick);
+  health_.tell(tick);
+}
+
+void FlightSimulator::simulate(Tick tick) {
+  const std::stop_token stop = ending_.get_token();
   if (tick == 0) return model_.place(model_state(aircraft_), stop);
   const auto command = commands_.at(tick - 1);
   const Wind wind = blow();
@@ -191,6 +231,21 @@ recon::SensorSet FlightSimulator::measure(std::size_t set, Tick tick) {
           told->bank_rad};
 }
 
+/// Who makes the time is a tick ahead of the others: of these aircraft is told where they were one
+/// sample before, moved on.
+std::vector<std::pair<std::uint32_t, TrafficState>> FlightSimulator::others_at(Tick tick) {
+  std::vector<std::pair<std::uint32_t, TrafficState>> others;
+  for (std::size_t i = 0; i < others_.size(); ++i)
+    if (others_[i]) others.emplace_back(static_cast<std::uint32_t>(i + 1), *others_[i]);
+  for (std::size_t i = 0; i < companions_.size(); ++i) {
+    const auto truth = companions_[i].at(tick - topic::kTruth.period);
+    if (!truth || truth->on_ground) continue;
+    others.emplace_back(kFirstCompanion + static_cast<std::uint32_t>(i),
+                        moved_on(frame_, *truth, seconds_of(tick - truth->tick)));
+  }
+  return others;
+}
+
 /// Others appear, and fly straight on.
 void FlightSimulator::fly_others(Tick tick) {
   const TrafficState own{aircraft_.position, aircraft_.north_m_s, aircraft_.east_m_s,
@@ -206,17 +261,16 @@ void FlightSimulator::fly_others(Tick tick) {
   }
   if (!is_due(topic::kTraffic.period, tick)) return;
   recon::Traffic seen{tick, {}}, truth{tick, {}};
-  for (std::size_t i = 0; i < others_.size(); ++i) {
-    if (!others_[i]) continue;
+  for (const auto& [number, state] : others_at(tick)) {
     const auto tell = [&](recon::Traffic& traffic, double place_m, double speed_m_s) {
-      TrafficState told = *others_[i];
+      TrafficState told = state;
       told.place.north_m += place_m * traffic_random_.normal();
       told.place.east_m += place_m * traffic_random_.normal();
       told.place.height_m += place_m * traffic_random_.normal();
       told.north_m_s += speed_m_s * traffic_random_.normal();
       told.east_m_s += speed_m_s * traffic_random_.normal();
-      traffic.others.push_back({static_cast<std::uint32_t>(i + 1), position(frame_, told.place),
-                                told.north_m_s, told.east_m_s, told.up_m_s});
+      traffic.others.push_back(
+          {number, position(frame_, told.place), told.north_m_s, told.east_m_s, told.up_m_s});
     };
     tell(seen, kTrafficPlaceError_m, kTrafficSpeedError_m_s);
     tell(truth, 0, 0);

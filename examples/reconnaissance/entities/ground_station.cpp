@@ -5,13 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <utility>
 
 #include "convert.hpp"
 #include "mission/conduct.hpp"
-#include "report/report.hpp"
-#include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 #include "stream.hpp"
 #include "topics.hpp"
@@ -47,47 +44,20 @@ Judge judge_of(const LocalFrame& frame, const recon::Runway& runway,
                on_centre_line(strip(frame, runway), ApproachRules{}.aim_m, 0));
 }
 
-/// Minutes and seconds of the mission.
-std::string clock_of(Tick tick) {
-  return fmt::format("{:%M:%S}", std::chrono::floor<std::chrono::seconds>(time_of(tick)));
-}
-
 std::string track_line(Tick tick, std::uint32_t aircraft, const recon::Position& place,
                        double above_ground_m) {
   return fmt::format("{:.2f},{},{:.7f},{:.7f},{:.2f},{:.2f}\n", seconds_of(tick), aircraft,
                      place.latitude_deg, place.longitude_deg, place.height_m, above_ground_m);
 }
 
-/// Beside the file at first, then in its place: a reader finds a whole one.
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path beside = file.string() + ".new";
-  {
-    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
-    stream << text << std::flush;
-    if (!stream) throw skein::Unavailable("the result cannot be written: " + beside.string());
-  }
-  std::filesystem::rename(beside, file);
-}
-
-/// Not only at the end of the flight: throws where the file could not be written.
-void try_writing(const std::filesystem::path& file) {
-  const std::filesystem::path beside = file.string() + ".new";
-  if (!std::ofstream(beside, std::ios::app))
-    throw skein::InvalidArgument("parameter 'Results': " + beside.string() +
-                                 " cannot be written; name a place where it can");
-  std::filesystem::remove(beside);
-}
-
 }  // namespace
 
-GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues& values)
-    : entity_(entity),
-      order_{runway(parse_runway(values.get<std::string>("Runway")))},
-      frame_(geodetic(order_.runway.threshold)),
-      results_(values.find<std::string>("Results").value_or("reconnaissance")),
+GroundStation::GroundStation(const InSystem& entity, const skein::ParameterValues& values,
+                             const RunwayText& own)
+    : system_(entity),
+      order_{runway(own)},
+      frame_(parse_runway(values.get<std::string>("Runway")).threshold),
       patience_(values.find<skein::Duration>("Patience").value_or(2min)),
-      mission_(values.find<std::string>("Mission").value_or("reconnaissance")),
-      command_(values.find<std::string>("Command").value_or("")),
       ground_(ground_of(values)),
       judge_(judge_of(frame_, order_.runway, values)),
       truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
@@ -118,31 +88,33 @@ GroundStation::GroundStation(skein::Entity& entity, const skein::ParameterValues
           topic::kDecisions, decisions_qos(),
           [this](const skein::introspection::Decision& decision) { show(decision); })),
       recorder_(entity, frame_),
-      scoring_(entity, frame_, values),
-      member_(entity, values) {
-  try_writing(results_.string() + ".json");
+      scoring_(entity, frame_, values) {}
+
+void GroundStation::begin() {
+  simulator_ = system_.connect<recon::IFlightSimulator>(kPatience);
+  // Before anybody can be due, and so before time begins: the mission is the same in each run.
+  system_.connect<recon::IMissionManager>(kPatience).begin(order_, -1);
 }
 
-int GroundStation::run(const std::stop_token& told_to_end) {
-  simulator_ = entity_.connect<recon::IFlightSimulator>({.timeout = kPatience});
-  // Before it takes part, and so before time begins: the mission is the same in each run.
-  entity_.connect<recon::IMissionManager>({.timeout = kPatience}).begin(order_, -1);
-  const auto begun = entity_.clock().now();
-  member_.start();
-  const std::string ended = await_end(told_to_end);
-  const std::chrono::duration<double> took = entity_.clock().now() - begun;
-
+Verdict GroundStation::verdict(const std::string& ended) const {
   std::lock_guard lock(mutex_);
-  const Verdict verdict = judge_.conclude(ended, scoring_.checks());
-  for (const Check& check : verdict.checks)
-    fmt::print("{:6} {}: {}\n", check.passed ? "ok" : "FAILED", check.name, check.text);
-  fmt::print(
-      "{} after {:.0f} s in the air and {:.1f} km; it took {:.1f} s, {:.0f} ticks a second\n",
-      verdict.passed ? "passed" : (verdict.flown ? "FAILED" : "NOT FLOWN"), verdict.duration_s,
-      verdict.distance_m / 1000, took.count(), static_cast<double>(last_tick_) / took.count());
-  std::fflush(stdout);
-  write(verdict);
-  return exit_code(verdict);
+  return judge_.conclude(ended, scoring_.checks());
+}
+
+std::string GroundStation::tracks() const {
+  std::lock_guard lock(mutex_);
+  return tracks_;
+}
+
+Tick GroundStation::last_tick() const {
+  std::lock_guard lock(mutex_);
+  return last_tick_;
+}
+
+/// Minutes and seconds of the mission, and which aircraft where there are several.
+std::string GroundStation::clock_of(Tick tick) const {
+  return fmt::format("{:%M:%S}{}{}", std::chrono::floor<std::chrono::seconds>(time_of(tick)),
+                     system_.name().empty() ? "" : "  ", system_.name());
 }
 
 std::string GroundStation::await_end(const std::stop_token& told_to_end) {
@@ -305,6 +277,7 @@ void GroundStation::show(const recon::FlightState& state) {
 
 void GroundStation::show(const skein::introspection::Decision& decision) {
   using skein::introspection::Outcome;
+  if (!system_.has(decision.entity)) return;
   std::string lost, instead;
   for (const auto& attempt : decision.attempts) {
     if (attempt.outcome == Outcome::Disconnected) lost = attempt.csp + " has died at its task";
@@ -341,21 +314,6 @@ void GroundStation::show(const recon::ElementList& list) {
       fmt::print("{}  {} {}\n", clock_of(list.tick), element.name, collected_text(element));
   }
   std::fflush(stdout);
-}
-
-void GroundStation::write(const Verdict& verdict) const {
-  MissionRecord record = recorder_.record();
-  record.mission = mission_;
-  record.command = command_;
-  record.origin = geodetic(order_.runway.threshold);
-  record.verdict = verdict;
-  record.ground = ground_around(record, 180, ground_);
-  write_whole(results_.string() + ".json", to_json(record));
-  write_whole(results_.string() + ".html", to_html(record));
-  write_whole(results_.string() + ".junit.xml", to_junit(verdict, mission_));
-  write_whole(
-      results_.string() + ".csv",
-      "time_s,aircraft,latitude_deg,longitude_deg,height_m,height_above_ground_m\n" + tracks_);
 }
 
 }  // namespace reconnaissance

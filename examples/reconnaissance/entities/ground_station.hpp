@@ -1,7 +1,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -9,10 +8,12 @@
 #include <stop_token>
 #include <string>
 
+#include "clock/ticks.hpp"
 #include "geodesy/hills.hpp"
 #include "geodesy/local_frame.hpp"
-#include "member.hpp"
+#include "in_system.hpp"
 #include "mission.idl.hpp"
+#include "mission/places.hpp"
 #include "mission/verdict.hpp"
 #include "recorder.hpp"
 #include "scoring.hpp"
@@ -25,15 +26,29 @@
 
 namespace reconnaissance {
 
-/// Begins the mission, watches it, and judges it by where the aircraft truly was.
+/// Begins the mission of an aircraft, watches it, and judges it by where the aircraft truly was.
 class GroundStation {
  public:
-  GroundStation(skein::Entity& entity, const skein::ParameterValues& values);
+  /// Places are about the runway that the profile names; the aircraft uses `runway`.
+  GroundStation(const InSystem& system, const skein::ParameterValues& values,
+                const RunwayText& runway);
 
-  /// Returns at the mission's end, with its exit code (see exit_code()).
-  int run(const std::stop_token& told_to_end);
+  /// Gives the order.
+  void begin();
+  /// Waits for the end; why it is not the end of the flight, or an empty text.
+  std::string await_end(const std::stop_token& told_to_end);
+
+  /// As of now; `ended` as await_end() returned it.
+  Verdict verdict(const std::string& ended) const;
+  /// For the report, as far as it is recorded here.
+  MissionRecord record() const { return recorder_.record(); }
+  /// Of all aircraft, a line for each sample.
+  std::string tracks() const;
+  Tick last_tick() const;
+  const std::string& system() const { return system_.name(); }
 
  private:
+  std::string clock_of(Tick tick) const;
   void see(const recon::Truth& truth);
   void judge_what_is_whole();
   void show(const recon::MissionStatus& status);
@@ -45,24 +60,18 @@ class GroundStation {
   void see(const recon::ResolutionAdvisory& advisory);
   void show(const recon::FlightState& state);
   void show(const skein::introspection::Decision& decision);
-  /// Waits for the end; why it is not the end of the flight, or an empty text.
-  std::string await_end(const std::stop_token& told_to_end);
   bool is_complete() const;
   bool never_begins() const;
   std::string why_time_stands();
-  void write(const Verdict& verdict) const;
 
-  skein::Entity& entity_;
+  InSystem system_;
   recon::MissionOrder order_;
   LocalFrame frame_;
   std::optional<recon::IFlightSimulator::Proxy> simulator_;
-  std::filesystem::path results_;
   skein::Duration patience_;
-  std::string mission_;  // its name, and the command that flies it again
-  std::string command_;
   Hills ground_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   Judge judge_;
   /// Where all aircraft were at a tick, as far as it has arrived.
@@ -98,7 +107,6 @@ class GroundStation {
   skein::Subscription<skein::introspection::Decision> decisions_;
   Recorder recorder_;
   Scoring scoring_;
-  Member member_;
 };
 
 }  // namespace reconnaissance

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "in_system.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -11,9 +12,10 @@ constexpr int kHealthPeriod = 50;
 
 }  // namespace
 
-HealthReport::HealthReport(skein::Entity& entity)
+HealthReport::HealthReport(skein::Entity& entity, const std::vector<std::string>& systems)
     : health_{.entity = entity.options().name},
-      publisher_(entity.publisher<recon::Health>(topic::kHealth, skein::TopicQos::state())) {}
+      publisher_(entity.publisher<recon::Health>(topic::kHealth,
+                                                 in_systems(systems, skein::TopicQos::state()))) {}
 
 void HealthReport::set(recon::Condition condition, const std::string& reason) {
   std::lock_guard lock(mutex_);
@@ -36,8 +38,9 @@ void HealthReport::tell(Tick tick, const std::string& failure) {
   publisher_.publish(health);
 }
 
-Member::Member(skein::Entity& entity, const skein::ParameterValues& values, Participant::Work work)
-    : health_(entity),
+Member::Member(skein::Entity& entity, const skein::ParameterValues& values, Participant::Work work,
+               const std::vector<std::string>& systems)
+    : health_(entity, systems),
       participant_(entity, values.get<int>("Rate"), [this, work = std::move(work)](Tick tick) {
         const std::string failure = participant_.failure();
         if (work) work(tick);

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "mission.idl.hpp"
 #include "participant.hpp"
@@ -12,7 +13,8 @@ namespace reconnaissance {
 /// Tells once a second of the mission how an entity is. Thread-safe.
 class HealthReport {
  public:
-  explicit HealthReport(skein::Entity& entity);
+  /// In these systems, or the entity's own if there are none.
+  explicit HealthReport(skein::Entity& entity, const std::vector<std::string>& systems = {});
 
   /// What is told from now on.
   void set(recon::Condition condition, const std::string& reason = "");
@@ -30,8 +32,10 @@ class HealthReport {
 /// `Rate`), and tells how it is.
 class Member {
  public:
-  /// `work` is done in each tick at which the member is due, before its health is told.
-  Member(skein::Entity& entity, const skein::ParameterValues& values, Participant::Work work = {});
+  /// `work` is done in each tick at which the member is due, before its health is told; in these
+  /// systems, or the entity's own if there are none.
+  Member(skein::Entity& entity, const skein::ParameterValues& values, Participant::Work work = {},
+         const std::vector<std::string>& systems = {});
 
   void start() { participant_.start(); }
   Participant& time() { return participant_; }

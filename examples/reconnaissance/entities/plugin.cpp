@@ -11,7 +11,6 @@
 #include "flight_controller.hpp"
 #include "flight_models.hpp"
 #include "flight_simulator.hpp"
-#include "ground_station.hpp"
 #include "mission_manager.hpp"
 #include "navigator.hpp"
 #include "nhp.hpp"
@@ -20,6 +19,7 @@
 #include "radar_warner.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
+#include "station.hpp"
 #include "target_csps.hpp"
 #include "threat_simulator.hpp"
 #include "tour_csps.hpp"
@@ -120,7 +120,7 @@ void add_all(ComponentRegistry& registry) {
 
   registry.add_activity("GroundStation", [](Entity& entity, const ParameterValues& values,
                                             const std::stop_token& told_to_end) {
-    return GroundStation(entity, values).run(told_to_end);
+    return Station(entity, values).run(told_to_end);
   });
 }
 

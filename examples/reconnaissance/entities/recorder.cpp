@@ -29,8 +29,9 @@ double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanosecond
 
 }  // namespace
 
-Recorder::Recorder(skein::Entity& entity, const LocalFrame& frame)
-    : frame_(frame),
+Recorder::Recorder(const InSystem& entity, const LocalFrame& frame)
+    : system_(entity),
+      frame_(frame),
       truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
                                                 [this](const auto& truth) { see(truth); })),
       states_(entity.subscription<recon::FlightState>(topic::kFlightState.name, stream_qos(),
@@ -271,6 +272,7 @@ void Recorder::see(const recon::ResolutionAdvisory& advisory) {
 /// Heads that decide each second choose the same for the same reason most of the time: told is what
 /// they choose otherwise than they did a while before.
 void Recorder::see(const skein::introspection::Decision& decision) {
+  if (!system_.has(decision.entity)) return;
   std::lock_guard lock(mutex_);
   const std::string entity = decision.entity.substr(decision.entity.rfind('/') + 1);
   DecisionTold told;

@@ -8,6 +8,7 @@
 
 #include "flight.idl.hpp"
 #include "geodesy/local_frame.hpp"
+#include "in_system.hpp"
 #include "mission.idl.hpp"
 #include "report/record.hpp"
 #include "skein/entity.hpp"
@@ -18,10 +19,10 @@
 
 namespace reconnaissance {
 
-/// Records for the report what the thirteen publish. Thread-safe.
+/// Records for the report what the thirteen of a system publish. Thread-safe.
 class Recorder {
  public:
-  Recorder(skein::Entity& entity, const LocalFrame& frame);
+  Recorder(const InSystem& entity, const LocalFrame& frame);
 
   /// All until now.
   MissionRecord record() const;
@@ -52,6 +53,7 @@ class Recorder {
     std::optional<double> since_s;  // Unset: not yet; 0 where that is known, or from the beginning.
   };
 
+  InSystem system_;
   LocalFrame frame_;
   mutable std::mutex mutex_;
   MissionRecord record_;

@@ -9,7 +9,7 @@
 
 namespace reconnaissance {
 
-Scoring::Scoring(skein::Entity& entity, const LocalFrame& frame,
+Scoring::Scoring(const InSystem& entity, const LocalFrame& frame,
                  const skein::ParameterValues& values)
     : frame_(frame),
       within_m_(values.find<double>("Located within").value_or(500)),

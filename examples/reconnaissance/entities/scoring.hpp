@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geodesy/local_frame.hpp"
+#include "in_system.hpp"
 #include "mission/scores.hpp"
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
@@ -18,7 +19,7 @@ namespace reconnaissance {
 /// its order is to follow or to place them. Thread-safe.
 class Scoring {
  public:
-  Scoring(skein::Entity& entity, const LocalFrame& frame, const skein::ParameterValues& values);
+  Scoring(const InSystem& entity, const LocalFrame& frame, const skein::ParameterValues& values);
 
   /// Beside those of the flight.
   std::vector<Check> checks() const;

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "convert.hpp"
 #include "threats.idl.hpp"
 #include "threats/air_defence_picture.hpp"
 
@@ -64,6 +68,28 @@ inline std::vector<Bearing> bearings_of(const recon::BearingTrack& track) {
 inline recon::PlaceEstimate place_estimate(const skein::fusion::Estimate& place) {
   return {place.mean[0], place.mean[1], place.covariance[0], place.covariance[1],
           place.covariance[3]};
+}
+
+/// The map's directions at the frame's origin are taken for those of the place: 50 km away they
+/// differ by half a degree, which no error of a place shows.
+inline recon::LinkedSite linked_site(const LocalFrame& frame, std::uint32_t number,
+                                     const std::string& kind, const skein::fusion::Estimate& place,
+                                     std::vector<std::string> reporters) {
+  return {number,
+          kind,
+          position(frame, Local{place.mean[0], place.mean[1], 0}),
+          place.covariance[0],
+          place.covariance[1],
+          place.covariance[3],
+          std::move(reporters)};
+}
+
+inline LinkTrack link_track(const LocalFrame& frame, const recon::LinkedSite& site) {
+  const Local place = local(frame, site.position);
+  return {site.number,
+          site.kind,
+          {{place.north_m, place.east_m},
+           {site.north_north_m2, site.north_east_m2, site.north_east_m2, site.east_east_m2}}};
 }
 
 inline skein::fusion::Estimate estimate(const recon::PlaceEstimate& place) {

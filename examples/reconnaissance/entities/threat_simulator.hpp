@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "flight.idl.hpp"
 #include "geodesy/hills.hpp"
 #include "geodesy/local_frame.hpp"
+#include "in_system.hpp"
 #include "member.hpp"
 #include "mission/places.hpp"
 #include "skein/entity.hpp"
@@ -18,7 +21,8 @@
 namespace reconnaissance {
 
 /// Simulates the air defence: what its radars do about the aircraft, what the aircraft's warner
-/// receives of them, and what its weapons cost.
+/// receives of them, and what its weapons cost. Where there are several aircraft, the same sites
+/// see all of them; each site looks at each aircraft as if there were no other.
 class ThreatSimulator {
  public:
   ThreatSimulator(skein::Entity& entity, const skein::ParameterValues& values);
@@ -32,23 +36,28 @@ class ThreatSimulator {
     bool heard = false;
   };
 
-  static std::vector<Site> sites_of(const std::vector<SiteText>& texts, const LocalFrame& frame,
-                                    const Hills& ground, std::uint64_t seed);
-  void simulate(Tick tick);
-  void tell_truth(Tick tick);
+  /// An aircraft, and what the sites do about it.
+  struct Seen {
+    Seen(const InSystem& system, std::vector<Site> sites, std::uint64_t seed);
+
+    std::vector<Site> sites;
+    Random random;
+    Survival survival;
+    double tracked_s = 0;
+    Tick simulated = 0;
+    Stream<recon::Truth> truth;
+    skein::Publisher<recon::Intercepts> intercepts;
+    skein::Publisher<recon::ThreatTruth> threat_truth;
+  };
+
+  std::vector<Site> sites_of(const std::vector<SiteText>& texts, std::uint64_t seed) const;
+  void simulate(Tick tick, Seen& aircraft);
+  void tell_truth(Tick tick, Seen& aircraft);
 
   LocalFrame frame_;
   Hills ground_;
-  std::vector<Site> sites_;
   WarnerReceiver receiver_;
-  Random random_;
-  Survival survival_;
-  double tracked_s_ = 0;
-  Tick simulated_ = 0;
-
-  Stream<recon::Truth> truth_;
-  skein::Publisher<recon::Intercepts> intercepts_;
-  skein::Publisher<recon::ThreatTruth> threat_truth_;
+  std::deque<Seen> aircraft_;
   Member member_;
 };
 

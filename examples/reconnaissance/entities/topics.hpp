@@ -21,6 +21,8 @@ inline constexpr StreamTopic kMode{"mission/mode", 25};
 inline constexpr StreamTopic kIntercepts{"threat/intercepts", 5};
 inline constexpr StreamTopic kEmitters{"threat/emitters", 5};
 inline constexpr StreamTopic kThreats{"threat/picture", 25};
+inline constexpr StreamTopic kLinkReports{"link/reports", 25};
+inline constexpr StreamTopic kLinkPicture{"link/picture", 25};
 inline constexpr StreamTopic kElements{"target/elements", 50};
 inline constexpr StreamTopic kImages{"target/images", 5};
 inline constexpr StreamTopic kTracks{"target/tracks", 5};
