@@ -18,7 +18,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 20s;
+// Where there are several aircraft, it begins to wait when one is ready.
+constexpr auto kPatience = 60s;
 // Ticks of which a part is on its way; more have lost one.
 constexpr std::size_t kOnTheWay = 100;
 // Of the mission: until then everybody has to be fine.

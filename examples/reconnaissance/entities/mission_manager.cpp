@@ -18,8 +18,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Its providers have reported that they are ready.
-constexpr auto kPatience = 20s;
+// Its providers have reported that they are ready; where there are several aircraft, at least those
+// of one have.
+constexpr auto kPatience = 60s;
 // Above the runway: higher than any hill, by as much as the camera likes.
 constexpr double kCollectionHeight_m = 750;
 constexpr double kLeastSurvival = 0.97;
