@@ -53,7 +53,7 @@ recon::FlightMode mode_of(Pilot::Mode mode) {
 
 FlightController::FlightController(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
-      type_(aircraft_type(values.find<std::string>("Aircraft").value_or("medium"))),
+      type_(aircraft_type(values.find<std::string>("Aircraft type").value_or("medium"))),
       rules_(rules_of(type_, values)),
       pilot_(rules_, {[this](const Motion& motion, const Line& leg) {
                         return ask_guidance(motion, leg, 0);

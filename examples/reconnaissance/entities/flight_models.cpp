@@ -33,7 +33,8 @@ Circle circle_of(const recon::GuidanceInput& input) {
 
 FlightModel::FlightModel(const skein::ParameterValues& values, Advance advance)
     : advance_(advance),
-      airframe_(aircraft_type(values.find<std::string>("Aircraft").value_or("medium")).airframe) {}
+      airframe_(
+          aircraft_type(values.find<std::string>("Aircraft type").value_or("medium")).airframe) {}
 
 void FlightModel::place(const recon::ModelState& state) { aircraft_ = aircraft(state); }
 

@@ -36,7 +36,8 @@ Nhp::Nhp(skein::Entity& entity, const skein::ParameterValues& values)
       crew_(parse_names(values.get<std::string>("Crew"))),
       required_(parse_names(values.find<std::string>("Required").value_or(""))),
       fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
-      fuel_kg_m_(fuel_kg_m(aircraft_type(values.find<std::string>("Aircraft").value_or("medium")))),
+      fuel_kg_m_(
+          fuel_kg_m(aircraft_type(values.find<std::string>("Aircraft type").value_or("medium")))),
       flight_(entity, topic::kFlightState),
       healths_(entity.subscription<recon::Health>(
           topic::kHealth, skein::TopicQos::state(),

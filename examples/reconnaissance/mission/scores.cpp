@@ -57,7 +57,7 @@ std::vector<Check> PursuitScore::checks() const {
     if (last) longest_gap = std::max(longest_gap, second - *last - 1);
     last = second;
     // More than was ordered does not make up for what was not seen.
-    if (reported == conditions_.ordered_s) continue;
+    if (reported >= conditions_.ordered_s) continue;
     ++reported;
     if (moment.in_view) ++in_view;
     squares_m2 += std::pow(distance_m(*moment.truth, *moment.reported), 2);
@@ -66,7 +66,7 @@ std::vector<Check> PursuitScore::checks() const {
     const std::string never = "the target was never found";
     return {{"found", false, never}, {"in view", false, never}, {"track", false, never}};
   }
-  const double share = in_view / conditions_.ordered_s;
+  const double share = std::min(1.0, in_view / conditions_.ordered_s);
   const double error_m = std::sqrt(squares_m2 / reported);
   return {{"found", true, fmt::format("the target was found after {} s of the mission", *first)},
           {"in view", share >= conditions_.least_in_view,

@@ -56,6 +56,18 @@ TEST_CASE("a target that was never found passes nothing") {
   CHECK(passed(PursuitScore({}).checks()) == Passed{false, false, false});
 }
 
+TEST_CASE(
+    "what is reported after the ordered time does not count, also where that is no whole second") {
+  PursuitScore score({99.5, 0.9, 15});
+  for (int i = 0; i < 300; ++i) {
+    score.report(i, Local{kTarget.north_m + (i < 100 ? 0.0 : 500.0), kTarget.east_m, 0});
+    score.truth(i, kTarget, i < 100);
+  }
+  const auto checks = score.checks();
+  CHECK(passed(checks) == Passed{true, true, true});
+  CHECK_THAT(checks[1].text, Contains("for 100.0 %"));
+}
+
 TEST_CASE("half of the ordered time is half of it, however good") {
   const auto checks = judged(50, 0, always, always);
   CHECK(passed(checks) == Passed{true, false, true});
