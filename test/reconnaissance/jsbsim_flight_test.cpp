@@ -154,8 +154,9 @@ TEST_CASE("the same demands lead to the same flight, bit by bit") {
 }
 
 TEST_CASE("JSBSim takes off, flies legs, and lands on the runway, in wind from each side") {
-  const double wind_from = radians(GENERATE(110, 350));
-  const Wind wind{-5 * std::cos(wind_from), -5 * std::sin(wind_from), 0};
+  // 3 m/s across the runway: about as much as its nose wheel holds against.
+  const double wind_from = radians(GENERATE(110, 50));
+  const Wind wind{-6 * std::cos(wind_from), -6 * std::sin(wind_from), 0};
   const Strip strip{{0, 0, kGround_m}, radians(80), 1500};
   Aircraft parked;
   parked.position.height_m = kGround_m;
@@ -188,15 +189,15 @@ TEST_CASE("JSBSim takes off, flies legs, and lands on the runway, in wind from e
     return at.east_m * std::cos(strip.course_rad) - at.north_m * std::sin(strip.course_rad);
   };
   CHECK(std::abs(beside_m()) < 15);
-  REQUIRE(fly_until([&] { return both.rigid.position.height_m > kGround_m + 250; }, 200));
+  REQUIRE(fly_until([&] { return both.rigid.position.height_m > kGround_m + 100; }, 200));
 
   const Local here = both.rigid.position;
-  REQUIRE(pilot.follow({here, {3000, 3000, 600}, {3000, 0, 600}}).empty());
+  REQUIRE(pilot.follow({here, {1500, 1500, 400}, {1500, 0, 400}}).empty());
   double nearest_m = 1e9;
   REQUIRE(fly_until(
       [&] {
         const Local& at = both.rigid.position;
-        nearest_m = std::min(nearest_m, std::hypot(at.north_m - 3000, at.east_m));
+        nearest_m = std::min(nearest_m, std::hypot(at.north_m - 1500, at.east_m));
         return pilot.mode() == Pilot::Mode::Waiting;
       },
       400));
@@ -204,7 +205,7 @@ TEST_CASE("JSBSim takes off, flies legs, and lands on the runway, in wind from e
 
   const double slope = std::tan(radians(4));
   REQUIRE(pilot
-              .land({both.rigid.position, on_centre_line(strip, -5000, 2150 * slope),
+              .land({both.rigid.position, on_centre_line(strip, -3500, 2150 * slope),
                      on_centre_line(strip, -2000, 2150 * slope), on_centre_line(strip, 150, 0)},
                     strip)
               .empty());

@@ -22,7 +22,7 @@ AircraftType tactical() {
   type.rules = {.cruise_m_s = 35,
                 .approach_m_s = 22,
                 .greatest_climb_rad = 0.0873,
-                .rotate_m_s = 18,
+                .rotate_m_s = 21,
                 .flare_height_m = 5};
   type.fuel_kg_s = 1e-4;
   return type;

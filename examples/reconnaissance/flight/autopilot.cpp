@@ -32,8 +32,9 @@ constexpr double kTooSlow_m_s = 20, kClimbOfSlowness = 0.03;
 
 // On the ground.
 constexpr double kRotation_rad = 0.14;
-constexpr double kElevatorOfPitch = 2.5, kElevatorOfPitchTime = 1.5;
-constexpr double kSteerOfCourse = 1.5, kSteerOfRate = 0.3;
+constexpr double kElevatorOfPitch = 4, kElevatorOfPitchTime = 2;
+constexpr double kSteerOfCourse = 3, kSteerOfRate = 0.4;
+constexpr double kCourseOfMetre = 0.03, kGreatestCourse_rad = 0.2;
 constexpr double kAileronOnGround = 1.4;
 constexpr double kBrakes = 0.6;
 constexpr double kMoving_m_s = 2;
@@ -105,9 +106,10 @@ Controls Autopilot::roll(const Demand& demand, const Motions& motions, double se
   const double gain = surface_gain(motions.airspeed_m_s);
   Controls controls;
   controls.aileron = limited(-kAileronOnGround * motions.bank_rad * gain, 1);
+  aside_m_ += motions.ground_m_s * std::sin(motions.track_rad - *runway_rad_) * seconds;
+  const double course_rad = *runway_rad_ - limited(kCourseOfMetre * aside_m_, kGreatestCourse_rad);
   controls.rudder = limited(
-      kSteerOfCourse * wrapped(*runway_rad_ - motions.nose_rad) - kSteerOfRate * motions.yaw_rate,
-      1);
+      kSteerOfCourse * wrapped(course_rad - motions.nose_rad) - kSteerOfRate * motions.yaw_rate, 1);
   if (demand.airspeed_m_s <= 0) {
     controls.brakes = kBrakes;
     return controls;

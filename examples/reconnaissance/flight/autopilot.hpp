@@ -56,6 +56,7 @@ class Autopilot {
   double pitch_trim_ = 0;
   double speed_trim_ = 0;
   std::optional<double> runway_rad_;  // the course that is held on the ground
+  double aside_m_ = 0;                // to the right of where that began
 };
 
 }  // namespace reconnaissance

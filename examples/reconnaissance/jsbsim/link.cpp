@@ -115,9 +115,10 @@ std::vector<double> JsbsimLink::get(const std::vector<std::string>& names) {
   ask(lines, [&](std::size_t line, const std::string& answer) {
     const std::string expected = names[line] + " =";
     if (!answer.starts_with(expected)) return false;
+    const char* const number = answer.c_str() + expected.size();
     char* end = nullptr;
-    values.push_back(std::strtod(answer.c_str() + expected.size(), &end));
-    return end == answer.c_str() + answer.size() && std::isfinite(values.back());
+    values.push_back(std::strtod(number, &end));
+    return end != number && *end == '\0' && std::isfinite(values.back());
   });
   return values;
 }

@@ -95,9 +95,9 @@ inline MissionRecord flown_mission() {
   const double end_s = record.track.back().time_s;
 
   record.targets = {
-      {"depot", {{11700, 13200, 0}}, 3, 0.3, 0.19, 4, {}},
-      {"road", {{11650, 20700, 0}, {10300, 21900, 0}, {9160, 22400, 0}}, 2, 0.3, 0.24, 7, {}},
-      {"bridge", {{4500, 15900, 0}}, 2, 0.3, 0.21, 3, {}}};
+      {"depot", {{11700, 13200, 0}}, 3, 0.3, 0.19, 4, {}, {}},
+      {"road", {{11650, 20700, 0}, {10300, 21900, 0}, {9160, 22400, 0}}, 2, 0.3, 0.24, 7, {}, {}},
+      {"bridge", {{4500, 15900, 0}}, 2, 0.3, 0.21, 3, {}, {}}};
   for (Target& target : record.targets) {
     const Local& place = target.line.back();
     target.collected_s = nearest_s(record.track, place);

@@ -29,8 +29,8 @@ MissionRecord small_mission() {
   MissionRecord record;
   record.mission = "reconnaissance";
   record.verdict = {true, true, "", 1240.4, 74380, {{"fuel", true, "64 kg left"}}};
-  record.targets = {{"depot", {{1, 2, 3}}, 3, 0.3, 0.19, 4, 354.0},
-                    {"road", {{5, 6, 7}}, 1, 0.3, 0, 0, {}}};
+  record.targets = {{"depot", {{1, 2, 3}}, 3, 0.3, 0.19, 4, 354.0, {}},
+                    {"road", {{5, 6, 7}}, 1, 0.3, 0, 0, {}, {}}};
   record.tracked_s = 41;
   record.survival = 0.991;
   return record;
