@@ -22,7 +22,9 @@ const std::filesystem::path kMission = project_file("mission_profiles/two_aircra
 const std::vector<std::string> kShort{
     "--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225; barn 1 5 0.3 20 53.3600 27.3100",
     "--variable", "objects=53.3089 27.3226 3 0 0; 53.3600 27.3101 3 0 0",
-    "--variable", "failures=2 wrong 40 100"};
+    "--variable", "failures=2 wrong 40 100",
+    "--variable", "second_runway=53.3500 27.3850 180 80 1500",
+    "--variable", "sites=short-range site 53.4800 27.5000 60"};
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -84,7 +86,7 @@ TEST_CASE("a mission of two aircraft fails if one of them does, and says which")
   const MissionRun run(
       kMission,
       {kShort[0], "elements=shed 1 5 0.001 20 53.3089 27.3225; barn 1 5 0.3 20 53.36 27.31",
-       kShort[2], kShort[3]});
+       kShort[2], kShort[3], kShort[6], kShort[7]});
   INFO(run.output());
   CHECK(run.exit_code() == 10);
   const auto report = nlohmann::json::parse(text_of(run.file("two_aircraft.json")));
