@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "entities/convert.hpp"
+#include "entities/in_system.hpp"
 #include "entities/recorder.hpp"
 #include "entities/stream.hpp"
 #include "entities/topics.hpp"
@@ -123,7 +124,7 @@ void show(skein::Entity& entity) {
   std::fflush(stdout);
   const auto frame = await_mission(entity);
   if (!frame) return;
-  const Recorder recorder(entity, *frame);
+  const Recorder recorder(InSystem(entity), *frame);
   const Members members(entity);
   std::optional<Screen> screen;
   if (terminal) screen.emplace();
