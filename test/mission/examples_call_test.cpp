@@ -240,7 +240,8 @@ std::vector<Call> calls_of_reconnaissance() {
   const Json limits{{"speed_m_s", 45},
                     {"greatest_bank_rad", 0.5},
                     {"greatest_climb_rad", 0.1},
-                    {"turn_radius_m", 400}};
+                    {"turn_radius_m", 400},
+                    {"fuel_kg_s", 0.006}};
   const auto position = [](double latitude_deg, double longitude_deg) -> Json {
     return {{"latitude_deg", latitude_deg}, {"longitude_deg", longitude_deg}, {"height_m", 500}};
   };
