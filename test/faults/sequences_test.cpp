@@ -57,7 +57,7 @@ TEST_CASE("a heartbeat whose numbers begin at 2^32 does not stop a provider") {
       provider.send(peer.says(kHeartbeat, heartbeat(writer, far, far, i)));
     }
   }
-  CHECK(provider.has_read_all(5s));
+  CHECK(provider.has_read_all(kPatience));
   provider.check_answers();
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("gaps behind a number that is missing take little of a provider's memo
     const std::int64_t start = 2 + i * 65'536;
     provider.send(peer.says(kGap, gap(writer, start, start + 65'535)));
   }
-  CHECK(provider.has_read_all(5s));
+  CHECK(provider.has_read_all(kPatience));
   CHECK(provider.resident_mib() <= before + kLittleMemory);
   provider.check_answers();
 }
@@ -91,7 +91,7 @@ TEST_CASE(
       provider.send(peer.says(kDataFrag, data_frag(peer.writer(1), i, claim, 256)));
     }
   }
-  CHECK(provider.has_read_all(5s));
+  CHECK(provider.has_read_all(kPatience));
   CHECK(provider.resident_mib() <= before + kLittleMemory);
   CHECK(eventually([&] { return provider.resident_mib() <= before + 8; }));
   provider.check_answers();
@@ -106,7 +106,7 @@ TEST_CASE("fragments of writers that nobody reads keep no sample out") {
     provider.send(peer.says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
     provider.send(InventedPeer(1 + i).says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
   }
-  CHECK(provider.has_read_all(5s));
+  CHECK(provider.has_read_all(kPatience));
   provider.check_answers(4s);
 }
 
