@@ -4,7 +4,7 @@
 const record = JSON.parse(document.getElementById("record").textContent);
 const $ = id => document.getElementById(id);
 const {track, ground} = record;
-const begin = track.time_s[0] ?? 0, end = Math.max(track.time_s.at(-1) ?? 0, begin + 1);
+const begin = track.time_s[0] ?? 0, end = Math.max(track.time_s.at(-1) ?? 0, record.phases.at(-1)?.from_s ?? 0, begin + 1);
 const rows = ground.columns ? Math.floor(ground.heights_m.length / ground.columns) : 0;
 const kEarth_m = 6371000 * 4 / 3;  // as radar sees it
 const kLevels_m = [150, 600];
@@ -64,6 +64,7 @@ function viewOf() {
   const show = ([north, east]) => { norths.push(north); easts.push(east); };
   record.targets.forEach(target => target.line.forEach(show));
   record.zones.forEach(zone => zone.outline.forEach(show));
+  record.others.filter(other => other.name).forEach(other => other.points.forEach(([, north, east]) => show([north, east])));
   record.truths.forEach(thing => thing.points.forEach(([, north, east]) => show([north, east])));
   const least = values => values.reduce((a, b) => Math.min(a, b)), most = values => values.reduce((a, b) => Math.max(a, b));
   const box = {south: least(norths) - margin_m, north: most(norths) + margin_m, west: least(easts) - margin_m, east: most(easts) + margin_m};
@@ -130,6 +131,8 @@ function drawMap() {
   map.xy = ([north, east]) => [(east - view.west) * scale, (view.north - north) * scale];
   root.setAttribute("viewBox", `0 0 ${width} ${height.toFixed(1)}`);
   root.setAttribute("aria-label", `Map, ${(width_m / 1000).toFixed(0)} by ${(height_m / 1000).toFixed(0)} km, with the flight, threats and targets`);
+  const names = [];
+  const name = (x, y, text) => { names.push({x, y, node: svg("text", {class: "halo"}, text)}); return names.at(-1).node; };
   const all = [
     svg("defs", {}, svg("pattern", {id: "hatch", width: 8, height: 8, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"}, svg("path", {d: "M0 0v8", class: "hatch"}))),
     svg("image", {id: "relief", href: relief(), width, height, preserveAspectRatio: "none"})];
@@ -139,7 +142,7 @@ function drawMap() {
     if (threat.detection_range_m > 0) kLevels_m.forEach((above, i) => parts.push(svg("path", {class: i ? "coverage high" : "coverage", d: coverage(threat, above)}, svg("title", {}, `${threat.kind} sees what flies ${above} m above the ground`))));
     if (threat.lethal_range_m > 0) parts.push(svg("circle", {class: "reach", cx: x, cy: y, r: threat.lethal_range_m * scale}));
     if (threat.deviation_m * scale > 5) parts.push(svg("circle", {class: "uncertain", cx: x, cy: y, r: threat.deviation_m * scale}));
-    parts.push(svg("path", {class: "site", d: `M${x} ${y - 7}l6.5 11h-13z`}), siteName(threat, x, y, width, height));
+    parts.push(svg("path", {class: "site", d: `M${x} ${y - 7}l6.5 11h-13z`}), name(x, y, x > 0 && x < width && y > 0 && y < height ? threat.kind : `${threat.kind} beyond`));
     return svg("g", {}, ...parts);
   });
   all.push(...map.threats);
@@ -153,7 +156,7 @@ function drawMap() {
   map.targets = record.targets.map(target => {
     const points = target.line.map(map.xy), [x, y] = points[Math.floor(points.length / 2)] ?? [0, 0];
     return svg("g", {}, points.length > 1 ? svg("path", {class: "target", d: line(points)}) : svg("circle", {class: "target place", cx: x, cy: y, r: 5.5}),
-      svg("text", {class: "halo", x: x + 10, y: y + 4}, target.name));
+      name(x, y, target.name));
   });
   all.push(...map.targets);
   // What truly was there, under what was known of it.
@@ -165,12 +168,23 @@ function drawMap() {
   map.aircraft = svg("path", {class: "aircraft", d: "M0 -12L2.2 -4L12 2V4.5L2.2 2L1.6 8L5 10.5V12L0 11L-5 12V10.5L-1.6 8L-2.2 2L-12 4.5V2L-2.2 -4Z"});
   all.push(...map.others, map.aircraft, ...scaleBar(scale, width, height));
   root.replaceChildren(...all);
+  placeNames(names.reverse(), width, height);
 }
-/// At the edge of the map, where the site is beyond.
-function siteName(threat, x, y, width, height) {
-  const inside = x > 0 && x < width && y > 0 && y < height, right = x > width - 120;
-  return svg("text", {class: "halo", x: inside ? x + (right ? -10 : 10) : Math.min(Math.max(x, 8), width - (y < 60 ? 44 : 8)), y: inside ? y + 4 : Math.min(Math.max(y, 18), height - 10),
-    "text-anchor": right ? "end" : "start"}, inside ? threat.kind : `${threat.kind} beyond`);
+/// Beside what they name, inside the map, and not over each other where there is room; those first that come first.
+function placeNames(names, width, height) {
+  const taken = names.map(({x, y}) => ({x: x - 7, y: y - 7, width: 14, height: 14}));
+  taken.push({x: width - 40, y: 0, width: 40, height: 56});  // where north is
+  const apart = (one, other) => one.x + one.width <= other.x || other.x + other.width <= one.x || one.y + one.height <= other.y || other.y + other.height <= one.y;
+  for (const {x, y, node} of names) {
+    const at = {x: Math.min(Math.max(x, 0), width), y: Math.min(Math.max(y, 0), height)};
+    const places = [[10, 4, "start"], [-10, 4, "end"], [0, -11, "middle"], [0, 21, "middle"], [10, 21, "start"], [-10, 21, "end"], [10, 39, "start"], [-10, 39, "end"], [-10, -14, "end"], [10, -14, "start"]];
+    const put = ([right, down, anchor]) => {
+      for (const [key, value] of Object.entries({x: at.x + right, y: at.y + down, "text-anchor": anchor})) node.setAttribute(key, value);
+      return node.getBBox();
+    };
+    const inside = places.filter(place => { const box = put(place); return box.x > 2 && box.y > 2 && box.x + box.width < width - 2 && box.y + box.height < height - 2; });
+    taken.push(put(inside.find(place => taken.every(each => apart(put(place), each))) ?? inside[0] ?? places[0]));
+  }
 }
 function scaleBar(scale, width, height) {
   const metres = [1, 2, 5, 10, 20, 50, 100].map(km => km * 1000).filter(m => m * scale < width / 4).at(-1) ?? 500;

@@ -336,6 +336,9 @@ GroundGrid ground_around(const MissionRecord& record, std::size_t columns,
     east = std::max(east, place.east_m + around_m);
   };
   for (const TrackPoint& point : record.track) show(point.place, 0);
+  for (const OtherTrack& other : record.others)
+    if (!other.name.empty())
+      for (const auto& point : other.points) show(point.place, 0);
   for (const PlannedRoute& route : record.routes)
     for (const Local& point : route.points) show(point, 0);
   for (const Target& target : record.targets)
