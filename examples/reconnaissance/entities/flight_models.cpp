@@ -62,9 +62,11 @@ recon::ModelState JsbsimModel::advance(const recon::ModelInput& input) {
   if (std::abs(input.seconds - JsbsimFlight::kTick_s) > 1e-9)
     throw recon::Refused(fmt::format("JSBSim is stepped by {} s", JsbsimFlight::kTick_s));
   try {
-    return model_state(flight_.advance(
+    recon::ModelState state = model_state(flight_.advance(
         {input.bank_rad, input.climb_rad, input.airspeed_m_s},
         {input.wind_north_m_s, input.wind_east_m_s, input.wind_up_m_s}, input.ground_m));
+    state.replaced = static_cast<std::uint32_t>(flight_.replaced());
+    return state;
   } catch (const JsbsimFailure& failure) {
     throw recon::Refused(failure.what());
   }

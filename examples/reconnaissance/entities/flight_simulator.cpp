@@ -205,7 +205,7 @@ void FlightSimulator::publish(Tick tick) {
                   course(std::atan2(aircraft_.east_m_s, aircraft_.north_m_s)),
                   std::hypot(aircraft_.north_m_s, aircraft_.east_m_s), aircraft_.heading_rad,
                   aircraft_.climb_rad, aircraft_.bank_rad, aircraft_.fuel_kg, aircraft_.on_ground,
-                  aircraft_.stalled, failing});
+                  aircraft_.stalled, failing, model_.name(), model_.lost()});
 }
 
 SensorFailure FlightSimulator::failure_of(std::size_t set, Tick tick) const {

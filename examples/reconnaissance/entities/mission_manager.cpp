@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -34,6 +35,9 @@ constexpr double kDrawn_m = 150;
 constexpr double kBaselineShare = 0.5;
 // An element that is missed is passed once more.
 constexpr int kTries = 2;
+// After a refusal another tour is tried once threats reach over so much more or less ground than it
+// was planned with.
+constexpr double kOtherThreats = 0.2;
 
 recon::Phase phase_of(MissionPhase phase) {
   static_assert(static_cast<int>(MissionPhase::Aborted) == static_cast<int>(recon::Phase::Aborted));
@@ -46,6 +50,11 @@ Pilot::Mode mode_of(recon::FlightMode mode) {
   return static_cast<Pilot::Mode>(static_cast<int>(mode));
 }
 
+/// At any height, or below: a navigator leads over the ground.
+bool is_above(const recon::Position& point, const recon::Position& asked) {
+  return point.latitude_deg == asked.latitude_deg && point.longitude_deg == asked.longitude_deg;
+}
+
 std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const LocalFrame& frame) {
   std::vector<ThreatDisc> discs;
   for (const recon::Threat& threat : picture.threats) {
@@ -55,6 +64,12 @@ std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const Loca
                      kKills_per_s});
   }
   return discs;
+}
+
+double area_m2(const std::vector<ThreatDisc>& threats) {
+  double area = 0;
+  for (const ThreatDisc& each : threats) area += std::numbers::pi * each.radius_m * each.radius_m;
+  return area;
 }
 
 recon::TourPass tour_pass(const CollectionPass& pass) {
@@ -134,7 +149,7 @@ Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState
   // The points that were asked for stand in the route among those that lead to them.
   for (std::size_t i = 1; i <= state.leg && i < route_.points.size(); ++i) {
     const bool asked = now.reached < through_.size() &&
-                       route_.points[i] == position(*frame_, through_[now.reached].place);
+                       is_above(route_.points[i], position(*frame_, through_[now.reached].place));
     if (asked) ++now.reached;
   }
   // Two points for each element; on the way home there are none.
@@ -153,6 +168,10 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
   }
   const bool barred = now.legs > 0 && is_barred(state);
+  if (conduct_->may_try_again() && !return_home_ && !nothing_new_ &&
+      std::abs(area_m2(threats_) - planned_area_m2_) > kOtherThreats * planned_area_m2_) {
+    if (Order order = tour(state, elements, "threats are known better")) return order;
+  }
   if (phase == MissionPhase::Egress)
     return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
   if (phase != MissionPhase::Ingress && phase != MissionPhase::Collection) return {};
@@ -251,6 +270,7 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
                                            const recon::ElementList& elements,
                                            const std::string& why) {
   planned_for_ = elements.elements.size();
+  planned_area_m2_ = area_m2(threats_);
   recon::TourProblem problem;
   // Who is within reach has to get out before anything else, which no tour can spare him.
   const Local here = out_of_reach(local(*frame_, state.position), threats_);

@@ -73,6 +73,7 @@ class MissionManager : public recon::IMissionManager {
   recon::Route route_;                      // that was ordered last
   std::vector<WayPoint> through_;           // what it was to lead over
   std::vector<ThreatDisc> threats_;         // as last seen
+  double planned_area_m2_ = 0;              // that they reached over when a tour was planned last
   double barring_hazard_ = 0;               // of the rest of the route, from which on it is barred
   std::vector<std::string> tour_;           // the elements that it passes,
   std::size_t passed_ = 0;                  // of which so many were passed

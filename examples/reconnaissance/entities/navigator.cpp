@@ -126,7 +126,8 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
   route.points = {request.from};
   double course = request.course_rad;
   for (std::size_t i = 0; i < request.through.size(); ++i) {
-    const recon::WayPoint& next = request.through[i];
+    recon::WayPoint next = request.through[i];
+    if (i + 1 < request.through.size()) lift(next.position);
     if (!next.straight) {
       pose(problem, route.points.back(), next.position);
       const AE_navigator::Route found = ask_planner(problem, request.least_survival);
@@ -156,6 +157,13 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
                                  points[i].east_m - points[i - 1].east_m);
   route.number = ++routes_;
   return route;
+}
+
+/// Where less than the least height is over the ground: of any point but the last, which may be a
+/// runway.
+void Navigator::lift(recon::Position& point) const {
+  const Local at = local(frame_, point);
+  point.height_m = std::max(point.height_m, ground_(at.north_m, at.east_m) + kLeastHeight_m);
 }
 
 /// With its turns, unless they lead into what the planner's way leads around, or over.

@@ -35,6 +35,7 @@ class Navigator : public recon::INavigator {
   void signal_planner(int signal) const;
   AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
   std::vector<Local> way_in_tile(const std::vector<Local>& way) const;
+  void lift(recon::Position& point) const;
   double clearance_m(const std::vector<Local>& way) const;
   std::vector<Local> onto_course(const AE_navigator::Problem& problem,
                                  const std::vector<Local>& way, double begin_course_rad,

@@ -79,6 +79,18 @@ void Recorder::see(const recon::Truth& truth) {
   now_s_ = seconds_of(truth.tick);
   if (truth.sets_failing > sets_failing_) failing_since_s_ = now_s_;
   sets_failing_ = truth.sets_failing;
+  if (truth.models_lost > models_lost_) {
+    record_.faults.push_back(
+        {now_s_, now_s_,
+         fmt::format("{} is lost, which flies the aircraft",
+                     flown_by_.empty() ? "The flight model" : flown_by_),
+         "flight_simulator", now_s_,
+         fmt::format("{} flies on from the last state; the mission's time has waited for it.",
+                     truth.flown_by == flown_by_ ? "Another one" : truth.flown_by),
+         FaultKind::Csp});
+  }
+  models_lost_ = truth.models_lost;
+  flown_by_ = truth.flown_by;
   if (!record_.track.empty() && now_s_ < record_.track.back().time_s + kEach_s) return;
   record_.track.push_back({now_s_, local(frame_, truth.position), truth.height_above_ground_m,
                            truth.airspeed_m_s, truth.ground_speed_m_s, truth.heading_rad,

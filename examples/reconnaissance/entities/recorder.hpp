@@ -58,6 +58,8 @@ class Recorder {
   mutable std::mutex mutex_;
   MissionRecord record_;
   double now_s_ = 0;
+  std::string flown_by_;
+  std::uint32_t models_lost_ = 0;
   int sets_heard_ = 3;
   int sets_failing_ = 0;
   double failing_since_s_ = 0;

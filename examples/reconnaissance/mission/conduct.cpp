@@ -61,20 +61,21 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
   tour_ = std::move(tour);
   why_this_tour_ = reason;
   reached_ = 0;
-  if (phase_ != MissionPhase::Ingress && phase_ != MissionPhase::Collection) return std::nullopt;
-  if (tour_.empty()) return go_home(reason);
+  if (!is_under_way() && !may_try_again()) return std::nullopt;
+  if (tour_.empty()) return is_under_way() ? go_home(reason) : std::nullopt;
+  sent_home_ = false;
   enter(MissionPhase::Ingress, reason);
   return Follow{tour_};
 }
 
 std::optional<Conduct::Order> Conduct::loiter(const Circle& circle, const std::string& reason) {
-  if (phase_ != MissionPhase::Ingress && phase_ != MissionPhase::Collection) return std::nullopt;
+  if (!is_under_way()) return std::nullopt;
   enter(MissionPhase::Collection, reason);
   return Loiter{circle};
 }
 
 std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
-  if (phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection) return go_home(reason);
+  if (is_under_way()) return go_home(reason);
   if (phase_ == MissionPhase::BuiltInTest) enter(MissionPhase::Aborted, reason);
   return std::nullopt;
 }
@@ -84,8 +85,10 @@ std::optional<Conduct::Order> Conduct::go_home_another_way(const std::string& re
 }
 
 std::optional<Conduct::Order> Conduct::refused(const std::string& reason) {
-  const bool on_the_way = phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection;
-  if (on_the_way) return go_home(reason);
+  if (is_under_way()) {
+    sent_home_ = true;
+    return go_home(reason);
+  }
   enter(MissionPhase::Aborted, reason);
   return std::nullopt;
 }

@@ -69,7 +69,8 @@ class Conduct {
   explicit Conduct(const Strip& strip, const ApproachRules& rules = {})
       : strip_(strip), rules_(rules) {}
 
-  /// What is flown from now on, in place of what was: at once, where that is under way.
+  /// What is flown from now on, in place of what was: at once, where that is under way, or where it
+  /// flies home for no other reason than that a route was refused.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
 
   /// A circle is flown until something else is, in place of what is left of the tour, if that is
@@ -85,15 +86,21 @@ class Conduct {
   /// The order that is to be given now, if any. Its phase begins with it.
   std::optional<Order> decide(const Situation& situation);
 
-  /// What was ordered cannot be done: the mission goes home, or, without a way home, is over.
+  /// What was ordered cannot be done: the mission goes home, where another tour may be given to it,
+  /// or, without a way home, is over.
   std::optional<Order> refused(const std::string& reason);
 
   MissionPhase phase() const { return phase_; }
+  /// It flies home because a route was refused, and may be given another tour.
+  bool may_try_again() const { return phase_ == MissionPhase::Egress && sent_home_; }
   const std::string& reason() const { return reason_; }
   std::size_t points_reached() const { return reached_; }
   const std::vector<WayPoint>& tour() const { return tour_; }
 
  private:
+  bool is_under_way() const {
+    return phase_ == MissionPhase::Ingress || phase_ == MissionPhase::Collection;
+  }
   std::optional<Order> go_home(const std::string& reason);
   void enter(MissionPhase phase, std::string reason);
 
@@ -104,6 +111,7 @@ class Conduct {
   MissionPhase phase_ = MissionPhase::BuiltInTest;
   std::string reason_ = "waits until everybody is fine";
   std::size_t reached_ = 0;
+  bool sent_home_ = false;  // By a refusal.
 };
 
 }  // namespace reconnaissance

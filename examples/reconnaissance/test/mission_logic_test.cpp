@@ -161,6 +161,27 @@ TEST_CASE("where a route is refused the mission goes home, and says why") {
   CHECK(conduct.phase() == MissionPhase::Aborted);
 }
 
+TEST_CASE("a mission that a refused route has sent home goes on when another tour is found") {
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
+  conduct.decide({.all_fine = true});
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  CHECK_FALSE(conduct.may_try_again());
+  conduct.refused("no route to the point");
+  CHECK(conduct.may_try_again());
+  CHECK_FALSE(conduct.fly({}, "there is none: home"));
+  CHECK(conduct.reason() == "no route to the point");
+  CHECK(conduct.go_home_another_way("a threat is on the way"));
+  CHECK(conduct.may_try_again());
+  const auto order = conduct.fly(kTour, "tried again");
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Follow>(*order).through.size() == 3);
+  CHECK(conduct.phase() == MissionPhase::Ingress);
+  CHECK(conduct.reason() == "tried again");
+  conduct.give_up("no fuel");
+  CHECK_FALSE(conduct.may_try_again());
+}
+
 TEST_CASE("the way down leads along the centre line to the aiming point") {
   const auto way = approach(kStrip, {});
   REQUIRE(way.size() == 3);
