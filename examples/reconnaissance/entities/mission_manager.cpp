@@ -35,8 +35,8 @@ constexpr double kDrawn_m = 150;
 constexpr double kBaselineShare = 0.5;
 // An element that is missed is passed once more.
 constexpr int kTries = 2;
-// After a refusal another tour is tried once threats reach over so much more or less ground than it
-// was planned with.
+// When threats reach over so much more or less ground than those that were planned with, another
+// way is looked for where the present one is dangerous, and another tour where one was refused.
 constexpr double kOtherThreats = 0.2;
 
 recon::Phase phase_of(MissionPhase phase) {
@@ -168,8 +168,7 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
   }
   const bool barred = now.legs > 0 && is_barred(state);
-  if (conduct_->may_try_again() && !return_home_ && !nothing_new_ &&
-      std::abs(area_m2(threats_) - planned_area_m2_) > kOtherThreats * planned_area_m2_) {
+  if (conduct_->may_try_again() && !return_home_ && !nothing_new_ && others_threaten()) {
     if (Order order = tour(state, elements, "threats are known better")) return order;
   }
   if (phase == MissionPhase::Egress)
@@ -263,7 +262,13 @@ bool MissionManager::is_barred(const recon::FlightState& state) const {
   std::vector<Local> rest{local(*frame_, state.position)};
   for (std::size_t i = state.leg + 1; i < route_.points.size(); ++i)
     rest.push_back(local(*frame_, route_.points[i]));
-  return hazard_of_way(rest, threats_, cruise_.speed_m_s) > barring_hazard_;
+  const double hazard = hazard_of_way(rest, threats_, cruise_.speed_m_s);
+  return hazard > barring_hazard_ || (hazard > kBarringHazard && others_threaten());
+}
+
+/// Whether threats reach over much more or less ground than those that were planned with last.
+bool MissionManager::others_threaten() const {
+  return std::abs(area_m2(threats_) - planned_area_m2_) > kOtherThreats * planned_area_m2_;
 }
 
 MissionManager::Order MissionManager::tour(const recon::FlightState& state,
@@ -387,6 +392,8 @@ recon::Route MissionManager::ask_route(const std::vector<WayPoint>& through, Tic
   if (conduct_->phase() == MissionPhase::Egress) tour_.clear();
   // By numbers of its own: a navigator that was restarted counts anew.
   const std::uint32_t number = route_.number + 1;
+  // A tour that was refused was planned with others than the way home.
+  if (!conduct_->may_try_again()) planned_area_m2_ = area_m2(threats_);
   route_ = navigator_->plan(request);
   route_.number = number;
   through_ = through;
