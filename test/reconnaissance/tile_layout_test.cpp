@@ -18,4 +18,12 @@ TEST_CASE("places have the coordinates in a tile at which the planners' terrain 
     CHECK(ours.north_m == Approx(theirs.north_m).margin(1e-3));
     CHECK(ours.east_m == Approx(theirs.east_m).margin(1e-3));
   }
+  for (const Geodetic place : {Geodetic{52.9, 27.4, 0}, {54.1, 26.8, 0}, {53.4, 28.2, 0}}) {
+    const Local beyond = tile.to_tile(place), nearest = tile.nearest(beyond);
+    CHECK_FALSE(terrain.contains(beyond.north_m, beyond.east_m));
+    CHECK(terrain.contains(nearest.north_m, nearest.east_m));
+  }
+  const Local inside = tile.to_tile({53.3, 27.4, 0});
+  CHECK(tile.nearest(inside).north_m == inside.north_m);
+  CHECK(tile.nearest(inside).east_m == inside.east_m);
 }

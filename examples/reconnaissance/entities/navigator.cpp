@@ -33,6 +33,8 @@ constexpr double kShareOfClimb = 0.9;
 constexpr double kMast_m = 10;
 // Metres of detour that an expected kill is worth: more than any way around.
 constexpr double kKillWeight_m = 1e6;
+// Between the course that is flown and that of a way, from which on one turns back.
+constexpr double kTurnsBack_rad = 1.5;
 // Expected kills, by which turns that are flown may be worse than the way that a planner found.
 constexpr double kTurnHazard = 1e-3;
 
@@ -166,17 +168,31 @@ void Navigator::lift(recon::Position& point) const {
   point.height_m = std::max(point.height_m, ground_(at.north_m, at.east_m) + kLeastHeight_m);
 }
 
-/// With its turns, unless they lead into what the planner's way leads around, or over.
+/// With its turns, the shortest ones, or others where those lead into what the planner's way leads
+/// around, or over. Where all do, without; but who has to turn back anyway does so where it costs
+/// least.
 std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
                                           const std::vector<Local>& way, double begin_course_rad,
                                           double end_course_rad, double radius_m) const {
-  std::vector<Local> turned = with_turns(way, begin_course_rad, end_course_rad, radius_m);
-  for (std::size_t i = 1; i + 1 < turned.size(); ++i)
-    turned[i].height_m =
-        std::max(turned[i].height_m, ground_(turned[i].north_m, turned[i].east_m) + kLeastHeight_m);
-  const bool leads_into =
-      hazard_of(problem, way_in_tile(turned)) > hazard_of(problem, way_in_tile(way)) + kTurnHazard;
-  return leads_into || clearance_m(turned) < kLeastClearance_m ? way : turned;
+  const double least = hazard_of(problem, way_in_tile(way));
+  const bool turns_back =
+      std::abs(wrapped(course_rad(way[0], way[1]) - begin_course_rad)) > kTurnsBack_rad;
+  std::vector<Local> best = way;
+  double hazard = turns_back ? std::numeric_limits<double>::infinity() : least + kTurnHazard;
+  for (const int quarters : {0, -1, 1, -2, 2}) {
+    std::vector<Local> turned =
+        with_turns(way, begin_course_rad, end_course_rad, radius_m, quarters);
+    for (std::size_t i = 1; i + 1 < turned.size(); ++i)
+      turned[i].height_m = std::max(turned[i].height_m,
+                                    ground_(turned[i].north_m, turned[i].east_m) + kLeastHeight_m);
+    if (clearance_m(turned) < kLeastClearance_m) continue;
+    const double own = hazard_of(problem, way_in_tile(turned));
+    if (own <= least + kTurnHazard) return turned;
+    if (own >= hazard) continue;
+    hazard = own;
+    best = std::move(turned);
+  }
+  return best;
 }
 
 std::vector<Local> Navigator::way_in_tile(const std::vector<Local>& way) const {
@@ -232,11 +248,15 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
   if (!picture) return problem;
   for (const recon::Threat& threat : picture->threats) {
     if (threat.lethal_range_m == 0) continue;
-    const auto site = in_tile(tile_, threat.position);
+    // Planners know no site beyond their tile: in the tile, this disc covers what that one does.
+    const Local there = tile_.to_tile(geodetic(threat.position)), site = tile_.nearest(there);
+    const double beyond_m = std::hypot(there.north_m - site.north_m, there.east_m - site.east_m);
+    const double range_m = reach_m(threat.lethal_range_m, threat.deviation_m);
+    if (range_m <= beyond_m) continue;
     problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
                                      {site.north_m, site.east_m},
                                      kMast_m,
-                                     reach_m(threat.lethal_range_m, threat.deviation_m),
+                                     std::sqrt(range_m * range_m - beyond_m * beyond_m),
                                      kKills_per_s});
   }
   return problem;

@@ -15,6 +15,8 @@ namespace {
 constexpr int kPosts = 1201;
 // So many posts apart places are exactly known; between them they are 0.1 m off.
 constexpr int kExact = 20;
+// Nearer to its edges nothing is looked for.
+constexpr double kEdge_m = 1;
 
 }  // namespace
 
@@ -28,6 +30,12 @@ Tile::Tile(const Geodetic& place)
   };
   south_m_ = std::max(at(0, 0.5).north_m, at(0, 1).north_m);
   west_m_ = -std::min(at(0, 1).east_m, at(1, 1).east_m);
+  north_m_ = std::min(at(1, 0.5).north_m, at(1, 1).north_m);
+}
+
+Local Tile::nearest(const Local& place) const {
+  return {std::clamp(place.north_m, kEdge_m, north_m_ - south_m_ - kEdge_m),
+          std::clamp(place.east_m, kEdge_m, -2 * west_m_ - kEdge_m), place.height_m};
 }
 
 Local Tile::to_tile(const Geodetic& place) const {

@@ -18,6 +18,9 @@ class Tile {
   Local to_tile(const Geodetic& place) const;
   Geodetic to_geodetic(const Local& in_tile) const;
 
+  /// What of the tile is nearest, at the same height; both in its coordinates.
+  Local nearest(const Local& place) const;
+
   /// As `N53E027.hgt`.
   std::string file_name() const;
 
@@ -33,6 +36,7 @@ class Tile {
   LocalFrame frame_;    // about the middle
   double south_m_ = 0;  // The rectangle's edges there.
   double west_m_ = 0;
+  double north_m_ = 0;
 };
 
 }  // namespace reconnaissance

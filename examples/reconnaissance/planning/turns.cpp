@@ -1,6 +1,8 @@
 #include "planning/turns.hpp"
 
 #include <cmath>
+#include <cstdlib>
+#include <numbers>
 
 #include "planning/dubins_length.hpp"
 
@@ -13,6 +15,11 @@ double distance_m(const Local& a, const Local& b) {
 
 double course_rad(const Local& from, const Local& to) {
   return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
+}
+
+Local ahead(const Local& from, double course_rad, double length_m) {
+  return {from.north_m + length_m * std::cos(course_rad),
+          from.east_m + length_m * std::sin(course_rad), from.height_m};
 }
 
 /// Adds the corners between a way's last point and the next one.
@@ -35,9 +42,16 @@ void turn_onto(const Local& to, double from_course_rad, double to_course_rad, do
 }  // namespace
 
 std::vector<Local> with_turns(const std::vector<Local>& way, double begin_course_rad,
-                              double end_course_rad, double radius_m) {
+                              double end_course_rad, double radius_m, int first_quarters) {
+  std::vector<Local> turned{way.front()};
+  for (int i = 0; i < std::abs(first_quarters); ++i) {
+    const Local corner = ahead(turned.back(), begin_course_rad, radius_m);
+    begin_course_rad += std::copysign(std::numbers::pi / 2, first_quarters);
+    turned.push_back(corner);
+    turned.push_back(ahead(corner, begin_course_rad, radius_m));
+  }
   const double near_m = 4 * radius_m;
-  std::vector<Local> kept{way.front()};
+  std::vector<Local> kept{turned.back()};
   for (std::size_t i = 1; i + 1 < way.size(); ++i)
     if (distance_m(way.front(), way[i]) >= near_m && distance_m(way[i], way.back()) >= near_m)
       kept.push_back(way[i]);
@@ -48,7 +62,6 @@ std::vector<Local> with_turns(const std::vector<Local>& way, double begin_course
     if (i == 0) return begin_course_rad;
     return i == last ? end_course_rad : course_rad(kept[i - 1], kept[i + 1]);
   };
-  std::vector<Local> turned{kept.front()};
   for (std::size_t i = 1; i <= last; ++i) {
     if (i == 1 || i == last)
       turn_onto(kept[i], course(i - 1), course(i), radius_m, turned);

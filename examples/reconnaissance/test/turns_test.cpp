@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "flight/angles.hpp"
 #include "flight/pilot.hpp"
@@ -132,6 +133,24 @@ TEST_CASE("from wherever an aircraft comes, in any wind, it flies level past an 
     INFO("flight " << i << " from " << north_m << ' ' << east_m);
     CHECK(passing.level_m > 1000);
     CHECK(passing.aside_m == Approx(700).margin(60));
+  }
+}
+
+TEST_CASE("a way can begin with turns to either side, and leads where it led") {
+  const std::vector<Local> way{{0, 0, 500}, {0, 9000, 500}, {2000, 15000, 500}};
+  const double north = 0, east = std::numbers::pi / 2;
+  for (const int quarters : {-2, -1, 1, 2}) {
+    const auto turned = with_turns(way, north, east, 900, quarters);
+    CHECK(turned[1].north_m == Approx(900));
+    CHECK(turned[1].east_m == Approx(0).margin(1e-6));
+    CHECK(turned[2].north_m == Approx(900));
+    CHECK(turned[2].east_m == Approx(quarters > 0 ? 900 : -900));
+    if (std::abs(quarters) == 2) {
+      CHECK(turned[4].north_m == Approx(0).margin(1e-6));
+      CHECK(turned[4].east_m == Approx(quarters > 0 ? 1800 : -1800));
+    }
+    CHECK(turned.back().north_m == 2000);
+    CHECK(turned.back().east_m == 15000);
   }
 }
 
