@@ -177,7 +177,7 @@ function placeNames(names, width, height) {
   const apart = (one, other) => one.x + one.width <= other.x || other.x + other.width <= one.x || one.y + one.height <= other.y || other.y + other.height <= one.y;
   for (const {x, y, node} of names) {
     const at = {x: Math.min(Math.max(x, 0), width), y: Math.min(Math.max(y, 0), height)};
-    const places = [[10, 4, "start"], [-10, 4, "end"], [0, -11, "middle"], [0, 21, "middle"], [10, 21, "start"], [-10, 21, "end"], [10, 39, "start"], [-10, 39, "end"], [-10, -14, "end"], [10, -14, "start"]];
+    const places = [[10, 4, "start"], [-10, 4, "end"], [0, -11, "middle"], [0, 21, "middle"], [10, 21, "start"], [-10, 21, "end"], [10, 39, "start"], [-10, 39, "end"], [-10, -14, "end"], [10, -14, "start"], [-10, 74, "end"]];
     const put = ([right, down, anchor]) => {
       for (const [key, value] of Object.entries({x: at.x + right, y: at.y + down, "text-anchor": anchor})) node.setAttribute(key, value);
       return node.getBBox();
