@@ -392,9 +392,9 @@ recon::Route MissionManager::ask_route(const std::vector<WayPoint>& through, Tic
   if (conduct_->phase() == MissionPhase::Egress) tour_.clear();
   // By numbers of its own: a navigator that was restarted counts anew.
   const std::uint32_t number = route_.number + 1;
-  // A tour that was refused was planned with others than the way home.
-  if (!conduct_->may_try_again()) planned_area_m2_ = area_m2(threats_);
   route_ = navigator_->plan(request);
+  // The way home from a tour that was refused was planned with others than that.
+  if (!conduct_->may_try_again()) planned_area_m2_ = area_m2(threats_);
   route_.number = number;
   through_ = through;
   // What remains of a way that leads around as well as it can bars nothing.
