@@ -62,8 +62,9 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
   why_this_tour_ = reason;
   reached_ = 0;
   if (!is_under_way() && !may_try_again()) return std::nullopt;
-  if (tour_.empty()) return is_under_way() ? go_home(reason) : std::nullopt;
-  sent_home_ = false;
+  if (tour_.empty() && !is_under_way()) return std::nullopt;
+  sent_home_ = tour_.empty();
+  if (sent_home_) return go_home(reason);
   enter(MissionPhase::Ingress, reason);
   return Follow{tour_};
 }

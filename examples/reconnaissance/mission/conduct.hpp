@@ -70,7 +70,8 @@ class Conduct {
       : strip_(strip), rules_(rules) {}
 
   /// What is flown from now on, in place of what was: at once, where that is under way, or where it
-  /// flies home for no other reason than that a route was refused.
+  /// flies home for no other reason than that a route was refused or no tour was left; an empty one
+  /// leads home.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
 
   /// A circle is flown until something else is, in place of what is left of the tour, if that is
@@ -91,7 +92,7 @@ class Conduct {
   std::optional<Order> refused(const std::string& reason);
 
   MissionPhase phase() const { return phase_; }
-  /// It flies home because a route was refused, and may be given another tour.
+  /// It flies home because a route was refused or no tour was left, and may be given another one.
   bool may_try_again() const { return phase_ == MissionPhase::Egress && sent_home_; }
   const std::string& reason() const { return reason_; }
   std::size_t points_reached() const { return reached_; }
@@ -111,7 +112,7 @@ class Conduct {
   MissionPhase phase_ = MissionPhase::BuiltInTest;
   std::string reason_ = "waits until everybody is fine";
   std::size_t reached_ = 0;
-  bool sent_home_ = false;  // By a refusal.
+  bool sent_home_ = false;  // By a refusal, or an empty tour.
 };
 
 }  // namespace reconnaissance

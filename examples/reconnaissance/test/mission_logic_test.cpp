@@ -123,6 +123,9 @@ TEST_CASE("another tour is flown at once where one is under way, and none leads 
   order = conduct.go_home_another_way("a threat is on the way");
   REQUIRE(order);
   CHECK(std::holds_alternative<Conduct::Land>(*order));
+  CHECK(conduct.may_try_again());
+  CHECK(conduct.fly(kTour, "another one is found"));
+  conduct.give_up("no fuel");
   CHECK_FALSE(conduct.fly(kTour, "too late"));
 }
 
