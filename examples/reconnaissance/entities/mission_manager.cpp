@@ -50,8 +50,8 @@ Pilot::Mode mode_of(recon::FlightMode mode) {
   return static_cast<Pilot::Mode>(static_cast<int>(mode));
 }
 
-/// At any height, or below: a navigator leads over the ground.
-bool is_above(const recon::Position& point, const recon::Position& asked) {
+/// Whatever its height: a navigator may have led the way higher over the ground.
+bool is_at_place_of(const recon::Position& point, const recon::Position& asked) {
   return point.latitude_deg == asked.latitude_deg && point.longitude_deg == asked.longitude_deg;
 }
 
@@ -148,8 +148,9 @@ Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState
   now.legs = state.legs;
   // The points that were asked for stand in the route among those that lead to them.
   for (std::size_t i = 1; i <= state.leg && i < route_.points.size(); ++i) {
-    const bool asked = now.reached < through_.size() &&
-                       is_above(route_.points[i], position(*frame_, through_[now.reached].place));
+    const bool asked =
+        now.reached < through_.size() &&
+        is_at_place_of(route_.points[i], position(*frame_, through_[now.reached].place));
     if (asked) ++now.reached;
   }
   // Two points for each element; on the way home there are none.

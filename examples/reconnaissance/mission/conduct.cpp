@@ -61,8 +61,7 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
   tour_ = std::move(tour);
   why_this_tour_ = reason;
   reached_ = 0;
-  if (!is_under_way() && !may_try_again()) return std::nullopt;
-  if (tour_.empty() && !is_under_way()) return std::nullopt;
+  if (!is_under_way() && (tour_.empty() || !may_try_again())) return std::nullopt;
   sent_home_ = tour_.empty();
   if (sent_home_) return go_home(reason);
   enter(MissionPhase::Ingress, reason);
