@@ -32,8 +32,17 @@ class ParkingDesk : public Desk::Deferred {
     Reply<std::string> reply;
   };
 
-  ~ParkingDesk() override {
-    for (std::thread& each : threads_) each.join();
+  ~ParkingDesk() override { join(); }
+
+  /// Waits for those of its threads that answer. Whoever answers last may let go of the desk last,
+  /// and cannot wait for itself.
+  void join() {
+    std::vector<std::thread> threads;
+    {
+      std::lock_guard lock(mutex_);
+      threads.swap(threads_);
+    }
+    for (std::thread& each : threads) each.join();
   }
 
   void ask(const std::string& question, Reply<std::string> reply) override {
@@ -94,6 +103,9 @@ struct Office {
       : server(make_server()), client(make_client()), desk(std::make_shared<ParkingDesk>()) {
     id = server->provide<Desk>(desk);
     proxy.emplace((same_process ? server : client)->connect<Desk>());
+  }
+  ~Office() {
+    if (desk) desk->join();
   }
 
   ParkingDesk::Parked take() {
