@@ -32,8 +32,9 @@ class Meeting {
     std::size_t guests_of_process = 60;
     /// Of those that have not said yet who they are.
     std::size_t newcomers = 64;
-    /// How long they may take for it, and how long a client waits for the answer.
-    std::chrono::milliseconds patience{1000};
+    /// How long they may take for it, and how long a client waits for the answer: on a busy machine
+    /// a sound provider can take seconds.
+    std::chrono::milliseconds patience{5000};
   };
 
   /// Given a new link on the meeting's thread; must return soon.

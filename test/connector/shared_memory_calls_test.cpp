@@ -209,6 +209,7 @@ TEST_CASE("a provider that damages the memory ends the call, and is called over 
   server->provide<LouderEcho>(service);
   const auto client = make_entity("client", true);
   auto echo = client->connect<Echo>();
+  REQUIRE(transports(*client) == std::vector<std::string>{"shared memory"});
   auto pending = echo.within(60s).async_wait(600'000);
   REQUIRE(eventually([&] { return service->inside == 1; }));
   damage_replies();
@@ -226,6 +227,7 @@ TEST_CASE("damaged memory also ends the call of a thread that takes its answer i
   server->provide<LouderEcho>(service);
   const auto client = make_entity("client", true);
   auto echo = client->connect<Echo>();
+  REQUIRE(transports(*client) == std::vector<std::string>{"shared memory"});
   std::thread caller([&] { CHECK_THROWS_AS(echo.within(60s).wait(600'000), Disconnected); });
   const bool inside = eventually([&] { return service->inside == 1; });
   CHECK(inside);

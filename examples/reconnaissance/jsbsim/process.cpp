@@ -2,8 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,6 +26,7 @@ namespace {
 
 // Of what it wrote, as much from the end as is looked at.
 constexpr std::size_t kLastWords = 2048;
+constexpr int kToEnd_ms = 200;
 constexpr std::string_view kDebianFolder = "/usr/games";
 
 bool may_run(const std::filesystem::path& file) {
@@ -142,6 +145,12 @@ bool JsbsimProcess::runs() {
 }
 
 std::string JsbsimProcess::in_words() {
+  if (runs()) {
+    const int process = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
+    pollfd watched{process, POLLIN, 0};
+    if (process >= 0) poll(&watched, 1, kToEnd_ms);
+    if (process >= 0) close(process);
+  }
   std::string words = "it runs";
   if (!runs()) {
     words = WIFSIGNALED(*status_) ? fmt::format("it has died of {}", strsignal(WTERMSIG(*status_)))

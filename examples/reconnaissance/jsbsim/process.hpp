@@ -37,7 +37,8 @@ class JsbsimProcess {
   /// Whether it has not ended.
   bool runs();
 
-  /// How it ended, or that it runs, with the last line that it wrote.
+  /// How it ended, or that it runs, with the last line that it wrote. It is given a moment to end:
+  /// the kernel closes its connections before it can be waited for.
   std::string in_words();
 
   /// Once it has read its files.
