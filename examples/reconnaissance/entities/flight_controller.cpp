@@ -17,8 +17,6 @@ namespace {
 constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 // Of winds in which turns that were planned are flown as tightly as that.
 constexpr double kTailWind_m_s = 7;
-// Above ground; below it no advisory leads further down.
-constexpr double kLeastDescent_m = 300;
 
 FlightRules rules_of(const AircraftType& type, const skein::ParameterValues& values) {
   FlightRules rules = type.rules;
@@ -156,12 +154,9 @@ Demand FlightController::avoid(Tick tick, const Demand& demand) {
   avoiding_ = free && fresh && (advisory->avoidance.turns || advisory->avoidance.climbs);
   if (!avoiding_) return demand;
   const recon::Avoidance& wanted = advisory->avoidance;
-  // Another aircraft is no reason to fly into the ground.
-  const bool low = last_sight_->radar_height_m < kLeastDescent_m;
-  const bool climbs = wanted.climbs && !(low && wanted.climb_m_s < 0);
-  return advised(rules_, demand, last_sight_->measured,
+  return advised(rules_, demand, *last_sight_,
                  wanted.turns ? std::optional(wanted.course_rad) : std::nullopt,
-                 climbs ? std::optional(wanted.climb_m_s) : std::nullopt);
+                 wanted.climbs ? std::optional(wanted.climb_m_s) : std::nullopt);
 }
 
 std::optional<Pilot::Sight> FlightController::look(const recon::Sensors& sensors) {

@@ -175,20 +175,30 @@ double Pilot::route_course_rad(const Local& from) const {
   return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
 }
 
-Demand advised(const FlightRules& rules, const Demand& demand, const Measurement& measured,
+Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
                std::optional<double> course_rad, std::optional<double> climb_m_s) {
   // The bank for each radian that the course is off.
   constexpr double kGain = 1.5;
+  // Above ground. Below the first it is not led down; below the second, which is less than routes
+  // have, it climbs, the lower the more.
+  constexpr double kLeastDescent_m = 300, kLow_m = 240, kLowest_m = 200, kGreatestClimb_m_s = 10;
+  const Measurement& measured = sight.measured;
+  const auto climb_rad = [&](double wanted_m_s) {
+    const double rad =
+        std::asin(std::clamp(wanted_m_s / std::max(measured.airspeed_m_s, 1.0), -1.0, 1.0));
+    return std::clamp(rad, -rules.greatest_climb_rad, rules.greatest_climb_rad);
+  };
   Demand instead = demand;
   if (course_rad) {
     const double off_rad = wrapped(*course_rad - std::atan2(measured.east_m_s, measured.north_m_s));
     instead.bank_rad =
         std::clamp(kGain * off_rad, -rules.greatest_bank_rad, rules.greatest_bank_rad);
   }
-  if (climb_m_s) {
-    const double climb_rad =
-        std::asin(std::clamp(*climb_m_s / std::max(measured.airspeed_m_s, 1.0), -1.0, 1.0));
-    instead.climb_rad = std::clamp(climb_rad, -rules.greatest_climb_rad, rules.greatest_climb_rad);
+  if (climb_m_s && (*climb_m_s >= 0 || sight.radar_height_m >= kLeastDescent_m))
+    instead.climb_rad = climb_rad(*climb_m_s);
+  if (sight.radar_height_m < kLow_m) {
+    const double low = std::min((kLow_m - sight.radar_height_m) / (kLow_m - kLowest_m), 1.0);
+    instead.climb_rad = std::max(instead.climb_rad, climb_rad(low * kGreatestClimb_m_s));
   }
   return instead;
 }

@@ -42,11 +42,6 @@ struct Guidance {
   std::function<double(const Motion&, const Circle&)> around;
 };
 
-/// What it takes to turn onto a course over ground and to climb as an advisory asks, within what
-/// the rules allow, in place of what a route demands. Each part may be missing.
-Demand advised(const FlightRules& rules, const Demand& demand, const Measurement& measured,
-               std::optional<double> course_rad, std::optional<double> climb_m_s);
-
 /// Flies an aircraft as it is told: takes off, follows the legs of a route, waits at its end, lands
 /// and stops. Turns onto the next leg as early as its turning circle needs. A pure object.
 class Pilot {
@@ -104,5 +99,12 @@ class Pilot {
   Circle circle_{};  // that is flown while it waits
   std::size_t leg_ = 0;
 };
+
+/// What it takes to turn onto a course over ground and to climb as an advisory asks, within what
+/// the rules allow, in place of what a route demands. Each part may be missing. Nobody has looked
+/// at the ground beside the route: below 300 m above it no advisory leads down, and below 240 m the
+/// demand is to climb, the more the lower.
+Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
+               std::optional<double> course_rad, std::optional<double> climb_m_s);
 
 }  // namespace reconnaissance

@@ -151,3 +151,45 @@ TEST_CASE("a pilot circles about a place that it is ordered, and anew when that 
   const double course = std::atan2(flight.aircraft.east_m_s, flight.aircraft.north_m_s);
   CHECK(wrapped(flight.pilot.route_course_rad(place) - course) == Approx(0).margin(0.25));
 }
+
+TEST_CASE("an advisory leads neither into the ground nor into hills beside the route") {
+  const FlightRules rules;
+  Airframe airframe;
+  Aircraft aircraft;
+  aircraft.position = {0, 0, 300};
+  aircraft.airspeed_m_s = rules.cruise_m_s;
+  aircraft.fuel_kg = 80;
+  aircraft.on_ground = false;
+  // Hills that rise by a tenth, from 2 km north on.
+  const auto ground_m = [&] {
+    return std::clamp((aircraft.position.north_m - 2000) / 10, 0., 400.);
+  };
+  const double asked_m_s = GENERATE(-5, 0);
+  double lowest_m = 1e9;
+  for (double time_s = 0; time_s < 300; time_s += kStep_s) {
+    const double above_m = aircraft.position.height_m - ground_m();
+    lowest_m = std::min(lowest_m, above_m);
+    const Measurement measured{.position = aircraft.position,
+                               .north_m_s = aircraft.north_m_s,
+                               .east_m_s = aircraft.east_m_s,
+                               .airspeed_m_s = aircraft.airspeed_m_s};
+    const Demand demand =
+        advised(rules, {0, 0, rules.cruise_m_s}, {measured, above_m, false}, 0, asked_m_s);
+    aircraft = advance(airframe, aircraft, demand, {}, ground_m(), kStep_s);
+  }
+  CHECK(lowest_m > 200);
+  CHECK(aircraft.position.north_m > 8000);
+}
+
+TEST_CASE("an advisory is followed far above the ground") {
+  const FlightRules rules;
+  const Measurement measured{.north_m_s = 35, .airspeed_m_s = 35};
+  const auto climb = [&](double above_m, std::optional<double> asked_m_s) {
+    return advised(rules, {0, 0.01, 35}, {measured, above_m, false}, 0, asked_m_s).climb_rad;
+  };
+  CHECK(climb(400, -3.5) == Approx(std::asin(-0.1)));
+  CHECK(climb(400, std::nullopt) == 0.01);
+  CHECK(climb(230, std::nullopt) > 0.05);
+  CHECK(climb(200, -3.5) > climb(230, -3.5));
+  CHECK(climb(230, 3) == Approx(std::asin(3 / 35.)));
+}
