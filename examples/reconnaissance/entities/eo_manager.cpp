@@ -27,6 +27,9 @@ constexpr double kAlong_rad = 0.35;
 constexpr double kLevel_rad = 0.1;
 // Of a pattern that is worth beginning.
 constexpr double kLeastCoverage = 0.5;
+// Of the sample that is wanted: a plan's is the coarsest anywhere. One that is coarser is of a pass
+// too near or too short, and would last long beyond it.
+constexpr double kCoarsest = 1.5;
 // An object that the last image showed, ten of which are taken a second, is in view.
 constexpr double kShownNow_s = 0.15;
 
@@ -172,9 +175,13 @@ std::optional<recon::CollectionPlan> EoManager::ask_plan(const recon::Collection
   };
   // A pattern is not at fault for what its objective is.
   wanted.evaluate.admitted(
-      "covers", [](const recon::CollectionPlan& plan) -> std::optional<std::string> {
-        if (plan.coverage >= kLeastCoverage) return std::nullopt;
-        return fmt::format("it shows {:.0f} % of the element", 100 * plan.coverage);
+      "shows", [&](const recon::CollectionPlan& plan) -> std::optional<std::string> {
+        if (plan.coverage < kLeastCoverage)
+          return fmt::format("it shows {:.0f} % of the element", 100 * plan.coverage);
+        if (!task.watched && plan.ground_sample_m > kCoarsest * element.wanted_ground_sample_m)
+          return fmt::format("it shows {:.2f} m a pixel, where {:.2f} are wanted",
+                             plan.ground_sample_m, element.wanted_ground_sample_m);
+        return std::nullopt;
       });
   wanted.synthesis = by_names(skein::best_by_cost<recon::CollectionPlan>(
       [sample_m = element.wanted_ground_sample_m](const recon::CollectionPlan& plan) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -311,15 +312,21 @@ std::vector<Flag> flags_of(const MissionRecord& record) {
                      fmt::format("{}: noticed by {} after {:.1f} s{}", fault.what, fault.noticed_by,
                                  std::max(0.0, fault.noticed_s - fault.from_s),
                                  fault.until_s ? "" : ", and not healed")});
+  std::map<std::string, int> unanswered;
   for (const DecisionTold& decision : record.decisions) {
     if (decision.chosen.empty()) {
-      flags.push_back(
-          {decision.time_s, false, decision.entity + " found no answer: " + decision.question});
+      const std::string text = decision.entity + " found no answer: " + decision.question;
+      if (++unanswered[text] == 1) flags.push_back({decision.time_s, false, text});
     } else if (decision.late) {
       flags.push_back(
           {decision.time_s, false,
            decision.entity + " had to do without an answer in time: " + decision.question});
     }
+  }
+  for (Flag& flag : flags) {
+    const auto found = unanswered.find(flag.text);
+    if (found != unanswered.end() && found->second > 1)
+      flag.text += fmt::format(", {} times", found->second);
   }
   std::ranges::stable_sort(flags, {}, &Flag::time_s);
   return flags;

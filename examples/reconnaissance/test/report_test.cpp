@@ -61,6 +61,7 @@ TEST_CASE("what was unusual is told in the order of time") {
   record.faults = {{100, 140.0, "Set 2 is wrong", "flight_controller", 101.5, "left out"},
                    {300, {}, "The camera is silent", "nhp", 302, "none"}};
   record.decisions = {{200, "navigator", "a route", "", "nobody had one", {}, 0.1, false},
+                      {201, "navigator", "a route", "", "nobody had one", {}, 0.1, false},
                       {150, "navigator", "a route", "AStar", "the other was late", {}, 0.1, true},
                       {160, "navigator", "a route", "AStar", "as usual", {}, 0.1, false}};
   record.flags = {{50, false, "a site popped up"}};
@@ -71,7 +72,7 @@ TEST_CASE("what was unusual is told in the order of time") {
   CHECK(flags[1].text == "Set 2 is wrong: noticed by flight_controller after 1.5 s");
   CHECK_FALSE(flags[1].severe);
   CHECK_THAT(flags[2].text, Contains("without an answer in time"));
-  CHECK_THAT(flags[3].text, Contains("navigator found no answer"));
+  CHECK(flags[3].text == "navigator found no answer: a route, 2 times");
   CHECK_THAT(flags[4].text, Contains("not healed"));
   CHECK(flags[4].severe);
   CHECK(flags[5].time_s == 900);
