@@ -38,6 +38,8 @@ constexpr int kTries = 2;
 // When threats reach over so much more or less ground than those that were planned with, another
 // way is looked for where the present one is dangerous, and another tour where one was refused.
 constexpr double kOtherThreats = 0.2;
+// Of the route home, from the last: the approach, on which no other tour is looked for.
+constexpr std::size_t kApproachLegs = 3;
 
 recon::Phase phase_of(MissionPhase phase) {
   static_assert(static_cast<int>(MissionPhase::Aborted) == static_cast<int>(recon::Phase::Aborted));
@@ -169,8 +171,12 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
   }
   const bool barred = now.legs > 0 && is_barred(state);
-  if (conduct_->may_try_again() && !return_home_ && !nothing_new_ && others_threaten()) {
-    if (Order order = tour(state, elements, "threats are known better")) return order;
+  if (may_look_again(now, state.tick)) {
+    look_again_s_ *= 2;
+    const bool others = others_threaten();
+    if (Order order =
+            tour(state, elements, others ? "threats are known better" : "a tour may be left here"))
+      return order;
   }
   if (phase == MissionPhase::Egress)
     return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
@@ -272,11 +278,20 @@ bool MissionManager::others_threaten() const {
   return std::abs(area_m2(threats_) - planned_area_m2_) > kOtherThreats * planned_area_m2_;
 }
 
+/// Who flies home for want of a tour looks for one when threats are known better, and, ever more
+/// seldom, where it has come meanwhile.
+bool MissionManager::may_look_again(const Conduct::Situation& now, Tick tick) const {
+  if (!conduct_->may_try_again() || return_home_ || nothing_new_) return false;
+  const bool waited = seconds_of(tick) - planned_s_ >= look_again_s_;
+  return others_threaten() || (waited && now.leg + kApproachLegs < now.legs);
+}
+
 MissionManager::Order MissionManager::tour(const recon::FlightState& state,
                                            const recon::ElementList& elements,
                                            const std::string& why) {
   planned_for_ = elements.elements.size();
   planned_area_m2_ = area_m2(threats_);
+  planned_s_ = seconds_of(state.tick);
   recon::TourProblem problem;
   // Who is within reach has to get out before anything else, which no tour can spare him.
   const Local here = out_of_reach(local(*frame_, state.position), threats_);

@@ -50,6 +50,7 @@ class MissionManager : public recon::IMissionManager {
   std::optional<recon::Tour> ask_tour(const recon::TourProblem& problem);
   bool is_barred(const recon::FlightState& state) const;
   bool others_threaten() const;
+  bool may_look_again(const Conduct::Situation& now, Tick tick) const;
   void carry_out(const Conduct::Order& order, Tick tick, const recon::FlightState& state);
   recon::Route ask_route(const std::vector<WayPoint>& through, Tick tick,
                          const recon::FlightState& state, double least_survival);
@@ -75,6 +76,8 @@ class MissionManager : public recon::IMissionManager {
   std::vector<WayPoint> through_;           // what it was to lead over
   std::vector<ThreatDisc> threats_;         // as last seen
   double planned_area_m2_ = 0;              // that they reached over at the last plan
+  double planned_s_ = 0;                    // when that was
+  double look_again_s_ = 20;                // after it, while it flies home for want of a tour
   double barring_hazard_ = 0;               // of the rest of the route, from which on it is barred
   std::vector<std::string> tour_;           // the elements that it passes,
   std::size_t passed_ = 0;                  // of which so many were passed
