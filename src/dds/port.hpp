@@ -24,6 +24,9 @@ class SampleOwner {
  public:
   virtual ~SampleOwner() = default;
   virtual std::shared_ptr<const void> keep() = 0;
+  /// What follows on this thread may take long: what comes meanwhile is taken by another one. The
+  /// sample's bytes are not valid any more then, unless kept. False where that cannot be.
+  virtual bool may_take_long() { return false; }
 };
 
 /// A received sample; `cdr` is valid only during the call that delivers it, or as long as kept.

@@ -172,7 +172,10 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   }
   if (options.on_load) options.on_load();
   try {
-    service->submit(invocation, options.may_run);
+    std::function<bool()> may_run;
+    if (options.may_run && sample.owner)
+      may_run = [owner = sample.owner] { return owner->may_take_long(); };
+    service->submit(invocation, may_run);
   } catch (...) {
     forget(head.id);
     throw;

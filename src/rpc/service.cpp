@@ -205,7 +205,8 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
   return options_.open ? options_.open(request) : nullptr;
 }
 
-void Service::submit(const std::shared_ptr<Invocation>& invocation, bool may_run) {
+void Service::submit(const std::shared_ptr<Invocation>& invocation,
+                     const std::function<bool()>& may_run) {
   OperationMeter& meter = meter_.of(*invocation->operation);
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();
@@ -214,9 +215,10 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation, bool may_run
   if (may_run && runs_on_arrival(*invocation->operation)) {
     turn.emplace(*this, Instant::min());  // who would have to wait for it queues
   }
-  const bool here = turn && turn->came();
+  bool here = false;
   try {
     refuse_self_wait(*invocation);
+    here = turn && turn->came() && may_run();
     if (!here) enqueue(invocation);
   } catch (const Error&) {
     OperationMeter::count(meter.refused);

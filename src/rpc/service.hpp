@@ -131,11 +131,12 @@ class Service : public std::enable_shared_from_this<Service> {
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
   /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
-  /// for itself; respond() is not called then. Where `may_run` says that this thread may run the
-  /// implementation, calls that are no streams run on it with CallThread::Caller once a hundred in
-  /// a row have taken no longer than a millisecond, where none waits before them, and have ended
-  /// when it returns.
-  void submit(const std::shared_ptr<Invocation>& invocation, bool may_run = false);
+  /// for itself; respond() is not called then. Where this thread may run the implementation,
+  /// `may_run`, which is asked right before it, says so: calls that are no streams run on it with
+  /// CallThread::Caller once a hundred in a row have taken no longer than a millisecond, where none
+  /// waits before them, and have ended when it returns.
+  void submit(const std::shared_ptr<Invocation>& invocation,
+              const std::function<bool()>& may_run = {});
 
   /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
   /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too

@@ -23,16 +23,25 @@ Guid identity_in(const std::string& partition) {
 /// Owns a copy: what lies in the ring is gone after the call that delivers it.
 class CopyOwner final : public dds::SampleOwner {
  public:
-  explicit CopyOwner(dds::Sample& sample) : sample_(sample) {}
+  CopyOwner(dds::Sample& sample, Turn& turn) : sample_(sample), turn_(turn) {}
   std::shared_ptr<const void> keep() override {
     auto kept = std::make_shared<Bytes>(sample_.cdr);
     sample_.cdr = *kept;
     return kept;
   }
+  bool may_take_long() override { return turn_.leave(); }
 
  private:
   dds::Sample& sample_;
+  Turn& turn_;
 };
+
+/// A message within on_message(), on the thread that takes it.
+struct Current {
+  dds::Sample sample;
+  Turn& turn;
+};
+thread_local Current* current = nullptr;
 
 /// A reader's functions over links that an inbox is about.
 class LinkReader : public dds::Reader, public Inbox {
@@ -43,9 +52,9 @@ class LinkReader : public dds::Reader, public Inbox {
   // Within on_data alone is there something to take: the message that it was called for.
   std::size_t take(const std::function<void(const dds::Sample&)>& consumer,
                    std::size_t limit) override {
-    if (!current_ || limit == 0) return 0;
-    auto sample = *std::exchange(current_, nullptr);
-    CopyOwner owner(sample);
+    if (!current || limit == 0) return 0;
+    auto [sample, turn] = *std::exchange(current, nullptr);
+    CopyOwner owner(sample, turn);
     sample.owner = &owner;
     consumer(sample);
     return 1;
@@ -72,17 +81,17 @@ class LinkReader : public dds::Reader, public Inbox {
     if (listener_.on_matched) listener_.on_matched(link.peer(), true);
   }
 
-  void on_message(Link& link, std::span<const std::byte> message) override {
+  void on_message(Link& link, std::span<const std::byte> message, Turn& turn) override {
     if (!dds::has_representation(message, representation_)) {
       ++malformed_;
       return;
     }
-    dds::Sample sample;
-    sample.cdr = message;
-    sample.writer = link.peer();
-    current_ = &sample;
+    Current own{{}, turn};
+    own.sample.cdr = message;
+    own.sample.writer = link.peer();
+    current = &own;
     listener_.on_data(*this);
-    current_ = nullptr;
+    current = nullptr;
   }
 
   void on_end(Link& link) override {
@@ -97,7 +106,6 @@ class LinkReader : public dds::Reader, public Inbox {
   const Guid guid_;
   const dds::DataRepresentation representation_;
   const dds::ReaderListener listener_;
-  const dds::Sample* current_ = nullptr;  // within on_message()
   std::atomic<std::uint64_t> malformed_{0};
   mutable std::mutex mutex_;
   std::vector<Guid> matched_;

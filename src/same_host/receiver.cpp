@@ -17,12 +17,42 @@ constexpr int kMessagesInARow = 16;
 constexpr int kTurnsAfterEnd = 2048;
 // What comes to a link that callers have left is heard of this late at most.
 constexpr std::chrono::milliseconds kLent{20};
+// Who is away for longer is stood in for, and for twice as long at most before that.
+constexpr std::chrono::milliseconds kLate{10};
+// Then who stands by sleeps until somebody leaves his turn again.
+constexpr int kLooksInVain = 100;
 
 }  // namespace
 
 void SpinPolicy::note(Duration waited) {
   score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
 }
+
+/// A turn whose link is locked.
+class Receiver::OwnTurn final : public Turn {
+ public:
+  OwnTurn(Receiver& receiver, Who who, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
+      : receiver_(receiver), who_(who), link_(link), spare_(spare), lock_(lock) {}
+
+  bool leave() override {
+    if (left()) return true;
+    if (who_ != Who::Leader || !receiver_.has_stand_in()) return false;
+    link_.release(spare_);
+    lock_.unlock();
+    away_ = receiver_.go_away();
+    return true;
+  }
+  bool left() const { return away_ != 0; }
+  bool come_back() { return receiver_.come_back(away_); }
+
+ private:
+  Receiver& receiver_;
+  const Who who_;
+  Link& link_;
+  Bytes& spare_;
+  std::unique_lock<std::mutex>& lock_;
+  std::uint64_t away_ = 0;
+};
 
 class Receiver::Entry final : public dds::CallerDelivery {
  public:
@@ -68,7 +98,7 @@ void Receiver::Entry::deliver_until(const std::function<bool()>& over_) {
   thread_local Bytes spare;
   if (has_caller.exchange(true)) return take_back();
   while (!over && !over_()) {
-    if (!receiver.look_at(*this, spare)) sleep(over_);
+    if (receiver.look_at(*this, spare, Who::Caller) == Looked::Nothing) sleep(over_);
   }
   has_caller = false;
   if (over) take_back();
@@ -108,7 +138,11 @@ Receiver::~Receiver() {
     stopping_ = true;
   }
   notify();
+  watched_ = 1;
+  futex_wake(watched_);
   if (thread_.joinable()) thread_.join();
+  // The first one alone starts it.
+  if (stand_in_.joinable()) stand_in_.join();
 }
 
 std::function<void()> Receiver::notifier() const {
@@ -127,7 +161,7 @@ std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, I
       throw Unavailable("this entity has " + std::to_string(kMostLinks) +
                         " connections through shared memory already");
     }
-    if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(); });
+    if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(true); });
     entries_.push_back(entry);
   }
   notify();
@@ -158,8 +192,24 @@ std::size_t Receiver::links() const {
   return entries_.size();
 }
 
-void Receiver::run() {
+void Receiver::run(bool leads) {
   pthread_setname_np(pthread_self(), name_.c_str());
+  for (; !is_stopping(); leads = !leads) {
+    if (leads) {
+      lead();
+    } else {
+      stand_by();
+    }
+  }
+}
+
+bool Receiver::is_stopping() const {
+  std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+// Until the receiver ends, or somebody has stood in.
+void Receiver::lead() {
   while (true) {
     notified_->store(0);
     Entries entries;
@@ -169,26 +219,74 @@ void Receiver::run() {
       entries = entries_;
     }
     while (notified_->load() == 0) {
-      if (!look_at_all(entries)) await(entries);
+      const Looked looked = look_at_all(entries);
+      if (looked == Looked::Replaced) return;
+      if (looked == Looked::Nothing) await(entries);
     }
     drop_ended();
   }
 }
 
-bool Receiver::look_at_all(const Entries& entries) {
-  bool any = false;
-  for (const auto& entry : entries) {
-    if (!entry->lent || !entry->begun || entry->link->ended()) any |= look_at(*entry, spare_);
+// Until the receiver ends, or who leads has been away for too long.
+void Receiver::stand_by() {
+  std::uint64_t seen = away_;
+  int in_vain = 0;
+  while (!is_stopping()) {
+    futex_wait(watched_, 1, std::chrono::steady_clock::now() + kLate);
+    std::uint64_t now = away_;
+    if (now == seen && now % 2 != 0 && away_.compare_exchange_strong(now, now + 1)) return;
+    in_vain = now == seen ? in_vain + 1 : 0;
+    seen = now;
+    if (in_vain < kLooksInVain) continue;
+    watched_ = 0;
+    if (away_ == seen && !is_stopping()) futex_wait(watched_, 0, Instant::max());
+    watched_ = 1;
+    in_vain = 0;
   }
-  return any;
 }
 
-// Whether there was something to do. On the receiver's thread, or a caller's.
-bool Receiver::look_at(Entry& entry, Bytes& spare) {
+bool Receiver::has_stand_in() {
+  if (has_stand_in_) return true;
+  std::lock_guard lock(mutex_);
+  if (stopping_) return false;
+  try {
+    stand_in_ = start_thread(name_, [this] { run(false); });
+  } catch (const Error&) {
+    return false;
+  }
+  has_stand_in_ = true;
+  return true;
+}
+
+// Returns what come_back() has to be told.
+std::uint64_t Receiver::go_away() {
+  const std::uint64_t away = ++away_;
+  if (watched_ == 0 && watched_.exchange(1) == 0) futex_wake(watched_);
+  return away;
+}
+
+// False where somebody has stood in.
+bool Receiver::come_back(std::uint64_t away) {
+  return away_.compare_exchange_strong(away, away + 1);
+}
+
+Receiver::Looked Receiver::look_at_all(const Entries& entries) {
+  Looked all = Looked::Nothing;
+  for (const auto& entry : entries) {
+    if (entry->lent && entry->begun && !entry->link->ended()) continue;
+    const Looked looked = look_at(*entry, spare_, Who::Leader);
+    if (looked == Looked::Replaced) return looked;
+    if (looked == Looked::Something) all = looked;
+  }
+  return all;
+}
+
+// On the leading thread, or a caller's.
+Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
   Link& link = *entry.link;
-  if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return false;
-  std::lock_guard lock(entry.mutex);
-  if (entry.over) return false;
+  if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return Looked::Nothing;
+  std::unique_lock lock(entry.mutex);
+  if (entry.over) return Looked::Nothing;
   if (!entry.begun.exchange(true)) entry.inbox.on_begin(link);
   const bool ended = link.ended();  // looked at first: what came before the end is taken
   int taken = 0;
@@ -196,7 +294,9 @@ bool Receiver::look_at(Entry& entry, Bytes& spare) {
     for (; taken < kMessagesInARow; ++taken) {
       const auto message = link.receive(spare);
       if (!message) break;
-      entry.inbox.on_message(link, *message);
+      OwnTurn turn(*this, who, link, spare, lock);
+      entry.inbox.on_message(link, *message, turn);
+      if (turn.left()) return turn.come_back() ? Looked::Something : Looked::Replaced;
       link.release(spare);
     }
   } catch (const BrokenRing& error) {
@@ -213,7 +313,7 @@ bool Receiver::look_at(Entry& entry, Bytes& spare) {
     entry.wake();
     notify();
   }
-  return true;
+  return Looked::Something;
 }
 
 bool Receiver::brings_too_much(const Link& link) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -16,13 +18,24 @@
 
 namespace skein::same_host {
 
+/// The right to take what comes through a link, which a thread has while it is in on_message().
+class Turn {
+ public:
+  /// What follows on this thread may take long: where it does, another thread takes what comes
+  /// meanwhile. The message is gone. False, and nothing has changed, where that cannot be.
+  virtual bool leave() = 0;
+
+ protected:
+  ~Turn() = default;
+};
+
 /// Who gets what comes through links. Called on the receiver's thread, or a caller's, one at a time
-/// for each link; must return soon.
+/// for each link but for who has left his turn; must return soon, or leave it.
 class Inbox {
  public:
   virtual ~Inbox() = default;
   virtual void on_begin(Link& link) = 0;
-  virtual void on_message(Link& link, std::span<const std::byte> message) = 0;
+  virtual void on_message(Link& link, std::span<const std::byte> message, Turn& turn) = 0;
   /// Nothing more comes through this one.
   virtual void on_end(Link& link) = 0;
 };
@@ -49,7 +62,9 @@ class SpinPolicy {
 };
 
 /// One thread that takes messages from many links, and sleeps while none has any. A thread that
-/// waits for a message of one link may take it itself. Thread-safe.
+/// waits for a message of one link may take it itself. Where the thread has left its turn, and has
+/// not come back after 10 ms, a second one stands in for it, and the first one for that from then
+/// on. Thread-safe.
 class Receiver {
  public:
   /// How many links one thread can wait for.
@@ -77,12 +92,21 @@ class Receiver {
 
  private:
   class Entry;
+  class OwnTurn;
   using Entries = std::vector<std::shared_ptr<Entry>>;
+  enum class Who { Leader, Caller };
+  enum class Looked { Nothing, Something, Replaced };
 
-  void run();
-  bool look_at(Entry& entry, Bytes& spare);
+  void run(bool leads);
+  void lead();
+  void stand_by();
+  bool has_stand_in();
+  std::uint64_t go_away();
+  bool come_back(std::uint64_t away);
+  bool is_stopping() const;
+  Looked look_at(Entry& entry, Bytes& spare, Who who);
   bool brings_too_much(const Link& link) const;
-  bool look_at_all(const Entries& entries);
+  Looked look_at_all(const Entries& entries);
   void drop_ended();
   void await(const Entries& entries);
   void sleep(const Entries& entries);
@@ -97,7 +121,13 @@ class Receiver {
   Entries entries_;
   bool stopping_ = false;
   std::thread thread_;
-  // The thread's.
+  std::thread stand_in_;  // once it was needed
+  std::atomic<bool> has_stand_in_{false};
+  // Odd while the thread that leads has left its turn. Who makes it even leads from then on.
+  std::atomic<std::uint64_t> away_{0};
+  // 0 while who stands by sleeps until that happens; else he looks at it now and then.
+  Word watched_{1};
+  // The leading thread's.
   SpinPolicy spin_;
   Bytes spare_;
   Instant look_at_lent_ = Instant::max();

@@ -186,6 +186,53 @@ TEST_CASE("a call that takes long on the thread that takes it holds up no other 
   CHECK(transports(*client) == std::vector<std::string>(2, "shared memory"));
 }
 
+TEST_CASE(
+    "a call that takes long on the thread that takes it hears of its end, and newcomers get in") {
+  const auto server = make_entity("server", true);
+  ServiceOptions options;
+  options.thread = CallThread::Caller;
+  const auto service = std::make_shared<Placed>();
+  server->provide<LouderEcho>(service, options);
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(eventually([&] { return echo.within(20s).echo("") == "skein-requests"; }));
+    service->saw_cancellation = false;
+    auto call = echo.within(60s).async_wait(600'000);
+    REQUIRE(eventually([&] { return service->inside == 1; }));
+    const auto newcomer = make_entity("newcomer", true);
+    auto other = newcomer->connect<Echo>({.timeout = 20s});
+    CHECK(transports(*newcomer) == std::vector<std::string>{"shared memory"});
+    CHECK(service->inside == 1);
+    call.cancel();
+    CHECK(eventually([&] { return service->saw_cancellation.load(); }));
+    CHECK(other.within(20s).echo("") != "");
+  }
+}
+
+TEST_CASE(
+    "a call that would wait for itself is refused also where its service takes requests itself") {
+  struct Passing final : EchoService {
+    std::string echo(const std::string& text) override {
+      return text == "round" ? next->within(20s).echo(text) : thread_name();
+    }
+    std::optional<Echo::Proxy> next;
+  };
+  ServiceOptions options;
+  options.thread = CallThread::Caller;
+  const auto one = make_entity("one", true), two = make_entity("two", true);
+  const auto client = make_entity("client", true);
+  const auto first = std::make_shared<Passing>(), second = std::make_shared<Passing>();
+  const auto first_id = one->provide<LouderEcho>(first, options);
+  const auto second_id = two->provide<LouderEcho>(second, options);
+  first->next.emplace(one->connect<Echo>({.provider = second_id}));
+  second->next.emplace(two->connect<Echo>({.provider = first_id}));
+  auto echo = client->connect<Echo>({.provider = first_id});
+  for (auto* each : {&echo, &*first->next, &*second->next})
+    REQUIRE(eventually([&] { return each->within(20s).echo("") == "skein-requests"; }));
+  CHECK_THROWS_WITH(echo.within(20s).echo("round"), Catch::Contains("would wait for itself"));
+}
+
 TEST_CASE("a service ends also while a call runs on the thread that takes its requests") {
   const auto server = make_entity("server", true);
   ServiceOptions options;

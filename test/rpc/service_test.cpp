@@ -89,7 +89,7 @@ struct OnArrival {
     invocation->in = {new ::test::Echo_echo_In{text}, invocation->operation->in->destroy};
     invocation->deadline = clock.now() + 1h;
     invocation->respond = [](const void*, const std::exception_ptr&) {};
-    service->submit(invocation, true);
+    service->submit(invocation, [this] { return may_run; });
   }
 
   ManualClock clock;
@@ -97,6 +97,7 @@ struct OnArrival {
   const std::shared_ptr<Hearer> hearer = std::make_shared<Hearer>();
   std::shared_ptr<rpc::Service> service;
   std::string heard;
+  bool may_run = true;
 };
 
 void refuse_self_wait(const rpc::Service& service) {
@@ -189,6 +190,11 @@ TEST_CASE("a call that could run on arrival does not overtake one that waits") {
   CHECK(on_arrival.heard == "123");
   on_arrival.bring("4");
   CHECK(on_arrival.heard == "1234");
+  on_arrival.may_run = false;
+  on_arrival.bring("5");
+  CHECK(on_arrival.heard == "1234");
+  on_arrival.executor.run_all();
+  CHECK(on_arrival.heard == "12345");
 }
 
 TEST_CASE(

@@ -24,8 +24,15 @@ namespace {
 /// Writes down what comes.
 struct Notes final : Inbox {
   void on_begin(Link& link) override { note(link, "begin"); }
-  void on_message(Link& link, std::span<const std::byte> message) override {
-    note(link, std::string(reinterpret_cast<const char*>(message.data()), message.size()));
+  void on_message(Link& link, std::span<const std::byte> message, Turn& turn) override {
+    const std::string text(reinterpret_cast<const char*>(message.data()), message.size());
+    note(link, text);
+    if (text == "long") {
+      left = turn.leave();
+      ++inside;
+      eventually([&] { return go_on.load(); });
+      --inside;
+    }
   }
   void on_end(Link& link) override { note(link, "end"); }
 
@@ -47,6 +54,10 @@ struct Notes final : Inbox {
   std::mutex mutex;
   std::map<Guid, std::vector<std::string>> of;
   std::thread::id last;
+  // Of messages "long": whether the turn was left, and how many are not at their end.
+  std::atomic<bool> left{false};
+  std::atomic<int> inside{0};
+  std::atomic<bool> go_on{false};
 };
 
 /// A provider whose receiver takes what its guests send.
@@ -302,6 +313,92 @@ TEST_CASE("a thread that waits is woken by its own side also where the other one
   waiting.join();
   CHECK(sleeps);
   CHECK(woken);
+}
+
+TEST_CASE("who has left his turn for long is stood in for, and stands in for that one later") {
+  Host host;
+  Client client(host), other(host);
+  std::vector<std::string> expected{"begin"};
+  const auto send = [&](const std::string& text) {
+    client.send(text);
+    expected.push_back(text);
+    return eventually([&] { return host.notes.about(client.id) == expected; });
+  };
+  for (int i = 0; i < 4; ++i) {
+    host.notes.go_on = false;
+    REQUIRE(send("long"));
+    REQUIRE(eventually([&] { return host.notes.inside == 1; }));
+    CHECK(host.notes.left);
+    const auto first = host.notes.last_thread();
+    // From the same client as from others.
+    CHECK(send("x"));
+    CHECK(host.notes.last_thread() != first);
+    other.send("y");
+    CHECK(eventually([&] { return host.notes.about(other.id).size() == std::size_t(i) + 2; }));
+    CHECK(host.notes.inside == 1);
+    host.notes.go_on = true;
+    CHECK(eventually([&] { return host.notes.inside == 0; }));
+    CHECK(send("z"));
+  }
+  client.link->close();
+  CHECK(eventually([&] { return host.notes.about(client.id).back() == "end"; }));
+}
+
+TEST_CASE("who has left his turn and comes back soon goes on himself") {
+  Host host;
+  Client client(host);
+  host.notes.go_on = true;
+  std::vector<std::thread::id> threads;
+  for (std::size_t i = 0; i < 200; ++i) {
+    client.send("long");
+    REQUIRE(eventually([&] { return host.notes.about(client.id).size() == i + 2; }));
+    threads.push_back(host.notes.last_thread());
+  }
+  // A busy machine may keep it away for long.
+  int changes = 0;
+  for (std::size_t i = 1; i < threads.size(); ++i) changes += threads[i] != threads[i - 1];
+  CHECK(changes < 20);
+}
+
+TEST_CASE("a thread that takes what it waits for has no turn to leave") {
+  Host host;
+  Client client(host);
+  const auto delivery = host.delivery(client.id);
+  host.notes.go_on = true;
+  std::atomic<bool> waits{false};
+  std::thread other([&] {
+    eventually([&] { return waits.load(); });
+    client.send("long");
+  });
+  delivery->lend();
+  delivery->deliver_until([&] {
+    waits = true;
+    return host.notes.about(client.id).size() == 2;
+  });
+  other.join();
+  if (host.notes.last_thread() == std::this_thread::get_id()) CHECK_FALSE(host.notes.left);
+}
+
+TEST_CASE("a receiver's end waits for who has left his turn") {
+  auto host = std::make_unique<Host>();
+  Client client(*host);
+  client.send("long");
+  REQUIRE(eventually([&] { return host->notes.inside == 1; }));
+  bool told = false;
+  SECTION("and has been stood in for") {
+    client.send("x");
+    CHECK(eventually([&] { return host->notes.about(client.id).size() == 3; }));
+  }
+  SECTION("or not yet") {}
+  std::thread ends([&] {
+    host->receiver.remove(host->notes);
+    told = true;
+  });
+  ends.join();
+  CHECK(told);
+  CHECK(host->notes.inside == 1);
+  host->notes.go_on = true;
+  host.reset();
 }
 
 TEST_CASE("once an inbox is removed, nothing more is put in") {
