@@ -90,7 +90,7 @@ class LinkReader : public dds::Reader, public Inbox {
     own.sample.cdr = message;
     own.sample.writer = link.peer();
     current = &own;
-    listener_.on_data(*this);
+    listener_.on_data(*this);  // which may outlive this, where it has left its turn
     current = nullptr;
   }
 

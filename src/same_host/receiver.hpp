@@ -86,7 +86,8 @@ class Receiver {
   /// Throws Unavailable where there is no room, or no thread. What it returns is for threads that
   /// wait for what this link brings.
   std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
-  /// None of its functions runs, or will run. Not from one of them.
+  /// None of its functions runs, or will run, but for those whose turn was left: these may outlive
+  /// the inbox, and must not use it any more. Not from one of them.
   void remove(Inbox& inbox);
   std::size_t links() const;
 
