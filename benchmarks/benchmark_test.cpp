@@ -418,6 +418,16 @@ TEST_CASE("a user measures calls by the command, and compares what it saved") {
     }
     CHECK(std::system((command + "compare" + file("fastdds") + file("cyclonedds")).c_str()) == 0);
   }
+  for (const std::string transport : {"dds", "shared-memory"}) {
+    const std::string latency = command + "latency --payload 64 --count 20 --transport ";
+    REQUIRE(std::system((latency + transport + " --output" + file(transport)).c_str()) == 0);
+    std::ifstream saved(folder / (transport + ".json"));
+    for (const json& row : json::parse(saved))
+      CHECK(row.at("transport") == (transport == "dds" ? "DDS" : "shared memory"));
+  }
+  const CommandResult compared =
+      command_result("bench compare" + file("dds") + file("shared-memory"));
+  CHECK_THAT(compared.output, Contains(", shared memory "));
   std::ofstream(folder / "broken.json") << "{}";
   CHECK(std::system((command + "compare" + file("fastdds") + file("broken")).c_str()) != 0);
 }

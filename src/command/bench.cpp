@@ -42,13 +42,13 @@ class Server {
 };
 
 void print(const Rows& rows) {
-  std::printf("%-12s %-12s %9s %8s %12s %12s %12s\n", "what", "vendor", "payload", "samples",
-              "p50 us", "p90 us", "p99 us");
+  std::printf("%-10s %-18s %-13s %8s %7s %9s %9s %9s\n", "what", "vendor", "transport", "payload",
+              "samples", "p50 us", "p90 us", "p99 us");
   for (const Rows& row : rows) {
-    std::printf("%-12s %-12s %9d %8d %12.1f %12.1f %12.1f\n",
+    std::printf("%-10s %-18s %-13s %8d %7d %9.1f %9.1f %9.1f\n",
                 row["what"].get<std::string>().c_str(), row["vendor"].get<std::string>().c_str(),
-                row.value("payload_bytes", 0), row["samples"].get<int>(),
-                row["p50_us"].get<double>(), row["p90_us"].get<double>(),
+                row["transport"].get<std::string>().c_str(), row.value("payload_bytes", 0),
+                row["samples"].get<int>(), row["p50_us"].get<double>(), row["p90_us"].get<double>(),
                 row["p99_us"].get<double>());
   }
 }

@@ -29,8 +29,8 @@ std::string vendors_of(const BenchArguments& arguments);
 /// Serves until SIGINT or SIGTERM, or until the process that started it ends.
 void serve(const BenchArguments& arguments);
 
-/// Rows of a result: `what`, `vendor`, `payload_bytes` where it has one, `samples`, `p50_us`,
-/// `p90_us`, `p99_us`.
+/// Rows of a result: `what`, `vendor`, `transport` (of ConnectionInfo), `payload_bytes` where it
+/// has one, `samples`, `p50_us`, `p90_us`, `p99_us`.
 using Rows = nlohmann::json;
 
 /// One call after the other: each call's time.

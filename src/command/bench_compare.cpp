@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <fstream>
+#include <string>
 
 #include "bench.hpp"
 #include "commands.hpp"
@@ -29,13 +30,18 @@ bool same(const Rows& one, const Rows& other) {
          one.value("payload_bytes", 0) == other.value("payload_bytes", 0);
 }
 
+std::string way_of(const Rows& row) {
+  const auto transport = row.value("transport", std::string("DDS"));
+  const auto vendor = row["vendor"].get<std::string>();
+  return transport == "DDS" ? vendor : vendor + ", " + transport;
+}
+
 void print(const Rows& before, const Rows& after) {
   const double old_p50 = before["p50_us"], new_p50 = after["p50_us"];
   const double old_p99 = before["p99_us"], new_p99 = after["p99_us"];
-  std::printf("%-12s %9d %-12s %-12s %12.1f %12.1f %7.2f %7.2f\n",
+  std::printf("%-10s %8d  %-25s %-25s %9.1f %9.1f %7.2f %7.2f\n",
               before["what"].get<std::string>().c_str(), before.value("payload_bytes", 0),
-              before["vendor"].get<std::string>().c_str(),
-              after["vendor"].get<std::string>().c_str(), old_p50, new_p50, new_p50 / old_p50,
+              way_of(before).c_str(), way_of(after).c_str(), old_p50, new_p50, new_p50 / old_p50,
               new_p99 / old_p99);
 }
 
@@ -45,7 +51,7 @@ int bench_compare(const BenchCompareArguments& arguments) {
   const auto& [before, after] = arguments;
   const Rows old_rows = load(before), new_rows = load(after);
   std::size_t shared = 0;
-  std::printf("%-12s %9s %-12s %-12s %12s %12s %7s %7s\n", "what", "payload", "A", "B", "A p50 us",
+  std::printf("%-10s %8s  %-25s %-25s %9s %9s %7s %7s\n", "what", "payload", "A", "B", "A p50 us",
               "B p50 us", "p50 x", "p99 x");
   for (const Rows& old_row : old_rows) {
     for (const Rows& new_row : new_rows) {

@@ -28,6 +28,15 @@ class MirrorBody final : public Mirror {
   Content reflect(const Content& content) override { return content; }
 };
 
+/// The transport that the entity's one connection has. Throws Unavailable where another one was
+/// asked for.
+std::string transport_of(Entity& entity, const BenchArguments& arguments) {
+  const ConnectionInfo connection = entity.connector().connections().at(0);
+  if (arguments.transport == "shared-memory" && connection.transport == "DDS")
+    throw Unavailable("calls do not go through shared memory: " + connection.not_faster);
+  return connection.transport;
+}
+
 Mirror::Proxy connected(Entity& entity) {
   return entity.connect<Mirror>({.timeout = kCallTimeout}).within(kCallTimeout);
 }
@@ -37,10 +46,13 @@ double microseconds_since(std::chrono::steady_clock::time_point begin) {
       .count();
 }
 
-Rows row(const char* what, const BenchArguments& arguments, const std::vector<double>& times_us) {
+Rows row(const char* what, const BenchArguments& arguments, const std::string& transport,
+         const std::vector<double>& times_us) {
   const Summary summary = benchmarks::summarize(times_us);
-  return {{"what", what},          {"vendor", vendors_of(arguments)}, {"samples", summary.samples},
-          {"p50_us", summary.p50}, {"p90_us", summary.p90},           {"p99_us", summary.p99}};
+  return {{"what", what},           {"vendor", vendors_of(arguments)},
+          {"transport", transport}, {"samples", summary.samples},
+          {"p50_us", summary.p50},  {"p90_us", summary.p90},
+          {"p99_us", summary.p99}};
 }
 
 // Payloads of which `count` would take minutes are sent less often.
@@ -59,12 +71,13 @@ Rows measure_each_payload(const BenchArguments& arguments, const char* what,
   if (side.lock_memory) lock_memory();
   Entity entity(side.entity);
   auto proxy = connected(entity);
+  const std::string transport = transport_of(entity, arguments);
   Rows rows = Rows::array();
   for (const std::size_t payload : arguments.payloads) {
     const Content content(payload, 7);
     const std::size_t count = count_for(arguments, payload);
     measure(proxy, content, count / 10 + 1);  // wakes everything up
-    Rows one = row(what, arguments, measure(proxy, content, count));
+    Rows one = row(what, arguments, transport, measure(proxy, content, count));
     one["payload_bytes"] = payload;
     rows.push_back(std::move(one));
   }
@@ -122,13 +135,16 @@ Rows measure_throughput(const BenchArguments& arguments) {
 Rows measure_discovery(const BenchArguments& arguments) {
   const Side side = side_of(arguments, Role::Caller);
   std::vector<double> times(kDiscoveries);
+  std::string transport;
   for (double& time : times) {
     const auto begin = std::chrono::steady_clock::now();
     Entity entity(side.entity);
-    connected(entity).reflect({});
+    auto proxy = connected(entity);
+    proxy.reflect({});
     time = microseconds_since(begin);
+    transport = transport_of(entity, arguments);
   }
-  return Rows::array({row("discovery", arguments, times)});
+  return Rows::array({row("discovery", arguments, transport, times)});
 }
 
 }  // namespace skein::command::bench

@@ -62,6 +62,8 @@ Side side_of(const BenchArguments& arguments, Role role) {
   entity.system = "bench";
   entity.domain = arguments.domain;
   entity.name = (role == Role::Provider ? "mirror-" : "caller-") + std::to_string(getpid());
+  if (!arguments.transport.empty())
+    entity.shared_memory_calls = arguments.transport == "shared-memory";
   if (arguments.peer.empty()) return side;
   if (entity.network.interfaces.empty()) {
     throw InvalidArgument("--peer " + arguments.peer +

@@ -44,6 +44,11 @@ BenchArguments& add_measurement(CLI::App& command, int (*function)(const BenchAr
                   "Peer of the profile that calls; default: the provider")
       ->type_name("NAME")
       ->needs(profile);
+  command
+      .add_option("--transport", arguments.transport,
+                  "Way of the calls, in the place of what the profile says; default: dds")
+      ->type_name("shared-memory|dds")
+      ->check(CLI::IsMember({"shared-memory", "dds"}).description(""));
   auto* serve = command.add_flag("--serve", arguments.serve, "Be the other side, until ended");
   command.add_flag("--remote", arguments.remote, "The other side runs already (--serve)")
       ->excludes(serve);
@@ -75,6 +80,7 @@ void add_latency(CLI::App& bench, int& result) {
   auto& command =
       add_command(bench, "latency", "One call after the other",
                   {{"skein bench latency", "Between two processes of this host"},
+                   {"skein bench latency --transport shared-memory", "The same without DDS"},
                    {"skein bench latency --interface eth0 --peer 10.0.0.2 --remote",
                     "To another host, where the same runs with --serve and this host's address"}});
   add_load(command, add_measurement(command, bench_latency, result));
