@@ -28,8 +28,8 @@ class Meeting {
     std::vector<uid_t> users{geteuid(), 0};
     /// Connections from others at a time, and from one of their processes. Each takes a descriptor
     /// and Link::kMemory.
-    std::size_t guests = 120;
-    std::size_t guests_of_process = 60;
+    std::size_t guests = 1024;
+    std::size_t guests_of_process = 128;
     /// Of those that have not said yet who they are.
     std::size_t newcomers = 64;
     /// How long they may take for it, and how long a client waits for the answer: on a busy machine

@@ -76,6 +76,7 @@ class Receiver::Entry final : public dds::CallerDelivery {
   Inbox& inbox;
   std::mutex mutex;  // held while a function of the inbox runs
   std::atomic<bool> begun{false};
+  std::size_t unfinished = 0;  // as others know it; under the mutex
   int turns_after_end = 0;
   // Once it is so, the inbox and the receiver may be gone.
   std::atomic<bool> over{false};
@@ -129,8 +130,8 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
   if (may_spin) spin.note(std::chrono::steady_clock::now() - begin);
 }
 
-Receiver::Receiver(std::string name, Duration spin, std::size_t most_unfinished)
-    : name_(std::move(name)), spin_limit_(spin), most_unfinished_(most_unfinished), spin_(spin) {}
+Receiver::Receiver(std::string name, Duration spin, std::shared_ptr<Unfinished> unfinished)
+    : name_(std::move(name)), spin_limit_(spin), unfinished_(std::move(unfinished)), spin_(spin) {}
 
 Receiver::~Receiver() {
   {
@@ -181,6 +182,7 @@ void Receiver::remove(Inbox& inbox) {
     {
       std::lock_guard lock(entry->mutex);
       entry->over = true;
+      unfinished_->change(std::exchange(entry->unfinished, 0), 0);
     }
     entry->wake();
   }
@@ -294,6 +296,7 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
     for (; taken < kMessagesInARow; ++taken) {
       const auto message = link.receive(spare);
       if (!message) break;
+      if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
       OwnTurn turn(*this, who, link, spare, lock);
       entry.inbox.on_message(link, *message, turn);
       if (turn.left()) return turn.come_back() ? Looked::Something : Looked::Replaced;
@@ -303,33 +306,29 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
     log(LogLevel::Warning, "same host", error.what());
   }
   const bool drained = taken == 0 && !link.in().ready();
-  const bool too_much = brings_too_much(link);
+  const bool too_much = brings_too_much(entry);
   if (too_much) link.close();
   if (link.broken() || too_much ||
       (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
     entry.inbox.on_end(link);
     link.ending().run();
     entry.over = true;
+    unfinished_->change(std::exchange(entry.unfinished, 0), 0);
     entry.wake();
     notify();
   }
   return Looked::Something;
 }
 
-bool Receiver::brings_too_much(const Link& link) const {
-  if (link.unfinished() == 0) return false;
-  std::size_t others = 0;
-  {
-    std::lock_guard lock(mutex_);
-    for (const auto& entry : entries_) {
-      if (!entry->over && entry->link.get() != &link) others += entry->link->unfinished();
-    }
-  }
-  if (link.unfinished() <= most_unfinished_ - std::min(most_unfinished_, others)) return false;
+bool Receiver::brings_too_much(Entry& entry) {
+  const std::size_t now = entry.link->unfinished();
+  if (now == entry.unfinished) return false;
+  const std::size_t others = unfinished_->change(std::exchange(entry.unfinished, now), now);
+  if (now <= unfinished_->most() - std::min(unfinished_->most(), others)) return false;
   log(LogLevel::Warning, "same host",
-      "a connection is ended: of a message without its end " + std::to_string(link.unfinished()) +
+      "a connection is ended: of a message without its end " + std::to_string(now) +
           " octets have come, and of others' " + std::to_string(others) +
-          "; all together may have " + std::to_string(most_unfinished_));
+          "; all together may have " + std::to_string(unfinished_->most()));
   return true;
 }
 
@@ -388,6 +387,38 @@ void Receiver::take_back_unused(const Entries& entries) {
   for (const auto& entry : entries) {
     if (!entry->used.exchange(false) && !entry->has_caller) entry->lent = false;
   }
+}
+
+// ---- several
+
+std::function<void()> Receivers::notifier() const {
+  return [notifiers = notifiers_] {
+    std::lock_guard lock(notifiers->mutex);
+    for (const auto& notify : notifiers->all) notify();
+  };
+}
+
+std::shared_ptr<dds::CallerDelivery> Receivers::add(std::shared_ptr<Link> link, Inbox& inbox) {
+  std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find_if(
+      all_, [](const auto& each) { return each->links() < Receiver::kMostLinks; });
+  if (found != all_.end()) return (*found)->add(std::move(link), inbox);
+  auto added = std::make_unique<Receiver>(name_, spin_, unfinished_);
+  {
+    std::lock_guard notifying(notifiers_->mutex);
+    notifiers_->all.push_back(added->notifier());
+  }
+  return all_.emplace_back(std::move(added))->add(std::move(link), inbox);
+}
+
+// Unlocked: a function of the inbox that is waited for may add another one's link.
+void Receivers::remove(Inbox& inbox) {
+  std::vector<Receiver*> all;
+  {
+    std::lock_guard lock(mutex_);
+    for (const auto& each : all_) all.push_back(each.get());
+  }
+  for (Receiver* const each : all) each->remove(inbox);
 }
 
 }  // namespace skein::same_host

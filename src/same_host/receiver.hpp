@@ -61,20 +61,38 @@ class SpinPolicy {
   int score_ = 0;
 };
 
+/// Octets of messages that have not come to their end. Thread-safe.
+class Unfinished {
+ public:
+  /// How many there may be in all, so that a lone link may bring the largest message.
+  static constexpr std::size_t kMost = 2 * std::size_t{dds::kLargestSample};
+
+  explicit Unfinished(std::size_t most = kMost) : most_(most) {}
+
+  /// A link that had `before` has `now`; how many others have.
+  std::size_t change(std::size_t before, std::size_t now) noexcept {
+    return all_.fetch_add(now - before) - before;
+  }
+  std::size_t most() const noexcept { return most_; }
+
+ private:
+  const std::size_t most_;
+  std::atomic<std::size_t> all_{0};
+};
+
 /// One thread that takes messages from many links, and sleeps while none has any. A thread that
 /// waits for a message of one link may take it itself. Where the thread has left its turn, and has
 /// not come back after 10 ms, a second one stands in for it, and the first one for that from then
-/// on. Thread-safe.
+/// on. A link that brings more of a message without its end than others leave room for is ended.
+/// Thread-safe.
 class Receiver {
  public:
   /// How many links one thread can wait for.
   static constexpr std::size_t kMostLinks = kMostWords - 1;
-  /// Octets in all of messages that have not come to their end. A link may have no more than are
-  /// left, so that a lone one may bring the largest; one that brings more is ended.
-  static constexpr std::size_t kMostUnfinished = 2 * std::size_t{dds::kLargestSample};
 
   /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
-  Receiver(std::string name, Duration spin, std::size_t most_unfinished = kMostUnfinished);
+  Receiver(std::string name, Duration spin,
+           std::shared_ptr<Unfinished> unfinished = std::make_shared<Unfinished>());
   /// No function of an inbox runs any more.
   ~Receiver();
   Receiver(const Receiver&) = delete;
@@ -106,7 +124,7 @@ class Receiver {
   bool come_back(std::uint64_t away);
   bool is_stopping() const;
   Looked look_at(Entry& entry, Bytes& spare, Who who);
-  bool brings_too_much(const Link& link) const;
+  bool brings_too_much(Entry& entry);
   Looked look_at_all(const Entries& entries);
   void drop_ended();
   void await(const Entries& entries);
@@ -116,7 +134,7 @@ class Receiver {
 
   const std::string name_;
   const Duration spin_limit_;
-  const std::size_t most_unfinished_;
+  const std::shared_ptr<Unfinished> unfinished_;
   const std::shared_ptr<Word> notified_ = std::make_shared<Word>(0);
   mutable std::mutex mutex_;
   Entries entries_;
@@ -132,6 +150,31 @@ class Receiver {
   SpinPolicy spin_;
   Bytes spare_;
   Instant look_at_lent_ = Instant::max();
+};
+
+/// As many receivers as the links need. Thread-safe.
+class Receivers {
+ public:
+  Receivers(std::string name, Duration spin) : name_(std::move(name)), spin_(spin) {}
+
+  /// As Receiver's. The notifier makes all of them look.
+  std::function<void()> notifier() const;
+  std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
+  void remove(Inbox& inbox);
+
+ private:
+  /// The receivers' notifiers; they may outlive them.
+  struct Notifiers {
+    std::mutex mutex;
+    std::vector<std::function<void()>> all;
+  };
+
+  const std::string name_;
+  const Duration spin_;
+  const std::shared_ptr<Unfinished> unfinished_ = std::make_shared<Unfinished>();
+  const std::shared_ptr<Notifiers> notifiers_ = std::make_shared<Notifiers>();
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Receiver>> all_;
 };
 
 }  // namespace skein::same_host

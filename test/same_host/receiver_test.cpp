@@ -87,7 +87,7 @@ struct Host {
   std::mutex mutex;
   std::map<Guid, std::shared_ptr<dds::CallerDelivery>> deliveries;
   Notes notes;
-  Receiver receiver{"test-requests", 0us, 1 << 20};
+  Receiver receiver{"test-requests", 0us, std::make_shared<Unfinished>(1 << 20)};
   Meeting meeting;
 };
 
@@ -428,4 +428,32 @@ TEST_CASE(
   SpinPolicy never(0us);
   for (int i = 0; i < 100; ++i) never.note(0us);
   CHECK(never.budget() == 0us);
+}
+
+TEST_CASE("several receivers take what one cannot") {
+  constexpr std::size_t kLinks = 2 * Receiver::kMostLinks + 1;
+  const Guid provider = Guid::random();
+  Notes notes;
+  Receivers receivers("test-requests", 0us);
+  Meeting::Rules rules;
+  rules.guests_of_process = kLinks;
+  Meeting host(rules), guests(rules);
+  host.offer(provider, provider, receivers.notifier(),
+             [&](std::shared_ptr<Link> link) { receivers.add(std::move(link), notes); });
+  std::vector<std::shared_ptr<Link>> links;
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    links.push_back(guests.join(provider, Guid::random(), [] {}));
+    const std::string text = std::to_string(i);
+    REQUIRE(links.back()->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
+  }
+  const auto has = [&](std::size_t i, const std::vector<std::string>& expected) {
+    return eventually([&] { return notes.about(links[i]->own()) == expected; });
+  };
+  for (std::size_t i = 0; i < kLinks; ++i) CHECK(has(i, {"begin", std::to_string(i)}));
+  for (const std::size_t i : {std::size_t{0}, kLinks / 2, kLinks - 1}) {
+    links[i]->close();
+    CHECK(has(i, {"begin", std::to_string(i), "end"}));
+  }
+  receivers.remove(notes);
+  host.withdraw(provider);
 }
