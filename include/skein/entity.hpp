@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,10 @@ struct EntityOptions {
   /// Changes what publishers and subscriptions of the topic `name` ask for. Called for each of them
   /// on the thread that makes it; what it throws goes to who makes it.
   std::function<void(const std::string& name, TopicQos& qos)> adjust_topic{};
-  /// Calls between entities on one host that all set this go through shared memory; all others, and
-  /// those that find no way there, go over DDS.
-  bool shared_memory_calls = false;
+  /// Whether calls to and from entities of other processes on this host go through shared memory,
+  /// where those do so, too; all others, and those that find no way there, go over DDS. By default
+  /// they do, but on a network inside the process.
+  std::optional<bool> shared_memory_calls{};
 };
 
 struct ServiceAttribute {
@@ -63,7 +65,7 @@ struct ServiceOptions {
   /// Where blocking calls from the same process run; all others run on the service's own threads.
   /// With CallThread::Caller, calls run one at a time, `threads` is 1, and those through shared
   /// memory, once a hundred in a row took a millisecond at most, run on the thread that takes the
-  /// service's requests, which then hears of no cancellation; streams never do.
+  /// service's requests; streams never do.
   CallThread thread = CallThread::Own;
   /// Number of own threads that run this service's calls; 1 or more.
   std::size_t threads = 1;

@@ -46,6 +46,9 @@ class Vendor {
   /// The name for load_vendor().
   virtual std::string name() const = 0;
 
+  /// Whether it is a network inside the process, in which no other process takes part.
+  virtual bool is_inside_process() const { return false; }
+
   /// Throws InvalidArgument for invalid options, such as an unknown interface; Unavailable if no
   /// ports are free.
   virtual std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) = 0;

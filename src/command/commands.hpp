@@ -20,7 +20,7 @@ struct BenchArguments {
   std::string profile;    ///< A mission profile: vendor, interface and threads are its peers'.
   std::string provider;   ///< Its peer that is called; empty: its first.
   std::string caller;     ///< Its peer that calls; empty: the provider.
-  std::string transport;  ///< `dds` or `shared-memory`; empty: what the profile says.
+  std::string transport;  ///< `dds` or `shared-memory`; empty: what peers of this kind take.
   std::vector<std::size_t> payloads{64, 1024, 65'536, 1'048'576};
   std::size_t count = 1000;
   std::size_t in_flight = 64;

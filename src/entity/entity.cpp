@@ -173,7 +173,7 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
-        same_host(options.shared_memory_calls
+        same_host(options.shared_memory_calls.value_or(!options.vendor->is_inside_process())
                       ? same_host::make_call_ports({participant->guid(), options.spin})
                       : nullptr),
         journal(std::make_shared<rpc::CallJournal>(*participant, process->clock(), control,

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -40,11 +41,11 @@ struct CspProfile {
   std::string vendor;  ///< The peer's, unless the profile says otherwise.
   bool shared_memory =
       false;  ///< The peer's where both have one vendor, unless the profile says otherwise.
-  bool shared_memory_calls = false;  ///< The peer's, unless the profile says otherwise.
-  std::string plugin;                ///< The peer's, unless the profile says otherwise.
-  ProcessRules rules;                ///< Of a process of its own.
-  ProcessStart start;                ///< Of a process of its own.
-  ThreadRules threads;               ///< Of the thread that runs it.
+  std::optional<bool> shared_memory_calls;  ///< The peer's, unless the profile says otherwise.
+  std::string plugin;                       ///< The peer's, unless the profile says otherwise.
+  ProcessRules rules;                       ///< Of a process of its own.
+  ProcessStart start;                       ///< Of a process of its own.
+  ThreadRules threads;                      ///< Of the thread that runs it.
   std::vector<Setting> parameters;
   SourcePosition where;
 
@@ -60,14 +61,14 @@ struct PeerProfile {
   /// Null where a program of its own has none. Otherwise null only where a profile with findings
   /// was read to collect them.
   std::shared_ptr<const ComponentDescription> component;
-  std::string vendor;                ///< As dds::load_vendor() knows it.
-  std::string system;                ///< The vehicle or station it belongs to.
-  std::string host;                  ///< Empty for the host of the launcher.
-  std::string interface;             ///< Network interface; empty for this host alone (127.0.0.1).
-  std::vector<std::string> peers;    ///< Hosts that it asks for others; see launch::network_of().
-  bool multicast = false;            ///< Whether it finds others by multicast.
-  bool shared_memory = false;        ///< The vendor's, between the processes of one host.
-  bool shared_memory_calls = false;  ///< See EntityOptions.
+  std::string vendor;              ///< As dds::load_vendor() knows it.
+  std::string system;              ///< The vehicle or station it belongs to.
+  std::string host;                ///< Empty for the host of the launcher.
+  std::string interface;           ///< Network interface; empty for this host alone (127.0.0.1).
+  std::vector<std::string> peers;  ///< Hosts that it asks for others; see launch::network_of().
+  bool multicast = false;          ///< Whether it finds others by multicast.
+  bool shared_memory = false;      ///< The vendor's, between the processes of one host.
+  std::optional<bool> shared_memory_calls;  ///< See EntityOptions.
   /// From which addresses it takes packets: of dds::Network.
   std::vector<std::string> allowed_sources;
   std::string plugin;         ///< Library with its providers; empty where main() registers them.

@@ -95,6 +95,13 @@ class MissionReader {
     return vendor->value;
   }
 
+  static std::optional<bool> shared_memory_calls_of(const XmlElement& element,
+                                                    std::optional<bool> fallback) {
+    constexpr const char* kName = "shared_memory_calls";
+    if (!element.maybe_attribute(kName)) return fallback;
+    return read_boolean(element, kName, true);
+  }
+
   bool shared_memory_of(const XmlElement& element, const std::string& vendor, bool fallback) {
     const bool wanted = read_boolean(element, "shared_memory", fallback);
     const auto attribute = element.maybe_attribute("shared_memory");
@@ -172,7 +179,7 @@ class MissionReader {
     peer.multicast = read_boolean(element, "multicast", false);
     peer.allowed_sources = allowed_sources_of(element);
     peer.shared_memory = shared_memory_of(element, peer.vendor, false);
-    peer.shared_memory_calls = read_boolean(element, "shared_memory_calls", false);
+    peer.shared_memory_calls = shared_memory_calls_of(element, std::nullopt);
     peer.plugin = value_or(element, "plugin", "");
     peer.runs_mission = runs_mission(element);
     peer.rules = read_process_rules(element, LossPolicy::Abort);
@@ -248,8 +255,7 @@ class MissionReader {
     csp.process = process_of(element);
     csp.vendor = vendor_of(element, peer.vendor);
     csp.shared_memory = shared_memory_of(element, csp.vendor, peer.shared_memory);
-    csp.shared_memory_calls =
-        read_boolean(element, "shared_memory_calls", peer.shared_memory_calls);
+    csp.shared_memory_calls = shared_memory_calls_of(element, peer.shared_memory_calls);
     csp.plugin = value_or(element, "plugin", peer.plugin);
     csp.rules = read_process_rules(element, LossPolicy::Continue);
     csp.threads = read_thread_rules(element);

@@ -29,8 +29,8 @@ TEST_CASE("Calls of a peer go through shared memory where its profile says so") 
   const auto mission = profile::read_mission_profile(folder.mission(
       R"(<peer name="plain" component="n.xml" vendor="loopback"/>
 <peer name="shared" component="n.xml" vendor="loopback" shared_memory_calls="true"/>)"));
-  CHECK_FALSE(launch::entity_options(mission, mission.peers.at(0)).shared_memory_calls);
-  CHECK(launch::entity_options(mission, mission.peers.at(1)).shared_memory_calls);
+  CHECK(launch::entity_options(mission, mission.peers.at(0)).shared_memory_calls == std::nullopt);
+  CHECK(launch::entity_options(mission, mission.peers.at(1)).shared_memory_calls == true);
 }
 
 TEST_CASE("What a profile says of a topic stands in place of what the code says of it") {

@@ -195,18 +195,14 @@ TEST_CASE("the graph shows who has connected to whom, in each notation") {
 TEST_CASE("the statistics of a service tell how its clients reach it, and why not faster") {
   if (!installed("fastdds") || !installed("cyclonedds")) return;
   const auto vendor = dds::load_vendor("fastdds");
-  Entity desk({.name = "desk",
-               .system = "hq",
-               .vendor = vendor,
-               .domain = 64,
-               .shared_memory_calls = true});
+  Entity desk({.name = "desk", .system = "hq", .vendor = vendor, .domain = 64});
   desk.provide<crew::Desk>(std::make_shared<Desk>());
-  Entity near({.name = "near",
-               .system = "hq",
-               .vendor = vendor,
-               .domain = 64,
-               .shared_memory_calls = true});
-  Entity plain({.name = "plain", .system = "hq", .vendor = vendor, .domain = 64});
+  Entity near({.name = "near", .system = "hq", .vendor = vendor, .domain = 64});
+  Entity plain({.name = "plain",
+                .system = "hq",
+                .vendor = vendor,
+                .domain = 64,
+                .shared_memory_calls = false});
   auto near_desk = near.connect<crew::Desk>();
   auto plain_desk = plain.connect<crew::Desk>();
   CHECK(near_desk.ask("one") == "one");

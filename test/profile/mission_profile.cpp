@@ -279,12 +279,12 @@ TEST_CASE("Calls through shared memory are the peer's word, and its CSPs' whatev
       <csp name="none" component="p.xml" process="own" shared_memory_calls="false"/></peer>
   </mission>)");
   const auto mission = read_mission_profile(folder.path() / "m.xml");
-  CHECK_FALSE(mission.peers.at(0).shared_memory_calls);
-  CHECK(mission.peers.at(0).csps.at(0).shared_memory_calls);
+  CHECK(mission.peers.at(0).shared_memory_calls == std::nullopt);
+  CHECK(mission.peers.at(0).csps.at(0).shared_memory_calls == true);
   const auto& peer = mission.peers.at(1);
-  CHECK(peer.shared_memory_calls);
-  CHECK(peer.csps.at(0).shared_memory_calls);
-  CHECK_FALSE(peer.csps.at(1).shared_memory_calls);
+  CHECK(peer.shared_memory_calls == true);
+  CHECK(peer.csps.at(0).shared_memory_calls == true);
+  CHECK(peer.csps.at(1).shared_memory_calls == false);
 }
 
 TEST_CASE("Shared memory of a vendor that has none is found, with its place and the remedy") {

@@ -46,7 +46,8 @@ BenchArguments& add_measurement(CLI::App& command, int (*function)(const BenchAr
       ->needs(profile);
   command
       .add_option("--transport", arguments.transport,
-                  "Way of the calls, in the place of what the profile says; default: dds")
+                  "Way of the calls; default: shared memory where both sides are on one host and "
+                  "the profile does not forbid it, else dds")
       ->type_name("shared-memory|dds")
       ->check(CLI::IsMember({"shared-memory", "dds"}).description(""));
   auto* serve = command.add_flag("--serve", arguments.serve, "Be the other side, until ended");
@@ -80,7 +81,7 @@ void add_latency(CLI::App& bench, int& result) {
   auto& command =
       add_command(bench, "latency", "One call after the other",
                   {{"skein bench latency", "Between two processes of this host"},
-                   {"skein bench latency --transport shared-memory", "The same without DDS"},
+                   {"skein bench latency --transport dds", "The same without shared memory"},
                    {"skein bench latency --interface eth0 --peer 10.0.0.2 --remote",
                     "To another host, where the same runs with --serve and this host's address"}});
   add_load(command, add_measurement(command, bench_latency, result));

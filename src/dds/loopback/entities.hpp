@@ -9,6 +9,7 @@ class LoopbackVendor final : public Vendor {
  public:
   explicit LoopbackVendor(std::shared_ptr<Hub> hub) : hub_(std::move(hub)) {}
   std::string name() const override { return kLoopback; }
+  bool is_inside_process() const override { return true; }
   std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) override;
 
  private:
