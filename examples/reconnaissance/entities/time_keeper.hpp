@@ -22,8 +22,8 @@ skein::TopicQos acknowledgment_qos();
 
 /// Makes the mission's time: publishes a tick when all that were due at the one before have
 /// acknowledged it. There is a topic for each rate, so that who takes part once a second is not
-/// woken fifty times. One that is no longer connected is out, and time goes on without it.
-/// Thread-safe.
+/// woken fifty times. One that is no longer connected, and has been silent for ten seconds of real
+/// time, is out, and time goes on without it. Thread-safe.
 class TimeKeeper {
  public:
   /// Time begins when `expected` take part; `times_real_time` as for Pace. They are of the systems

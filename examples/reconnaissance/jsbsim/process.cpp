@@ -26,6 +26,7 @@ namespace {
 
 // Of what it wrote, as much from the end as is looked at.
 constexpr std::size_t kLastWords = 2048;
+// From the end of its connection to its own.
 constexpr int kToEnd_ms = 200;
 constexpr std::string_view kDebianFolder = "/usr/games";
 
