@@ -154,6 +154,7 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
     const Instant begin = parts.clock->now();
     auto shared = options;
     shared.transport = "shared memory";
+    shared.gone = "its process ended, or it closed the connection";
     const auto reached = std::make_shared<bool>(false);
     shared.begun = [reached, begun = options.begun](const auto& channel) {
       *reached = true;

@@ -124,7 +124,7 @@ void DdsChannel::State::on_server(const Guid& reader, bool matched) {
   changed.notify_all();
   if (matched || !servers.empty() || phase != Phase::Open) return;
   lock.unlock();
-  lose("it left, or it was not heard of for longer than its lease");
+  lose(options.gone);
 }
 
 void DdsChannel::State::lose(const std::string& how) {

@@ -22,6 +22,8 @@ class DdsChannel final : public Channel, public std::enable_shared_from_this<Dds
     std::string peer;               ///< For messages.
     std::string transport = "DDS";  ///< See ConnectionInfo, as the next.
     std::string not_faster{};
+    /// What is said of a provider whose endpoint is gone, as long as nobody knows more.
+    std::string gone = "it left, or it was not heard of for longer than its lease";
     /// The provider's participant, which alone is believed. Nil: whoever serves the address is.
     Guid participant;
     Duration timeout = std::chrono::seconds(5);
