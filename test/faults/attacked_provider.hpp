@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <fstream>
 
 #include "../tools/invented_peer.hpp"
@@ -87,9 +88,13 @@ class AttackedProvider {
     sent_ = 0;
   }
 
-  /// Whether it comes, in that time, to have read all that was sent.
+  /// Whether it comes, in that time, to have read all that was sent. Says where something is left.
   bool has_read_all(std::chrono::seconds limit) const {
-    return eventually([&] { return unread_bytes(ports_) == 0; }, limit);
+    if (eventually([&] { return unread_bytes(ports_) == 0; }, limit)) return true;
+    for (const std::uint16_t port : ports_) {
+      std::fprintf(stderr, "port %u: %zu octets are not read\n", port, unread_bytes({port}));
+    }
+    return false;
   }
 
   /// Makes `peer` known to it, with endpoints that match the provider's own.

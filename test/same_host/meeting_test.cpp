@@ -164,8 +164,8 @@ TEST_CASE(
   auto& other = by_client ? guest : link;
   REQUIRE(closing->send(octets(10), 20s) == Link::Sent::Yes);
   closing->close();
+  CHECK(eventually([&] { return other->ended(); }));
   CHECK(eventually([&] { return told == 1; }));
-  CHECK(other->ended());
   Bytes spare;
   CHECK(other->receive(spare));
   CHECK(other->send(octets(10), 20s) == Link::Sent::Ended);
