@@ -454,8 +454,8 @@ struct Meeting::State {
     auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
     memory.take_descriptor();
     const auto socket = std::make_shared<const FileDescriptor>(std::move(connected));
-    const auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
-                                             answer.server, std::move(notify));
+    auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
+                                       answer.server, std::move(notify));
     std::lock_guard lock(mutex);
     watch(link, socket, std::nullopt);
     return link;

@@ -1,5 +1,7 @@
 #include "ring.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -40,6 +42,9 @@ void check_distance(std::uint64_t distance, std::size_t capacity, const char* wh
                    " octets from this side's, in a ring of " + std::to_string(capacity));
 }
 
+// From 1 on; 0 where the system does not tell.
+std::uint32_t this_core() { return static_cast<std::uint32_t>(sched_getcpu() + 1); }
+
 }  // namespace
 
 // ---- writing
@@ -77,7 +82,7 @@ bool RingWriter::put(Part& part) {
     if (place_.capacity - (written_ - read_) < enough) in_flight();
     const std::size_t room = std::min(wanted, place_.capacity - (written_ - read_));
     if (room < enough) {
-      publish();
+      publish(More::No);
       return false;
     }
     if (to_end == kHeader) {
@@ -89,16 +94,23 @@ bool RingWriter::put(Part& part) {
     const bool last = part.rest.empty();
     put_frame((part.begun ? 0 : kFirst) | (last ? kLast : 0), content);
     part.begun = true;
-    if (last || content.size() == kLargestFrame) publish();
-    if (last) return true;
+    if (last) {
+      publish(More::No);
+      return true;
+    }
+    if (content.size() == kLargestFrame) publish(More::Follows);
   }
 }
 
 // In one order with what the reader does before it sleeps: either it sees this, or this sees it.
-void RingWriter::publish() {
-  place_.state->written.store(written_);
-  if (wake(place_.state->reader_sleeps)) ++wakes_;
-  if (wake(place_.state->caller_sleeps)) ++wakes_;
+// Who sleeps on this core would only get its turn in place of this thread: it is woken once, at the
+// end, or where there is no room.
+void RingWriter::publish(More more) {
+  RingState& state = *place_.state;
+  state.written.store(written_);
+  const std::uint32_t here = more == More::Follows ? this_core() : 0;
+  if ((here == 0 || state.reader_core != here) && wake(state.reader_sleeps)) ++wakes_;
+  if ((here == 0 || state.caller_core != here) && wake(state.caller_sleeps)) ++wakes_;
 }
 
 bool RingWriter::wake(Word& sleeps) {
@@ -203,6 +215,9 @@ void RingReader::release(std::uint64_t size) {
 }
 
 bool RingReader::prepare_to_sleep(Who who) {
+  Word& core = who == Who::Reader ? place_.state->reader_core : place_.state->caller_core;
+  const std::uint32_t here = this_core();
+  if (core.load(std::memory_order_relaxed) != here) core.store(here, std::memory_order_relaxed);
   word(who).store(1);
   if (place_.state->written.load() == read_) return true;
   stay_awake(who);

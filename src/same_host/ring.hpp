@@ -29,6 +29,8 @@ struct RingState {
   alignas(64) std::atomic<std::uint64_t> read{0};     ///< Of those.
   alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep on this word.
   Word caller_sleeps{0};  ///< As much of a thread that reads for itself.
+  Word reader_core{0};    ///< Where it went to sleep, from 1 on; 0 where that is not known.
+  Word caller_core{0};
   alignas(64) Word writer_sleeps{0};
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && sizeof(RingState) == 256);
@@ -88,7 +90,8 @@ class RingWriter {
   std::uint64_t in_flight();
   bool may_restart(std::size_t offset, std::size_t size);
   void put_frame(std::uint32_t kind, std::span<const std::byte> content);
-  void publish();
+  enum class More { Follows, No };
+  void publish(More more);
   bool await_change(Instant deadline, const std::function<bool()>& ended);
 
   const RingPlace place_;

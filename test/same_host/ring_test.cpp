@@ -1,5 +1,6 @@
 #include "same_host/ring.hpp"
 
+#include <sched.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -85,6 +86,34 @@ TEST_CASE("messages of every size arrive whole and in order, also those longer t
     }
   }
   CHECK_FALSE(reader.ready());
+}
+
+TEST_CASE("a reader that sleeps on the writer's core is woken when it has much to do, or all") {
+  constexpr std::size_t kSize = 16 << 20;
+  constexpr std::size_t kCapacity = 256 << 10;
+  const auto pin = [] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    sched_setaffinity(0, sizeof one, &one);
+  };
+  Memory memory(kCapacity);
+  RingWriter writer(memory.place());
+  RingReader reader(memory.place(), kSize);
+  const auto sent = message(kSize, 1);
+  Bytes taken;
+  bool whole = false;
+  std::thread both([&] {
+    pin();
+    std::thread reading([&] { whole = take_one(reader, taken, soon()); });  // on the same core
+    CHECK(writer.write({sent}, 20s, never));
+    reading.join();
+  });
+  both.join();
+  REQUIRE(whole);
+  CHECK(equal(taken, sent));
+  // It sleeps where the ring is empty, and is woken where that is full, or at the end.
+  CHECK(writer.wakes() <= kSize / kCapacity + 1);
 }
 
 TEST_CASE("a full ring takes no more until the reader has made room") {
