@@ -20,6 +20,7 @@
 #include "skein/head.hpp"
 #include "skein/head_options.hpp"
 #include "skein/inspector.hpp"
+#include "skein/loaned.hpp"
 #include "skein/loopback.hpp"
 #include "skein/parameters.hpp"
 #include "skein/process.hpp"

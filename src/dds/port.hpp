@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/detail/loan_memory.hpp"
 #include "skein/detail/qos.hpp"
 #include "skein/guid.hpp"
 #include "skein/vendor.hpp"
@@ -29,6 +30,13 @@ class SampleOwner {
   virtual bool may_take_long() { return false; }
 };
 
+/// A value that a sample has left out, as it can be read where it lies.
+struct LentValue {
+  std::span<const std::byte> value;  ///< Empty where it cannot be read here.
+  std::size_t position = 0;          ///< Where it is missing in the sample.
+  std::shared_ptr<const void> use;   ///< The value can be read while a copy of this lives.
+};
+
 /// A received sample; `cdr` is valid only during the call that delivers it, or as long as kept.
 struct Sample {
   /// With the 4-byte encapsulation header, as long as it was written (from foreign writers up to 3
@@ -38,6 +46,7 @@ struct Sample {
   KeyHash key;
   Guid writer;
   SampleOwner* owner = nullptr;
+  const LentValue* lent = nullptr;  ///< As valid as `cdr`.
 
   /// Keeps `cdr` valid for as long as the result lives, without a copy: for those who hand a sample
   /// to another thread. Once, and during the call only.
@@ -100,6 +109,14 @@ class Writer {
   /// Throws InvalidArgument where that is missing, Overloaded where there was no room within
   /// max_blocking, Internal with the vendor's reason otherwise.
   virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
+
+  /// As write(), of a sample that has left out `value` at `position`. False where the readers
+  /// cannot read it where it lies: nothing is written.
+  virtual bool write_lending(std::span<const std::byte> /*cdr*/,
+                             const std::shared_ptr<LoanMemory>& /*value*/,
+                             std::size_t /*position*/) {
+    return false;
+  }
 
   /// Tells the readers that the instance has ended, also those that never knew it; late joiners are
   /// told that or nothing. Keyed topics only. Without it an instance outlives its writer.

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "encode_value.hpp"
+#include "left_out.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/detail/wide_text.hpp"
 
@@ -216,6 +217,11 @@ CdrWriter::Delimiter::~Delimiter() {
   }
 }
 
+bool CdrWriter::leave_out(const void* value, std::size_t size) {
+  LeavingOut* const leaving_out = LeavingOut::current();
+  return leaving_out && leaving_out->take(value, size, kHeaderSize + state_.position());
+}
+
 CdrWriter::Delimiter CdrWriter::member(std::uint32_t id, bool must_understand) {
   write((must_understand ? kMustUnderstand : 0U) | kLengthFollows << kLengthCodeShift | id);
   return Delimiter(*this);
@@ -255,6 +261,17 @@ struct CdrReader::State {
   bool xcdr2;
   unsigned nesting = 0;
 };
+
+const void* CdrReader::left_out(std::size_t size, std::size_t alignment) {
+  PuttingIn* const putting_in = PuttingIn::current();
+  if (!putting_in) return nullptr;
+  const auto value = putting_in->take(kHeaderSize + state_.position());
+  if (!value) return nullptr;
+  if (value->size() != size || reinterpret_cast<std::uintptr_t>(value->data()) % alignment != 0) {
+    fail(std::to_string(value->size()) + " octets are lent for a value of " + std::to_string(size));
+  }
+  return value->data();
+}
 
 std::size_t CdrReader::remaining() const noexcept { return state_.size - state_.position(); }
 
@@ -452,6 +469,7 @@ void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&
   std::size_t needed = kFirstCapacity;
   for (;;) {
     message.reserve(needed);
+    if (LeavingOut* const leaving_out = LeavingOut::current()) leaving_out->forget();
     try {
       CdrWriter::State state(reinterpret_cast<char*>(message.data()) + kHeaderSize,
                              message.capacity() - kHeaderSize, order, is_xcdr2(message));

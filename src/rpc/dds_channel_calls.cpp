@@ -6,6 +6,7 @@
 #include "dds/sample_format.hpp"
 #include "dds_channel_state.hpp"
 #include "idl/encode_value.hpp"
+#include "idl/left_out.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -124,9 +125,47 @@ void DdsChannel::State::expire_due() {
   for (const std::uint64_t number : due) expire(number);
 }
 
+// A caller that waits for the answer also waits for room, as long as it has time; others are told.
+// The writer itself waits before it throws: tries are counted, for a clock that may stand still.
+// The last one is over before the deadline is: what was not sent does not end as TimedOut.
+template <class Write>
+auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
+  const Duration a_try = dds::Qos().max_blocking;
+  for (std::optional<Duration> left;; *left -= a_try) {
+    try {
+      return write();
+    } catch (const Overloaded&) {
+      if (!call.blocking()) throw;
+      if (!left) left = call.deadline() - clock.now();  // asked for where there is need alone
+      if (*left <= a_try || !is_open()) throw;
+    }
+  }
+}
+
 void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
                              const void* in) {
   thread_local Bytes message;
+  std::shared_ptr<LoanMemory> lent;
+  std::size_t position = 0;
+  {
+    idl::LeavingOut leaving_out;
+    put_request(message, call, number, in);
+    lent = leaving_out.memory();
+    position = leaving_out.position();
+  }
+  if (options.journal) {
+    options.journal->note(introspection::CallStep::Sent, client, number, address.service,
+                          call.operation());
+  }
+  const bool sent =
+      lent && in_time(call, [&] { return writer.write_lending(message, lent, position); });
+  if (lent && !sent) put_request(message, call, number, in);
+  if (!sent) in_time(call, [&] { return writer.write(message); });
+  if (message.capacity() > kKeptCapacity) message = Bytes();
+}
+
+void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
+                                    const void* in) const {
   wire::begin_request(message, {client, number}, call.operation().hash, address.representation);
   idl::encode_value(*call.operation().in, in, message);
   if (message.size() > dds::kLargestSample) {
@@ -141,29 +180,6 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
                                     {},
                                     call.operation().stream ? PendingStream::kWindow : 0,
                                     now.time_since_epoch()});
-  if (options.journal) {
-    options.journal->note(introspection::CallStep::Sent, client, number, address.service,
-                          call.operation());
-  }
-  write_in_time(writer, message, call);
-  if (message.capacity() > kKeptCapacity) message = Bytes();
-}
-
-// A caller that waits for the answer also waits for room, as long as it has time; others are told.
-// The writer itself waits before it throws: tries are counted, for a clock that may stand still.
-// The last one is over before the deadline is: what was not sent does not end as TimedOut.
-void DdsChannel::State::write_in_time(dds::Writer& writer, const Bytes& message,
-                                      const PendingCall& call) const {
-  const Duration a_try = dds::Qos().max_blocking;
-  for (std::optional<Duration> left;; *left -= a_try) {
-    try {
-      return writer.write(message);
-    } catch (const Overloaded&) {
-      if (!call.blocking()) throw;
-      if (!left) left = call.deadline() - clock.now();  // asked for where there is need alone
-      if (*left <= a_try || !is_open()) throw;
-    }
-  }
 }
 
 bool DdsChannel::State::is_open() const {

@@ -105,7 +105,10 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   TimerId look_at(Instant deadline);
   void expire_due();
   void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
-  void write_in_time(dds::Writer& writer, const Bytes& message, const PendingCall& call) const;
+  void put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
+                   const void* in) const;
+  template <class Write>
+  auto in_time(const PendingCall& call, Write write) const;
   bool is_open() const;
   std::shared_ptr<PendingCall> remove(std::uint64_t number, Keep keep = Keep::Nothing);
   void expire(std::uint64_t number);

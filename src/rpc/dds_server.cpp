@@ -11,6 +11,7 @@
 #include "core/log.hpp"
 #include "core/sole_owner.hpp"
 #include "dds_server_state.hpp"
+#include "idl/left_out.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
@@ -30,6 +31,19 @@ bool is_reserved(std::uint32_t operation) {
 std::string unreadable(const std::string& what, const std::exception& why) {
   return what + " cannot be read: " + why.what() +
          "; the network damaged it, or the two sides were built from different IDL";
+}
+
+// Returns the offset of the value's end.
+std::size_t decode(const TypeSupport& type, void* value, const dds::Sample& sample,
+                   std::size_t offset) {
+  if (!sample.lent) return type.decode(value, sample.cdr, offset);
+  if (sample.lent->value.empty()) {
+    throw Overloaded("what the call lends cannot be read here; its provider's log says why");
+  }
+  idl::PuttingIn putting_in(sample.lent->value, sample.lent->position);
+  const std::size_t end = type.decode(value, sample.cdr, offset);
+  if (!putting_in.taken()) throw InvalidArgument("what it lends belongs to no parameter");
+  return end;
 }
 
 }  // namespace
@@ -137,12 +151,13 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   invocation->in = {operation->in->make(), operation->in->destroy};
   std::optional<wire::RequestTrailer> trailer;
   try {
-    const std::size_t end = operation->in->decode(invocation->in.get(), sample.cdr, head.body);
+    const std::size_t end = decode(*operation->in, invocation->in.get(), sample, head.body);
     trailer = wire::read_request_trailer(sample.cdr, end);
     if (trailer.has_value() != (client != foreign)) throw InvalidArgument("its end is damaged");
   } catch (const InvalidArgument& error) {
     throw InvalidArgument(unreadable("the request of " + std::string(operation->name), error));
   }
+  if (sample.lent) invocation->lent = sample.lent->use;
   invocation->caller = head.id.client;
   invocation->connection = sample.writer;
   invocation->number = head.id.number;

@@ -43,6 +43,8 @@ using SessionFactory = std::function<std::shared_ptr<Session>(const OpenRequest&
 /// One request as the provider sees it, from whichever transport. It owns its arguments.
 struct Invocation {
   const OperationInfo* operation = nullptr;
+  /// Keeps what parameters refer to where they were not copied.
+  std::shared_ptr<const void> lent;
   /// The in struct; freed by the operation's own TypeSupport.
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;

@@ -89,6 +89,7 @@ class LinkReader : public dds::Reader, public Inbox {
     Current own{{}, turn};
     own.sample.cdr = message;
     own.sample.writer = link.peer();
+    own.sample.lent = link.lent();
     current = &own;
     listener_.on_data(*this);  // which may outlive this, where it has left its turn
     current = nullptr;
@@ -136,15 +137,16 @@ class LinkWriter final : public dds::Writer {
 
   void write(std::span<const std::byte> cdr, const dds::KeyHash&) override {
     dds::check_size(cdr.size(), "a message");
-    switch (link_ ? link_->send(cdr, max_blocking_) : Link::Sent::Ended) {
-      case Link::Sent::Yes:
-        return;
-      case Link::Sent::NoRoom:
-        throw Overloaded("the other side has taken nothing from its memory for " +
-                         std::to_string(max_blocking_.count()) + " ms");
-      case Link::Sent::Ended:
-        if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
-    }
+    conclude(link_ ? link_->send(cdr, max_blocking_) : Link::Sent::Ended);
+  }
+
+  bool write_lending(std::span<const std::byte> cdr, const std::shared_ptr<LoanMemory>& value,
+                     std::size_t position) override {
+    dds::check_size(cdr.size() + sizeof(LoanNote), "a message");
+    const auto sent = link_ ? link_->send_lending(cdr, value, position, max_blocking_)
+                            : std::optional(Link::Sent::Ended);
+    if (sent) conclude(*sent);
+    return sent.has_value();
   }
 
   void dispose(const dds::KeyHash&) override {
@@ -162,6 +164,18 @@ class LinkWriter final : public dds::Writer {
   }
 
  private:
+  void conclude(Link::Sent sent) const {
+    switch (sent) {
+      case Link::Sent::Yes:
+        return;
+      case Link::Sent::NoRoom:
+        throw Overloaded("the other side has taken nothing from its memory for " +
+                         std::to_string(max_blocking_.count()) + " ms");
+      case Link::Sent::Ended:
+        if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
+    }
+  }
+
   const Guid guid_;
   const std::shared_ptr<Link> link_;
   const std::chrono::milliseconds max_blocking_;

@@ -12,9 +12,18 @@ namespace {
 // A message that needed more is not kept for the next one.
 constexpr std::size_t kKeptCapacity = 4 << 20;
 
+/// At the memory's beginning.
+struct State {
+  RingState rings[2];
+  LoanCounts loans;
+};
+static_assert(sizeof(State) <= Link::kMemory - 2 * Link::kCapacity);
+
+State& state_in(const SharedMemory& memory) { return *reinterpret_cast<State*>(memory.data()); }
+
 RingPlace place_of(const SharedMemory& memory, bool requests) {
   const std::size_t which = requests ? 0 : 1;
-  return {reinterpret_cast<RingState*>(memory.data()) + which,
+  return {&state_in(memory).rings[which],
           memory.data() + (Link::kMemory - 2 * Link::kCapacity) + which * Link::kCapacity,
           Link::kCapacity};
 }
@@ -41,16 +50,71 @@ void Ending::run() {
 
 Link::Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory memory,
            const Guid& own, const Guid& peer, std::function<void()> notify)
-    : socket_(std::move(socket)),
-      memory_(std::move(memory)),
+    : side_(side),
+      socket_(std::move(socket)),
+      memory_(std::make_shared<const SharedMemory>(std::move(memory))),
       own_(own),
       peer_(peer),
-      in_(place_of(memory_, side == Side::Provider), dds::kLargestSample),
+      in_(place_of(*memory_, side == Side::Provider), dds::kLargestSample),
       notify_(std::move(notify)),
-      out_(place_of(memory_, side == Side::Client)) {}
+      out_(place_of(*memory_, side == Side::Client)) {}
 
 Link::Sent Link::send(std::span<const std::byte> message, Duration patience) {
   std::lock_guard lock(out_mutex_);
+  return write({message}, patience);
+}
+
+std::optional<Link::Sent> Link::send_lending(std::span<const std::byte> message,
+                                             const std::shared_ptr<LoanMemory>& value,
+                                             std::size_t position, Duration patience) {
+  if (side_ != Side::Client) return std::nullopt;
+  std::lock_guard lock(out_mutex_);
+  if (ended_) return Sent::Ended;
+  if (!lender_) lender_.emplace(lending());
+  const auto note = lender_->lend(value, position);
+  if (!note) return std::nullopt;
+  Sent sent = Sent::NoRoom;
+  try {
+    Bytes whole(message);
+    whole.append(std::as_bytes(std::span(&*note, 1)));
+    sent = write({whole, true}, patience);
+  } catch (...) {
+    lender_->not_sent(*note);
+    throw;
+  }
+  if (sent == Sent::Yes) {
+    lender_->sent(*note);
+  } else {
+    lender_->not_sent(*note);
+  }
+  return sent;
+}
+
+Lender::Connection Link::lending() {
+  const auto link = weak_from_this();
+  return {socket_, &state_in(*memory_).loans, memory_,
+          [link] {
+            const auto self = link.lock();
+            return !self || self->ended();
+          },
+          [link](const LoanNote& gone) {
+            if (const auto self = link.lock()) self->forget(gone);
+          }};
+}
+
+// Where it would have to wait, the other side keeps the memory until another one takes its place.
+void Link::forget(const LoanNote& gone) {
+  const std::unique_lock lock(out_mutex_, std::try_to_lock);
+  if (!lock) return;
+  try {
+    write({std::as_bytes(std::span(&gone, 1)), true}, Duration::zero());
+  } catch (const BrokenRing&) {
+    // Whoever uses the link next hears of it.
+  }
+}
+
+// Under the lock.
+Link::Sent Link::write(const RingWriter::Part& message, Duration patience) {
   if (ended_) return Sent::Ended;
   try {
     if (out_.write(message, patience, [this] { return ended(); })) return Sent::Yes;
@@ -74,7 +138,13 @@ bool Link::await_taken(Instant deadline) {
 std::optional<std::span<const std::byte>> Link::receive(Bytes& spare) {
   if (message_.empty()) message_.swap(spare);
   try {
-    if (in_.take(message_)) return std::span<const std::byte>(message_);
+    if (in_.take(message_)) {
+      if (!in_.lends()) return std::span<const std::byte>(message_);
+      lent_ = borrow();
+      if (lent_)
+        return std::span<const std::byte>(message_).first(message_.size() - sizeof(LoanNote));
+      message_.clear();
+    }
   } catch (const BrokenRing&) {
     break_off();
     throw;
@@ -84,6 +154,13 @@ std::optional<std::span<const std::byte>> Link::receive(Bytes& spare) {
   return std::nullopt;
 }
 
+// Nothing where a memory is gone: the message has told all.
+std::optional<dds::LentValue> Link::borrow() {
+  if (side_ != Side::Provider) throw BrokenRing("a reply that lends");
+  if (!borrower_) borrower_.emplace(socket_, &state_in(*memory_).loans, memory_);
+  return borrower_->borrow(message_);
+}
+
 void Link::break_off() {
   broken_ = true;
   close();
@@ -91,6 +168,7 @@ void Link::break_off() {
 
 void Link::release(Bytes& spare) {
   message_.clear();
+  lent_.reset();
   if (unfinished_ != 0) unfinished_ = 0;
   if (message_.capacity() > kKeptCapacity) message_ = Bytes();
   spare = std::move(message_);

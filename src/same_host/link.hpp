@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/file_descriptor.hpp"
+#include "loans.hpp"
 #include "ring.hpp"
 #include "shared_memory.hpp"
 #include "skein/guid.hpp"
@@ -31,7 +32,7 @@ class Ending {
 
 /// One connection as one side sees it: a ring each way, and the socket that the kernel hangs up
 /// when the other process ends, whatever ends it. Thread-safe, but for receive().
-class Link {
+class Link : public std::enable_shared_from_this<Link> {
  public:
   enum class Side { Provider, Client };
   enum class Sent { Yes, NoRoom, Ended };
@@ -56,6 +57,11 @@ class Link {
   /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. A ring
   /// that is found broken ends the link; throws BrokenRing then.
   Sent send(std::span<const std::byte> message, Duration patience);
+  /// The same of one that has left out `value` at `position`, of a client's; nothing where the
+  /// other side cannot read it where it lies.
+  std::optional<Sent> send_lending(std::span<const std::byte> message,
+                                   const std::shared_ptr<LoanMemory>& value, std::size_t position,
+                                   Duration patience);
   /// Waits until the other side has taken everything; false at the deadline and at the end, also
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
@@ -65,6 +71,8 @@ class Link {
   /// other: only a message that has not come to its end keeps some. Throws BrokenRing.
   std::optional<std::span<const std::byte>> receive(Bytes& spare);
   void release(Bytes& spare);
+  /// What the message has left out, as valid as it; or null.
+  const dds::LentValue* lent() const noexcept { return lent_ ? &*lent_ : nullptr; }
   /// Octets that have come of a message without its end.
   std::size_t unfinished() const noexcept { return unfinished_; }
   RingReader& in() noexcept { return in_; }
@@ -82,13 +90,20 @@ class Link {
 
  private:
   void break_off();
+  Sent write(const RingWriter::Part& message, Duration patience);
+  Lender::Connection lending();
+  void forget(const LoanNote& gone);
+  std::optional<dds::LentValue> borrow();
 
+  const Side side_;
   const std::shared_ptr<const FileDescriptor> socket_;
-  const SharedMemory memory_;
+  const std::shared_ptr<const SharedMemory> memory_;
   const Guid own_;
   const Guid peer_;
   RingReader in_;
   Bytes message_;
+  std::optional<Borrower> borrower_;
+  std::optional<dds::LentValue> lent_;
   std::atomic<std::size_t> unfinished_{0};
   std::atomic<bool> ended_{false};
   std::atomic<bool> broken_{false};
@@ -96,6 +111,7 @@ class Link {
   Ending ending_;
   std::mutex out_mutex_;
   RingWriter out_;
+  std::optional<Lender> lender_;
 };
 
 }  // namespace skein::same_host

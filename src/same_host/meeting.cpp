@@ -10,6 +10,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <unordered_map>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "core/printable.hpp"
 #include "core/recent_set.hpp"
 #include "core/start_thread.hpp"
+#include "pass_descriptor.hpp"
 #include "skein/error.hpp"
 
 namespace skein::same_host {
@@ -36,7 +38,7 @@ constexpr std::uint64_t kWake = 0;
 
 // What both sides say to each other once; each is a packet. A change of the memory's layout is
 // another version.
-constexpr char kVersion[8] = "skein2";
+constexpr char kVersion[8] = "skein3";
 
 struct Hello {
   char version[8];
@@ -64,44 +66,12 @@ bool has_our_version(const Packet& packet) {
 }
 
 bool send_answer(int socket, const Answer& answer, int descriptor) {
-  iovec content{const_cast<Answer*>(&answer), sizeof answer};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
-  msghdr message{};
-  message.msg_iov = &content;
-  message.msg_iovlen = 1;
-  if (descriptor >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    cmsghdr* const header = CMSG_FIRSTHDR(&message);
-    header->cmsg_level = SOL_SOCKET;
-    header->cmsg_type = SCM_RIGHTS;
-    header->cmsg_len = CMSG_LEN(sizeof descriptor);
-    std::memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
-  }
-  return sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof answer;
+  return pass(socket, std::as_bytes(std::span(&answer, 1)), descriptor);
 }
 
-// Whether it is an answer; what the kernel has put in is owned at once, whatever it is.
 bool receive_answer(int socket, Answer& answer, FileDescriptor& descriptor) {
-  iovec content{&answer, sizeof answer};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &content;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  const auto size = recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  if (size < 0) return false;
-  for (auto* header = CMSG_FIRSTHDR(&message); header; header = CMSG_NXTHDR(&message, header)) {
-    if (header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_RIGHTS) continue;
-    // There is room for two: what is filled up to the alignment counts.
-    for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= header->cmsg_len; at += sizeof(int)) {
-      int number = -1;
-      std::memcpy(&number, reinterpret_cast<const char*>(header) + at, sizeof number);
-      descriptor = FileDescriptor(number);
-    }
-  }
-  return size == sizeof answer && (message.msg_flags & MSG_TRUNC) == 0 && has_our_version(answer);
+  return receive_passed(socket, std::as_writable_bytes(std::span(&answer, 1)), descriptor) &&
+         has_our_version(answer);
 }
 
 }  // namespace

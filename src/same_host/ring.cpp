@@ -15,6 +15,8 @@ constexpr std::uint32_t kFirst = 1;
 constexpr std::uint32_t kLast = 2;
 // Not of a message: nothing comes before the ring's end.
 constexpr std::uint32_t kSkip = 4;
+// Of the last one of a message: it lends.
+constexpr std::uint32_t kLends = 8;
 // A longer message is published in parts, so that the reader copies while the writer does.
 constexpr std::size_t kLargestFrame = 32 << 10;
 // Where there is less room, the reader is waited for: a message is not cut into crumbs.
@@ -92,7 +94,8 @@ bool RingWriter::put(Part& part) {
     const auto content = part.rest.first(std::min(part.rest.size(), room - kHeader));
     part.rest = part.rest.subspan(content.size());
     const bool last = part.rest.empty();
-    put_frame((part.begun ? 0 : kFirst) | (last ? kLast : 0), content);
+    const std::uint32_t end = last ? kLast | (part.lends ? kLends : 0) : 0;
+    put_frame((part.begun ? 0 : kFirst) | end, content);
     part.begun = true;
     if (last) {
       publish(More::No);
@@ -136,9 +139,7 @@ bool RingWriter::await_change(Instant deadline, const std::function<bool()>& end
   return !over;
 }
 
-bool RingWriter::write(std::span<const std::byte> message, Duration patience,
-                       const std::function<bool()>& ended) {
-  Part part{message};
+bool RingWriter::write(Part part, Duration patience, const std::function<bool()>& ended) {
   while (!put(part)) {
     const std::uint64_t taken = read_;
     const Instant deadline = std::chrono::steady_clock::now() + patience;
@@ -180,7 +181,9 @@ bool RingReader::take(Bytes& message) {
     const std::uint64_t size = header & 0xFFFF'FFFF;
     const auto kind = static_cast<std::uint32_t>(header >> 32);
     const std::uint64_t frame = kind == kSkip ? to_end : frame_size(size);
-    if (kind > kSkip || (kind == kSkip && size != 0)) {
+    const bool of_message =
+        (kind & ~(kFirst | kLast | kLends)) == 0 && ((kind & kLends) == 0 || (kind & kLast) != 0);
+    if (!of_message && (kind != kSkip || size != 0)) {
       throw BrokenRing("a frame of an unknown kind, " + std::to_string(kind));
     }
     if (frame > waiting || frame > to_end) {
@@ -201,6 +204,7 @@ bool RingReader::take(Bytes& message) {
     }
     release(frame);
     taken += frame;
+    lends_ = (kind & kLends) != 0;
     if ((kind & kLast) != 0) return true;
   }
   return false;

@@ -58,6 +58,7 @@ class RingWriter {
   /// A message on its way.
   struct Part {
     std::span<const std::byte> rest;
+    bool lends = false;  ///< See RingReader::lends().
     bool begun = false;
   };
 
@@ -68,8 +69,7 @@ class RingWriter {
 
   /// Puts all of it in. Where the reader takes nothing for as long as `patience`, or `ended` is so
   /// (which wake() makes it look at), it gives up; false then. Throws BrokenRing.
-  bool write(std::span<const std::byte> message, Duration patience,
-             const std::function<bool()>& ended);
+  bool write(Part message, Duration patience, const std::function<bool()>& ended);
 
   /// Waits until the reader has taken everything; false at the deadline, or once `ended` is so.
   bool await_empty(Instant deadline, const std::function<bool()>& ended);
@@ -113,6 +113,9 @@ class RingReader {
   /// what has come; whether the message is whole. Throws BrokenRing.
   bool take(Bytes& message);
 
+  /// Whether the message that take() has completed ends with what says of a loan: see loans.hpp.
+  bool lends() const noexcept { return lends_; }
+
   /// Whether something has come.
   bool ready() const { return place_.state->written.load(std::memory_order_acquire) != read_; }
 
@@ -132,6 +135,7 @@ class RingReader {
   std::atomic<std::uint64_t> read_{0};  // changed by take()
   std::uint64_t written_ = 0;           // as last seen
   bool begun_ = false;
+  bool lends_ = false;
 };
 
 }  // namespace skein::same_host

@@ -1,8 +1,10 @@
 #include "shared_memory.hpp"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 
 #include <cerrno>
 #include <cstring>
@@ -23,6 +25,21 @@ constexpr int kSizeSeals = F_SEAL_SHRINK | F_SEAL_GROW;
   refuse(std::string(call) + ": " + std::strerror(errno));
 }
 
+// Throws where they are not what `wanted` says.
+std::size_t checked_size(const FileDescriptor& descriptor, int wanted) {
+  const int seals = fcntl(descriptor.get(), F_GET_SEALS);
+  if (seals < 0 || (seals & wanted) != wanted) {
+    refuse("what the other process offers is not sealed: it could take it away in use");
+  }
+  // A large page that is not there when it is read ends who reads it.
+  struct statfs system {};
+  if (fstatfs(descriptor.get(), &system) != 0) refuse_for("fstatfs");
+  if (system.f_type != TMPFS_MAGIC) refuse("what the other process offers is no ordinary memory");
+  struct stat status {};
+  if (fstat(descriptor.get(), &status) != 0) refuse_for("fstat");
+  return static_cast<std::size_t>(status.st_size);
+}
+
 }  // namespace
 
 SharedMemory SharedMemory::make(std::size_t size) {
@@ -31,27 +48,30 @@ SharedMemory SharedMemory::make(std::size_t size) {
   if (ftruncate(descriptor.get(), static_cast<off_t>(size)) != 0) refuse_for("ftruncate");
   if (fcntl(descriptor.get(), F_ADD_SEALS, kSizeSeals | F_SEAL_SEAL) != 0)
     refuse_for("F_ADD_SEALS");
-  return {std::move(descriptor), size};
+  return {std::move(descriptor), size, PROT_READ | PROT_WRITE};
 }
 
 SharedMemory SharedMemory::map(FileDescriptor descriptor, std::size_t size) {
-  const int seals = fcntl(descriptor.get(), F_GET_SEALS);
-  if (seals < 0 || (seals & kSizeSeals) != kSizeSeals) {
-    refuse("what the other process offers is not sealed: it could take it away in use");
-  }
-  struct stat status {};
-  if (fstat(descriptor.get(), &status) != 0) refuse_for("fstat");
-  if (static_cast<std::size_t>(status.st_size) != size) {
-    refuse("the other process offers " + std::to_string(status.st_size) + " octets; " +
+  const std::size_t offered = checked_size(descriptor, kSizeSeals);
+  if (offered != size) {
+    refuse("the other process offers " + std::to_string(offered) + " octets; " +
            std::to_string(size) + " are needed");
   }
-  return {std::move(descriptor), size};
+  return {std::move(descriptor), size, PROT_READ | PROT_WRITE};
 }
 
-SharedMemory::SharedMemory(FileDescriptor descriptor, std::size_t size)
+SharedMemory SharedMemory::map_to_read(FileDescriptor descriptor, std::size_t largest) {
+  const std::size_t offered = checked_size(descriptor, kSizeSeals | F_SEAL_FUTURE_WRITE);
+  if (offered == 0 || offered > largest) {
+    refuse("the other process offers " + std::to_string(offered) + " octets; up to " +
+           std::to_string(largest) + " are taken");
+  }
+  return {std::move(descriptor), offered, PROT_READ};
+}
+
+SharedMemory::SharedMemory(FileDescriptor descriptor, std::size_t size, int access)
     : descriptor_(std::move(descriptor)), size_(size) {
-  void* const mapped =
-      mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_.get(), 0);
+  void* const mapped = mmap(nullptr, size, access, MAP_SHARED, descriptor_.get(), 0);
   if (mapped == MAP_FAILED) refuse_for("mmap");
   data_ = static_cast<std::byte*>(mapped);
 }

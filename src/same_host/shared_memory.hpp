@@ -18,6 +18,10 @@ class SharedMemory {
   /// What another process has made. Throws Unavailable where it is not of this size, or not sealed.
   static SharedMemory map(FileDescriptor descriptor, std::size_t size);
 
+  /// The same, to be read alone, of whatever size up to `largest`; nobody but who has made it can
+  /// write to it.
+  static SharedMemory map_to_read(FileDescriptor descriptor, std::size_t largest);
+
   SharedMemory(SharedMemory&& other) noexcept { swap(other); }
   SharedMemory& operator=(SharedMemory&& other) noexcept {
     swap(other);
@@ -32,7 +36,7 @@ class SharedMemory {
   FileDescriptor take_descriptor() noexcept { return std::move(descriptor_); }
 
  private:
-  SharedMemory(FileDescriptor descriptor, std::size_t size);
+  SharedMemory(FileDescriptor descriptor, std::size_t size, int access);
   void swap(SharedMemory& other) noexcept {
     std::swap(descriptor_, other.descriptor_);
     std::swap(data_, other.data_);

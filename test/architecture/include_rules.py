@@ -36,7 +36,7 @@ FLOORS = {
 # What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
 USERS_HEADERS = {
     "core": "call call_context clock error executor guid stream wait_for_signal",
-    "idl": "describe",
+    "idl": "describe loaned",
     "dds": "loopback vendor",
     "topics": "publisher subscription topic_qos",
     "brokerless_discovery": "constraint",
@@ -46,13 +46,13 @@ USERS_HEADERS = {
     "all of the library": "skein",
     "Asio": "asio",
 }
-MAX_USERS_HEADERS = 33
+MAX_USERS_HEADERS = 34
 # Those that skein/skein.hpp does not include: they need another library, or are that header.
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
-    "core": "abi action box bytes call_memory channel operation pending_reply representation version",
-    "idl": "argument cdr codec declared_exception filled json json_codec key_hash make_type_support malformed_sample plain_layout print"
+    "core": "abi action box bytes call_memory channel loan_memory operation pending_reply representation version",
+    "idl": "argument cdr codec declared_exception filled json json_codec key_hash lendable make_type_support malformed_sample plain_layout print"
            " service_reference type_support union_access unknown_operation wide_text",
     "dds": "qos",
     "topics": "topic_type",

@@ -14,7 +14,10 @@
 #include <fstream>
 #include <functional>
 #include <new>
+#include <numeric>
 #include <random>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -23,9 +26,12 @@
 #include "../tools/seed.hpp"
 #include "core/abstract_socket.hpp"
 #include "echo_service.hpp"
+#include "frames.idl.hpp"
 #include "rpc/wire.hpp"
 #include "same_host/link.hpp"
+#include "same_host/pass_descriptor.hpp"
 #include "skein/entity.hpp"
+#include "skein/loaned.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -72,13 +78,16 @@ class Attacker {
   }
   void unmap() { munmap(memory_, Link::kMemory); }
 
-  void send(const Bytes& message) {
+  static constexpr std::uint64_t kWhole = 3;   // a frame that is a message
+  static constexpr std::uint64_t kLends = 11;  // that, and its end says of a loan
+
+  void send(const Bytes& message, std::uint64_t kind = kWhole) {
     RingState& ring = state(out_);
     const std::uint64_t at = written_;
     const std::size_t frame = 8 + ((message.size() + 7) & ~std::size_t{7});
     if (at % Link::kCapacity + frame > Link::kCapacity) return;
     std::byte* const place = content(out_) + at % Link::kCapacity;
-    const std::uint64_t header = std::uint64_t{3} << 32 | message.size();
+    const std::uint64_t header = kind << 32 | message.size();
     std::memcpy(place + 8, message.data(), message.size());
     std::memcpy(place, &header, sizeof header);
     written_ += frame;
@@ -167,7 +176,7 @@ class Attacker {
            static_cast<std::size_t>(which) * Link::kCapacity;
   }
   void scribble(int which) {
-    const std::uint64_t value = chance(2) ? random_() : (random_() % 6) << 32 | random_() % 256;
+    const std::uint64_t value = chance(2) ? random_() : (random_() % 16) << 32 | random_() % 256;
     std::memcpy(content(which) + random_() % 512 * 8, &value, sizeof value);
   }
 
@@ -182,8 +191,8 @@ std::string address_of(const Guid& provider) { return "skein-call/" + provider.h
 /// A client that joins as it should, and then is hostile.
 class HostileClient : Attacker {
  public:
-  HostileClient(const Guid& provider, std::uint64_t seed)
-      : Attacker(seed, 0), provider_(provider) {}
+  HostileClient(const Guid& provider, std::uint64_t seed, bool lends = false)
+      : Attacker(seed, 0), provider_(provider), lends_(lends) {}
 
   void attack() {
     const Guid client = Guid::random();
@@ -194,6 +203,7 @@ class HostileClient : Attacker {
     send(open_request(client));
     for (std::uint64_t number = 1; number < 40; ++number) {
       if (chance(2)) send(request(client, number));
+      if (lends_ && chance(2)) lend(socket, client, number);
       if (chance(3)) Attacker::damage();
       eat();
       look_alive();
@@ -203,7 +213,7 @@ class HostileClient : Attacker {
 
  private:
   static FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
-    std::array<char, 24> hello{"skein2"};
+    std::array<char, 24> hello{"skein3"};
     std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
     if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
     pollfd answered{socket.get(), POLLIN, 0};
@@ -241,7 +251,38 @@ class HostileClient : Attacker {
     return message;
   }
 
+  /// Memory of any kind, and a call that lends what it says is there.
+  void lend(const FileDescriptor& socket, const Guid& client, std::uint64_t number) {
+    const std::uint32_t place = static_cast<std::uint32_t>(random() % (chance(8) ? 10 : 3));
+    const std::uint32_t generation = static_cast<std::uint32_t>(1 + random() % 3);
+    if (!chance(4)) {
+      const FileDescriptor memory(memfd_create("hostile", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+      const std::size_t size = chance(8) ? random() % 8192 : sizeof(::test::Frame);
+      const int seals = F_SEAL_SHRINK | F_SEAL_GROW | (chance(8) ? 0 : F_SEAL_FUTURE_WRITE);
+      if (ftruncate(memory.get(), static_cast<off_t>(size)) != 0) return;
+      if (!chance(8)) fcntl(memory.get(), F_ADD_SEALS, seals);
+      const std::array<std::uint32_t, 2> packet{place, generation};
+      same_host::pass(socket.get(), std::as_bytes(std::span(packet)),
+                      chance(8) ? -1 : memory.get());
+    }
+    Bytes message;
+    rpc::wire::begin_request(message, {client, number}, operation("study"));
+    same_host::LoanNote note{place, generation, sizeof(::test::Frame), message.size()};
+    rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1s});
+    damage(message);
+    if (chance(8)) note.size = random() % (2 * sizeof(::test::Frame));
+    if (chance(8)) note.position = random() % 256;
+    message.append(std::as_bytes(std::span(&note, 1)));
+    send(message, kLends);
+  }
+
+  static std::uint32_t operation(const std::string& name) {
+    const auto& all = ::test::Album::interface_info().operations;
+    return std::ranges::find_if(all, [&](const auto& each) { return each.name == name; })->hash;
+  }
+
   const Guid provider_;
+  const bool lends_;
 };
 
 /// A provider that lets a client in, mostly as it should, and then is hostile.
@@ -294,7 +335,7 @@ class HostileProvider : Attacker {
   }
 
   bool answer(const FileDescriptor& socket, const FileDescriptor& descriptor) {
-    std::array<char, 128> packet{"skein2"};
+    std::array<char, 128> packet{"skein3"};
     std::memcpy(packet.data() + 8, provider_.bytes.data(), provider_.bytes.size());
     if (chance(16)) packet[random() % packet.size()] = static_cast<char>(random());
     iovec content{packet.data(), packet.size()};
@@ -394,12 +435,31 @@ std::ptrdiff_t open_descriptors() {
                        std::filesystem::directory_iterator{});
 }
 
-int mapped_rings() {
+int mapped_memory() {
   std::ifstream maps("/proc/self/maps");
   int count = 0;
   for (std::string line; std::getline(maps, line);) count += line.find("memfd:") != line.npos;
   return count;
 }
+
+/// Reads all that it is given.
+struct Album final : ::test::Album {
+  std::uint64_t weigh(const std::string&, const ::test::Frame& frame, std::int32_t,
+                      std::string&) override {
+    return study(frame);
+  }
+  std::uint64_t weigh_both(const ::test::Frame& one, const ::test::Frame& other) override {
+    return study(one) + study(other);
+  }
+  std::uint64_t weigh_line(const ::test::Line&) override { return 0; }
+  std::uint64_t study(const ::test::Frame& frame) override {
+    ++studied;
+    return std::accumulate(frame.pixels.begin(), frame.pixels.end(), std::uint64_t{0});
+  }
+  std::uint64_t weigh_marked(const ::test::Marked&) override { return 0; }
+
+  std::atomic<std::uint64_t> studied{0};
+};
 
 }  // namespace
 
@@ -419,7 +479,7 @@ TEST_CASE(
   const auto client = make_entity("client");
   auto echo = client->connect<Echo>();
   REQUIRE(echo.echo("first") == "first");
-  REQUIRE(mapped_rings() == 2);  // one at each end, both in this process
+  REQUIRE(mapped_memory() == 2);  // one at each end, both in this process
   const auto descriptors = open_descriptors();
 
   attacker.begin(provider);
@@ -433,8 +493,49 @@ TEST_CASE(
   CHECK(attacker.stop() == 0);
   CHECK(client->connector().connections().front().transport == "shared memory");
   CHECK(log.count("has damaged the memory that it shares") > 10);
-  CHECK(eventually([&] { return mapped_rings() == 2; }));
-  CHECK(eventually([&] { return open_descriptors() == descriptors; }));
+  CHECK(eventually([&] { return mapped_memory() == 2; }));
+  eventually([&] { return open_descriptors() == descriptors; });
+  CHECK(open_descriptors() == descriptors);
+}
+
+TEST_CASE("a process that lends memory of any kind, or none, harms neither provider nor others") {
+  AttackingProcess attacker(
+      [](const Guid& provider, std::uint64_t seed) {
+        HostileClient(provider, seed, true).attack();
+        return true;
+      },
+      seed_of_this_run());
+  const Log log;
+  const auto server = make_entity("server");
+  ServiceOptions service;
+  if (GENERATE(false, true)) service.thread = CallThread::Caller;
+  const auto album = std::make_shared<Album>();
+  const Guid provider = server->provide<::test::Album>(album, service);
+  const auto client = make_entity("client");
+  auto sound = client->connect<::test::Album>();
+  Loaned<::test::Frame> frame;
+  frame->pixels.fill(1);
+  REQUIRE(sound.study(*frame) == frame->pixels.size());
+  const auto mappings = mapped_memory();
+  const auto descriptors = open_descriptors();
+  const std::uint64_t own = album->studied;
+
+  attacker.begin(provider);
+  constexpr std::uint64_t kRounds = 150;
+  std::uint64_t asked = 0;
+  REQUIRE(eventually([&] {
+    ++asked;
+    INVARIANT(sound.within(20s).study(*frame) == frame->pixels.size());
+    return attacker.rounds() >= kRounds;
+  }));
+  CHECK(attacker.stop() == 0);
+  CHECK(client->connector().connections().front().transport == "shared memory");
+  CHECK(album->studied > own + asked);  // some of what was lent was read
+  CHECK(log.count("a loan") > 10);
+  CHECK(log.count("a caller's memory cannot be read") > 10);
+  CHECK(eventually([&] { return mapped_memory() == mappings; }));
+  eventually([&] { return open_descriptors() == descriptors; });
+  CHECK(open_descriptors() == descriptors);
 }
 
 TEST_CASE("a provider that writes anything into the memory it shares harms its clients alone") {
@@ -488,6 +589,7 @@ TEST_CASE("a provider that writes anything into the memory it shares harms its c
   CHECK(attacker.stop() == 0);
   CHECK(bystander->connector().connections().front().transport == "shared memory");
   CHECK(log.count("has damaged the memory that it shares") > 10);
-  CHECK(eventually([&] { return mapped_rings() == 2; }));
-  CHECK(eventually([&] { return open_descriptors() == descriptors; }));
+  CHECK(eventually([&] { return mapped_memory() == 2; }));
+  eventually([&] { return open_descriptors() == descriptors; });
+  CHECK(open_descriptors() == descriptors);
 }

@@ -88,7 +88,7 @@ FileDescriptor stranger(const Host& host) {
 
 /// What a client says first.
 std::array<char, 24> hello_of(const Guid& client) {
-  std::array<char, 24> hello{"skein2"};
+  std::array<char, 24> hello{"skein3"};
   std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
   return hello;
 }
@@ -465,7 +465,7 @@ TEST_CASE("a provider that hands over what can be taken away again is refused") 
     char packet[128];
     eventually([&] { return recv(accepted.get(), packet, sizeof packet, MSG_DONTWAIT) > 0; });
     std::memset(packet, 0, sizeof packet);
-    std::strcpy(packet, "skein2");
+    std::strcpy(packet, "skein3");
     std::memcpy(packet + 8, provider.bytes.data(), provider.bytes.size());
     iovec content{packet, sizeof packet};
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof number)] = {};

@@ -129,8 +129,8 @@ TEST_CASE("a full ring takes no more until the reader has made room") {
   }
   CHECK(sent >= 4096 / 112 - 10);
   CHECK_FALSE(writer.put(rest));
-  CHECK_FALSE(writer.write(content, 0ms, never));
-  CHECK_FALSE(writer.write(content, 1h, [] { return true; }));
+  CHECK_FALSE(writer.write({content}, 0ms, never));
+  CHECK_FALSE(writer.write({content}, 1h, [] { return true; }));
   Bytes taken;
   for (std::size_t i = 0; i < sent; ++i) REQUIRE(reader.take(taken));
   CHECK(writer.put(rest));
@@ -321,7 +321,7 @@ TEST_CASE("two threads that both sleep when they must lose nothing") {
     RingWriter writer(memory.place());
     std::mt19937 random(1);
     for (std::size_t i = 0; i < kMessages; ++i) {
-      writer.write(message(random() % (i % 100 == 0 ? 20'000 : 300), i), 20s, never);
+      writer.write({message(random() % (i % 100 == 0 ? 20'000 : 300), i)}, 20s, never);
     }
   });
   RingReader reader(memory.place(), kLargest);
@@ -352,7 +352,7 @@ TEST_CASE("a process answers another one through two rings, and nobody's sleep i
     RingWriter replies(place(mapped, 1));
     Bytes taken;
     for (std::size_t i = 0; i < kMessages; ++i) {
-      if (!take_one(requests, taken, soon()) || !replies.write(taken, 20s, never)) _exit(1);
+      if (!take_one(requests, taken, soon()) || !replies.write({taken}, 20s, never)) _exit(1);
     }
     _exit(0);
   }
@@ -362,7 +362,7 @@ TEST_CASE("a process answers another one through two rings, and nobody's sleep i
   Bytes taken;
   for (std::size_t i = 0; i < kMessages; ++i) {
     const auto sent = message(i % 50 == 0 ? 30'000 : i % 200, i);
-    if (!requests.write(sent, 20s, never) || !take_one(replies, taken, soon())) break;
+    if (!requests.write({sent}, 20s, never) || !take_one(replies, taken, soon())) break;
     right += equal(taken, sent);
   }
   int status = 0;

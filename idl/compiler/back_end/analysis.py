@@ -351,6 +351,23 @@ def plain_element(decl):
     return only if isinstance(only, model.Primitive) and only.idl not in ("boolean", "wchar", "long double") else None
 
 
+def any_bits_are_a_value(decl):
+    """Whether a struct is made of numbers, octets and characters alone, and lies in memory as every compiler puts it: a base's padding
+    is used by some for what is derived from it."""
+
+    def is_so(kind):
+        kind = model.unaliased(kind)
+        if isinstance(kind, model.Array):
+            return is_so(kind.element)
+        if isinstance(kind, model.Named):
+            return any_bits_are_a_value(kind.decl)
+        return isinstance(kind, model.Primitive) and kind.idl not in ("boolean", "wchar", "long double")
+
+    if type(decl) is not model.Struct or decl.base or decl.recursive or uses_xcdr2(decl) or any(m.argument for m in decl.members):
+        return False
+    return bool(decl.members) and all(is_so(member.type) for member in decl.members)
+
+
 def bounded(kind):
     """Whether a value of this type, not counting declared types in it, must be checked for a bound."""
     kind = model.unaliased(kind)

@@ -18,7 +18,7 @@ from . import (
     types_template,
 )
 
-VERSION = 6  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 7  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)
@@ -71,6 +71,7 @@ def header(file):
         '#include "skein/detail/argument.hpp"',
         *(['#include "skein/detail/box.hpp"'] if _uses(file, model.External) else []),
         '#include "skein/detail/declared_exception.hpp"',
+        '#include "skein/detail/lendable.hpp"',
         '#include "skein/detail/operation.hpp"',
         '#include "skein/detail/plain_layout.hpp"',
         '#include "skein/detail/service_reference.hpp"',
@@ -113,6 +114,8 @@ def _layouts(file):
                       f"    ::skein::Representation::Xcdr2{kind};"]  # fmt: skip
         if isinstance(decl, (model.Bitmask, model.Bitset)) or (isinstance(decl, model.Enum) and not decl.counted):
             lines += ["template <>", f"inline constexpr bool skein::idl::kBasicOnTheWire<{decl.cpp}> = true;"]
+        if analysis.any_bits_are_a_value(decl):
+            lines += ["template <>", f"inline constexpr bool skein::idl::kAnyBitsAreAValue<{decl.cpp}> = true;"]
         if element := analysis.plain_element(decl):
             kind = model.PRIMITIVES[element.idl][0]
             lines += ["template <>", f"struct skein::idl::PlainLayout<{decl.cpp}> {{", f"  using Element = {kind};", "};"]

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
+
+#include "skein/detail/box.hpp"
 
 namespace skein {
 
@@ -32,15 +35,26 @@ class Argument {
     return argument;
   }
 
-  const T& get() const noexcept { return borrowed_ ? *borrowed_ : own_; }
+  const T& get() const noexcept {
+    if (borrowed_) return *borrowed_;
+    if constexpr (kBoxed) {
+      return *own_;
+    } else {
+      return own_;
+    }
+  }
   operator const T&() const noexcept { return get(); }
   const T& operator*() const noexcept { return get(); }
   const T* operator->() const noexcept { return &get(); }
 
   /// The owned value. A borrowed value is forgotten, not copied.
-  T& own() noexcept {
+  T& own() {
     borrowed_ = nullptr;
-    return own_;
+    if constexpr (kBoxed) {
+      return *own_;
+    } else {
+      return own_;
+    }
   }
 
   friend bool operator==(const Argument& left, const Argument& right) {
@@ -48,7 +62,10 @@ class Argument {
   }
 
  private:
-  T own_{};
+  /// A request lies on its caller's stack.
+  static constexpr bool kBoxed = sizeof(T) > std::size_t{4096};
+
+  std::conditional_t<kBoxed, Box<T>, T> own_{};
   const T* borrowed_ = nullptr;
 };
 

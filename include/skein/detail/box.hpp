@@ -7,8 +7,9 @@
 
 namespace skein {
 
-/// A value of its own memory: the member, @external or @optional, by which a type contains itself.
-/// A copy copies the value. Without one it stands for the initial value of T.
+/// A value of its own memory: the member, @external or @optional, by which a type contains itself,
+/// or what is too large for a stack. A copy copies the value. Without one it stands for the initial
+/// value of T.
 template <class T>
 class Box {
  public:

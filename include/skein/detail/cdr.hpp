@@ -67,6 +67,8 @@ class CdrWriter {
   template <std::signed_integral T>
   void write_enum(T value, std::span<const T> values, const char* type);
   void check_bound(std::size_t size, std::size_t bound, const char* place) const;
+  /// Whether nothing is to be written for the value that lies there: see idl/left_out.hpp.
+  bool leave_out(const void* value, std::size_t size);
 
   /// Counts the nesting of a recursive type while it exists.
   class Nesting {
@@ -131,6 +133,8 @@ class CdrReader {
   T read_enum(std::span<const T> values);
   void check_bound(std::size_t size, std::size_t bound, const char* place) const;
   std::size_t remaining() const noexcept;
+  /// The value that was left out here, or null.
+  const void* left_out(std::size_t size, std::size_t alignment);
   /// Of so much memory for elements, which may be larger than what stands for them in the message.
   /// Fails where all together takes more than kMostMemory times the size of the message.
   void take_memory(std::size_t size);

@@ -11,6 +11,7 @@
 #include "skein/detail/argument.hpp"
 #include "skein/detail/box.hpp"
 #include "skein/detail/cdr.hpp"
+#include "skein/detail/lendable.hpp"
 #include "skein/detail/plain_layout.hpp"
 #include "skein/detail/wide_text.hpp"
 
@@ -224,12 +225,25 @@ void decode(CdrReader& reader, Box<T>& value) {
   decode(reader, *value);
 }
 
+/// Parameters that may be left out of a request, as both sides can read them where they lie.
+template <class T>
+inline constexpr bool kMayBeLeftOut = Lendable<T> && sizeof(T) >= std::size_t{4096};
+
 template <class T>
 void encode(CdrWriter& writer, const Argument<T>& value) {
+  if constexpr (kMayBeLeftOut<T>) {
+    if (writer.leave_out(&value.get(), sizeof(T))) return;
+  }
   encode(writer, value.get());
 }
 template <class T>
 void decode(CdrReader& reader, Argument<T>& value) {
+  if constexpr (kMayBeLeftOut<T>) {
+    if (const void* const left_out = reader.left_out(sizeof(T), alignof(T))) {
+      value = Argument<T>::borrow(*static_cast<const T*>(left_out));
+      return;
+    }
+  }
   decode(reader, value.own());
 }
 

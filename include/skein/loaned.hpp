@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "skein/detail/lendable.hpp"
+#include "skein/detail/loan_memory.hpp"
+
+namespace skein {
+
+/// A value in memory that other processes of this host can read. Where a call goes through shared
+/// memory, a parameter that is one, as in `survey.store(*image)`, is not copied: the implementation
+/// reads it where it lies. One parameter of a call is lent, the first, and eight different ones at
+/// a time to one provider. Everything else is copied: further parameters, values of less than
+/// 4 KiB, and those of calls over DDS, of asynchronous calls to idempotent operations, and of
+/// asynchronous calls that wait for another provider. More than 256 MiB go nowhere.
+///
+/// T is an array or a struct of numbers and octets alone (see Lendable), so that whatever is
+/// written to it while it is read is a value, too. All are zero at first.
+///
+/// Making one takes system calls, and its pages are new to both processes: keep it for many calls.
+/// What is in it must stay as it is from a call's begin to its answer. Where a call ends without
+/// one, in_use() tells whether the implementation may still read it. It may be destroyed at any
+/// time: readers keep the memory. Not thread-safe, as any value.
+template <Lendable T>
+class Loaned {
+ public:
+  /// Throws Unavailable where the kernel gives no memory.
+  Loaned() : memory_(LoanMemory::make(sizeof(T))) {}
+  /// What was moved from can only be destroyed, or given another one.
+  Loaned(Loaned&&) noexcept = default;
+  Loaned& operator=(Loaned&&) noexcept = default;
+
+  T& operator*() noexcept { return *value(); }
+  const T& operator*() const noexcept { return *value(); }
+  T* operator->() noexcept { return value(); }
+  const T* operator->() const noexcept { return value(); }
+
+  /// Whether an implementation that it was passed to may still read it.
+  bool in_use() const { return memory_->is_read(); }
+
+ private:
+  T* value() const noexcept { return static_cast<T*>(memory_->data()); }
+
+  std::shared_ptr<LoanMemory> memory_;
+};
+
+}  // namespace skein

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/file_descriptor.hpp"
+
+/// Packets of a Unix socket, with which a descriptor may go. Neither function waits.
+namespace skein::same_host {
+
+/// With no descriptor where it is negative. Whether the packet was sent.
+bool pass(int socket, std::span<const std::byte> packet, int descriptor);
+
+/// Whether a packet of just that size was received. What the kernel has put in beside it is owned
+/// at once, whatever it is; of several descriptors the last one is kept.
+bool receive_passed(int socket, std::span<std::byte> packet, FileDescriptor& descriptor);
+
+}  // namespace skein::same_host
