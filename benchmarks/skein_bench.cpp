@@ -28,8 +28,9 @@ struct Plan {
   CallPlan calls;
   CallPlan ways;
   CallPlan same_host;
+  LoanPlan loans;
   RivalPlan rivals;
-  CallPlan idle_clients;
+  IdleClientsPlan idle_clients;
   CallPlan recorded_calls;
   TopicPlan recorded_topics;
   HeadPlan head;
@@ -53,8 +54,9 @@ Plan full_plan() {
   return {{sizes, 90},
           ways,
           {{{64, 1000}}, 30},
+          {100, 30},
           {sizes, 15, 400, 320, 1000, 200, 3000},
-          {{{64, 300}}, 60},
+          {{{{64, 300}}, 60}, 1000},
           {{{64, 300}, {1024, 300}, {65'536, 100}}, 40},
           {{{64, 5000}, {65'536, 500}, {1'048'576, 60}}, 10},
           {300, 60},
@@ -76,8 +78,9 @@ Plan quick_plan() {
   return {{sizes, 1},
           {sizes, 1},
           {{{64, 3}}, 1},
+          {3, 1},
           {sizes, 1, 5, 32, 64, 5, 10},
-          {{{64, 3}}, 1},
+          {{{{64, 3}}, 1}, 33},
           {{{64, 3}}, 1},
           {{{64, 20}}, 1},
           {20, 2},
@@ -122,6 +125,7 @@ const std::vector<Part> kParts{
     {"ways", [](Configurations& all, const Plan& plan) { return compare_ways(all, plan.ways); }},
     {"same_host",
      [](Configurations& all, const Plan& plan) { return compare_same_host(all, plan.same_host); }},
+    {"loans", [](Configurations& all, const Plan& plan) { return compare_loans(all, plan.loans); }},
     {"rivals",
      [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
     {"in_process",

@@ -47,11 +47,27 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
 /// omniORB, a Unix socket, and memory on which both sides spin.
 std::vector<Comparison> compare_same_host(Configurations& configurations, const CallPlan& plan);
 
+struct LoanPlan {
+  std::size_t calls_per_turn;
+  std::size_t rounds;
+};
+
+/// A call that lends a mebibyte, beside a copy of one, and a call that lends 64 of them; the
+/// service on the thread that takes the request.
+std::vector<Comparison> compare_loans(Configurations& configurations, const LoanPlan& plan);
+
 /// A call that does not leave its process, beside omniORB's.
 std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan);
 
-/// A call while 32 other clients of the same service do nothing, beside one without them.
-std::vector<Comparison> compare_idle_clients(Configurations& configurations, const CallPlan& plan);
+struct IdleClientsPlan {
+  CallPlan calls;
+  std::size_t many;  ///< Connections through shared memory.
+};
+
+/// A call while 32 other clients of the same service do nothing, and through shared memory while
+/// many do, beside one without them; and what memory these take.
+std::vector<Comparison> compare_idle_clients(Configurations& configurations,
+                                             const IdleClientsPlan& plan);
 
 /// What a Head and its dispatch add to the call of a CSP that lives in its process.
 struct HeadPlan {

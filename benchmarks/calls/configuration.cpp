@@ -55,8 +55,8 @@ Configuration Configurations::skein(const std::string& server, const std::string
   return made;
 }
 
-Configuration Configurations::skein_same_host(SharedMemory how) {
-  Configuration made = skein("fastdds", "fastdds");
+Configuration Configurations::skein_same_host(SharedMemory how, std::size_t threads) {
+  Configuration made = skein("fastdds", "fastdds", threads);
   made.name = "skein shared memory";
   for (Words* command : {&made.server, &made.client}) command->push_back("--shared-memory");
   if (how == SharedMemory::OwnThread) return made;
@@ -68,6 +68,13 @@ Configuration Configurations::skein_same_host(SharedMemory how) {
   for (Words* command : {&made.server, &made.client}) {
     command->insert(command->end(), {"--spin-us", "100"});
   }
+  return made;
+}
+
+Configuration Configurations::skein_lending() {
+  Configuration made = skein_same_host(SharedMemory::OwnThread);
+  *std::ranges::find(made.server, "server") = "viewer";
+  *std::ranges::find(made.client, "client") = "lender";
   return made;
 }
 
@@ -132,7 +139,11 @@ Configuration Configurations::floor(const std::string& name, const std::string& 
   return {name, {path, "server", domain}, {path, "client", domain}, false};
 }
 
-Configuration Configurations::unix_socket() { return floor("unix socket", "unix"); }
+Configuration Configurations::unix_socket(std::uint64_t resident) {
+  Configuration made = floor("unix socket", "unix");
+  if (resident > 0) made.server.push_back(std::to_string(resident));
+  return made;
+}
 
 Configuration Configurations::shared_memory() {
   Configuration made = floor("spinning shared memory", "shared_memory");

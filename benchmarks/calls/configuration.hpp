@@ -44,7 +44,9 @@ class Configurations {
     OnArrival,  ///< The service runs on the thread that takes the request.
     Spinning,   ///< That, and whoever waits spins.
   };
-  Configuration skein_same_host(SharedMemory how);
+  Configuration skein_same_host(SharedMemory how, std::size_t threads = 1);
+  /// Of roles `viewer` and `lender` (calls/lending_peer.hpp).
+  Configuration skein_lending();
   /// Records the domain of a Skein configuration (recording/recording_peer.hpp).
   static std::vector<std::string> recorder_of(const Configuration& skein);
   /// A Skein publisher as `client`, and as `server` who receives: `recorder` or `counter`, by
@@ -59,7 +61,8 @@ class Configurations {
   Configuration skein_neighbour(const std::string& vendor, std::size_t count);
   Configuration raw_neighbour(const std::string& vendor, std::size_t count);
   Configuration bystander(const std::string& vendor, std::size_t count);
-  Configuration unix_socket();
+  /// Of the server at least `resident` octets are resident.
+  Configuration unix_socket(std::uint64_t resident = 0);
   Configuration shared_memory();
   /// `rival` is `omniorb`, `grpc` or `zeromq`; transports are those of its peer's command line.
   Configuration rival(const std::string& rival, const std::string& transport);

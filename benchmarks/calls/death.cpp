@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <map>
 #include <random>
+#include <span>
 #include <sstream>
 #include <thread>
 
@@ -62,9 +63,8 @@ Comparison comparison_of(const char* claim, const Victim& victim,
   return comparison;
 }
 
-std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t kills,
-                                       const TwoHosts* hosts, const Limit& limit,
-                                       const std::string& where) {
+void kill_all(std::vector<Victim>& victims, std::size_t kills, const TwoHosts* hosts,
+              const std::string& where) {
   std::mt19937 random(kSeed);
   std::vector<std::function<void()>> turns;
   for (Victim& victim : victims) {
@@ -75,6 +75,10 @@ std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t 
                  kills);
   });
   std::fputc('\n', stderr);
+}
+
+std::vector<Comparison> compare_deaths(std::span<const Victim> victims, const Limit& limit,
+                                       const std::string& where) {
   std::vector<Comparison> comparisons;
   for (const Victim& victim : victims) {
     comparisons.push_back(comparison_of(kToldClaim, victim, victim.told_us, limit, where));
@@ -87,16 +91,38 @@ std::vector<Comparison> compare_deaths(std::vector<Victim> victims, std::size_t 
 
 std::vector<Comparison> compare_deaths_on_one_host(Configurations& configurations,
                                                    std::size_t kills) {
+  const char* const where = "one host";
   std::vector<Victim> victims;
   for (const auto& [server, client] : vendor_pairs()) {
     victims.push_back({configurations.skein(server, client, 2)});
   }
-  return compare_deaths(std::move(victims), kills, nullptr, {"limit 20 ms", kToldOnOneHostUs},
-                        "one host");
+  using Memory = Configurations::SharedMemory;
+  const auto same_host = [&] { return configurations.skein_same_host(Memory::OwnThread, 2); };
+  victims.push_back({same_host()});
+  std::uint64_t resident = 0;
+  const Absence unknown = attempt("the provider's size", [&] {
+    Running running(same_host());
+    running.server->send("resident");
+    resident = std::stoull(running.server->receive());
+  });
+  victims.push_back({configurations.unix_socket(resident)});
+  victims.back().absence = unknown;
+  kill_all(victims, kills, nullptr, where);
+  const Victim bare = std::move(victims.back());
+  victims.pop_back();
+  auto comparisons = compare_deaths(victims, {"limit 20 ms", kToldOnOneHostUs}, where);
+  const Victim& shared = victims.back();
+  Comparison& beside = comparisons.emplace_back(Comparison{kHungUpClaim,
+                                                           shared.configuration.name,
+                                                           "a bare process as large",
+                                                           {{"resident_octets", resident}}});
+  fill(beside, {shared.told_us, shared.absence}, {bare.told_us, bare.absence});
+  return comparisons;
 }
 
 std::vector<Comparison> compare_deaths_across_hosts(Configurations& configurations,
                                                     std::size_t kills) {
+  const char* const where = "across two hosts";
   std::optional<TwoHosts> hosts;
   const Absence absence = attempt("two hosts", [&] { hosts.emplace(); });
   const Place first = hosts ? Place{hosts->first().address, hosts->second().address} : Place{};
@@ -106,8 +132,8 @@ std::vector<Comparison> compare_deaths_across_hosts(Configurations& configuratio
     victims.push_back({configurations.skein(server, client, 2, first, second)});
     victims.back().absence = absence;
   }
-  return compare_deaths(std::move(victims), kills, hosts ? &*hosts : nullptr,
-                        {"limit lease + 50 ms", kLeaseUs + kToldBeyondLeaseUs}, "across two hosts");
+  kill_all(victims, kills, hosts ? &*hosts : nullptr, where);
+  return compare_deaths(victims, {"limit lease + 50 ms", kLeaseUs + kToldBeyondLeaseUs}, where);
 }
 
 }  // namespace skein::benchmarks

@@ -1,4 +1,10 @@
+#include <algorithm>
+#include <chrono>
+#include <functional>
 #include <list>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "calls/benchmarks.hpp"
 #include "calls/contest.hpp"
@@ -44,6 +50,51 @@ std::vector<Trial> trials_of(const RivalPlan& plan) {
   }
   return trials;
 }
+
+/// Connections over which nothing goes, in as few processes as a provider lets have so many.
+class Crowd {
+ public:
+  Crowd(std::vector<std::string> client, std::size_t count)
+      : client_(std::move(client)), count_(count) {}
+
+  void join(Child& server) {
+    std::size_t left = count_;
+    const double before = memory_of(server);
+    double own = 0;
+    std::size_t more = 0;
+    while (left > 0) {
+      // A process may have no more than are left to others.
+      const std::size_t share = std::min({left, kOfProcess, (kOfAll - (count_ - left)) / 2});
+      Child& process = processes_.emplace_back(client_);
+      process.receive();
+      const double alone = memory_of(process);
+      process.send("idle " + std::to_string(share - 1));
+      process.receive(std::chrono::minutes(2));
+      own += memory_of(process) - alone;
+      more += share - 1;
+      left -= share;
+    }
+    octets_each_ = (memory_of(server) - before) / static_cast<double>(count_) +
+                   own / static_cast<double>(std::max<std::size_t>(more, 1));
+  }
+  std::size_t size() const { return count_; }
+  /// Of both sides, for each connection.
+  std::optional<double> octets_each() const { return octets_each_; }
+
+ private:
+  static constexpr std::size_t kOfProcess = 125;
+  static constexpr std::size_t kOfAll = 1020;  // 1,024, but for who measures
+
+  static double memory_of(Child& child) {
+    child.send("memory");
+    return std::stod(child.receive());
+  }
+
+  const std::vector<std::string> client_;
+  const std::size_t count_;
+  std::optional<double> octets_each_;
+  std::list<Child> processes_;
+};
 
 }  // namespace
 
@@ -104,33 +155,48 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
   return comparisons;
 }
 
-std::vector<Comparison> compare_idle_clients(Configurations& configurations, const CallPlan& plan) {
+std::vector<Comparison> compare_idle_clients(Configurations& configurations,
+                                             const IdleClientsPlan& plan) {
   std::vector<Trial> trials;
-  for (const auto& size : plan.sizes) {
+  for (const auto& size : plan.calls.sizes) {
     trials.push_back(
         closed_loop("a call beside idle clients", size.size_bytes, size.calls_per_turn));
   }
   Contest contest("idle clients", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
-  std::list<Child> crowds;
+  std::list<Crowd> crowds;
   std::vector<std::pair<std::string, std::string>> pairs;
-  for (const char* vendor : kVendors) {
-    Configuration alone = configurations.skein(vendor, vendor);
-    Configuration crowded = configurations.skein(vendor, vendor);
+  const auto enter = [&](const std::function<Configuration()>& make,
+                         std::initializer_list<std::size_t> counts) {
+    Configuration alone = make();
     alone.name += ", no idle clients";
-    crowded.name += ", 32 idle clients";
-    pairs.emplace_back(crowded.name, alone.name);
     contest.enter(alone);
-    contest.enter(crowded, [&](Running&) {
-      Child& crowd = crowds.emplace_back(crowded.client);
-      crowd.receive();
-      crowd.send("idle 31");
-      crowd.receive();
-    });
+    for (const std::size_t count : counts) {
+      Configuration crowded = make();
+      crowded.name += ", " + std::to_string(count) + " idle clients";
+      pairs.emplace_back(crowded.name, alone.name);
+      contest.enter(crowded, [&, count, client = crowded.client](Running& running) {
+        crowds.emplace_back(client, count).join(*running.server);
+      });
+    }
+  };
+  for (const char* vendor : kVendors) {
+    enter([&] { return configurations.skein(vendor, vendor); }, {32});
   }
-  contest.run(plan.rounds);
+  using Memory = Configurations::SharedMemory;
+  enter([&] { return configurations.skein_same_host(Memory::OnArrival); }, {32, plan.many});
+  contest.run(plan.calls.rounds);
   std::vector<Comparison> comparisons;
   for (const auto& [crowded, alone] : pairs) {
     append(comparisons, contest.compare(crowded, alone));
+  }
+  Comparison& memory = comparisons.emplace_back(
+      Comparison{kIdleMemory, "skein shared memory", "limit 64 KiB", {{"connections", plan.many}}});
+  memory.unit = "octets";
+  const auto many = std::ranges::find(crowds, plan.many, &Crowd::size);
+  if (many != crowds.end() && many->octets_each()) {
+    fill(memory, Outcome{{*many->octets_each()}}, Outcome{{kIdleOctets}});
+  } else {
+    fill(memory, Outcome{{}, {"so many clients did not come", true}}, Outcome{{kIdleOctets}});
   }
   return comparisons;
 }

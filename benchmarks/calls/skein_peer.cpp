@@ -7,6 +7,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "calls/alone.hpp"
 #include "calls/head_peer.hpp"
+#include "calls/lending_peer.hpp"
 #include "calls/skein_neighbour.hpp"
 #include "calls/survivor.hpp"
 #include "echo.idl.hpp"
@@ -23,6 +24,8 @@ using benchmark::Echo;
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kMaxParticipants = 4;
+// A thousand connections come from a dozen processes.
+constexpr std::uint32_t kMaxParticipantsWithMany = 16;
 
 class EchoBody final : public Echo {
  public:
@@ -204,7 +207,8 @@ EntityOptions entity_options(const SkeinPeer& peer) {
   options.domain = peer.domain;
   options.shared_memory_calls = peer.shared_memory;
   options.spin = std::chrono::microseconds(peer.spin_us);
-  options.network.max_participants = kMaxParticipants;
+  options.network.max_participants =
+      peer.shared_memory ? kMaxParticipantsWithMany : kMaxParticipants;
   if (!peer.interface.empty()) {
     options.network.interfaces = {peer.interface};
     options.network.peers = {peer.peer};
@@ -216,6 +220,8 @@ int run_skein_peer(const SkeinPeer& peer) {
   return run_peer([&] {
     if (peer.survives) return survive(peer);
     if (peer.role == "server") return serve(peer);
+    if (peer.role == "viewer") return view(peer);
+    if (peer.role == "lender") return lend(peer);
     if (peer.role == "finder") return find_services();
     if (peer.role == "head") return perform_tasks();
     if (peer.role == "neighbour") return be_neighbour(peer);

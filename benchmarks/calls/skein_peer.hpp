@@ -11,7 +11,8 @@ namespace skein::benchmarks {
 /// One process of a Skein configuration.
 struct SkeinPeer {
   std::string role;  ///< `server`, `client`, or `local`: both in one process; `finder`;
-                     ///< `head`; `neighbour`; `bystander`; or `recorder`, `publisher`, `counter`.
+                     ///< `head`; `viewer`, `lender`; `neighbour`; `bystander`; or `recorder`,
+                     ///< `publisher`, `counter`.
   std::string vendor;
   std::uint32_t domain = 0;
   std::size_t threads = 1;

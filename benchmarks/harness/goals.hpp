@@ -12,6 +12,8 @@ namespace skein::benchmarks {
 /// Promises that are times, in microseconds: rivals with one sample.
 inline constexpr double kCallInProcessUs = 1;
 inline constexpr double kSpinningCallUs = 1;
+inline constexpr double kLendingUs = 50;
+inline constexpr double kIdleOctets = 65'536;
 inline constexpr double kHeadUs = 2;
 inline constexpr double kLearnedDecisionUs = 20;
 inline constexpr double kLookUpUs = 1;
@@ -23,6 +25,10 @@ inline constexpr double kLateAnswerUs = 5'000;
 
 /// Has goals of its own, though it stands beside other middleware, too.
 inline constexpr const char* kCallThroughSharedMemory = "a call through shared memory";
+
+inline constexpr const char* kCallThatLends = "a call that lends";
+inline constexpr const char* kHungUpClaim = "provider of shared memory killed to caller told";
+inline constexpr const char* kIdleMemory = "memory of an idle connection, both sides";
 
 /// One goal, and the comparisons that it speaks of.
 struct Goal {

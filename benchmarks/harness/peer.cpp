@@ -59,6 +59,8 @@ Commands known_to_all() {
              return "placed";
            }},
           {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }},
+          {"memory", [](const std::string&) { return std::to_string(memory_octets("Pss:")); }},
+          {"resident", [](const std::string&) { return std::to_string(memory_octets("Rss:")); }},
           {"allocations", [](const std::string&) { return std::to_string(allocations()); }},
           {"sleeps", [](const std::string&) { return std::to_string(sleeps()); }}};
 }
@@ -71,6 +73,15 @@ const Command& find(const Commands& commands, const std::string& name) {
 }
 
 }  // namespace
+
+std::uint64_t memory_octets(const std::string& kind) {
+  std::ifstream file("/proc/self/smaps_rollup");
+  for (std::string word; file >> word;) {
+    std::uint64_t kibibytes = 0;
+    if (word == kind && file >> kibibytes) return kibibytes * 1024;
+  }
+  throw Skipped("this system does not tell how much memory a process uses");
+}
 
 std::string now_text() {
   return std::to_string(

@@ -56,9 +56,10 @@ struct Client {
 /// which nothing goes |
 ///
 /// Times are in ns. Every peer, server or client, also knows `place CORE` (-1: any; for all its
-/// threads), `cpu` (processor time that it has used, in ns), `sleeps` (how often its threads have
-/// gone to sleep) and, where harness/allocation_counter.cpp is preloaded, `allocations` (blocks
-/// that it has taken from the heap).
+/// threads), `cpu` (processor time that it has used, in ns), `memory` and `resident` (octets, see
+/// memory_octets()), `sleeps` (how often its threads have gone to sleep) and, where
+/// harness/allocation_counter.cpp is preloaded, `allocations` (blocks that it has taken from the
+/// heap).
 void run_client(const Client& client);
 
 /// A server's: says `ready`, obeys until its input ends.
@@ -70,6 +71,11 @@ void run_commands(const Commands& commands);
 /// Runs `peer` and turns what it throws into a last line: `skipped` for Skipped, `failed` for the
 /// rest. The program's exit code.
 int run_peer(const std::function<void()>& peer);
+
+/// Of this process: `Rss:`, all that is resident, or `Pss:`, what it shares with others by its
+/// share, so that a sum over processes counts it once. Throws Skipped where the system does not
+/// tell.
+std::uint64_t memory_octets(const std::string& kind);
 
 /// Now in ns on the clock that all processes of a host share.
 std::string now_text();

@@ -23,19 +23,21 @@ using TryCall =
     std::function<std::optional<Content>(const Content&, std::chrono::milliseconds patience)>;
 
 /// Connects as DDS makes one do it: an empty request is repeated until a reply comes; then
-/// measures.
-inline void run_raw_client(const TryCall& call) {
+/// measures, and obeys `extra`.
+inline void run_raw_client(const TryCall& call, Commands extra = {}) {
   constexpr std::chrono::milliseconds kOpenInterval{20};
   constexpr std::chrono::milliseconds kPatience{10'000};
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!call({}, kOpenInterval)) {
     if (std::chrono::steady_clock::now() > end) throw Internal("no first reply within 10 s");
   }
-  run_client({[&](const Content& content, const Seen& seen) {
+  Client client{[&](const Content& content, const Seen& seen) {
     const auto reply = call(content, kPatience);
     if (!reply) throw Internal("no reply within 10 s");
     seen(*reply);
-  }});
+  }};
+  client.extra = std::move(extra);
+  run_client(client);
 }
 
 /// How a peer calls and serves: by the threading contract and the transport of Skein's back end, or

@@ -1,4 +1,6 @@
-// The floor: a stream socket of the Unix domain, two threads that do nothing else, no encoding.
+// The floor: a stream socket of the Unix domain, two threads that do nothing else, no encoding. A
+// server's WAY is how many octets of it are to be resident: what the kernel does when it ends
+// depends on that.
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -62,7 +64,13 @@ void serve(int listening) {
   close(client);
 }
 
+Content filled_up_to(std::uint64_t resident) {
+  const std::uint64_t own = memory_octets("Rss:");
+  return Content(resident > own ? resident - own : 0, std::uint8_t{1});
+}
+
 void server(const RawOptions& options, const std::function<void()>& meanwhile) {
+  const Content fill = options.way.empty() ? Content() : filled_up_to(std::stoull(options.way));
   socklen_t size = 0;
   const sockaddr_un address = address_of(options.domain, size);
   const int listening = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -85,7 +93,13 @@ void client(const RawOptions& options) {
       [server](const Content& content, std::chrono::milliseconds) -> std::optional<Content> {
         if (!send_content(server, content)) return std::nullopt;
         return receive_content(server);
-      });
+      },
+      {{"hold", [](const std::string&) { return "holding"; }},
+       {"told", [server](const std::string&) {
+          receive_content(server);  // comes never: the socket ends
+          const std::string ended = now_text();
+          return "told " + ended + " " + ended;
+        }}});
 }
 
 }  // namespace
