@@ -316,6 +316,8 @@ class WhatMakesNoSense(CompilerTest):
         code, said = self.compile("".join(f"struct A{i} {{ long 3; }};\n" for i in range(30)))
         self.assertIn("error: these were 20 errors of syntax; what follows was not read", said)
         self.assertEqual(len(self.errors(said)), 21)
+        code, said = self.compile("}\n" * 30)
+        self.assertIn("x.idl:20: error: these were 20 errors of syntax", said)
 
     def test_keys_without_a_member_take_no_time(self):
         self.assert_compiles("struct E { }; struct S { @key E x[2147483647]; @key long y; };\n")

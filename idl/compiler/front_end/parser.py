@@ -35,12 +35,13 @@ def parse(source, report):
             return tree
         except lark.UnexpectedInput as error:
             offset = min(_offset(error, text), len(text))
-            report.error(source.place(_solid(text, offset)), _reason(error, source, text, offset))
+            where = source.place(_solid(text, offset))
+            report.error(where, _reason(error, source, text, offset))
             if not text[offset:].strip():
                 return None
             begin, end = _declaration(text, offset)
             text = text[:begin] + re.sub(r"[^\n]", " ", text[begin:end]) + text[end:]
-    report.error(source.place(begin), f"these were {_MOST_ERRORS} errors of syntax; what follows was not read")
+    report.error(where, f"these were {_MOST_ERRORS} errors of syntax; what follows was not read")
     return None
 
 
