@@ -52,6 +52,8 @@ class Executor {
   virtual void post_or_run(Action task) = 0;
 };
 
+class IdleWork;
+
 /// A fixed number of named threads and one bounded queue, first in, first out. With one thread it
 /// is a strand: no two tasks run at once.
 class ThreadExecutor final : public Executor {
@@ -70,6 +72,10 @@ class ThreadExecutor final : public Executor {
 
   bool post(Action task) override;
   void post_or_run(Action task) override;
+
+  /// What its one thread does from its next task on while it has none. Once at most, and not for
+  /// several threads.
+  void work_while_idle(std::shared_ptr<IdleWork> work);
 
   /// Drops the tasks that have not begun and takes no more; does not wait. Calling it twice is no
   /// error.

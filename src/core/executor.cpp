@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/idle_work.hpp"
 #include "core/leave_behind.hpp"
 #include "core/stall_watch.hpp"
 #include "core/start_thread.hpp"
@@ -40,14 +41,17 @@ struct ThreadExecutor::State {
   std::size_t alive = 0;  // threads that have not ended
   std::size_t running = 0;
   bool stopping = false;
-  bool finishing = false;           // finish() waits until nothing is left to do
-  std::atomic<bool> called{false};  // a task waits, or the end is near; for those who spin
+  bool finishing = false;               // finish() waits until nothing is left to do
+  std::atomic<bool> called{false};      // a task waits, or the end is near; for those who spin
+  std::shared_ptr<IdleWork> idle_work;  // null: sleep
+  std::thread::id idle_worker;          // who is in it
 
   // Under the lock, after each change of `tasks` or `stopping`.
-  void note_change() { called.store(stopping || !tasks.empty(), std::memory_order_release); }
+  void note_change() { called = stopping || !tasks.empty(); }
 
   // Until the end is near, or there is a task.
   void await_task(std::unique_lock<std::mutex>& lock) {
+    work_while_idle(lock);
     if (settings.spin.count() > 0 && !called.load(std::memory_order_acquire)) {
       lock.unlock();
       const auto end = std::chrono::steady_clock::now() + settings.spin;
@@ -58,6 +62,28 @@ struct ThreadExecutor::State {
       lock.lock();
     }
     changed.wait(lock, [&] { return stopping || !tasks.empty(); });
+  }
+
+  void work_while_idle(std::unique_lock<std::mutex>& lock) {
+    if (!idle_work || stopping || !tasks.empty()) return;
+    idle_worker = std::this_thread::get_id();
+    lock.unlock();
+    idle_work->work_until([this] { return called.load(); });
+    lock.lock();
+    idle_worker = {};
+  }
+
+  // Under the lock, for a task or the end. Who has made the task in the idle work itself looks at
+  // it next.
+  bool idle_worker_must_be_called() const {
+    return idle_worker != std::thread::id() && idle_worker != std::this_thread::get_id();
+  }
+
+  // Under the lock.
+  void note_stop() {
+    stopping = true;
+    note_change();
+    changed.notify_all();
   }
 
   void work() {
@@ -109,14 +135,22 @@ ThreadExecutor::ThreadExecutor(std::string name, Tasks tasks)
 
 ThreadExecutor::~ThreadExecutor() { stop(); }
 
+void ThreadExecutor::work_while_idle(std::shared_ptr<IdleWork> work) {
+  std::lock_guard lock(state_->mutex);
+  state_->idle_work = std::move(work);
+}
+
 void ThreadExecutor::request_stop() {
   std::pmr::deque<Action> dropped{
       &call_memory()};  // destroyed outside the lock: it may own what posts here
-  std::lock_guard lock(state_->mutex);
-  state_->stopping = true;
-  dropped.swap(state_->tasks);
-  state_->note_change();
-  state_->changed.notify_all();
+  bool call = false;
+  {
+    std::lock_guard lock(state_->mutex);
+    dropped.swap(state_->tasks);
+    state_->note_stop();
+    call = state_->idle_worker_must_be_called();
+  }
+  if (call) state_->idle_work->wake();
 }
 
 void ThreadExecutor::stop() {
@@ -146,9 +180,7 @@ void ThreadExecutor::finish() {
     std::unique_lock lock(state_->mutex);
     state_->finishing = true;
     state_->changed.wait(lock, [&] { return state_->tasks.empty() && state_->running == 0; });
-    state_->stopping = true;
-    state_->note_change();
-    state_->changed.notify_all();
+    state_->note_stop();
   }
   stop();
 }
@@ -161,6 +193,7 @@ void ThreadExecutor::post_or_run(Action task) {
 
 // Leaves the task alone where it is not taken.
 bool ThreadExecutor::enqueue(Action& task, std::size_t capacity) {
+  bool call = false;
   {
     std::lock_guard lock(state_->mutex);
     if (state_->stopping || state_->tasks.size() >= capacity) return false;
@@ -168,9 +201,14 @@ bool ThreadExecutor::enqueue(Action& task, std::size_t capacity) {
     state_->note_change();
     // Whoever ends next looks at the queue.
     if (state_->running == state_->alive) return true;
+    call = state_->idle_worker_must_be_called();
     if (state_->finishing) state_->changed.notify_all();  // finish() waits there, too
   }
-  state_->changed.notify_one();
+  if (call) {
+    state_->idle_work->wake();
+  } else {
+    state_->changed.notify_one();
+  }
   return true;
 }
 

@@ -24,6 +24,7 @@
 #include "rpc/call_journal.hpp"
 #include "rpc/dds_server.hpp"
 #include "rpc/local_directory.hpp"
+#include "rpc/reception.hpp"
 #include "rpc/service.hpp"
 #include "same_host/call_ports.hpp"
 #include "skein/describe.hpp"
@@ -439,6 +440,12 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
           provided->service,
           rpc::DdsServer::Options{
               .foreign_clients = false, .may_run = true, .on_load = state_->loads.notifier()});
+      // While it takes requests it polls for as long as the entity says.
+      if (options.thread == CallThread::Own && options.threads == 1 &&
+          options.scheduling.spin <= state_->options.spin) {
+        provided->executor->work_while_idle(std::make_shared<rpc::Reception>(
+            *provided->service, provided->same_host_server->delivery()));
+      }
     } catch (const Unavailable& why) {
       log(LogLevel::Warning, name, std::string("is called over DDS alone: ") + why.what());
     }

@@ -303,6 +303,10 @@ DdsServer::~DdsServer() {
   await_sole_owner(state_);
 }
 
+std::shared_ptr<dds::CallerDelivery> DdsServer::delivery() const {
+  return state_->requests->caller_delivery();
+}
+
 // Under the lock.
 std::size_t DdsServer::State::connected() const {
   return static_cast<std::size_t>(std::count_if(

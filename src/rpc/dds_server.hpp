@@ -45,7 +45,7 @@ class DdsServer {
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
-    /// Calls to a service with CallThread::Caller may run on the thread that brings them.
+    /// Calls may run on the thread that brings them, by the rule of Service::submit().
     bool may_run = false;
     /// Called when a request has come, or has been answered, on the thread that sees it:
     /// Counters::active has changed. May be empty; must return soon.
@@ -72,6 +72,9 @@ class DdsServer {
   ~DdsServer();
 
   Counters counters() const;
+
+  /// By which a thread that waits for requests takes them; see dds::Reader.
+  std::shared_ptr<dds::CallerDelivery> delivery() const;
 
   /// The service is about to end, and its clients have been told: requests of foreign ones, who do
   /// not hear of it, are refused. Waits until no client is connected and no request waits or runs;

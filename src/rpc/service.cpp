@@ -6,6 +6,7 @@
 #include "common.hpp"
 #include "core/clock_wait.hpp"
 #include "core/log.hpp"
+#include "rpc/reception.hpp"
 #include "servant_call.hpp"
 #include "skein/detail/pending_reply.hpp"
 #include "skein/error.hpp"
@@ -211,6 +212,8 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();
   note_begin(*invocation->operation, *invocation);
+  const bool takes_long = invocation->operation->stream || is_deferred(*invocation->operation);
+  if (takes_long && options_.thread == CallThread::Own) quick_ = 0;
   std::optional<Turn> turn;
   if (may_run && runs_on_arrival(*invocation->operation)) {
     turn.emplace(*this, Instant::min());  // who would have to wait for it queues
@@ -225,17 +228,23 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
     note_end(*invocation->operation, *invocation, std::current_exception());
     throw;
   }
-  if (here) execute_in_turn(invocation, true);
+  // What is thrown there ends the process on the executor's thread, too; on this one it would be
+  // told to who may be gone.
+  if (here) [&]() noexcept { execute_in_turn(invocation, true); }();
 }
 
 // What waits in the queue has come earlier, from the same client perhaps.
 bool Service::runs_on_arrival(const OperationInfo& operation) const {
-  return options_.thread == CallThread::Caller && !operation.stream && quick_ >= kQuickInARow &&
-         accepted_ == 0;
+  return (options_.thread == CallThread::Caller || Reception::is_of(*this)) && !operation.stream &&
+         !is_deferred(operation) && is_quick() && accepted_ == 0;
+}
+
+bool Service::is_quick() const noexcept {
+  return quick_.load(std::memory_order_relaxed) >= kQuickInARow;
 }
 
 void Service::note_time(const Invocation& invocation) {
-  if (options_.thread != CallThread::Caller || invocation.operation->stream) return;
+  if (invocation.operation->stream) return;
   const int before = quick_.load(std::memory_order_relaxed);
   const bool quick = invocation.ended - invocation.begun <= kQuick;
   const int now = quick ? std::min(before + 1, kQuickInARow) : 0;

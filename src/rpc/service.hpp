@@ -135,10 +135,14 @@ class Service : public std::enable_shared_from_this<Service> {
   /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
   /// for itself; respond() is not called then. Where this thread may run the implementation,
   /// `may_run`, which is asked right before it, says so: calls that are no streams run on it with
-  /// CallThread::Caller once a hundred in a row have taken no longer than a millisecond, where none
-  /// waits before them, and have ended when it returns.
+  /// CallThread::Caller, and on the service's own thread (Reception), while is_quick() and where
+  /// none waits before them; they have ended when it returns.
   void submit(const std::shared_ptr<Invocation>& invocation,
               const std::function<bool()>& may_run = {});
+
+  /// Whether the last hundred calls took no longer than a millisecond each. With CallThread::Own
+  /// streams and calls that are answered later take long.
+  bool is_quick() const noexcept;
 
   /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
   /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too

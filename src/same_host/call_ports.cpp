@@ -225,6 +225,8 @@ class ProviderPort::RequestReader final : public LinkReader {
     receivers_.remove(*this);
   }
 
+  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return receivers_.delivery(); }
+
  private:
   ProviderPort& port_;
   std::vector<Guid> providers_;

@@ -17,10 +17,6 @@ constexpr int kMessagesInARow = 16;
 constexpr int kTurnsAfterEnd = 2048;
 // What comes to a link that callers have left is heard of this late at most.
 constexpr std::chrono::milliseconds kLent{20};
-// Who is away for longer is stood in for, and for twice as long at most before that.
-constexpr std::chrono::milliseconds kLate{10};
-// Then who stands by sleeps until somebody leaves his turn again.
-constexpr int kLooksInVain = 100;
 
 }  // namespace
 
@@ -32,26 +28,33 @@ void SpinPolicy::note(Duration waited) {
 class Receiver::OwnTurn final : public Turn {
  public:
   OwnTurn(Receiver& receiver, Who who, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
-      : receiver_(receiver), who_(who), link_(link), spare_(spare), lock_(lock) {}
+      : receiver_(receiver),
+        lead_(*receiver.lead_),
+        who_(who),
+        link_(link),
+        spare_(spare),
+        lock_(lock) {}
 
+  // Of a guest the receiver itself is the stand-in.
   bool leave() override {
     if (left()) return true;
-    if (who_ != Who::Leader || !receiver_.has_stand_in()) return false;
+    if (who_ == Who::Caller || (who_ == Who::Leader && !receiver_.has_stand_in())) return false;
     link_.release(spare_);
     lock_.unlock();
-    away_ = receiver_.go_away();
+    left_ = lead_.leave();
     return true;
   }
-  bool left() const { return away_ != 0; }
-  bool come_back() { return receiver_.come_back(away_); }
+  bool left() const { return left_ != 0; }
+  bool come_back() { return lead_.take_back(left_); }
 
  private:
-  Receiver& receiver_;
+  Receiver& receiver_;  // gone, perhaps, once a guest has left its turn
+  Lead& lead_;
   const Who who_;
   Link& link_;
   Bytes& spare_;
   std::unique_lock<std::mutex>& lock_;
-  std::uint64_t away_ = 0;
+  std::uint64_t left_ = 0;
 };
 
 class Receiver::Entry final : public dds::CallerDelivery {
@@ -130,20 +133,88 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
   if (may_spin) spin.note(std::chrono::steady_clock::now() - begin);
 }
 
+/// A thread that leads in the receiver's place. The receiver is there while it has the lead.
+class Receiver::Guest final : public dds::CallerDelivery {
+ public:
+  explicit Guest(Receiver& receiver)
+      : receiver_(receiver), lead_(receiver.lead_), notify_(receiver.notifier()) {}
+
+  void lend() override {}
+  void take_back() override {
+    if (lead_->take()) lead_->give_up();
+  }
+  void deliver_until(const std::function<bool()>& over) override {
+    if (!useful || !(lead_->take() || is_given(over))) return;
+    if (receiver_.lead(Who::Guest, over)) lead_->leave();
+  }
+  void wake() override {
+    call();
+    notify_();
+  }
+
+  bool wants() const { return wants_; }
+  /// By who leads; false where it still does, as the guest has thought better of it.
+  bool give() {
+    const std::uint64_t left = lead_->leave();
+    if (!wants_.exchange(false)) return !lead_->take_back(left);
+    call();
+    return true;
+  }
+  /// The receiver ends.
+  void end() {
+    useful = false;
+    call();
+  }
+
+  std::atomic<bool> useful{false};  // there are links, and the receiver does not end
+
+ private:
+  // What was given may have been taken by who stands by, where this thread was slow to take it.
+  bool is_given(const std::function<bool()>& over) {
+    while (true) {
+      if (!wants_) {
+        wants_ = true;
+        notify_();
+      }
+      called_ = 0;
+      if (lead_->take()) {
+        wants_ = false;
+        return true;
+      }
+      if (!useful || over()) return !wants_.exchange(false) && lead_->take();
+      if (wants_) futex_wait(called_, 0, Instant::max());
+    }
+  }
+  void call() {
+    if (called_.exchange(1) == 0) futex_wake(called_);
+  }
+
+  Receiver& receiver_;
+  const std::shared_ptr<Lead> lead_;
+  const std::function<void()> notify_;
+  std::atomic<bool> wants_{false};
+  Word called_{1};  // 0 while it waits to be given the lead
+};
+
 Receiver::Receiver(std::string name, Duration spin, std::shared_ptr<Unfinished> unfinished)
-    : name_(std::move(name)), spin_limit_(spin), unfinished_(std::move(unfinished)), spin_(spin) {}
+    : name_(std::move(name)),
+      spin_limit_(spin),
+      unfinished_(std::move(unfinished)),
+      guest_(std::make_shared<Guest>(*this)),
+      spin_(spin) {}
 
 Receiver::~Receiver() {
   {
     std::lock_guard lock(mutex_);
     stopping_ = true;
   }
+  guest_->end();
   notify();
-  watched_ = 1;
-  futex_wake(watched_);
+  lead_->wake();
   if (thread_.joinable()) thread_.join();
   // The first one alone starts it.
   if (stand_in_.joinable()) stand_in_.join();
+  lead_->end();
 }
 
 std::function<void()> Receiver::notifier() const {
@@ -164,10 +235,13 @@ std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, I
     }
     if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(true); });
     entries_.push_back(entry);
+    guest_->useful = true;
   }
   notify();
   return entry;
 }
+
+std::shared_ptr<dds::CallerDelivery> Receiver::delivery() const { return guest_; }
 
 void Receiver::remove(Inbox& inbox) {
   Entries removed;
@@ -177,6 +251,7 @@ void Receiver::remove(Inbox& inbox) {
         entries_.begin(), entries_.end(), [&](const auto& each) { return &each->inbox != &inbox; });
     removed.assign(first, entries_.end());
     entries_.erase(first, entries_.end());
+    if (entries_.empty()) guest_->useful = false;
   }
   for (const auto& entry : removed) {
     {
@@ -196,13 +271,15 @@ std::size_t Receiver::links() const {
 
 void Receiver::run(bool leads) {
   pthread_setname_np(pthread_self(), name_.c_str());
-  for (; !is_stopping(); leads = !leads) {
-    if (leads) {
-      lead();
-    } else {
-      stand_by();
+  leads = leads && lead_->take();
+  while (!is_stopping()) {
+    if (!leads) {
+      leads = lead_->stand_by([this] { return is_stopping(); });
+    } else if (!lead(Who::Leader, [this] { return guest_->wants(); }) || guest_->give()) {
+      leads = false;
     }
   }
+  if (leads) lead_->leave();
 }
 
 bool Receiver::is_stopping() const {
@@ -210,40 +287,26 @@ bool Receiver::is_stopping() const {
   return stopping_;
 }
 
-// Until the receiver ends, or somebody has stood in.
-void Receiver::lead() {
+// By who has the lead, until `over`, which notify() makes it look at, or the receiver ends. False
+// where somebody has stood in; a guest's receiver may be gone then.
+bool Receiver::lead(Who who, const std::function<bool()>& over) {
   while (true) {
     notified_->store(0);
-    Entries entries;
+    Entries entries;  // at last those before, whose links may end with them: not under the lock
     {
       std::lock_guard lock(mutex_);
-      if (stopping_) return;
+      if (stopping_) return true;
       entries = entries_;
     }
+    led_.swap(entries);
+    entries.clear();
     while (notified_->load() == 0) {
-      const Looked looked = look_at_all(entries);
-      if (looked == Looked::Replaced) return;
-      if (looked == Looked::Nothing) await(entries);
+      if (over()) return true;
+      const Looked looked = look_at_all(who);
+      if (looked == Looked::Replaced) return false;
+      if (looked == Looked::Nothing) await();
     }
     drop_ended();
-  }
-}
-
-// Until the receiver ends, or who leads has been away for too long.
-void Receiver::stand_by() {
-  std::uint64_t seen = away_;
-  int in_vain = 0;
-  while (!is_stopping()) {
-    futex_wait(watched_, 1, std::chrono::steady_clock::now() + kLate);
-    std::uint64_t now = away_;
-    if (now == seen && now % 2 != 0 && away_.compare_exchange_strong(now, now + 1)) return;
-    in_vain = now == seen ? in_vain + 1 : 0;
-    seen = now;
-    if (in_vain < kLooksInVain) continue;
-    watched_ = 0;
-    if (away_ == seen && !is_stopping()) futex_wait(watched_, 0, Instant::max());
-    watched_ = 1;
-    in_vain = 0;
   }
 }
 
@@ -260,30 +323,18 @@ bool Receiver::has_stand_in() {
   return true;
 }
 
-// Returns what come_back() has to be told.
-std::uint64_t Receiver::go_away() {
-  const std::uint64_t away = ++away_;
-  if (watched_ == 0 && watched_.exchange(1) == 0) futex_wake(watched_);
-  return away;
-}
-
-// False where somebody has stood in.
-bool Receiver::come_back(std::uint64_t away) {
-  return away_.compare_exchange_strong(away, away + 1);
-}
-
-Receiver::Looked Receiver::look_at_all(const Entries& entries) {
+Receiver::Looked Receiver::look_at_all(Who who) {
   Looked all = Looked::Nothing;
-  for (const auto& entry : entries) {
+  for (const auto& entry : led_) {
     if (entry->lent && entry->begun && !entry->link->ended()) continue;
-    const Looked looked = look_at(*entry, spare_, Who::Leader);
+    const Looked looked = look_at(*entry, spare_, who);
     if (looked == Looked::Replaced) return looked;
     if (looked == Looked::Something) all = looked;
   }
   return all;
 }
 
-// On the leading thread, or a caller's.
+// On the thread that leads, or a caller's.
 Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
   Link& link = *entry.link;
   if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return Looked::Nothing;
@@ -335,11 +386,12 @@ bool Receiver::brings_too_much(Entry& entry) {
 void Receiver::drop_ended() {
   std::lock_guard lock(mutex_);
   std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
+  if (entries_.empty()) guest_->useful = false;
 }
 
-void Receiver::await(const Entries& entries) {
+void Receiver::await() {
   const auto ready = [&] {
-    return notified_->load() != 0 || std::ranges::any_of(entries, [](const auto& entry) {
+    return notified_->load() != 0 || std::ranges::any_of(led_, [](const auto& entry) {
              return !entry->over && !entry->lent && entry->link->in().ready();
            });
   };
@@ -350,18 +402,18 @@ void Receiver::await(const Entries& entries) {
   while (!come && spin_.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
     come = ready();
   }
-  if (!come) sleep(entries);
+  if (!come) sleep();
   if (spin_limit_ > Duration::zero()) spin_.note(std::chrono::steady_clock::now() - begin);
 }
 
 // Until a link has something, or somebody notifies.
-void Receiver::sleep(const Entries& entries) {
+void Receiver::sleep() {
   futex_waitv words[kMostWords];
   std::size_t count = 0;
   words[count++] = while_it_is(*notified_, 0);
   bool idle = true;
   bool any_lent = false;
-  for (const auto& entry : entries) {
+  for (const auto& entry : led_) {
     if (entry->over) continue;
     if (entry->lent) {
       any_lent = true;
@@ -376,20 +428,24 @@ void Receiver::sleep(const Entries& entries) {
     look_at_lent_ = std::chrono::steady_clock::now() + kLent;
   }
   if (idle) futex_wait(std::span(words, count), look_at_lent_);
-  for (const auto& entry : entries) {
+  for (const auto& entry : led_) {
     if (!entry->over) entry->link->in().stay_awake();
   }
-  if (any_lent && std::chrono::steady_clock::now() >= look_at_lent_) take_back_unused(entries);
+  if (any_lent && std::chrono::steady_clock::now() >= look_at_lent_) take_back_unused();
 }
 
-void Receiver::take_back_unused(const Entries& entries) {
+void Receiver::take_back_unused() {
   look_at_lent_ = Instant::max();
-  for (const auto& entry : entries) {
+  for (const auto& entry : led_) {
     if (!entry->used.exchange(false) && !entry->has_caller) entry->lent = false;
   }
 }
 
 // ---- several
+
+Receivers::Receivers(std::string name, Duration spin) : name_(std::move(name)), spin_(spin) {
+  delivery_ = add_receiver().delivery();
+}
 
 std::function<void()> Receivers::notifier() const {
   return [notifiers = notifiers_] {
@@ -402,13 +458,17 @@ std::shared_ptr<dds::CallerDelivery> Receivers::add(std::shared_ptr<Link> link, 
   std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(
       all_, [](const auto& each) { return each->links() < Receiver::kMostLinks; });
-  if (found != all_.end()) return (*found)->add(std::move(link), inbox);
+  return (found != all_.end() ? **found : add_receiver()).add(std::move(link), inbox);
+}
+
+// Under the lock, or alone.
+Receiver& Receivers::add_receiver() {
   auto added = std::make_unique<Receiver>(name_, spin_, unfinished_);
   {
-    std::lock_guard notifying(notifiers_->mutex);
+    std::lock_guard lock(notifiers_->mutex);
     notifiers_->all.push_back(added->notifier());
   }
-  return all_.emplace_back(std::move(added))->add(std::move(link), inbox);
+  return *all_.emplace_back(std::move(added));
 }
 
 // Unlocked: a function of the inbox that is waited for may add another one's link.

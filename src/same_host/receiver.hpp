@@ -13,6 +13,7 @@
 #include "dds/largest_sample.hpp"
 #include "dds/port.hpp"
 #include "futex.hpp"
+#include "lead.hpp"
 #include "link.hpp"
 #include "skein/clock.hpp"
 
@@ -81,10 +82,10 @@ class Unfinished {
 };
 
 /// One thread that takes messages from many links, and sleeps while none has any. A thread that
-/// waits for a message of one link may take it itself. Where the thread has left its turn, and has
-/// not come back after 10 ms, a second one stands in for it, and the first one for that from then
-/// on. A link that brings more of a message without its end than others leave room for is ended.
-/// Thread-safe.
+/// waits for a message of one link may take it itself; one that waits for any link's may lead in
+/// the receiver's place. Where the thread that leads has left its turn, and has not come back after
+/// 10 ms, another one stands in for it, and the first one for that from then on. A link that brings
+/// more of a message without its end than others leave room for is ended. Thread-safe.
 class Receiver {
  public:
   /// How many links one thread can wait for.
@@ -93,7 +94,8 @@ class Receiver {
   /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
   Receiver(std::string name, Duration spin,
            std::shared_ptr<Unfinished> unfinished = std::make_shared<Unfinished>());
-  /// No function of an inbox runs any more.
+  /// No function of an inbox runs any more, but for those that have left the turn of a thread that
+  /// led in the receiver's place.
   ~Receiver();
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
@@ -104,6 +106,10 @@ class Receiver {
   /// Throws Unavailable where there is no room, or no thread. What it returns is for threads that
   /// wait for what this link brings.
   std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
+  /// For one thread that takes what all links bring. Between its calls of deliver_until() it is as
+  /// one that has left its turn: take_back() says that it does not come back soon. For inboxes that
+  /// leave their turn on no other thread.
+  std::shared_ptr<dds::CallerDelivery> delivery() const;
   /// None of its functions runs, or will run, but for those whose turn was left: these may outlive
   /// the inbox, and must not use it any more. Not from one of them.
   void remove(Inbox& inbox);
@@ -111,25 +117,23 @@ class Receiver {
 
  private:
   class Entry;
+  class Guest;
   class OwnTurn;
   using Entries = std::vector<std::shared_ptr<Entry>>;
-  enum class Who { Leader, Caller };
+  enum class Who { Leader, Guest, Caller };
   enum class Looked { Nothing, Something, Replaced };
 
   void run(bool leads);
-  void lead();
-  void stand_by();
+  bool lead(Who who, const std::function<bool()>& over);
   bool has_stand_in();
-  std::uint64_t go_away();
-  bool come_back(std::uint64_t away);
   bool is_stopping() const;
   Looked look_at(Entry& entry, Bytes& spare, Who who);
   bool brings_too_much(Entry& entry);
-  Looked look_at_all(const Entries& entries);
+  Looked look_at_all(Who who);
   void drop_ended();
-  void await(const Entries& entries);
-  void sleep(const Entries& entries);
-  void take_back_unused(const Entries& entries);
+  void await();
+  void sleep();
+  void take_back_unused();
   void notify() const;
 
   const std::string name_;
@@ -142,11 +146,10 @@ class Receiver {
   std::thread thread_;
   std::thread stand_in_;  // once it was needed
   std::atomic<bool> has_stand_in_{false};
-  // Odd while the thread that leads has left its turn. Who makes it even leads from then on.
-  std::atomic<std::uint64_t> away_{0};
-  // 0 while who stands by sleeps until that happens; else he looks at it now and then.
-  Word watched_{1};
-  // The leading thread's.
+  const std::shared_ptr<Lead> lead_ = std::make_shared<Lead>();
+  const std::shared_ptr<Guest> guest_;
+  // The leading thread's. A guest that has left its turn keeps no link from ending.
+  Entries led_;
   SpinPolicy spin_;
   Bytes spare_;
   Instant look_at_lent_ = Instant::max();
@@ -155,14 +158,18 @@ class Receiver {
 /// As many receivers as the links need. Thread-safe.
 class Receivers {
  public:
-  Receivers(std::string name, Duration spin) : name_(std::move(name)), spin_(spin) {}
+  Receivers(std::string name, Duration spin);
 
   /// As Receiver's. The notifier makes all of them look.
   std::function<void()> notifier() const;
   std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
+  /// Of what the first receiver's links bring.
+  std::shared_ptr<dds::CallerDelivery> delivery() const { return delivery_; }
   void remove(Inbox& inbox);
 
  private:
+  Receiver& add_receiver();
+
   /// The receivers' notifiers; they may outlive them.
   struct Notifiers {
     std::mutex mutex;
@@ -175,6 +182,7 @@ class Receivers {
   const std::shared_ptr<Notifiers> notifiers_ = std::make_shared<Notifiers>();
   std::mutex mutex_;
   std::vector<std::unique_ptr<Receiver>> all_;
+  std::shared_ptr<dds::CallerDelivery> delivery_;
 };
 
 }  // namespace skein::same_host

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <condition_variable>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "../tools/eventually.hpp"
+#include "core/idle_work.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -33,6 +38,36 @@ class Gate {
  private:
   std::atomic<bool> closed_{false};
   std::atomic<bool> open_{false};
+};
+
+/// Goes on until it is over, or for as long as it is worth while.
+struct Waiting final : IdleWork {
+  void work_until(const std::function<bool()>& over) override {
+    thread = std::this_thread::get_id();
+    ++begun;
+    const auto is_over = [&] { return over() || !worth_while; };
+    std::unique_lock lock(mutex);
+    called.wait(lock, [&] { return inside || is_over(); });
+    if (!inside) return;
+    const auto work = std::exchange(inside, nullptr);
+    lock.unlock();
+    work();
+    lock.lock();
+    called.wait(lock, is_over);
+  }
+  void wake() override {
+    ++woken;
+    { std::lock_guard lock(mutex); }
+    called.notify_all();
+  }
+
+  std::mutex mutex;
+  std::condition_variable called;
+  std::function<void()> inside;  // what it does in it
+  std::atomic<bool> worth_while{true};
+  std::atomic<int> begun{0};
+  std::atomic<int> woken{0};
+  std::atomic<std::thread::id> thread;
 };
 
 }  // namespace
@@ -141,6 +176,42 @@ TEST_CASE("a thread that is stuck is left behind in bounded time") {
   REQUIRE(eventually([&] { return inside.load(); }));
   CHECK_FALSE(executor.stop_or_abandon(10ms));
   open = true;
+}
+
+TEST_CASE("a thread without a task does its idle work, until there is one, or the end comes") {
+  const auto work = std::make_shared<Waiting>();
+  ThreadExecutor executor("test");
+  executor.work_while_idle(work);
+  std::atomic<int> ran{0};
+  std::atomic<std::thread::id> thread;
+  for (int i = 1; i <= 100; ++i) {
+    executor.post([&] {
+      thread = std::this_thread::get_id();
+      ++ran;
+    });
+    REQUIRE(eventually([&] { return ran == i && work->begun >= i; }));
+  }
+  CHECK(work->thread.load() == thread.load());
+  SECTION("a task that it makes itself needs no call") {
+    const int woken = work->woken;
+    {
+      std::lock_guard lock(work->mutex);
+      work->inside = [&] { executor.post([&] { ++ran; }); };
+    }
+    work->called.notify_all();
+    CHECK(eventually([&] { return ran == 101; }));
+    CHECK(work->woken == woken);
+  }
+  SECTION("where it is not worth while the thread sleeps") {
+    work->worth_while = false;
+    work->wake();
+    const int begun = work->begun;
+    executor.post([&] { ++ran; });
+    CHECK(eventually([&] { return ran == 101 && work->begun <= begun + 1; }));
+    executor.finish();
+  }
+  executor.stop();
+  CHECK(work->begun >= 100);
 }
 
 TEST_CASE("a manual executor runs its tasks, and what they queue, when told") {

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "../connector/echo_service.hpp"
+#include "rpc/reception.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -70,10 +71,10 @@ struct OnArrival {
     std::function<void(const std::string&)> inside;
   };
 
-  OnArrival() {
+  explicit OnArrival(CallThread thread = CallThread::Caller) {
     hearer->inside = [this](const std::string& text) { heard += text; };
     rpc::Service::Options options;
-    options.thread = CallThread::Caller;
+    options.thread = thread;
     service = std::make_shared<rpc::Service>(std::make_shared<::test::LouderEcho::Skeleton>(hearer),
                                              executor, clock, options);
   }
@@ -86,7 +87,8 @@ struct OnArrival {
   void bring(const std::string& text) {
     auto invocation = std::make_shared<rpc::Invocation>();
     invocation->operation = operation_of(*service, "echo");
-    invocation->in = {new ::test::Echo_echo_In{text}, invocation->operation->in->destroy};
+    invocation->in = {invocation->operation->in->make(), invocation->operation->in->destroy};
+    *static_cast<::test::Echo_echo_In*>(invocation->in.get()) = {text};
     invocation->deadline = clock.now() + 1h;
     invocation->respond = [](const void*, const std::exception_ptr&) {};
     service->submit(invocation, [this] { return may_run; });
@@ -99,6 +101,25 @@ struct OnArrival {
   std::string heard;
   bool may_run = true;
 };
+
+/// Requests as a thread takes them that waits for them: `bring` says what comes while it does.
+struct Requests final : dds::CallerDelivery {
+  void lend() override {}
+  void take_back() override { ++given_back; }
+  void deliver_until(const std::function<bool()>& over) override {
+    ++waited;
+    bring();
+    ended = over();
+  }
+  void wake() override {}
+
+  std::function<void()> bring = [] {};
+  int waited = 0;
+  int given_back = 0;
+  bool ended = false;
+};
+
+bool never() { return false; }
 
 void refuse_self_wait(const rpc::Service& service) {
   rpc::Invocation invocation;
@@ -218,4 +239,76 @@ TEST_CASE(
   CHECK(runs_on_arrival(1ms));
   CHECK(runs_on_arrival(2ms));
   CHECK_FALSE(runs_on_arrival(1ms));
+}
+
+TEST_CASE("a service's own thread takes requests while its calls are quick, and runs them there") {
+  OnArrival own(CallThread::Own);
+  const auto requests = std::make_shared<Requests>();
+  rpc::Reception reception(*own.service, requests);
+  reception.work_until(never);
+  CHECK(requests->waited == 0);
+  own.bring("1");
+  CHECK(own.heard.empty());
+  own.executor.run_all();
+  CHECK(own.heard == "1");
+  own.show_quick_calls();
+
+  requests->bring = [&] { own.bring("2"); };
+  reception.work_until(never);
+  CHECK(own.heard == "12");
+  CHECK_FALSE(requests->ended);
+  CHECK(requests->given_back == 0);
+
+  own.bring("3");  // on another thread
+  CHECK(own.heard == "12");
+  requests->bring = [&] { own.bring("4"); };
+  reception.work_until(never);
+  CHECK(own.heard == "12");
+  own.executor.run_all();
+  CHECK(own.heard == "1234");
+}
+
+TEST_CASE("a service's own thread leaves requests to others once a call has taken long") {
+  OnArrival own(CallThread::Own);
+  const auto requests = std::make_shared<Requests>();
+  rpc::Reception reception(*own.service, requests);
+  own.show_quick_calls();
+  own.hearer->inside = [&](const std::string&) { own.clock.advance(2ms); };
+  requests->bring = [&] { own.bring("long"); };
+  reception.work_until(never);
+  CHECK(requests->ended);
+  CHECK(requests->given_back == 1);
+  reception.work_until(never);
+  CHECK(requests->waited == 1);
+}
+
+TEST_CASE("a stream, and a call that is answered later, never run where they arrive") {
+  ManualClock clock;
+  ManualExecutor executor;
+  const auto service = std::make_shared<rpc::Service>(std::make_shared<PromptDesk>(), executor,
+                                                      clock, rpc::Service::Options());
+  const auto bring = [&](const char* name) {
+    auto invocation = std::make_shared<rpc::Invocation>();
+    invocation->operation = operation_of(*service, name);
+    invocation->in = {invocation->operation->in->make(), invocation->operation->in->destroy};
+    invocation->deadline = clock.now() + 1h;
+    invocation->respond = [](const void*, const std::exception_ptr&) {};
+    if (invocation->operation->stream) {
+      invocation->stream =
+          std::make_shared<rpc::OutgoingStream>(*invocation->operation, clock, invocation->deadline,
+                                                1, [](const void*, std::uint64_t) {});
+    }
+    service->submit(invocation, [] { return true; });
+  };
+  for (int i = 0; i < 100; ++i) bring("note");
+  executor.run_all();
+  REQUIRE(service->is_quick());
+  const auto requests = std::make_shared<Requests>();
+  rpc::Reception reception(*service, requests);
+  const std::string name = GENERATE("ask", "count_up");
+  requests->bring = [&] { bring(name.c_str()); };
+  reception.work_until(never);
+  CHECK(requests->waited == 1);
+  CHECK(requests->given_back == 1);
+  CHECK(executor.run_all() == 1);
 }

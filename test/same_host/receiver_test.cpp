@@ -132,6 +132,30 @@ struct Hostile {
   std::shared_ptr<Link> link;
 };
 
+/// A thread that leads in the receiver's place until it is told to stop.
+struct Guest {
+  explicit Guest(Host& host) : delivery(host.receiver.delivery()) {}
+  ~Guest() { leave(); }
+  void leave() {
+    over = true;
+    delivery->wake();
+    if (thread.joinable()) thread.join();
+  }
+  /// It goes and comes again; true once it has gone.
+  bool come_again() {
+    once = true;
+    delivery->wake();
+    return eventually([&] { return !once; });
+  }
+
+  const std::shared_ptr<dds::CallerDelivery> delivery;
+  std::atomic<bool> over{false};
+  std::atomic<bool> once{false};
+  std::thread thread{[this] {
+    while (!over) delivery->deliver_until([this] { return over || once.exchange(false); });
+  }};
+};
+
 }  // namespace
 
 TEST_CASE("one thread takes what many links bring, each in its order, the end after all the rest") {
@@ -399,6 +423,94 @@ TEST_CASE("a receiver's end waits for who has left his turn") {
   CHECK(host->notes.inside == 1);
   host->notes.go_on = true;
   host.reset();
+}
+
+TEST_CASE("a thread that waits for all links leads in the receiver's place") {
+  Host host;
+  Client first(host), second(host);
+  first.send("before");
+  REQUIRE(eventually([&] { return host.notes.about(first.id).size() == 2; }));
+  Guest guest(host);
+  const auto comes_to_guest = [&](Client& client) {
+    return eventually([&] {
+      const std::size_t before = host.notes.about(client.id).size();
+      client.send("x");
+      eventually([&] { return host.notes.about(client.id).size() > before; });
+      return host.notes.last_thread() == guest.thread.get_id();
+    });
+  };
+  CHECK(comes_to_guest(first));
+  CHECK(comes_to_guest(second));
+  Client newcomer(host);
+  CHECK(comes_to_guest(newcomer));
+  first.link->close();
+  CHECK(eventually([&] { return host.notes.about(first.id).back() == "end"; }));
+  SECTION("and is stood in for, where it leaves its turn for long") {
+    const auto id = guest.thread.get_id();
+    second.send("long");
+    REQUIRE(eventually([&] { return host.notes.inside == 1; }));
+    CHECK(host.notes.left);
+    newcomer.send("y");
+    CHECK(eventually([&] { return host.notes.about(newcomer.id).back() == "y"; }));
+    CHECK(host.notes.last_thread() != id);
+    CHECK(host.notes.inside == 1);
+    host.notes.go_on = true;
+    CHECK(comes_to_guest(newcomer));
+  }
+  SECTION("until it goes, and the receiver takes what comes") {
+    const auto id = guest.thread.get_id();
+    guest.leave();
+    if (GENERATE(false, true)) guest.delivery->take_back();
+    second.send("y");
+    CHECK(eventually([&] { return host.notes.about(second.id).back() == "y"; }));
+    CHECK(host.notes.last_thread() != id);
+  }
+  SECTION("as often as it comes and goes") {
+    for (int i = 0; i < 300; ++i) {
+      newcomer.send(std::to_string(i));
+      CHECK(guest.come_again());
+    }
+    CHECK(eventually([&] { return host.notes.about(newcomer.id).back() == "299"; }));
+    CHECK(comes_to_guest(newcomer));
+  }
+}
+
+TEST_CASE("a receiver's end does not wait for the call of a thread that leads in its place") {
+  Notes notes;
+  auto receiver = std::make_unique<Receiver>("test-requests", Duration::zero());
+  Meeting host, guests;
+  const Guid provider = Guid::random();
+  host.offer(provider, provider, receiver->notifier(),
+             [&](std::shared_ptr<Link> link) { receiver->add(std::move(link), notes); });
+  const auto link = guests.join(provider, Guid::random(), [] {});
+  const auto send = [&](std::string_view text) {
+    return link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes;
+  };
+  const auto delivery = receiver->delivery();
+  std::atomic<bool> over{false};
+  std::thread guest([&] {
+    while (!over) delivery->deliver_until([&] { return over.load(); });
+  });
+  const bool leads = eventually([&] {
+    const std::size_t before = notes.about(link->own()).size();
+    return send("x") && eventually([&] { return notes.about(link->own()).size() > before; }) &&
+           notes.last_thread() == guest.get_id();
+  });
+  CHECK(leads);
+  CHECK(send("long"));
+  CHECK(eventually([&] { return notes.inside == 1; }));
+  host.withdraw(provider);
+  // Only on a machine that is busy beyond measure another one has stood in before.
+  if (leads && notes.last_thread() == guest.get_id()) {
+    receiver->remove(notes);
+    receiver.reset();
+    CHECK(notes.inside == 1);
+    CHECK(eventually([&] { return link->ended(); }));  // nobody keeps the other end of it
+  }
+  over = true;
+  delivery->wake();
+  notes.go_on = true;
+  guest.join();
 }
 
 TEST_CASE("once an inbox is removed, nothing more is put in") {
