@@ -8,8 +8,9 @@
 
 namespace skein::same_host {
 
-/// The right to take messages, which one thread has at a time; nobody has it at first. Who leaves
-/// it may take it back as long as no other one has taken it meanwhile. Thread-safe.
+/// The right to take messages, which one thread has at a time, the leader of the pattern "leader
+/// and followers"; nobody has it at first. Who leaves it may take it back as long as no other one
+/// has taken it meanwhile. Thread-safe.
 class Lead {
  public:
   /// False where somebody has it.

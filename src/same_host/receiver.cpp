@@ -35,7 +35,7 @@ class Receiver::OwnTurn final : public Turn {
         spare_(spare),
         lock_(lock) {}
 
-  // Of a guest the receiver itself is the stand-in.
+  // Of a consumer the receiver itself is the stand-in.
   bool leave() override {
     if (left()) return true;
     if (who_ == Who::Caller || (who_ == Who::Leader && !receiver_.has_stand_in())) return false;
@@ -48,7 +48,7 @@ class Receiver::OwnTurn final : public Turn {
   bool come_back() { return lead_.take_back(left_); }
 
  private:
-  Receiver& receiver_;  // gone, perhaps, once a guest has left its turn
+  Receiver& receiver_;  // gone, perhaps, once a consumer has left its turn
   Lead& lead_;
   const Who who_;
   Link& link_;
@@ -134,9 +134,9 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
 }
 
 /// A thread that leads in the receiver's place. The receiver is there while it has the lead.
-class Receiver::Guest final : public dds::CallerDelivery {
+class Receiver::Consumer final : public dds::CallerDelivery {
  public:
-  explicit Guest(Receiver& receiver)
+  explicit Consumer(Receiver& receiver)
       : receiver_(receiver), lead_(receiver.lead_), notify_(receiver.notifier()) {}
 
   void lend() override {}
@@ -145,7 +145,7 @@ class Receiver::Guest final : public dds::CallerDelivery {
   }
   void deliver_until(const std::function<bool()>& over) override {
     if (!useful || !(lead_->take() || is_given(over))) return;
-    if (receiver_.lead(Who::Guest, over)) lead_->leave();
+    if (receiver_.lead(Who::Consumer, over)) lead_->leave();
   }
   void wake() override {
     call();
@@ -153,7 +153,7 @@ class Receiver::Guest final : public dds::CallerDelivery {
   }
 
   bool wants() const { return wants_; }
-  /// By who leads; false where it still does, as the guest has thought better of it.
+  /// By who leads; false where it still does, as the consumer has thought better of it.
   bool give() {
     const std::uint64_t left = lead_->leave();
     if (!wants_.exchange(false)) return !lead_->take_back(left);
@@ -200,7 +200,7 @@ Receiver::Receiver(std::string name, Duration spin, std::shared_ptr<Unfinished> 
     : name_(std::move(name)),
       spin_limit_(spin),
       unfinished_(std::move(unfinished)),
-      guest_(std::make_shared<Guest>(*this)),
+      consumer_(std::make_shared<Consumer>(*this)),
       spin_(spin) {}
 
 Receiver::~Receiver() {
@@ -208,7 +208,7 @@ Receiver::~Receiver() {
     std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  guest_->end();
+  consumer_->end();
   notify();
   lead_->wake();
   if (thread_.joinable()) thread_.join();
@@ -235,13 +235,13 @@ std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, I
     }
     if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(true); });
     entries_.push_back(entry);
-    guest_->useful = true;
+    consumer_->useful = true;
   }
   notify();
   return entry;
 }
 
-std::shared_ptr<dds::CallerDelivery> Receiver::delivery() const { return guest_; }
+std::shared_ptr<dds::CallerDelivery> Receiver::delivery() const { return consumer_; }
 
 void Receiver::remove(Inbox& inbox) {
   Entries removed;
@@ -251,7 +251,7 @@ void Receiver::remove(Inbox& inbox) {
         entries_.begin(), entries_.end(), [&](const auto& each) { return &each->inbox != &inbox; });
     removed.assign(first, entries_.end());
     entries_.erase(first, entries_.end());
-    if (entries_.empty()) guest_->useful = false;
+    if (entries_.empty()) consumer_->useful = false;
   }
   for (const auto& entry : removed) {
     {
@@ -275,7 +275,7 @@ void Receiver::run(bool leads) {
   while (!is_stopping()) {
     if (!leads) {
       leads = lead_->stand_by([this] { return is_stopping(); });
-    } else if (!lead(Who::Leader, [this] { return guest_->wants(); }) || guest_->give()) {
+    } else if (!lead(Who::Leader, [this] { return consumer_->wants(); }) || consumer_->give()) {
       leads = false;
     }
   }
@@ -288,7 +288,7 @@ bool Receiver::is_stopping() const {
 }
 
 // By who has the lead, until `over`, which notify() makes it look at, or the receiver ends. False
-// where somebody has stood in; a guest's receiver may be gone then.
+// where somebody has stood in; a consumer's receiver may be gone then.
 bool Receiver::lead(Who who, const std::function<bool()>& over) {
   while (true) {
     notified_->store(0);
@@ -386,7 +386,7 @@ bool Receiver::brings_too_much(Entry& entry) {
 void Receiver::drop_ended() {
   std::lock_guard lock(mutex_);
   std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
-  if (entries_.empty()) guest_->useful = false;
+  if (entries_.empty()) consumer_->useful = false;
 }
 
 void Receiver::await() {

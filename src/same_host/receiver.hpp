@@ -117,10 +117,10 @@ class Receiver {
 
  private:
   class Entry;
-  class Guest;
+  class Consumer;
   class OwnTurn;
   using Entries = std::vector<std::shared_ptr<Entry>>;
-  enum class Who { Leader, Guest, Caller };
+  enum class Who { Leader, Consumer, Caller };
   enum class Looked { Nothing, Something, Replaced };
 
   void run(bool leads);
@@ -147,8 +147,8 @@ class Receiver {
   std::thread stand_in_;  // once it was needed
   std::atomic<bool> has_stand_in_{false};
   const std::shared_ptr<Lead> lead_ = std::make_shared<Lead>();
-  const std::shared_ptr<Guest> guest_;
-  // The leading thread's. A guest that has left its turn keeps no link from ending.
+  const std::shared_ptr<Consumer> consumer_;
+  // The leading thread's. A consumer that has left its turn keeps no link from ending.
   Entries led_;
   SpinPolicy spin_;
   Bytes spare_;

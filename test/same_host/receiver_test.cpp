@@ -133,9 +133,9 @@ struct Hostile {
 };
 
 /// A thread that leads in the receiver's place until it is told to stop.
-struct Guest {
-  explicit Guest(Host& host) : delivery(host.receiver.delivery()) {}
-  ~Guest() { leave(); }
+struct Consumer {
+  explicit Consumer(Host& host) : delivery(host.receiver.delivery()) {}
+  ~Consumer() { leave(); }
   void leave() {
     over = true;
     delivery->wake();
@@ -430,23 +430,23 @@ TEST_CASE("a thread that waits for all links leads in the receiver's place") {
   Client first(host), second(host);
   first.send("before");
   REQUIRE(eventually([&] { return host.notes.about(first.id).size() == 2; }));
-  Guest guest(host);
-  const auto comes_to_guest = [&](Client& client) {
+  Consumer consumer(host);
+  const auto comes_to_consumer = [&](Client& client) {
     return eventually([&] {
       const std::size_t before = host.notes.about(client.id).size();
       client.send("x");
       eventually([&] { return host.notes.about(client.id).size() > before; });
-      return host.notes.last_thread() == guest.thread.get_id();
+      return host.notes.last_thread() == consumer.thread.get_id();
     });
   };
-  CHECK(comes_to_guest(first));
-  CHECK(comes_to_guest(second));
+  CHECK(comes_to_consumer(first));
+  CHECK(comes_to_consumer(second));
   Client newcomer(host);
-  CHECK(comes_to_guest(newcomer));
+  CHECK(comes_to_consumer(newcomer));
   first.link->close();
   CHECK(eventually([&] { return host.notes.about(first.id).back() == "end"; }));
   SECTION("and is stood in for, where it leaves its turn for long") {
-    const auto id = guest.thread.get_id();
+    const auto id = consumer.thread.get_id();
     second.send("long");
     REQUIRE(eventually([&] { return host.notes.inside == 1; }));
     CHECK(host.notes.left);
@@ -455,12 +455,12 @@ TEST_CASE("a thread that waits for all links leads in the receiver's place") {
     CHECK(host.notes.last_thread() != id);
     CHECK(host.notes.inside == 1);
     host.notes.go_on = true;
-    CHECK(comes_to_guest(newcomer));
+    CHECK(comes_to_consumer(newcomer));
   }
   SECTION("until it goes, and the receiver takes what comes") {
-    const auto id = guest.thread.get_id();
-    guest.leave();
-    if (GENERATE(false, true)) guest.delivery->take_back();
+    const auto id = consumer.thread.get_id();
+    consumer.leave();
+    if (GENERATE(false, true)) consumer.delivery->take_back();
     second.send("y");
     CHECK(eventually([&] { return host.notes.about(second.id).back() == "y"; }));
     CHECK(host.notes.last_thread() != id);
@@ -468,10 +468,10 @@ TEST_CASE("a thread that waits for all links leads in the receiver's place") {
   SECTION("as often as it comes and goes") {
     for (int i = 0; i < 300; ++i) {
       newcomer.send(std::to_string(i));
-      CHECK(guest.come_again());
+      CHECK(consumer.come_again());
     }
     CHECK(eventually([&] { return host.notes.about(newcomer.id).back() == "299"; }));
-    CHECK(comes_to_guest(newcomer));
+    CHECK(comes_to_consumer(newcomer));
   }
 }
 
@@ -488,20 +488,20 @@ TEST_CASE("a receiver's end does not wait for the call of a thread that leads in
   };
   const auto delivery = receiver->delivery();
   std::atomic<bool> over{false};
-  std::thread guest([&] {
+  std::thread consumer([&] {
     while (!over) delivery->deliver_until([&] { return over.load(); });
   });
   const bool leads = eventually([&] {
     const std::size_t before = notes.about(link->own()).size();
     return send("x") && eventually([&] { return notes.about(link->own()).size() > before; }) &&
-           notes.last_thread() == guest.get_id();
+           notes.last_thread() == consumer.get_id();
   });
   CHECK(leads);
   CHECK(send("long"));
   CHECK(eventually([&] { return notes.inside == 1; }));
   host.withdraw(provider);
   // Only on a machine that is busy beyond measure another one has stood in before.
-  if (leads && notes.last_thread() == guest.get_id()) {
+  if (leads && notes.last_thread() == consumer.get_id()) {
     receiver->remove(notes);
     receiver.reset();
     CHECK(notes.inside == 1);
@@ -510,7 +510,7 @@ TEST_CASE("a receiver's end does not wait for the call of a thread that leads in
   over = true;
   delivery->wake();
   notes.go_on = true;
-  guest.join();
+  consumer.join();
 }
 
 TEST_CASE("once an inbox is removed, nothing more is put in") {
