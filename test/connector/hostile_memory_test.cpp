@@ -27,10 +27,10 @@
 #include "core/abstract_socket.hpp"
 #include "echo_service.hpp"
 #include "frames.idl.hpp"
+#include "loopback_entity.hpp"
 #include "rpc/wire.hpp"
 #include "same_host/link.hpp"
 #include "same_host/pass_descriptor.hpp"
-#include "skein/entity.hpp"
 #include "skein/loaned.hpp"
 
 using namespace skein;
@@ -50,15 +50,6 @@ struct Shared {
   std::atomic<std::uint64_t> rounds{0};
   Guid provider;
 };
-
-std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory_calls = true) {
-  EntityOptions options;
-  options.name = name;
-  options.vendor = dds::load_vendor("loopback");
-  options.domain = 19;
-  options.shared_memory_calls = shared_memory_calls;
-  return std::make_unique<Entity>(std::move(options));
-}
 
 /// A side of a connection that writes what it likes into the memory that both share.
 class Attacker {
@@ -218,20 +209,10 @@ class HostileClient : Attacker {
     if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
     pollfd answered{socket.get(), POLLIN, 0};
     poll(&answered, 1, 20'000);
-    char packet[128];
-    iovec content{packet, sizeof packet};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-    msghdr message{};
-    message.msg_iov = &content;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    if (recvmsg(socket.get(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC) < 0) return {};
-    const cmsghdr* const header = CMSG_FIRSTHDR(&message);
-    if (header == nullptr) return {};
-    int number = -1;
-    std::memcpy(&number, CMSG_DATA(header), sizeof number);
-    return FileDescriptor(number);
+    std::array<std::byte, 128> answer{};
+    FileDescriptor descriptor;
+    same_host::receive_passed(socket.get(), answer, descriptor);
+    return descriptor;
   }
 
   static Bytes open_request(const Guid& client) {

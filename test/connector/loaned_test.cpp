@@ -15,12 +15,13 @@
 
 #include "../tools/eventually.hpp"
 #include "frames.idl.hpp"
-#include "skein/entity.hpp"
+#include "loopback_entity.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
 using skein::test::eventually;
+using skein::test::make_entity;
 using skein::test::with_enough_time;
 using ::test::Album;
 using ::test::Frame;
@@ -112,15 +113,6 @@ class Gallery final : public Album {
   std::mutex mutex_;
   std::vector<std::string> came_;
 };
-
-std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory) {
-  EntityOptions options;
-  options.name = name;
-  options.vendor = dds::load_vendor("loopback");
-  options.domain = 19;
-  options.shared_memory_calls = shared_memory;
-  return std::make_unique<Entity>(std::move(options));
-}
 
 /// Answers study() when told, and notes how its frames came.
 class Desk final : public Album::Deferred {

@@ -17,8 +17,8 @@
 #include "brokerless_discovery/broker.hpp"
 #include "core/file_descriptor.hpp"
 #include "echo_service.hpp"
+#include "loopback_entity.hpp"
 #include "same_host/ring.hpp"
-#include "skein/entity.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -28,15 +28,6 @@ using ::test::Echo;
 using ::test::LouderEcho;
 
 namespace {
-
-std::unique_ptr<Entity> make_entity(const std::string& name, bool shared_memory) {
-  EntityOptions options;
-  options.name = name;
-  options.vendor = dds::load_vendor("loopback");
-  options.domain = 18;
-  options.shared_memory_calls = shared_memory;
-  return std::make_unique<Entity>(std::move(options));
-}
 
 std::string thread_name() {
   char name[16] = {};
