@@ -8,7 +8,7 @@ namespace {
 // Who has been away for longer is stood in for.
 constexpr std::chrono::milliseconds kLate{10};
 // Then who stands by sleeps until the lead is left again.
-constexpr int kLooksInVain = 10;
+constexpr int kLooksInVain = 3;
 
 }  // namespace
 
