@@ -208,29 +208,29 @@ class ProviderPort::RequestReader final : public LinkReader {
   RequestReader(ProviderPort& port, const dds::Qos& qos, dds::ReaderListener listener)
       : LinkReader(port.identities_.next(), qos, std::move(listener)),
         port_(port),
-        receivers_("skein-requests", port.options_.spin) {
+        receiver_("skein-requests", port.options_.spin) {
     for (const std::string& partition : qos.partitions) {
       if (!partition.empty()) providers_.push_back(identity_in(partition));
     }
     for (const Guid& provider : providers_) {
-      port_.meeting_.offer(provider, guid(), receivers_.notifier(),
+      port_.meeting_.offer(provider, guid(), receiver_.notifier(),
                            [this](std::shared_ptr<Link> link) {
                              port_.add(link);
-                             receivers_.add(std::move(link), *this);
+                             receiver_.add(std::move(link), *this);
                            });
     }
   }
   ~RequestReader() override {
     for (const Guid& provider : providers_) port_.meeting_.withdraw(provider);
-    receivers_.remove(*this);
+    receiver_.remove(*this);
   }
 
-  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return receivers_.delivery(); }
+  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return receiver_.delivery(); }
 
  private:
   ProviderPort& port_;
   std::vector<Guid> providers_;
-  Receivers receivers_;
+  Receiver receiver_;
 };
 
 ProviderPort::ProviderPort(Meeting& meeting, const PortOptions& options)
@@ -267,7 +267,7 @@ class ClientPort::ReplyReader final : public LinkReader {
  public:
   ReplyReader(ClientPort& port, const dds::Qos& qos, dds::ReaderListener listener)
       : LinkReader(port.identities_.next(), qos, std::move(listener)), port_(port) {}
-  ~ReplyReader() override { port_.receivers_.remove(*this); }
+  ~ReplyReader() override { port_.receiver_.remove(*this); }
 
   void on_end(Link& link) override {
     port_.note_end(link);
@@ -275,9 +275,7 @@ class ClientPort::ReplyReader final : public LinkReader {
   }
 
   /// Before others know of this reader.
-  void read(std::shared_ptr<Link> link) {
-    delivery_ = port_.receivers_.add(std::move(link), *this);
-  }
+  void read(std::shared_ptr<Link> link) { delivery_ = port_.receiver_.add(std::move(link), *this); }
   std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return delivery_; }
 
  private:
@@ -289,7 +287,7 @@ ClientPort::ClientPort(Meeting& meeting, const PortOptions& options)
     : meeting_(meeting),
       options_(options),
       identities_(options.participant),
-      receivers_("skein-replies", options.spin) {}
+      receiver_("skein-replies", options.spin) {}
 
 ClientPort::~ClientPort() = default;
 
@@ -303,7 +301,7 @@ std::unique_ptr<dds::Writer> ClientPort::create_writer(const dds::Topic&, const 
       throw Unavailable("the provider has damaged the memory that it shared before");
     }
   }
-  auto link = meeting_.join(provider, client, receivers_.notifier());
+  auto link = meeting_.join(provider, client, receiver_.notifier());
   {
     std::lock_guard lock(mutex_);
     std::erase_if(connections_, [](const auto& each) { return each.second.link.expired(); });

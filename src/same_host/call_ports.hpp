@@ -38,9 +38,9 @@ class EndpointIdentities {
 /// same bytes as over DDS, reliable, in order, and for who is connected now. A reader offers itself
 /// to clients under each of its partitions but "", which must be the identity of a provider; a
 /// writer's partition must be the identity of a client's writer. Listeners run inside
-/// create_writer(), or on threads that each reader has for itself from its first client on, one for
-/// so many clients as Receiver can wait for, `skein-requests`: what takes long there holds up no
-/// other reader. Calls of a reader's listener for different clients may overlap.
+/// create_writer(), or on a thread that each reader has for itself from its first client on,
+/// `skein-requests`: what takes long there holds up no other reader. Calls of a reader's listener
+/// for different clients may overlap.
 class ProviderPort final : public dds::Participant {
  public:
   /// `meeting` outlives it.
@@ -98,7 +98,7 @@ class ClientPort final : public dds::Participant {
   std::mutex mutex_;
   std::map<Guid, Connection> connections_;  // by the writer's identity
   RecentSet<Guid> distrusted_{1024};        // providers
-  Receivers receivers_;
+  Receiver receiver_;
 };
 
 /// What an entity needs to offer and to call services between processes of its host.

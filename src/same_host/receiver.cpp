@@ -15,8 +15,15 @@ namespace {
 constexpr int kMessagesInARow = 16;
 // More than a ring holds: who goes on after the end is not listened to.
 constexpr int kTurnsAfterEnd = 2048;
-// What comes to a link that callers have left is heard of this late at most.
+// How often it is looked whether callers have left a link: what comes there is heard of after twice
+// that.
 constexpr std::chrono::milliseconds kLent{20};
+// Sleeping for so many links costs little.
+constexpr std::size_t kFewLinks = 8;
+// Of more than these a link that has brought nothing while its thread has slept so often is left to
+// QuietLinks: by then its share of those sleeps has cost about what that does.
+constexpr int kSleepsInVain = 1000;
+constexpr std::size_t kMostLinks = kMostWords - 1;
 
 }  // namespace
 
@@ -57,10 +64,14 @@ class Receiver::OwnTurn final : public Turn {
   std::uint64_t left_ = 0;
 };
 
-class Receiver::Entry final : public dds::CallerDelivery {
+// Once it is over, the inbox and the receiver may be gone.
+class Receiver::Entry final : public dds::CallerDelivery, public WatchedLink {
  public:
   Entry(Receiver& receiver_, std::shared_ptr<Link> link_, Inbox& inbox_)
-      : link(std::move(link_)), inbox(inbox_), receiver(receiver_), spin(receiver_.spin_limit_) {}
+      : WatchedLink(std::move(link_)),
+        inbox(inbox_),
+        receiver(receiver_),
+        spin(receiver_.spin_limit_) {}
 
   void lend() override {
     if (!used) used = true;
@@ -69,20 +80,19 @@ class Receiver::Entry final : public dds::CallerDelivery {
   void take_back() override {
     if (lent && lent.exchange(false)) notify();
   }
-  void deliver_until(const std::function<bool()>& over_) override;
+  // Who unwound from it would leave the call's result to be written where it was.
+  void deliver_until(const std::function<bool()>& over_) noexcept override;
   void wake() override {
     called = 1;
     if (sleeps) futex_wake(called);
   }
 
-  const std::shared_ptr<Link> link;
   Inbox& inbox;
   std::mutex mutex;  // held while a function of the inbox runs
   std::atomic<bool> begun{false};
   std::size_t unfinished = 0;  // as others know it; under the mutex
   int turns_after_end = 0;
-  // Once it is so, the inbox and the receiver may be gone.
-  std::atomic<bool> over{false};
+  int sleeps_in_vain = 0;  // of who leads, since it has brought something
   std::atomic<bool> lent{false};
   std::atomic<bool> used{false};        // since the receiver's thread last looked
   std::atomic<bool> has_caller{false};  // which is in deliver_until()
@@ -98,7 +108,7 @@ class Receiver::Entry final : public dds::CallerDelivery {
   std::atomic<bool> sleeps{false};
 };
 
-void Receiver::Entry::deliver_until(const std::function<bool()>& over_) {
+void Receiver::Entry::deliver_until(const std::function<bool()>& over_) noexcept {
   thread_local Bytes spare;
   if (has_caller.exchange(true)) return take_back();
   while (!over && !over_()) {
@@ -200,6 +210,7 @@ Receiver::Receiver(std::string name, Duration spin, std::shared_ptr<Unfinished> 
     : name_(std::move(name)),
       spin_limit_(spin),
       unfinished_(std::move(unfinished)),
+      quiet_(name_, notifier()),
       consumer_(std::make_shared<Consumer>(*this)),
       spin_(spin) {}
 
@@ -229,10 +240,7 @@ std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, I
   const auto entry = std::make_shared<Entry>(*this, std::move(link), inbox);
   {
     std::lock_guard lock(mutex_);
-    if (entries_.size() >= kMostLinks) {
-      throw Unavailable("this entity has " + std::to_string(kMostLinks) +
-                        " connections through shared memory already");
-    }
+    if (entries_.size() >= kFewLinks) quiet_.reserve(entries_.size() + 1 - kFewLinks);
     if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(true); });
     entries_.push_back(entry);
     consumer_->useful = true;
@@ -261,6 +269,7 @@ void Receiver::remove(Inbox& inbox) {
     }
     entry->wake();
   }
+  quiet_.drop_ended();
   notify();
 }
 
@@ -296,7 +305,8 @@ bool Receiver::lead(Who who, const std::function<bool()>& over) {
     {
       std::lock_guard lock(mutex_);
       if (stopping_) return true;
-      entries = entries_;
+      std::ranges::copy_if(entries_, std::back_inserter(entries),
+                           [](const auto& entry) { return !entry->quiet || entry->link->ended(); });
     }
     led_.swap(entries);
     entries.clear();
@@ -329,7 +339,9 @@ Receiver::Looked Receiver::look_at_all(Who who) {
     if (entry->lent && entry->begun && !entry->link->ended()) continue;
     const Looked looked = look_at(*entry, spare_, who);
     if (looked == Looked::Replaced) return looked;
-    if (looked == Looked::Something) all = looked;
+    if (looked == Looked::Nothing) continue;
+    all = looked;
+    entry->sleeps_in_vain = 0;
   }
   return all;
 }
@@ -363,10 +375,11 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
       (ended && (drained || ++entry.turns_after_end > kTurnsAfterEnd))) {
     entry.inbox.on_end(link);
     link.ending().run();
-    entry.over = true;
     unfinished_->change(std::exchange(entry.unfinished, 0), 0);
+    const auto tell = notifier();
+    entry.over = true;  // from now on the receiver may be gone, where this is a caller
     entry.wake();
-    notify();
+    tell();
   }
   return Looked::Something;
 }
@@ -384,12 +397,34 @@ bool Receiver::brings_too_much(Entry& entry) {
 }
 
 void Receiver::drop_ended() {
-  std::lock_guard lock(mutex_);
-  std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
-  if (entries_.empty()) consumer_->useful = false;
+  {
+    std::lock_guard lock(mutex_);
+    const std::size_t ended =
+        std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
+    if (ended == 0) return;
+    if (entries_.empty()) consumer_->useful = false;
+  }
+  quiet_.drop_ended();
+}
+
+// To QuietLinks: those that bring little, and the latest where they are more than one thread can
+// wait for.
+void Receiver::leave_quiet_ones() {
+  const auto is_waited_for = [](const auto& entry) { return !entry->lent && !entry->over; };
+  if (led_.size() <= kFewLinks) return;
+  if (std::ranges::count_if(led_, is_waited_for) <= std::ptrdiff_t{kFewLinks}) return;
+  std::size_t kept = 0;
+  std::erase_if(led_, [&](const auto& entry) {
+    if (!is_waited_for(entry) || !entry->begun || entry->link->ended()) return false;
+    const bool is_quiet = ++entry->sleeps_in_vain >= kSleepsInVain;
+    if (!is_quiet && kept++ < kMostLinks) return false;
+    entry->sleeps_in_vain = 0;
+    return quiet_.add(entry);
+  });
 }
 
 void Receiver::await() {
+  leave_quiet_ones();
   const auto ready = [&] {
     return notified_->load() != 0 || std::ranges::any_of(led_, [](const auto& entry) {
              return !entry->over && !entry->lent && entry->link->in().ready();
@@ -419,8 +454,8 @@ void Receiver::sleep() {
       any_lent = true;
       continue;
     }
-    idle = entry->link->in().prepare_to_sleep() && idle;
-    words[count++] = while_it_is(entry->link->in().word(), 1);
+    idle = entry->link->in().prepare_to_sleep() && idle && count < kMostWords;
+    if (count < kMostWords) words[count++] = while_it_is(entry->link->in().word(), 1);
   }
   if (!any_lent) {
     look_at_lent_ = Instant::max();
@@ -439,46 +474,6 @@ void Receiver::take_back_unused() {
   for (const auto& entry : led_) {
     if (!entry->used.exchange(false) && !entry->has_caller) entry->lent = false;
   }
-}
-
-// ---- several
-
-Receivers::Receivers(std::string name, Duration spin) : name_(std::move(name)), spin_(spin) {
-  delivery_ = add_receiver().delivery();
-}
-
-std::function<void()> Receivers::notifier() const {
-  return [notifiers = notifiers_] {
-    std::lock_guard lock(notifiers->mutex);
-    for (const auto& notify : notifiers->all) notify();
-  };
-}
-
-std::shared_ptr<dds::CallerDelivery> Receivers::add(std::shared_ptr<Link> link, Inbox& inbox) {
-  std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find_if(
-      all_, [](const auto& each) { return each->links() < Receiver::kMostLinks; });
-  return (found != all_.end() ? **found : add_receiver()).add(std::move(link), inbox);
-}
-
-// Under the lock, or alone.
-Receiver& Receivers::add_receiver() {
-  auto added = std::make_unique<Receiver>(name_, spin_, unfinished_);
-  {
-    std::lock_guard lock(notifiers_->mutex);
-    notifiers_->all.push_back(added->notifier());
-  }
-  return *all_.emplace_back(std::move(added));
-}
-
-// Unlocked: a function of the inbox that is waited for may add another one's link.
-void Receivers::remove(Inbox& inbox) {
-  std::vector<Receiver*> all;
-  {
-    std::lock_guard lock(mutex_);
-    for (const auto& each : all_) all.push_back(each.get());
-  }
-  for (Receiver* const each : all) each->remove(inbox);
 }
 
 }  // namespace skein::same_host

@@ -15,6 +15,7 @@
 #include "futex.hpp"
 #include "lead.hpp"
 #include "link.hpp"
+#include "quiet_links.hpp"
 #include "skein/clock.hpp"
 
 namespace skein::same_host {
@@ -84,13 +85,12 @@ class Unfinished {
 /// One thread that takes messages from many links, and sleeps while none has any. A thread that
 /// waits for a message of one link may take it itself; one that waits for any link's may lead in
 /// the receiver's place. Where the thread that leads has left its turn, and has not come back after
-/// 10 ms, another one stands in for it, and the first one for that from then on. A link that brings
-/// more of a message without its end than others leave room for is ended. Thread-safe.
+/// 10 ms, another one stands in for it, and the first one for that from then on. Of many links
+/// those that bring little are waited for by other threads, so that they cost the others nothing. A
+/// link that brings more of a message without its end than others leave room for is ended.
+/// Thread-safe.
 class Receiver {
  public:
-  /// How many links one thread can wait for.
-  static constexpr std::size_t kMostLinks = kMostWords - 1;
-
   /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
   Receiver(std::string name, Duration spin,
            std::shared_ptr<Unfinished> unfinished = std::make_shared<Unfinished>());
@@ -103,7 +103,7 @@ class Receiver {
   /// For Link: makes the thread look at all of them. It may outlive the receiver.
   std::function<void()> notifier() const;
 
-  /// Throws Unavailable where there is no room, or no thread. What it returns is for threads that
+  /// Throws Unavailable where there is no thread. What it returns is for threads that
   /// wait for what this link brings.
   std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
   /// For one thread that takes what all links bring. Between its calls of deliver_until() it is as
@@ -114,6 +114,8 @@ class Receiver {
   /// the inbox, and must not use it any more. Not from one of them.
   void remove(Inbox& inbox);
   std::size_t links() const;
+  /// Of these those that QuietLinks waits for.
+  std::size_t quiet_links() const { return quiet_.size(); }
 
  private:
   class Entry;
@@ -131,6 +133,7 @@ class Receiver {
   bool brings_too_much(Entry& entry);
   Looked look_at_all(Who who);
   void drop_ended();
+  void leave_quiet_ones();
   void await();
   void sleep();
   void take_back_unused();
@@ -140,6 +143,7 @@ class Receiver {
   const Duration spin_limit_;
   const std::shared_ptr<Unfinished> unfinished_;
   const std::shared_ptr<Word> notified_ = std::make_shared<Word>(0);
+  QuietLinks quiet_;
   mutable std::mutex mutex_;
   Entries entries_;
   bool stopping_ = false;
@@ -153,36 +157,6 @@ class Receiver {
   SpinPolicy spin_;
   Bytes spare_;
   Instant look_at_lent_ = Instant::max();
-};
-
-/// As many receivers as the links need. Thread-safe.
-class Receivers {
- public:
-  Receivers(std::string name, Duration spin);
-
-  /// As Receiver's. The notifier makes all of them look.
-  std::function<void()> notifier() const;
-  std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
-  /// Of what the first receiver's links bring.
-  std::shared_ptr<dds::CallerDelivery> delivery() const { return delivery_; }
-  void remove(Inbox& inbox);
-
- private:
-  Receiver& add_receiver();
-
-  /// The receivers' notifiers; they may outlive them.
-  struct Notifiers {
-    std::mutex mutex;
-    std::vector<std::function<void()>> all;
-  };
-
-  const std::string name_;
-  const Duration spin_;
-  const std::shared_ptr<Unfinished> unfinished_ = std::make_shared<Unfinished>();
-  const std::shared_ptr<Notifiers> notifiers_ = std::make_shared<Notifiers>();
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Receiver>> all_;
-  std::shared_ptr<dds::CallerDelivery> delivery_;
 };
 
 }  // namespace skein::same_host

@@ -2,10 +2,9 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
 #include "../tools/eventually.hpp"
+#include "../tools/threads.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 
@@ -45,15 +44,6 @@ class DeafService final : public EchoService {
   Head* const head_;
 };
 
-bool has_thread(const std::string& name) {
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
-    std::string line;
-    std::getline(std::ifstream(task.path() / "comm"), line);
-    if (line == name) return true;
-  }
-  return false;
-}
-
 /// A service whose threads hang in a call and in a stream of a client in another entity.
 struct HungCalls {
   HungCalls() { mallopt(M_PERTURB, 0xa5); }  // what is used after it was freed makes no sense
@@ -83,10 +73,10 @@ struct HungCalls {
 
   /// Its threads come back, and have done all that they do.
   void release() {
-    REQUIRE(has_thread("deaf"));
+    REQUIRE(!threads_named("deaf").empty());
     deaf->released = true;
     deaf->released.notify_all();
-    CHECK(eventually([&] { return !has_thread("deaf"); }));
+    CHECK(eventually([&] { return threads_named("deaf").empty(); }));
     CHECK_FALSE(deaf->degraded);
   }
 };

@@ -14,7 +14,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,12 +22,14 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
+#include "../tools/threads.hpp"
 #include "core/abstract_socket.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
 using skein::test::eventually;
+using skein::test::threads_named;
 using namespace std::chrono_literals;
 
 namespace {
@@ -118,16 +119,6 @@ bool hung_up(const FileDescriptor& socket) {
   });
 }
 
-/// The meeting's, where this process has but one; 0 while it has no name yet.
-pid_t meeting_thread() {
-  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
-    std::string name;
-    std::getline(std::ifstream(thread.path() / "comm"), name);
-    if (name == "skein-meeting") return std::stoi(thread.path().filename());
-  }
-  return 0;
-}
-
 }  // namespace
 
 TEST_CASE("a client that joins a provider exchanges messages with it both ways") {
@@ -179,11 +170,11 @@ TEST_CASE("a signal that interrupts the meeting's thread is nobody's end") {
   REQUIRE(sigaction(SIGUSR1, &ignoring, &before) == 0);
   Host host;
   const auto wake_ups = [&] { return host.meeting.counters().wake_ups; };
-  REQUIRE(eventually([&] { return meeting_thread() != 0; }));
+  REQUIRE(eventually([&] { return threads_named("skein-meeting").size() == 1; }));
   for (int i = 0; i < 3; ++i) {
     const auto earlier = wake_ups();
     REQUIRE(eventually([&] {
-      syscall(SYS_tgkill, getpid(), meeting_thread(), SIGUSR1);
+      syscall(SYS_tgkill, getpid(), threads_named("skein-meeting").at(0), SIGUSR1);
       return wake_ups() > earlier;
     }));
   }

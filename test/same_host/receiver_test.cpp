@@ -17,6 +17,7 @@
 using namespace skein;
 using namespace skein::same_host;
 using skein::test::eventually;
+using skein::test::kPatience;
 using namespace std::chrono_literals;
 
 namespace {
@@ -542,30 +543,64 @@ TEST_CASE(
   CHECK(never.budget() == 0us);
 }
 
-TEST_CASE("several receivers take what one cannot") {
-  constexpr std::size_t kLinks = 2 * Receiver::kMostLinks + 1;
+TEST_CASE("a receiver takes what more links bring than one thread can wait for") {
+  constexpr std::size_t kLinks = 2 * kMostWords + 1;
   const Guid provider = Guid::random();
   Notes notes;
-  Receivers receivers("test-requests", 0us);
+  Receiver receiver("test-requests", 0us);
   Meeting::Rules rules;
   rules.guests_of_process = kLinks;
   Meeting host(rules), guests(rules);
-  host.offer(provider, provider, receivers.notifier(),
-             [&](std::shared_ptr<Link> link) { receivers.add(std::move(link), notes); });
+  host.offer(provider, provider, receiver.notifier(),
+             [&](std::shared_ptr<Link> link) { receiver.add(std::move(link), notes); });
   std::vector<std::shared_ptr<Link>> links;
-  for (std::size_t i = 0; i < kLinks; ++i) {
+  for (std::size_t i = 0; i < kLinks; ++i)
     links.push_back(guests.join(provider, Guid::random(), [] {}));
-    const std::string text = std::to_string(i);
-    REQUIRE(links.back()->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
-  }
-  const auto has = [&](std::size_t i, const std::vector<std::string>& expected) {
+  std::vector<std::string> expected{"begin"};
+  const auto has_all = [&](std::size_t i) {
     return eventually([&] { return notes.about(links[i]->own()) == expected; });
   };
-  for (std::size_t i = 0; i < kLinks; ++i) CHECK(has(i, {"begin", std::to_string(i)}));
+  for (const std::string text : {"1", "2", "3"}) {
+    for (const auto& link : links)
+      REQUIRE(link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
+    expected.push_back(text);
+    for (std::size_t i = 0; i < kLinks; ++i) CHECK(has_all(i));
+  }
+  expected.push_back("end");
   for (const std::size_t i : {std::size_t{0}, kLinks / 2, kLinks - 1}) {
     links[i]->close();
-    CHECK(has(i, {"begin", std::to_string(i), "end"}));
+    CHECK(has_all(i));
   }
-  receivers.remove(notes);
+  CHECK(eventually([&] { return receiver.links() == kLinks - 3; }));
+  receiver.remove(notes);
   host.withdraw(provider);
+}
+
+TEST_CASE("links that bring nothing while another one does are waited for elsewhere, and heard") {
+  Host host;
+  std::vector<std::unique_ptr<Client>> still;
+  for (int i = 0; i < 10; ++i) still.push_back(std::make_unique<Client>(host));
+  Client busy(host);
+  REQUIRE(eventually([&] {
+    for (int i = 0; i < 100; ++i) {
+      busy.send("more");
+      busy.link->await_taken(std::chrono::steady_clock::now() + kPatience);
+    }
+    return host.receiver.quiet_links() >= 3;  // some are too few to be worth it
+  }));
+  const auto brings = [&](const Client& client, const std::vector<std::string>& expected) {
+    return eventually([&] { return host.notes.about(client.id) == expected; });
+  };
+  const std::size_t quiet = host.receiver.quiet_links();
+  still[0]->send("1");
+  CHECK(brings(*still[0], {"begin", "1"}));
+  CHECK(host.receiver.quiet_links() == quiet - 1);
+  still[0]->send("2");
+  CHECK(brings(*still[0], {"begin", "1", "2"}));
+  still[1]->link->close();
+  CHECK(brings(*still[1], {"begin", "end"}));
+  still[2].reset();
+  CHECK(eventually([&] { return host.receiver.links() == 9; }));
+  host.receiver.remove(host.notes);
+  CHECK(host.receiver.links() == 0);
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace skein::test {
+
+/// This process's threads of that name, which a thread takes once it runs.
+inline std::vector<pid_t> threads_named(const std::string& name) {
+  std::vector<pid_t> found;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string its_name;
+    std::getline(std::ifstream(thread.path() / "comm"), its_name);
+    if (its_name == name) found.push_back(std::stoi(thread.path().filename()));
+  }
+  return found;
+}
+
+}  // namespace skein::test
