@@ -41,8 +41,13 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
     return call->attempt([&] { RetryingCall::start(shared_from_this(), call, in); });
   }
   const ProviderQuery wanted{call->deadline()};
-  while (const auto connection = ready(wanted)) {
-    if (sent(*connection->channel, call, in)) return;
+  const auto ready_channel = [&]() -> std::shared_ptr<Channel> {
+    if (auto main = main_if_trusted()) return main;
+    const auto connection = ready(wanted);
+    return connection ? connection->channel : nullptr;
+  };
+  while (const auto channel = ready_channel()) {
+    if (sent(*channel, call, in)) return;
   }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
   const auto copy = copy_of(*operation.in, in);

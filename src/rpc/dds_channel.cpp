@@ -259,7 +259,6 @@ void DdsChannel::lose(const std::string& how) { state_->lose(how); }
 void DdsChannel::retire(const std::string& how) { state_->retire(how, shared_from_this()); }
 
 bool DdsChannel::connected() const {
-  std::lock_guard lock(state_->mutex);
   return state_->phase == State::Phase::Open && !state_->retiring;
 }
 

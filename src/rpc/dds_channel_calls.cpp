@@ -182,10 +182,7 @@ void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std
                                     now.time_since_epoch()});
 }
 
-bool DdsChannel::State::is_open() const {
-  std::lock_guard lock(mutex);
-  return phase == Phase::Open;
-}
+bool DdsChannel::State::is_open() const { return phase == Phase::Open; }
 
 // The call, which is not known by its number any more; a stream stays known until its last reply.
 std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Keep keep) {

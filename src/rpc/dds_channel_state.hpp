@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -51,9 +52,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   mutable std::mutex mutex;
   std::condition_variable changed;
-  Phase phase = Phase::Opening;
+  std::atomic<Phase> phase{Phase::Opening};  // changed under the lock
   std::string lost_how;
-  bool retiring = false;                // the session ends with the last call on its way
+  std::atomic<bool> retiring{false};    // the session ends with the last call on its way
   std::shared_ptr<DdsChannel> channel;  // itself, as long as it retires
   std::exception_ptr refusal;
   std::vector<Guid> servers;  // their request readers

@@ -121,10 +121,7 @@ std::shared_ptr<DdsServer::State::Client> DdsServer::State::sender_of(
 
 void DdsServer::State::on_request(const dds::Sample& sample, const wire::RequestHead& head) {
   const Instant arrived = clock.now();
-  {
-    std::lock_guard lock(mutex);
-    ++counters.received;
-  }
+  received.fetch_add(1, std::memory_order_relaxed);
   if (is_reserved(head.operation) && wire::ends_with_trailer(sample.cdr)) {
     return on_reserved(sample, head);
   }
@@ -192,7 +189,7 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
       may_run = [owner = sample.owner] { return owner->may_take_long(); };
     service->submit(invocation, may_run);
   } catch (...) {
-    forget(head.id);
+    forget(*invocation);
     throw;
   }
 }
@@ -323,6 +320,7 @@ bool DdsServer::await_clients_gone(Instant deadline) {
 DdsServer::Counters DdsServer::counters() const {
   std::lock_guard lock(state_->mutex);
   Counters counters = state_->counters;
+  counters.received = state_->received;
   counters.clients = state_->connected();
   counters.active = state_->active.size();
   return counters;

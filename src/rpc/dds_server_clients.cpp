@@ -241,7 +241,7 @@ bool DdsServer::State::answer_open(const Guid& key) {
     encode_error(message, address.representation, client->open, ErrorCode::Internal, error.what(),
                  wire::kOpen);
   }
-  write(client, message, clock.now() + kOpenPatience);
+  write(client, writer_of(*client), message, clock.now() + kOpenPatience);
   return true;
 }
 

@@ -56,13 +56,13 @@ void DdsServer::State::write_refusals(const std::shared_ptr<Client>& client) {
     } else {
       encode_error(message, address.representation, id, code, text);
     }
-    write(client, message, clock.now() + kRefusalPatience);
+    write(client, writer_of(*client), message, clock.now() + kRefusalPatience);
   }
 }
 
 void DdsServer::State::respond(Request& request, const void* out, const std::exception_ptr& error) {
   const OperationInfo& operation = *request.operation;
-  forget(request.id);
+  const auto writer = forget(request);
   if (operation.oneway) return;
   thread_local Bytes message;
   if (out || error) {
@@ -70,7 +70,7 @@ void DdsServer::State::respond(Request& request, const void* out, const std::exc
   } else {
     encode_end(message, address.representation, request.id, operation, request.stream->sent());
   }
-  write(request.client, message, request.deadline);
+  write(request.client, writer, message, request.deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
 }
 
@@ -79,18 +79,22 @@ void DdsServer::State::send_item(const std::shared_ptr<Client>& client, const Re
                                  std::uint64_t position, Instant deadline) {
   thread_local Bytes message;
   encode_item(message, address.representation, id, operation, out, position);
-  const bool sent = write(client, message, deadline);
+  const bool sent = write(client, writer_of(*client), message, deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
   if (!sent) throw Overloaded("the caller of " + quoted(operation) + " takes no replies");
 }
 
-void DdsServer::State::forget(const RequestId& id) {
+// The call is over. Returns who writes to its client, or null.
+std::shared_ptr<dds::Writer> DdsServer::State::forget(const Request& request) {
+  std::shared_ptr<dds::Writer> writer;
   {
     std::lock_guard lock(mutex);
-    active.erase(id);
+    active.erase(request.id);
+    writer = request.client->writer;
     if (leaving) less_to_do.notify_all();
   }
   if (options.on_load) options.on_load();
+  return writer;
 }
 
 std::shared_ptr<dds::Writer> DdsServer::State::writer_of(const Client& client) const {
@@ -100,9 +104,9 @@ std::shared_ptr<dds::Writer> DdsServer::State::writer_of(const Client& client) c
 
 // False where the reply was lost. A client that stopped reading holds up this thread once, and not
 // with each reply: what comes after the one that found no room waits behind it.
-bool DdsServer::State::write(const std::shared_ptr<Client>& client, Bytes& message,
+bool DdsServer::State::write(const std::shared_ptr<Client>& client,
+                             const std::shared_ptr<dds::Writer>& writer, Bytes& message,
                              Instant deadline) {
-  const auto writer = writer_of(*client);
   if (!writer) return false;
   if (client->stalled) return keep_unsent(client, message, deadline);
   try {

@@ -94,7 +94,8 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   Newcomers newcomers;
   bool admitting = false;       // a task of `control` is about to look at them
   std::size_t unsent_size = 0;  // of all clients
-  Counters counters;
+  Counters counters;            // but for `received`
+  std::atomic<std::uint64_t> received{0};
   bool closed = false;
   bool leaving = false;
   std::condition_variable less_to_do;  // once it is leaving
@@ -156,9 +157,10 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   void send_item(const std::shared_ptr<Client>& client, const RequestId& id,
                  const OperationInfo& operation, const void* out, std::uint64_t position,
                  Instant deadline);
-  void forget(const RequestId& id);
+  std::shared_ptr<dds::Writer> forget(const Request& request);
   std::shared_ptr<dds::Writer> writer_of(const Client& client) const;
-  bool write(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
+  bool write(const std::shared_ptr<Client>& client, const std::shared_ptr<dds::Writer>& writer,
+             Bytes& message, Instant deadline);
   bool keep_unsent(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
   void retry_later(const std::shared_ptr<Client>& client);
   void note_lost(std::uint64_t count, const std::string& why);

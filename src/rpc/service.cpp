@@ -230,7 +230,7 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   }
   // What is thrown there ends the process on the executor's thread, too; on this one it would be
   // told to who may be gone.
-  if (here) [&]() noexcept { execute_in_turn(invocation, true); }();
+  if (here) [&]() noexcept { execute_in_turn(invocation, true, invocation->arrived); }();
 }
 
 // What waits in the queue has come earlier, from the same client perhaps.
@@ -448,12 +448,13 @@ bool Service::is_deferred(const OperationInfo& operation) const noexcept {
 
 void Service::execute(const std::shared_ptr<Invocation>& invocation) {
   const Turn turn(*this, invocation->deadline);
-  execute_in_turn(invocation, turn.came());
+  execute_in_turn(invocation, turn.came(), clock_.now());
 }
 
-void Service::execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came) {
+void Service::execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came,
+                              Instant now) {
   OperationMeter& meter = meter_.of(*invocation->operation);
-  const Instant now = invocation->begun = clock_.now();
+  invocation->begun = now;
   meter.waited.record(now - invocation->arrived);
   if (closed_) return withdraw(*invocation);
   if (!turn_came || invocation->cancelled || now >= invocation->deadline) {

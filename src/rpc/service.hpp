@@ -192,7 +192,7 @@ class Service : public std::enable_shared_from_this<Service> {
                 const std::exception_ptr& error);
   void answer(Invocation& invocation, const void* out, std::exception_ptr error);
   void execute(const std::shared_ptr<Invocation>& invocation);
-  void execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came);
+  void execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came, Instant now);
   void execute_now(Invocation& invocation);
   void execute_deferred(const std::shared_ptr<Invocation>& invocation);
   bool is_deferred(const OperationInfo& operation) const noexcept;

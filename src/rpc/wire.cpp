@@ -60,10 +60,7 @@ class Cursor {
   }
 
   std::span<const std::byte> bytes(std::size_t count) {
-    if (count > message_.size() - offset_) {
-      throw InvalidArgument("truncated: " + std::to_string(count) + " bytes wanted at offset " +
-                            std::to_string(offset_) + " of " + std::to_string(message_.size()));
-    }
+    if (count > message_.size() - offset_) refuse_truncated(count);
     const auto part = message_.subspan(offset_, count);
     offset_ += count;
     return part;
@@ -71,10 +68,7 @@ class Cursor {
 
   std::string text(std::size_t limit) {
     const auto length = get<std::uint32_t>();
-    if (length > limit) {
-      throw InvalidArgument("a text of " + std::to_string(length) + " bytes at offset " +
-                            std::to_string(offset_) + "; the limit is " + std::to_string(limit));
-    }
+    if (length > limit) refuse_text(length, limit);
     const auto raw = bytes(length);
     return {reinterpret_cast<const char*>(raw.data()), raw.size()};
   }
@@ -98,6 +92,16 @@ class Cursor {
   bool at_end() const { return offset_ == message_.size(); }
 
  private:
+  // Apart, so that the compiler puts what is done with each message into one piece.
+  [[noreturn, gnu::noinline]] void refuse_truncated(std::size_t count) const {
+    throw InvalidArgument("truncated: " + std::to_string(count) + " bytes wanted at offset " +
+                          std::to_string(offset_) + " of " + std::to_string(message_.size()));
+  }
+  [[noreturn, gnu::noinline]] void refuse_text(std::size_t length, std::size_t limit) const {
+    throw InvalidArgument("a text of " + std::to_string(length) + " bytes at offset " +
+                          std::to_string(offset_) + "; the limit is " + std::to_string(limit));
+  }
+
   std::span<const std::byte> message_;
   std::size_t offset_;
   bool swap_;
