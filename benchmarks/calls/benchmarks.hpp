@@ -24,7 +24,7 @@ struct RivalPlan {
   std::vector<CallPlan::Size> sizes;
   std::size_t rounds;
   std::size_t paced_calls;
-  std::size_t crowd_calls;
+  std::size_t crowd_calls;  ///< Of each client.
   std::size_t pipelined_calls;
   std::size_t cpu_calls;
   std::size_t in_process_calls;

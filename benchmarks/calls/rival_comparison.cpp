@@ -18,7 +18,7 @@ constexpr std::size_t kSmall = 64;
 Trial crowd(std::size_t clients, std::size_t count) {
   return {"clients that call at once", {{"clients", clients}}, [=](Running& running) {
             running.times("crowd" + words({clients, kSmall, 2}));
-            return running.times("crowd" + words({clients, kSmall, count / clients + 1}));
+            return running.times("crowd" + words({clients, kSmall, count}));
           }};
 }
 

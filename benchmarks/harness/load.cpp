@@ -7,6 +7,7 @@
 #include <chrono>
 #include <deque>
 #include <exception>
+#include <latch>
 #include <sstream>
 #include <thread>
 
@@ -58,14 +59,17 @@ void sleep_until(Clock::time_point instant) {
   }
 }
 
-/// Clients that call at once, a thread each.
+/// Clients that call at once, a thread each: from when all threads have begun, so that none makes
+/// its calls alone.
 Times all_at_once(const std::vector<const EchoCall*>& calls, const Content& content,
                   std::size_t count) {
   std::vector<Times> times(calls.size());
   std::vector<std::exception_ptr> errors(calls.size());
   std::vector<std::thread> threads;
+  std::latch begun(static_cast<std::ptrdiff_t>(calls.size()));
   for (std::size_t i = 0; i < calls.size(); ++i) {
     threads.emplace_back([&, i] {
+      begun.arrive_and_wait();
       try {
         times[i] = closed_loop(*calls[i], content, count);
       } catch (...) {
