@@ -92,7 +92,7 @@ class Cursor {
   bool at_end() const { return offset_ == message_.size(); }
 
  private:
-  // Apart, so that the compiler puts what is done with each message into one piece.
+  // Not inlined, so that what reads each field of each message stays small.
   [[noreturn, gnu::noinline]] void refuse_truncated(std::size_t count) const {
     throw InvalidArgument("truncated: " + std::to_string(count) + " bytes wanted at offset " +
                           std::to_string(offset_) + " of " + std::to_string(message_.size()));

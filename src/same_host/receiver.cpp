@@ -16,7 +16,7 @@ constexpr int kMessagesInARow = 16;
 // More than a ring holds: who goes on after the end is not listened to.
 constexpr int kTurnsAfterEnd = 2048;
 // How often it is looked whether callers have left a link: what comes there is heard of after twice
-// that.
+// that, at the latest.
 constexpr std::chrono::milliseconds kLent{20};
 // Sleeping for so many links costs little.
 constexpr std::size_t kFewLinks = 8;

@@ -103,8 +103,8 @@ class Receiver {
   /// For Link: makes the thread look at all of them. It may outlive the receiver.
   std::function<void()> notifier() const;
 
-  /// Throws Unavailable where there is no thread. What it returns is for threads that
-  /// wait for what this link brings.
+  /// Throws Unavailable where there is no thread. What it returns is for threads that wait for what
+  /// this link brings.
   std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
   /// For one thread that takes what all links bring. Between its calls of deliver_until() it is as
   /// one that has left its turn: take_back() says that it does not come back soon. For inboxes that

@@ -591,10 +591,8 @@ TEST_CASE("links that bring nothing while another one does are waited for elsewh
   const auto brings = [&](const Client& client, const std::vector<std::string>& expected) {
     return eventually([&] { return host.notes.about(client.id) == expected; });
   };
-  const std::size_t quiet = host.receiver.quiet_links();
-  still[0]->send("1");
+  still[0]->send("1");  // the first of those that are quiet
   CHECK(brings(*still[0], {"begin", "1"}));
-  CHECK(host.receiver.quiet_links() == quiet - 1);
   still[0]->send("2");
   CHECK(brings(*still[0], {"begin", "1", "2"}));
   still[1]->link->close();
