@@ -60,8 +60,8 @@ class [[nodiscard]] Call {
   void cancel() { pending().cancel(); }
 
   /// Runs `action` when the call is finished; at once if it already is. It runs on the thread that
-  /// finishes the call, possibly a vendor's, so it must neither block nor run user code. At most
-  /// one action; do not combine it with then() or co_await.
+  /// finishes the call, possibly a vendor's or one that waits for another call, so it must neither
+  /// block nor run user code. At most one action; do not combine it with then() or co_await.
   void notify(Action action) { pending().on_finished(std::move(action)); }
 
   /// A function that does what cancel() does. Any thread may call it at any time; it has no effect

@@ -37,15 +37,24 @@ void ProxyBase::set_timeout(Duration timeout) {
 
 void PendingCall::finish(std::exception_ptr error) {
   Action action;
-  Action canceller;  // dropped outside the lock: it owns parts of the transport
+  // Both dropped outside the lock: they own parts of the transport.
+  Action canceller;
+  std::shared_ptr<Answers> answers;
+  bool attended = false;
+  bool taken_here = false;
   {
     std::lock_guard lock(mutex_);
     error_ = std::move(error);
     finished_ = true;
     action = std::move(action_);
     canceller = std::move(canceller_);
+    answers = std::move(answers_);
+    attended = attended_ && answers;
+    taken_here = taken_here_ && answers;
   }
   changed_.notify_all();  // unlocked: on one processor it may run at once, and needs the lock
+  if (attended) answers->leave();
+  if (taken_here) answers->wake();
   if (action) action();
 }
 
@@ -56,11 +65,43 @@ bool PendingCall::fail(std::exception_ptr error) {
 }
 
 bool PendingCall::finished() const {
-  std::lock_guard lock(mutex_);
+  if (!finished_) attend();
   return finished_;
 }
 
+void PendingCall::set_answers(std::shared_ptr<Answers> answers) {
+  bool attended = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (finished_) return;
+    answers_ = answers;
+    attended = attended_;
+  }
+  if (attended) answers->attend();
+}
+
+// No thread takes the answer in wait(), and the call's end matters.
+void PendingCall::attend() const {
+  std::shared_ptr<Answers> answers;
+  {
+    std::lock_guard lock(mutex_);
+    if (finished_ || std::exchange(attended_, true) || !answers_) return;
+    answers = answers_;
+  }
+  answers->attend();
+}
+
 void PendingCall::wait() const {
+  std::shared_ptr<Answers> answers;
+  {
+    std::lock_guard lock(mutex_);
+    if (finished_) return;
+    answers = answers_;
+    taken_here_ = answers != nullptr;
+  }
+  if (answers) answers->take_until(finished_);
+  if (finished_) return;
+  attend();
   if (const auto spin = spin_.load(); spin.count() > 0) {
     const auto end = std::chrono::steady_clock::now() + spin;
     while (!finished_.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < end) {
@@ -77,6 +118,7 @@ std::exception_ptr PendingCall::take_error() {
 }
 
 void PendingCall::on_finished(Action action) {
+  attend();
   {
     std::lock_guard lock(mutex_);
     if (!finished_) {

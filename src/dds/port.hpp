@@ -98,6 +98,8 @@ struct WriterListener {
   std::function<void(const KeyHash& key)> on_deadline_missed{};
   /// A reader was found that cannot be matched; once for each.
   std::function<void(const Incompatibility&)> on_incompatible{};
+  /// write() is about to wait for room; on its thread. Only by writers through shared memory.
+  std::function<void()> on_full{};
 };
 
 /// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.

@@ -39,6 +39,9 @@ void DdsChannel::State::create_endpoints() {
   listener.on_matched = [state = weak_from_this()](const Guid& reader, bool matched) {
     if (const auto self = state.lock()) self->on_server(reader, matched);
   };
+  listener.on_full = [state = weak_from_this()] {
+    if (const auto self = state.lock()) self->on_full();
+  };
   auto writer = SharedWriters::share(
       participant.create_writer(address.request_topic(),
                                 call_qos(address.representation, address.partitions()),
@@ -60,7 +63,8 @@ void DdsChannel::State::create_endpoints() {
                                           call_qos(address.representation, std::move(partitions)),
                                           std::move(reply_listener));
   std::lock_guard lock(mutex);
-  caller_delivery = reader->caller_delivery();
+  if (auto delivery = reader->caller_delivery())
+    answers = std::make_shared<CallerAnswers>(std::move(delivery));
   replies = std::move(reader);
 }
 
@@ -165,6 +169,7 @@ void DdsChannel::State::part() {
   std::shared_ptr<DdsChannel> itself;  // goes last
   std::shared_ptr<dds::Writer> writer;
   std::shared_ptr<dds::Reader> reader;
+  std::shared_ptr<CallerAnswers> answering;
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Open) writer = requests;
@@ -186,6 +191,7 @@ void DdsChannel::State::part() {
   phase = Phase::Lost;
   writer.swap(requests);
   reader.swap(replies);
+  answering.swap(answers);
   changed.notify_all();
 }
 
@@ -193,6 +199,7 @@ void DdsChannel::State::part() {
 void DdsChannel::State::close() {
   std::shared_ptr<dds::Writer> writer;
   std::shared_ptr<dds::Reader> reader;
+  std::shared_ptr<CallerAnswers> answering;
   std::shared_ptr<void> follower;
   std::shared_ptr<DdsChannel> itself;
   TimerId outdated;
@@ -202,6 +209,7 @@ void DdsChannel::State::close() {
     phase = Phase::Closed;
     writer.swap(requests);
     reader.swap(replies);
+    answering.swap(answers);
     follower.swap(companion);
     itself.swap(channel);
     outdated = std::exchange(timer, 0);
@@ -236,7 +244,7 @@ void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in)
 }
 
 void DdsChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
-  state_->start_here(call, in, State::Waiting::Elsewhere);
+  state_->start_here(call, in);
 }
 
 void DdsChannel::call(const OperationInfo& operation, const void* in, void* out,

@@ -14,7 +14,7 @@ namespace skein::rpc {
 
 void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   try {
-    start_here(call, in, Waiting::Elsewhere);
+    start_here(call, in);
   } catch (...) {
     call->fail(std::current_exception());
   }
@@ -23,27 +23,22 @@ void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const vo
 void DdsChannel::State::call(const OperationInfo& operation, const void* in, void* out,
                              const CallTime& time) {
   const auto call = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
-  if (const auto delivery = start_here(call, in, Waiting::Here)) {
-    call->on_finished([delivery] { delivery->wake(); });
-    delivery->deliver_until([&call] { return call->finished(); });
-  }
+  start_here(call, in);
   call->wait();
   if (auto error = call->take_error()) std::rethrow_exception(std::move(error));
 }
 
-// What the calling thread is to take its answer from, if anything.
-std::shared_ptr<dds::CallerDelivery> DdsChannel::State::start_here(
-    const std::shared_ptr<PendingCall>& call, const void* in, Waiting waiting) {
+void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
   if (options.spin.count() > 0) call->set_spin(options.spin);
   bool sent = false;
   Entered entered;
   try {
-    entered = enter(call, waiting);
+    entered = enter(call);
   } catch (const NotSent&) {
     throw;
   } catch (...) {
     call->fail(std::current_exception());
-    return nullptr;
+    return;
   }
   const std::uint64_t number = entered.number;
   call->attempt([&] {
@@ -51,15 +46,13 @@ std::shared_ptr<dds::CallerDelivery> DdsChannel::State::start_here(
     sent = true;
   });
   if (!sent || call->operation().oneway) remove(number);
-  if (!sent || !call->operation().oneway || !call->claim()) return std::move(entered.delivery);
+  if (!sent || !call->operation().oneway || !call->claim()) return;
   note_end(number, call->operation(), nullptr);
   call->finish();
-  return nullptr;
 }
 
 // The call is known before its request leaves: a reply may be here before write() returns.
-DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call,
-                                                    Waiting waiting) {
+DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call) {
   std::unique_lock lock(mutex);
   if (phase == Phase::Lost) throw NotSent("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
@@ -83,16 +76,24 @@ DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<Pendin
           if (const auto self = state.lock()) self->grant(number, count);
         });
   }
-  Entered entered{number, requests, nullptr};
-  if (caller_delivery && waiting == Waiting::Here && entries.size() == 1) {
-    caller_delivery->lend();
-    entered.delivery = caller_delivery;
-  } else if (caller_delivery) {
-    caller_delivery->take_back();  // several threads wait, or none
-  }
+  if (answers && !call->operation().oneway) await_answer(*call);
+  Entered entered{number, requests};
   lock.unlock();
   if (outdated != 0) clock.cancel(outdated);  // unlocked: it may be running
   return entered;
+}
+
+// Under the lock.
+void DdsChannel::State::await_answer(PendingCall& call) const {
+  if (call.blocking() && entries.size() == 1) answers->expect();
+  call.set_answers(answers);
+}
+
+// Before a request waits for room. The other side may wait, too, until somebody has taken answers
+// to earlier ones, and nobody does who is here.
+void DdsChannel::State::on_full() {
+  std::lock_guard lock(mutex);
+  if (answers && entries.size() > 1) answers->hand_over();
 }
 
 // Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "rpc/caller_answers.hpp"
 #include "rpc/dds_channel.hpp"
 #include "rpc/shared_writers.hpp"
 #include "rpc/wire.hpp"
@@ -20,12 +21,9 @@ namespace skein::rpc {
 /// dds_channel_replies.cpp.
 struct DdsChannel::State : std::enable_shared_from_this<State> {
   enum class Keep { Nothing, Streams };
-  /// Where the answer is waited for: a thread that calls and waits may take it itself.
-  enum class Waiting { Elsewhere, Here };
   struct Entered {
     std::uint64_t number = 0;
     std::shared_ptr<dds::Writer> writer;
-    std::shared_ptr<dds::CallerDelivery> delivery;  // lent to the calling thread
   };
   enum class Phase { Opening, Open, Lost, Closed };
 
@@ -69,7 +67,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   SharedWriters writers;
   std::shared_ptr<dds::Writer> requests;
   std::shared_ptr<dds::Reader> replies;
-  std::shared_ptr<dds::CallerDelivery> caller_delivery;  // of `replies`; null where it has none
+  std::shared_ptr<CallerAnswers> answers;  // of `replies`; null where callers cannot take them
   std::shared_ptr<void> companion;
 
   // ---- opening
@@ -99,10 +97,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   // ---- calls
   void start(const std::shared_ptr<PendingCall>& call, const void* in);
-  std::shared_ptr<dds::CallerDelivery> start_here(const std::shared_ptr<PendingCall>& call,
-                                                  const void* in, Waiting waiting);
+  void start_here(const std::shared_ptr<PendingCall>& call, const void* in);
   void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
-  Entered enter(const std::shared_ptr<PendingCall>& call, Waiting waiting);
+  Entered enter(const std::shared_ptr<PendingCall>& call);
+  void await_answer(PendingCall& call) const;
+  void on_full();
   TimerId look_at(Instant deadline);
   void expire_due();
   void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);

@@ -120,6 +120,7 @@ class LinkWriter final : public dds::Writer {
       : guid_(guid),
         link_(std::move(link)),
         max_blocking_(qos.max_blocking),
+        on_full_(listener.on_full),
         must_arrive_(must_arrive) {
     const auto on_matched = listener.on_matched;
     if (!link_ || !on_matched) return;
@@ -137,13 +138,13 @@ class LinkWriter final : public dds::Writer {
 
   void write(std::span<const std::byte> cdr, const dds::KeyHash&) override {
     dds::check_size(cdr.size(), "a message");
-    conclude(link_ ? link_->send(cdr, max_blocking_) : Link::Sent::Ended);
+    conclude(link_ ? link_->send(cdr, max_blocking_, on_full_) : Link::Sent::Ended);
   }
 
   bool write_lending(std::span<const std::byte> cdr, const std::shared_ptr<LoanMemory>& value,
                      std::size_t position) override {
     dds::check_size(cdr.size() + sizeof(LoanNote), "a message");
-    const auto sent = link_ ? link_->send_lending(cdr, value, position, max_blocking_)
+    const auto sent = link_ ? link_->send_lending(cdr, value, position, max_blocking_, on_full_)
                             : std::optional(Link::Sent::Ended);
     if (sent) conclude(*sent);
     return sent.has_value();
@@ -179,6 +180,7 @@ class LinkWriter final : public dds::Writer {
   const Guid guid_;
   const std::shared_ptr<Link> link_;
   const std::chrono::milliseconds max_blocking_;
+  const std::function<void()> on_full_;
   const bool must_arrive_;
 };
 

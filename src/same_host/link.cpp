@@ -59,14 +59,16 @@ Link::Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory
       notify_(std::move(notify)),
       out_(place_of(*memory_, side == Side::Client)) {}
 
-Link::Sent Link::send(std::span<const std::byte> message, Duration patience) {
+Link::Sent Link::send(std::span<const std::byte> message, Duration patience,
+                      const std::function<void()>& on_full) {
   std::lock_guard lock(out_mutex_);
-  return write({message}, patience);
+  return write({message}, patience, on_full);
 }
 
 std::optional<Link::Sent> Link::send_lending(std::span<const std::byte> message,
                                              const std::shared_ptr<LoanMemory>& value,
-                                             std::size_t position, Duration patience) {
+                                             std::size_t position, Duration patience,
+                                             const std::function<void()>& on_full) {
   if (side_ != Side::Client) return std::nullopt;
   std::lock_guard lock(out_mutex_);
   if (ended_) return Sent::Ended;
@@ -77,7 +79,7 @@ std::optional<Link::Sent> Link::send_lending(std::span<const std::byte> message,
   try {
     Bytes whole(message);
     whole.append(std::as_bytes(std::span(&*note, 1)));
-    sent = write({whole, true}, patience);
+    sent = write({whole, true}, patience, on_full);
   } catch (...) {
     lender_->not_sent(*note);
     throw;
@@ -114,9 +116,12 @@ void Link::forget(const LoanNote& gone) {
 }
 
 // Under the lock.
-Link::Sent Link::write(const RingWriter::Part& message, Duration patience) {
+Link::Sent Link::write(RingWriter::Part message, Duration patience,
+                       const std::function<void()>& on_full) {
   if (ended_) return Sent::Ended;
   try {
+    if (out_.put(message)) return Sent::Yes;
+    if (on_full) on_full();
     if (out_.write(message, patience, [this] { return ended(); })) return Sent::Yes;
   } catch (const BrokenRing&) {
     break_off();

@@ -54,14 +54,17 @@ class Link : public std::enable_shared_from_this<Link> {
   const Guid& own() const noexcept { return own_; }
   const Guid& peer() const noexcept { return peer_; }
 
-  /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. A ring
-  /// that is found broken ends the link; throws BrokenRing then.
-  Sent send(std::span<const std::byte> message, Duration patience);
+  /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. Calls
+  /// `on_full` before it waits for room. A ring that is found broken ends the link; throws
+  /// BrokenRing then.
+  Sent send(std::span<const std::byte> message, Duration patience,
+            const std::function<void()>& on_full = nullptr);
   /// The same of one that has left out `value` at `position`, of a client's; nothing where the
   /// other side cannot read it where it lies.
   std::optional<Sent> send_lending(std::span<const std::byte> message,
                                    const std::shared_ptr<LoanMemory>& value, std::size_t position,
-                                   Duration patience);
+                                   Duration patience,
+                                   const std::function<void()>& on_full = nullptr);
   /// Waits until the other side has taken everything; false at the deadline and at the end, also
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
@@ -90,7 +93,8 @@ class Link : public std::enable_shared_from_this<Link> {
 
  private:
   void break_off();
-  Sent write(const RingWriter::Part& message, Duration patience);
+  Sent write(RingWriter::Part message, Duration patience,
+             const std::function<void()>& on_full = nullptr);
   Lender::Connection lending();
   void forget(const LoanNote& gone);
   std::optional<dds::LentValue> borrow();

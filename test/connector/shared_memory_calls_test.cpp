@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -328,6 +330,42 @@ TEST_CASE("who calls and waits takes the answer itself") {
   for (int i = 0; i < kCalls; ++i) REQUIRE(echo.echo(std::to_string(i)) == std::to_string(i));
   // It looks now and then whether somebody else than those who wait is written to.
   CHECK(wake_ups_of("skein-replies") - before < kCalls / 2);
+}
+
+TEST_CASE("who gets the results of asynchronous calls takes the answers itself") {
+  const auto server = make_entity("server", true);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  const std::uint64_t before = wake_ups_of("skein-replies");
+  constexpr int kCalls = 2000;
+  const std::size_t in_flight = GENERATE(1, 8);
+  std::deque<std::pair<Call<std::string>, std::string>> asked;
+  const auto get_first = [&] {
+    REQUIRE(asked.front().first.get() == asked.front().second);
+    asked.pop_front();
+  };
+  for (int i = 0; i < kCalls; ++i) {
+    if (asked.size() == in_flight) get_first();
+    const std::string text = std::to_string(i);
+    asked.emplace_back(echo.within(20s).async_echo(text), text);
+  }
+  while (!asked.empty()) get_first();
+  CHECK(wake_ups_of("skein-replies") - before < kCalls / 2);
+}
+
+TEST_CASE("asynchronous calls with more in flight than their connection holds are all answered") {
+  const auto server = make_entity("server", true);
+  server->provide<LouderEcho>(std::make_shared<EchoService>());
+  const auto client = make_entity("client", true);
+  auto echo = client->connect<Echo>();
+  for (int round = 0; round < 10; ++round) {
+    std::vector<Call<std::string>> asked;
+    for (char each = 'a'; each < 'q'; ++each)
+      asked.push_back(echo.within(20s).async_echo(std::string(100'000, each)));
+    for (char each = 'a'; each < 'q'; ++each)
+      CHECK(asked[static_cast<std::size_t>(each - 'a')].get() == std::string(100'000, each));
+  }
 }
 
 TEST_CASE("each of many that call at once on one connection gets its own answer") {

@@ -1,5 +1,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -15,6 +17,36 @@ const OperationInfo kOperation{"probe", 1, 1, false, false, false, nullptr, null
 std::shared_ptr<PendingCall> a_call() {
   return std::make_shared<PendingCall>(kOperation, nullptr, Instant{}, true);
 }
+
+/// Of a connection: `bring` says what comes while a thread that waits takes them.
+struct Incoming final : Answers {
+  void take_until(const std::atomic<bool>& finished) override {
+    ++taken;
+    bring();
+    ended = finished.load();
+  }
+  void wake() override { ++woken; }
+  void attend() override { ++attended; }
+  void leave() override { --attended; }
+
+  std::function<void()> bring = [] {};
+  std::atomic<int> taken{0};
+  std::atomic<int> woken{0};
+  std::atomic<int> attended{0};
+  bool ended = false;
+};
+
+/// One whose answer its caller can take, and from where.
+struct Asked {
+  Asked() { call->set_answers(incoming); }
+  void answer() {
+    REQUIRE(call->claim());
+    call->finish();
+  }
+
+  const std::shared_ptr<Incoming> incoming = std::make_shared<Incoming>();
+  const std::shared_ptr<PendingCall> call = a_call();
+};
 
 }  // namespace
 
@@ -77,4 +109,72 @@ TEST_CASE("errors travel by number and come back as their own class") {
   CHECK_THROWS_AS(throw_error(ErrorCode::Unimplemented, "x"), Unimplemented);
   CHECK_THROWS_AS(throw_error(ErrorCode::InvalidArgument, "x"), InvalidArgument);
   CHECK_THROWS_AS(throw_error(ErrorCode{4711}, "x"), Internal);
+}
+
+TEST_CASE("a thread that waits for a call takes its answer itself") {
+  Asked asked;
+  asked.incoming->bring = [&] { asked.answer(); };
+  asked.call->wait();
+  CHECK(asked.incoming->taken == 1);
+  CHECK(asked.incoming->ended);
+  CHECK(asked.incoming->attended == 0);
+  asked.call->wait();
+  CHECK(asked.incoming->taken == 1);
+}
+
+TEST_CASE("a thread that takes its answer itself is woken when the call ends otherwise") {
+  Asked asked;
+  std::atomic<bool> inside{false};
+  asked.incoming->bring = [&] {
+    inside = true;
+    while (asked.incoming->woken == 0) std::this_thread::yield();
+  };
+  std::thread waiting([&] { asked.call->wait(); });
+  while (!inside) std::this_thread::yield();
+  asked.call->cancel();
+  waiting.join();
+  CHECK(asked.incoming->attended == 0);
+}
+
+TEST_CASE("where another thread takes the answers, who waits says so until the call ends") {
+  Asked asked;
+  std::thread waiting([&] { asked.call->wait(); });
+  while (asked.incoming->attended == 0) std::this_thread::yield();
+  asked.answer();
+  waiting.join();
+  CHECK(asked.incoming->taken == 1);
+  CHECK(asked.incoming->attended == 0);
+}
+
+TEST_CASE("a call whose end is awaited without a thread is attended until then") {
+  Asked asked;
+  SECTION("by what is to run then") {
+    asked.call->on_finished([] {});
+  }
+  SECTION("by looking now and then") {
+    CHECK_FALSE(asked.call->finished());
+    CHECK_FALSE(asked.call->finished());
+  }
+  CHECK(asked.incoming->attended == 1);
+  asked.answer();
+  CHECK(asked.incoming->attended == 0);
+  CHECK(asked.call->finished());
+  asked.call->on_finished([] {});
+  CHECK(asked.incoming->attended == 0);
+}
+
+TEST_CASE("a call that is awaited before its connection is known is attended from then on") {
+  const auto incoming = std::make_shared<Incoming>();
+  const auto call = a_call();
+  call->on_finished([] {});
+  call->set_answers(incoming);
+  CHECK(incoming->attended == 1);
+  call->cancel();
+  CHECK(incoming->attended == 0);
+
+  const auto over = a_call();
+  over->on_finished([] {});
+  over->cancel();
+  over->set_answers(incoming);
+  CHECK(incoming->attended == 0);
 }

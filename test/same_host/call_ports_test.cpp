@@ -234,16 +234,22 @@ TEST_CASE("who takes nothing is told of as overloaded, and gets the rest once it
   REQUIRE(pair.at_provider.becomes({"matched", "hello"}));
   auto qos = in_partition(request->guid());
   qos.max_blocking = 5ms;
-  const auto reply = pair.providers.create_writer(kReplies, qos, {});
+  std::size_t waited = 0;
+  dds::WriterListener listener;
+  listener.on_full = [&] { ++waited; };
+  const auto reply = pair.providers.create_writer(kReplies, qos, std::move(listener));
   std::size_t written = 0;
   {
     std::lock_guard lock(gate);
     const auto large = message(std::string(40'000, 'x'));
+    for (; written < 2; ++written) reply->write(large);
+    CHECK(waited == 0);
     CHECK_THROWS_AS(
         [&] {
           for (; written < 1000; ++written) reply->write(large);
         }(),
         Overloaded);
+    CHECK(waited > 0);
     CHECK_FALSE(reply->wait_for_acknowledgments(0ms));
   }
   CHECK(reply->wait_for_acknowledgments(20s));

@@ -20,6 +20,21 @@ namespace skein {
 /// Logs what a continuation of Call::then() threw.
 void report_thrown_by_continuation(const std::exception_ptr& thrown) noexcept;
 
+/// Where the answers to a connection's calls come in, for a thread that waits for one of them: it
+/// may take them itself, which saves a wake-up and a change of threads. Thread-safe.
+class Answers {
+ public:
+  virtual ~Answers() = default;
+  /// Takes answers, other calls' too, until `finished`, which wake() makes it look at. Returns
+  /// earlier where another thread takes them.
+  virtual void take_until(const std::atomic<bool>& finished) = 0;
+  virtual void wake() = 0;
+  /// A call's end is awaited otherwise: until as many leave(), a thread that never waits for one
+  /// takes them, and nobody who begins to wait does.
+  virtual void attend() = 0;
+  virtual void leave() = 0;
+};
+
 /// One call in progress. It is finished exactly once, by a reply or by an error, whichever claims
 /// it first. Shared by the caller and the transport that carries it.
 class PendingCall : public std::enable_shared_from_this<PendingCall> {
@@ -45,6 +60,9 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   bool fail(std::exception_ptr error);
 
   bool finished() const;
+
+  /// Set by the transport, once, before the request leaves.
+  void set_answers(std::shared_ptr<Answers> answers);
 
   /// Blocks until finished. The transport guarantees this by the deadline.
   void wait() const;
@@ -83,6 +101,8 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   void abandon(std::exception_ptr error);
 
  private:
+  void attend() const;
+
   const OperationInfo& operation_;
   void* const out_;
   const Instant deadline_;
@@ -92,6 +112,9 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   std::atomic<bool> finished_{false};  // written under the lock
+  std::shared_ptr<Answers> answers_;   // null: no thread that waits can take them
+  mutable bool attended_ = false;
+  mutable bool taken_here_ = false;  // by a thread that waits
   std::exception_ptr error_;
   Action action_;
   Action canceller_;
