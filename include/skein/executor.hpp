@@ -73,8 +73,8 @@ class ThreadExecutor final : public Executor {
   bool post(Action task) override;
   void post_or_run(Action task) override;
 
-  /// What its one thread does from its next task on while it has none. Once at most, and not for
-  /// several threads.
+  /// Work for its thread while there is no task; it begins after the next one. Only where there is
+  /// one thread, and once.
   void work_while_idle(std::shared_ptr<IdleWork> work);
 
   /// Drops the tasks that have not begun and takes no more; does not wait. Calling it twice is no
