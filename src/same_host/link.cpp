@@ -9,6 +9,10 @@
 namespace skein::same_host {
 namespace {
 
+// How long the other side is let sleep, at most, and how soon calls must follow each other for it.
+constexpr std::chrono::microseconds kLetSleep{50};
+thread_local Link* answering = nullptr;
+
 // A message that needed more is not kept for the next one.
 constexpr std::size_t kKeptCapacity = 4 << 20;
 
@@ -104,6 +108,27 @@ Lender::Connection Link::lending() {
           }};
 }
 
+Link::Answering::Answering(Link& link) : outer_(std::exchange(answering, &link)) {}
+
+Link::Answering::~Answering() { answering = outer_; }
+
+// Under the lock. Its thread would take this one's turn, answer by answer. As it takes what comes
+// only once it runs, it loses nothing but time.
+bool Link::may_let_sleep() {
+  if (answering != this || !out_.reader_sleeps_here() || !in_.ready()) return false;
+  const Instant now = std::chrono::steady_clock::now();
+  if (!lets_sleep_) let_sleep_since_ = now;
+  const bool soon = now - std::exchange(last_look_, now) < kLetSleep;
+  return soon && now - let_sleep_since_ < kLetSleep;
+}
+
+void Link::wake_peer() {
+  if (!lets_sleep_) return;
+  std::lock_guard lock(out_mutex_);
+  lets_sleep_ = false;
+  out_.wake_reader();
+}
+
 // Where it would have to wait, the other side keeps the memory until another one takes its place.
 void Link::forget(const LoanNote& gone) {
   const std::unique_lock lock(out_mutex_, std::try_to_lock);
@@ -119,6 +144,7 @@ void Link::forget(const LoanNote& gone) {
 Link::Sent Link::write(RingWriter::Part message, Duration patience,
                        const std::function<void()>& on_full) {
   if (ended_) return Sent::Ended;
+  lets_sleep_ = message.more = may_let_sleep();
   try {
     if (out_.put(message)) return Sent::Yes;
     if (on_full) on_full();

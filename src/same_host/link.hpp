@@ -69,6 +69,23 @@ class Link : public std::enable_shared_from_this<Link> {
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
 
+  /// While it exists, what this thread sends are answers to what comes in: where more has come, and
+  /// the other side sleeps on this core, it is woken for several answers at once, 50 us later at
+  /// most if calls take no longer than before. Then wake_peer() follows.
+  class Answering {
+   public:
+    explicit Answering(Link& link);
+    ~Answering();
+    Answering(const Answering&) = delete;
+    Answering& operator=(const Answering&) = delete;
+
+   private:
+    Link* const outer_;
+  };
+  bool lets_sleep() const noexcept { return lets_sleep_; }
+  /// Wakes the other side where it was let sleep. From any thread.
+  void wake_peer();
+
   /// One thread at a time: the next whole message, which is valid until release(), after which the
   /// next one may be asked for; or nothing. `spare` is memory that links of one thread lend each
   /// other: only a message that has not come to its end keeps some. Throws BrokenRing.
@@ -93,6 +110,7 @@ class Link : public std::enable_shared_from_this<Link> {
 
  private:
   void break_off();
+  bool may_let_sleep();
   Sent write(RingWriter::Part message, Duration patience,
              const std::function<void()>& on_full = nullptr);
   Lender::Connection lending();
@@ -115,6 +133,9 @@ class Link : public std::enable_shared_from_this<Link> {
   Ending ending_;
   std::mutex out_mutex_;
   RingWriter out_;
+  std::atomic<bool> lets_sleep_{false};  // changed under the lock
+  Instant let_sleep_since_{};
+  Instant last_look_{};
   std::optional<Lender> lender_;
 };
 

@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/log.hpp"
@@ -311,7 +312,10 @@ bool Receiver::lead(Who who, const std::function<bool()>& over) {
     led_.swap(entries);
     entries.clear();
     while (notified_->load() == 0) {
-      if (over()) return true;
+      if (over()) {
+        wake_peers();
+        return true;
+      }
       const Looked looked = look_at_all(who);
       if (looked == Looked::Replaced) return false;
       if (looked == Looked::Nothing) await();
@@ -361,8 +365,15 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
       if (!message) break;
       if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
       OwnTurn turn(*this, who, link, spare, lock);
-      entry.inbox.on_message(link, *message, turn);
-      if (turn.left()) return turn.come_back() ? Looked::Something : Looked::Replaced;
+      {
+        std::optional<Link::Answering> answering;
+        if (who != Who::Caller) answering.emplace(link);
+        entry.inbox.on_message(link, *message, turn);
+      }
+      const bool left = turn.left();
+      if (left && !turn.come_back()) return Looked::Replaced;
+      if (link.lets_sleep() && !link.in().ready()) link.wake_peer();
+      if (left) return Looked::Something;
       link.release(spare);
     }
   } catch (const BrokenRing& error) {
@@ -423,7 +434,14 @@ void Receiver::leave_quiet_ones() {
   });
 }
 
+// Those whose threads were let sleep. Where a thread has been replaced in its turn, the next one
+// that has nothing to do does it.
+void Receiver::wake_peers() const {
+  for (const auto& entry : led_) entry->link->wake_peer();
+}
+
 void Receiver::await() {
+  wake_peers();
   leave_quiet_ones();
   const auto ready = [&] {
     return notified_->load() != 0 || std::ranges::any_of(led_, [](const auto& entry) {

@@ -134,6 +134,7 @@ class Receiver {
   Looked look_at_all(Who who);
   void drop_ended();
   void leave_quiet_ones();
+  void wake_peers() const;
   void await();
   void sleep();
   void take_back_unused();

@@ -47,6 +47,12 @@ void check_distance(std::uint64_t distance, std::size_t capacity, const char* wh
 // From 1 on; 0 where the system does not tell.
 std::uint32_t this_core() { return static_cast<std::uint32_t>(sched_getcpu() + 1); }
 
+// Where a thread sleeps that can wait for its turn: one of a real-time policy is woken at once.
+std::uint32_t sleeping_core() {
+  thread_local const int policy = sched_getscheduler(0);
+  return policy == SCHED_FIFO || policy == SCHED_RR ? 0 : this_core();
+}
+
 }  // namespace
 
 // ---- writing
@@ -98,7 +104,7 @@ bool RingWriter::put(Part& part) {
     put_frame((part.begun ? 0 : kFirst) | end, content);
     part.begun = true;
     if (last) {
-      publish(More::No);
+      publish(part.more ? More::Follows : More::No);
       return true;
     }
     if (content.size() == kLargestFrame) publish(More::Follows);
@@ -107,13 +113,23 @@ bool RingWriter::put(Part& part) {
 
 // In one order with what the reader does before it sleeps: either it sees this, or this sees it.
 // Who sleeps on this core would only get its turn in place of this thread: it is woken once, at the
-// end, or where there is no room.
+// end, or where there is no room. `written` is stored again where nothing has been written since.
 void RingWriter::publish(More more) {
   RingState& state = *place_.state;
   state.written.store(written_);
   const std::uint32_t here = more == More::Follows ? this_core() : 0;
   if ((here == 0 || state.reader_core != here) && wake(state.reader_sleeps)) ++wakes_;
   if ((here == 0 || state.caller_core != here) && wake(state.caller_sleeps)) ++wakes_;
+}
+
+bool RingWriter::reader_sleeps_here() const {
+  const RingState& state = *place_.state;
+  const bool reader = state.reader_sleeps != 0;
+  const bool caller = state.caller_sleeps != 0;
+  if (!reader && !caller) return false;
+  const std::uint32_t here = this_core();
+  return here != 0 &&
+         ((reader && state.reader_core == here) || (caller && state.caller_core == here));
 }
 
 bool RingWriter::wake(Word& sleeps) {
@@ -220,7 +236,7 @@ void RingReader::release(std::uint64_t size) {
 
 bool RingReader::prepare_to_sleep(Who who) {
   Word& core = who == Who::Reader ? place_.state->reader_core : place_.state->caller_core;
-  const std::uint32_t here = this_core();
+  const std::uint32_t here = sleeping_core();
   if (core.load(std::memory_order_relaxed) != here) core.store(here, std::memory_order_relaxed);
   word(who).store(1);
   if (place_.state->written.load() == read_) return true;

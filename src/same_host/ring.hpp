@@ -29,7 +29,7 @@ struct RingState {
   alignas(64) std::atomic<std::uint64_t> read{0};     ///< Of those.
   alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep on this word.
   Word caller_sleeps{0};  ///< As much of a thread that reads for itself.
-  Word reader_core{0};    ///< Where it went to sleep, from 1 on; 0 where that is not known.
+  Word reader_core{0};    ///< Where it went to sleep, from 1 on; 0: it is to be woken at once.
   Word caller_core{0};
   alignas(64) Word writer_sleeps{0};
 };
@@ -60,6 +60,7 @@ class RingWriter {
     std::span<const std::byte> rest;
     bool lends = false;  ///< See RingReader::lends().
     bool begun = false;
+    bool more = false;  ///< Another message follows soon: see wake_reader().
   };
 
   /// Puts in what there is room for, and wakes the reader if it sleeps; whether that was all. A
@@ -70,6 +71,12 @@ class RingWriter {
   /// Puts all of it in. Where the reader takes nothing for as long as `patience`, or `ended` is so
   /// (which wake() makes it look at), it gives up; false then. Throws BrokenRing.
   bool write(Part message, Duration patience, const std::function<bool()>& ended);
+
+  /// After messages that had others follow them: a reader that sleeps on this thread's core was not
+  /// woken for these.
+  void wake_reader() { publish(More::No); }
+  /// Whether a reader sleeps that was last seen on this thread's core.
+  bool reader_sleeps_here() const;
 
   /// Waits until the reader has taken everything; false at the deadline, or once `ended` is so.
   bool await_empty(Instant deadline, const std::function<bool()>& ended);
