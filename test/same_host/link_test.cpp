@@ -3,15 +3,14 @@
 #include <sched.h>
 
 #include <catch2/catch.hpp>
-#include <memory>
 
 #include "../tools/eventually.hpp"
-#include "core/abstract_socket.hpp"
+#include "connection.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
+using skein::test::Connection;
 using skein::test::eventually;
-using namespace std::chrono_literals;
 
 namespace {
 
@@ -29,51 +28,27 @@ struct OneCore {
   cpu_set_t before{};
 };
 
-/// Both ends of a connection, of which this thread plays each.
-struct Connection {
-  Connection() {
-    auto memory = SharedMemory::make(Link::kMemory);
-    auto theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
-    server = make(Link::Side::Provider, std::move(memory));
-    client = make(Link::Side::Client, std::move(theirs));
-  }
-  static std::shared_ptr<Link> make(Link::Side side, SharedMemory memory) {
-    return std::make_shared<Link>(side, std::make_shared<const FileDescriptor>(local_socket()),
-                                  std::move(memory), Guid::random(), Guid::random(), [] {});
-  }
-  static void send(Link& from) {
-    REQUIRE(from.send(std::as_bytes(std::span("1", 1)), 1h) == Link::Sent::Yes);
-  }
-  void take(Link& from) {
-    REQUIRE(from.receive(spare));
-    from.release(spare);
-  }
-  /// The next request is answered, while the client sleeps if it has nothing; whether it still
-  /// does.
-  bool answer_lets_sleep() {
-    while (!client->in().prepare_to_sleep()) take(*client);
-    take(*server);
-    const Link::Answering answering(*server);
-    send(*server);
-    return client->in().word() != 0;
-  }
-
-  std::shared_ptr<Link> server;
-  std::shared_ptr<Link> client;
-  Bytes spare;
-};
+/// The server answers the next request, while the client sleeps if it has nothing; whether it
+/// still does.
+bool answer_lets_sleep(const Connection& connection) {
+  while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
+  connection.take_request();
+  const Link::Answering answering(*connection.server);
+  connection.answer();
+  return connection.client->in().word() != 0;
+}
 
 }  // namespace
 
 TEST_CASE("a client that sleeps where its requests are answered is woken for several answers") {
   const OneCore one_core;
-  Connection connection;
-  for (int i = 0; i < 3; ++i) connection.send(*connection.client);
-  CHECK_FALSE(connection.answer_lets_sleep());  // nobody knows yet how long answers take
+  const Connection connection;
+  for (int i = 0; i < 3; ++i) connection.request();
+  CHECK_FALSE(answer_lets_sleep(connection));  // nobody knows yet how long answers take
   // On a busy machine the next one may come late.
   REQUIRE(eventually([&] {
-    connection.send(*connection.client);
-    return connection.answer_lets_sleep();
+    connection.request();
+    return answer_lets_sleep(connection);
   }));
   connection.server->wake_peer();
   CHECK(connection.client->in().word() == 0);
@@ -81,20 +56,20 @@ TEST_CASE("a client that sleeps where its requests are answered is woken for sev
 
 TEST_CASE("a client is woken by the answer to its last request") {
   const OneCore one_core;
-  Connection connection;
-  for (int i = 0; i < 100; ++i) connection.send(*connection.client);
-  for (int i = 0; i < 99; ++i) connection.answer_lets_sleep();
-  CHECK_FALSE(connection.answer_lets_sleep());
+  const Connection connection;
+  for (int i = 0; i < 100; ++i) connection.request();
+  for (int i = 0; i < 99; ++i) answer_lets_sleep(connection);
+  CHECK_FALSE(answer_lets_sleep(connection));
 }
 
 TEST_CASE("a client is woken at once by what is no answer, or comes from another thread") {
   const OneCore one_core;
-  Connection connection;
+  const Connection connection;
   for (int i = 0; i < 20; ++i) {
-    connection.send(*connection.client);
-    connection.send(*connection.client);
-    while (!connection.client->in().prepare_to_sleep()) connection.take(*connection.client);
-    connection.send(*connection.server);
+    connection.request();
+    connection.request();
+    while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
+    connection.answer();
     CHECK(connection.client->in().word() == 0);
   }
 }

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "core/abstract_socket.hpp"
+#include "same_host/link.hpp"
+
+namespace skein::test {
+
+/// Both ends of a connection through shared memory, without a meeting.
+struct Connection {
+  Connection() {
+    auto memory = same_host::SharedMemory::make(same_host::Link::kMemory);
+    auto theirs = same_host::SharedMemory::map(memory.take_descriptor(), same_host::Link::kMemory);
+    server = end(same_host::Link::Side::Provider, std::move(memory));
+    client = end(same_host::Link::Side::Client, std::move(theirs));
+  }
+
+  // Requests and answers are of a byte. What is taken has to be there.
+  void request() const { send(*client); }
+  void answer() const { send(*server); }
+  void take_request() const { take(*server); }
+  void take_answer() const { take(*client); }
+
+  std::shared_ptr<same_host::Link> server;
+  std::shared_ptr<same_host::Link> client;
+
+ private:
+  static std::shared_ptr<same_host::Link> end(same_host::Link::Side side,
+                                              same_host::SharedMemory memory) {
+    return std::make_shared<same_host::Link>(
+        side, std::make_shared<const FileDescriptor>(local_socket()), std::move(memory),
+        Guid::random(), Guid::random(), [] {});
+  }
+  static void send(same_host::Link& from) {
+    REQUIRE(from.send(std::as_bytes(std::span("1", 1)), std::chrono::hours(1)) ==
+            same_host::Link::Sent::Yes);
+  }
+  static void take(same_host::Link& from) {
+    Bytes spare;
+    REQUIRE(from.receive(spare));
+    from.release(spare);
+  }
+};
+
+}  // namespace skein::test
