@@ -65,7 +65,10 @@ std::uint64_t RingWriter::in_flight() {
 }
 
 bool RingWriter::may_restart(std::size_t offset, std::size_t size) {
-  return offset >= kRestart && size <= offset && in_flight() == 0;
+  if (offset < kRestart) look_at_ = kRestart;
+  if (offset < look_at_ || size > offset) return false;
+  look_at_ = offset + kRestart / 4;  // not each time: the reader writes that line
+  return in_flight() == 0;
 }
 
 void RingWriter::put_frame(std::uint32_t kind, std::span<const std::byte> content) {
@@ -177,12 +180,14 @@ bool RingWriter::await_empty(Instant deadline, const std::function<bool()>& ende
 // ---- reading
 
 std::uint64_t RingReader::available() {
-  if (written_ == read_) {
-    const std::uint64_t written = place_.state->written.load(std::memory_order_acquire);
-    check_distance(written - read_, place_.capacity, "writer's");
-    written_ = written;
+  const std::uint64_t read = read_.load(std::memory_order_relaxed);
+  std::uint64_t written = written_.load(std::memory_order_relaxed);
+  if (written == read) {
+    written = place_.state->written.load(std::memory_order_acquire);
+    check_distance(written - read, place_.capacity, "writer's");
+    written_.store(written, std::memory_order_relaxed);
   }
-  return written_ - read_;
+  return written - read;
 }
 
 bool RingReader::take(Bytes& message) {

@@ -104,6 +104,7 @@ class RingWriter {
   const RingPlace place_;
   std::uint64_t written_ = 0;  // some of it not published yet
   std::uint64_t read_ = 0;     // as last seen
+  std::size_t look_at_ = 0;    // the offset from which on it is looked whether the ring is empty
   std::uint64_t wakes_ = 0;
 };
 
@@ -124,7 +125,12 @@ class RingReader {
   bool lends() const noexcept { return lends_; }
 
   /// Whether something has come.
-  bool ready() const { return place_.state->written.load(std::memory_order_acquire) != read_; }
+  bool ready() const {
+    // What was seen before is looked at first: the line that the other side writes costs more.
+    const std::uint64_t read = read_.load(std::memory_order_relaxed);
+    return written_.load(std::memory_order_relaxed) > read ||
+           place_.state->written.load(std::memory_order_acquire) != read;
+  }
 
   /// False where something has come already: else the writer wakes who sleeps while `word()` is 1.
   bool prepare_to_sleep(Who who = Who::Reader);
@@ -139,8 +145,9 @@ class RingReader {
 
   const RingPlace place_;
   const std::size_t largest_;
-  std::atomic<std::uint64_t> read_{0};  // changed by take()
-  std::uint64_t written_ = 0;           // as last seen
+  // Changed by take().
+  std::atomic<std::uint64_t> read_{0};
+  std::atomic<std::uint64_t> written_{0};  // as last seen
   bool begun_ = false;
   bool lends_ = false;
 };

@@ -181,6 +181,44 @@ TEST_CASE(
   CHECK(reader.word() == 0);
 }
 
+TEST_CASE("a ring that is empty is used from its beginning again: small messages touch few pages") {
+  constexpr std::size_t kPage = 4096 / sizeof(std::uint64_t);
+  Memory memory(256 << 10);
+  RingWriter writer(memory.place());
+  RingReader reader(memory.place(), kLargest);
+  const auto content = message(100, 1);
+  Bytes taken;
+  const auto put = [&] {
+    RingWriter::Part part{content};
+    REQUIRE(writer.put(part));
+  };
+  const auto take = [&] {
+    REQUIRE(reader.take(taken));
+    REQUIRE(equal(taken, content));
+  };
+  const auto pages_touched = [&] {
+    std::ranges::fill(memory.content, 0);
+    for (int i = 0; i < 10'000; ++i) {
+      put();
+      take();
+    }
+    const auto last = std::find_if(memory.content.rbegin(), memory.content.rend(),
+                                   [](std::uint64_t octets) { return octets != 0; });
+    return static_cast<std::size_t>(memory.content.rend() - last + kPage - 1) / kPage;
+  };
+  CHECK(pages_touched() <= 5);
+  const std::size_t waiting = GENERATE(1, 7);
+  for (std::size_t i = 0; i < waiting; ++i) put();
+  // From here on it is never empty, and what waits is not wiped out: the writer has come round.
+  for (int i = 0; i < 10'000; ++i) {
+    put();
+    take();
+  }
+  for (std::size_t i = 0; i < waiting; ++i) take();
+  pages_touched();
+  CHECK(pages_touched() <= 5);
+}
+
 // Each step of either side is atomic to the other one; what a thread does between them is nothing.
 TEST_CASE("in every order of steps nobody sleeps while there is something to do") {
   const auto seed = GENERATE(range(0u, 50u));
