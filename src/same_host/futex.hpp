@@ -14,6 +14,7 @@
 #include <ctime>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "skein/clock.hpp"
 
@@ -42,6 +43,35 @@ inline void futex_wait(const Word& word, std::uint32_t value, Instant deadline) 
 inline void futex_wake(const Word& word) {
   syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
 }
+
+/// Wakes who sleeps on words, those on two of them with one system call, by its end at the latest.
+/// The words are to be there until then.
+class Wakes {
+ public:
+  Wakes() = default;
+  Wakes(const Wakes&) = delete;
+  Wakes& operator=(const Wakes&) = delete;
+  ~Wakes() {
+    if (first_ != nullptr) futex_wake(*first_);
+  }
+
+  void add(Word& word) {
+    Word* const first = std::exchange(first_, nullptr);
+    if (first == nullptr) {
+      first_ = &word;
+      return;
+    }
+    // Leaves the second word as it is, which is not negative. Who makes his own so sleeps on; who
+    // makes the kernel refuse it keeps nobody else asleep.
+    constexpr std::uint32_t kAnyway = FUTEX_OP(FUTEX_OP_ADD, 0U, FUTEX_OP_CMP_GE, 0U);
+    if (syscall(SYS_futex, first, FUTEX_WAKE_OP, INT_MAX, INT_MAX, &word, kAnyway) >= 0) return;
+    futex_wake(*first);
+    futex_wake(word);
+  }
+
+ private:
+  Word* first_ = nullptr;
+};
 
 /// One of several words to sleep on.
 inline futex_waitv while_it_is(const Word& word, std::uint32_t value) {

@@ -19,6 +19,8 @@ class Lead {
   /// By who has it, and is to be back soon: who stands by takes it after 10 ms, or 20 at most.
   /// Returns what take_back() is told.
   std::uint64_t leave() noexcept;
+  /// Whether nobody has taken it since.
+  bool is_left(std::uint64_t left) const noexcept { return state_ == left; }
   /// False where another one has taken it since.
   bool take_back(std::uint64_t left) noexcept;
 

@@ -9,9 +9,7 @@
 namespace skein::same_host {
 namespace {
 
-// How long the other side is let sleep, at most, and how soon calls must follow each other for it.
-constexpr std::chrono::microseconds kLetSleep{50};
-thread_local Link* answering = nullptr;
+thread_local const Link::Answering* answering = nullptr;
 
 // A message that needed more is not kept for the next one.
 constexpr std::size_t kKeptCapacity = 4 << 20;
@@ -108,25 +106,23 @@ Lender::Connection Link::lending() {
           }};
 }
 
-Link::Answering::Answering(Link& link) : outer_(std::exchange(answering, &link)) {}
+Link::Answering::Answering(const Link& link, Sleepers& sleepers, bool others)
+    : link_(link), sleepers_(sleepers), others_(others), outer_(std::exchange(answering, this)) {
+  if (more_wait()) sleepers.note_call();
+}
 
 Link::Answering::~Answering() { answering = outer_; }
 
-// Under the lock. Its thread would take this one's turn, answer by answer. As it takes what comes
-// only once it runs, it loses nothing but time.
-bool Link::may_let_sleep() {
-  if (answering != this || !out_.reader_sleeps_here() || !in_.ready()) return false;
-  const Instant now = std::chrono::steady_clock::now();
-  if (!lets_sleep_) let_sleep_since_ = now;
-  const bool soon = now - std::exchange(last_look_, now) < kLetSleep;
-  return soon && now - let_sleep_since_ < kLetSleep;
+bool Link::Answering::more_wait() const { return others_ || sleepers_.any() || link_.in_.ready(); }
+
+// Under the lock. As the other side takes what comes only once it runs, it loses nothing but time.
+bool Link::let_sleep() {
+  return answering != nullptr && &answering->link_ == this && answering->more_wait() &&
+         out_.reader_sleeps_here() && answering->sleepers_.add();
 }
 
-void Link::wake_peer() {
-  if (!lets_sleep_) return;
-  std::lock_guard lock(out_mutex_);
-  lets_sleep_ = false;
-  out_.wake_reader();
+void Link::wake_peer(Wakes& wakes) {
+  if (lets_sleep_ && lets_sleep_.exchange(false)) out_.wake_reader(wakes);
 }
 
 // Where it would have to wait, the other side keeps the memory until another one takes its place.
@@ -144,9 +140,18 @@ void Link::forget(const LoanNote& gone) {
 Link::Sent Link::write(RingWriter::Part message, Duration patience,
                        const std::function<void()>& on_full) {
   if (ended_) return Sent::Ended;
-  lets_sleep_ = message.more = may_let_sleep();
+  message.lets_sleep = let_sleep();
   try {
-    if (out_.put(message)) return Sent::Yes;
+    if (out_.put(message)) {
+      lets_sleep_ = message.lets_sleep;
+      // Who has gone on in this thread's place may have looked before: then it is seen here.
+      if (message.lets_sleep && answering->sleepers_.replaced()) {
+        Wakes wakes;
+        wake_peer(wakes);
+      }
+      return Sent::Yes;
+    }
+    message.lets_sleep = false;  // it has been woken, as there is no room
     if (on_full) on_full();
     if (out_.write(message, patience, [this] { return ended(); })) return Sent::Yes;
   } catch (const BrokenRing&) {

@@ -12,6 +12,7 @@
 #include "ring.hpp"
 #include "shared_memory.hpp"
 #include "skein/guid.hpp"
+#include "sleepers.hpp"
 
 namespace skein::same_host {
 
@@ -69,22 +70,27 @@ class Link : public std::enable_shared_from_this<Link> {
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
 
-  /// While it exists, what this thread sends are answers to what comes in: where more has come, and
-  /// the other side sleeps on this core, it is woken for several answers at once, 50 us later at
-  /// most if calls take no longer than before. Then wake_peer() follows.
+  /// While it exists, what this thread sends are answers to what comes in. The other side, if it
+  /// sleeps on this core, becomes one of `sleepers` where there are some, or more requests wait: of
+  /// this link, or `others`'. Then wake_peer() follows.
   class Answering {
    public:
-    explicit Answering(Link& link);
+    Answering(const Link& link, Sleepers& sleepers, bool others);
     ~Answering();
     Answering(const Answering&) = delete;
     Answering& operator=(const Answering&) = delete;
 
    private:
-    Link* const outer_;
+    friend class Link;
+    bool more_wait() const;
+
+    const Link& link_;
+    Sleepers& sleepers_;
+    const bool others_;
+    const Answering* const outer_;
   };
-  bool lets_sleep() const noexcept { return lets_sleep_; }
-  /// Wakes the other side where it was let sleep. From any thread.
-  void wake_peer();
+  /// Wakes the other side, where it was let sleep, by the end of `wakes`. From any thread.
+  void wake_peer(Wakes& wakes);
 
   /// One thread at a time: the next whole message, which is valid until release(), after which the
   /// next one may be asked for; or nothing. `spare` is memory that links of one thread lend each
@@ -110,7 +116,7 @@ class Link : public std::enable_shared_from_this<Link> {
 
  private:
   void break_off();
-  bool may_let_sleep();
+  bool let_sleep();
   Sent write(RingWriter::Part message, Duration patience,
              const std::function<void()>& on_full = nullptr);
   Lender::Connection lending();
@@ -133,9 +139,7 @@ class Link : public std::enable_shared_from_this<Link> {
   Ending ending_;
   std::mutex out_mutex_;
   RingWriter out_;
-  std::atomic<bool> lets_sleep_{false};  // changed under the lock
-  Instant let_sleep_since_{};
-  Instant last_look_{};
+  std::atomic<bool> lets_sleep_{false};
   std::optional<Lender> lender_;
 };
 

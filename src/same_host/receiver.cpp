@@ -32,37 +32,46 @@ void SpinPolicy::note(Duration waited) {
   score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
 }
 
+/// The turns of a thread that leads, or of a caller.
+struct Receiver::Turns {
+  Turns(Who who_, Lead* lead_) : who(who_), lead(lead_) {}
+
+  const Who who;
+  Lead* const lead;        ///< Null for a caller.
+  std::uint64_t left = 0;  ///< Not 0: this one's is left, and what Lead::leave() has said.
+  Sleepers sleepers{[this] { return left != 0 && !lead->is_left(left); }};
+  bool others_wait = false;  ///< Whether links have something whose turn comes after this one.
+};
+
 /// A turn whose link is locked.
 class Receiver::OwnTurn final : public Turn {
  public:
-  OwnTurn(Receiver& receiver, Who who, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
-      : receiver_(receiver),
-        lead_(*receiver.lead_),
-        who_(who),
-        link_(link),
-        spare_(spare),
-        lock_(lock) {}
+  OwnTurn(Receiver& receiver, Turns& turns, Link& link, Bytes& spare,
+          std::unique_lock<std::mutex>& lock)
+      : receiver_(receiver), turns_(turns), link_(link), spare_(spare), lock_(lock) {
+    if (turns.who != Who::Caller) answering_.emplace(link, turns.sleepers, turns.others_wait);
+  }
 
   // Of a consumer the receiver itself is the stand-in.
   bool leave() override {
     if (left()) return true;
-    if (who_ == Who::Caller || (who_ == Who::Leader && !receiver_.has_stand_in())) return false;
+    if (turns_.who == Who::Caller) return false;
+    if (turns_.who == Who::Leader && !receiver_.has_stand_in()) return false;
     link_.release(spare_);
     lock_.unlock();
-    left_ = lead_.leave();
+    turns_.left = turns_.lead->leave();
     return true;
   }
-  bool left() const { return left_ != 0; }
-  bool come_back() { return lead_.take_back(left_); }
+  bool left() const { return turns_.left != 0; }
+  bool come_back() { return turns_.lead->take_back(std::exchange(turns_.left, 0)); }
 
  private:
   Receiver& receiver_;  // gone, perhaps, once a consumer has left its turn
-  Lead& lead_;
-  const Who who_;
+  Turns& turns_;
   Link& link_;
   Bytes& spare_;
   std::unique_lock<std::mutex>& lock_;
-  std::uint64_t left_ = 0;
+  std::optional<Link::Answering> answering_;
 };
 
 // Once it is over, the inbox and the receiver may be gone.
@@ -88,6 +97,12 @@ class Receiver::Entry final : public dds::CallerDelivery, public WatchedLink {
     if (sleeps) futex_wake(called);
   }
 
+  /// For who leads.
+  bool has_something() const {
+    if (over || (lent && begun && !link->ended())) return false;
+    return !begun || link->in().ready() || link->ended();
+  }
+
   Inbox& inbox;
   std::mutex mutex;  // held while a function of the inbox runs
   std::atomic<bool> begun{false};
@@ -111,9 +126,10 @@ class Receiver::Entry final : public dds::CallerDelivery, public WatchedLink {
 
 void Receiver::Entry::deliver_until(const std::function<bool()>& over_) noexcept {
   thread_local Bytes spare;
+  Turns turns(Who::Caller, nullptr);
   if (has_caller.exchange(true)) return take_back();
   while (!over && !over_()) {
-    if (receiver.look_at(*this, spare, Who::Caller) == Looked::Nothing) sleep(over_);
+    if (receiver.look_at(*this, spare, turns) == Looked::Nothing) sleep(over_);
   }
   has_caller = false;
   if (over) take_back();
@@ -262,6 +278,7 @@ void Receiver::remove(Inbox& inbox) {
     entries_.erase(first, entries_.end());
     if (entries_.empty()) consumer_->useful = false;
   }
+  Wakes wakes;
   for (const auto& entry : removed) {
     {
       std::lock_guard lock(entry->mutex);
@@ -269,6 +286,7 @@ void Receiver::remove(Inbox& inbox) {
       unfinished_->change(std::exchange(entry->unfinished, 0), 0);
     }
     entry->wake();
+    entry->link->wake_peer(wakes);
   }
   quiet_.drop_ended();
   notify();
@@ -300,7 +318,10 @@ bool Receiver::is_stopping() const {
 // By who has the lead, until `over`, which notify() makes it look at, or the receiver ends. False
 // where somebody has stood in; a consumer's receiver may be gone then.
 bool Receiver::lead(Who who, const std::function<bool()>& over) {
+  Turns turns(who, lead_.get());
   while (true) {
+    wake_peers();  // also those whom the thread that led before has let sleep
+    turns.sleepers.clear();
     notified_->store(0);
     Entries entries;  // at last those before, whose links may end with them: not under the lock
     {
@@ -313,12 +334,15 @@ bool Receiver::lead(Who who, const std::function<bool()>& over) {
     entries.clear();
     while (notified_->load() == 0) {
       if (over()) {
-        wake_peers();
+        wake(turns.sleepers);
         return true;
       }
-      const Looked looked = look_at_all(who);
+      const Looked looked = look_at_all(turns);
       if (looked == Looked::Replaced) return false;
-      if (looked == Looked::Nothing) await();
+      if (looked == Looked::Nothing) {
+        wake(turns.sleepers);
+        await();
+      }
     }
     drop_ended();
   }
@@ -337,21 +361,29 @@ bool Receiver::has_stand_in() {
   return true;
 }
 
-Receiver::Looked Receiver::look_at_all(Who who) {
+Receiver::Looked Receiver::look_at_all(Turns& turns) {
+  const auto next = [&](Entries::const_iterator from) {
+    return std::find_if(from, led_.cend(),
+                        [](const auto& entry) { return entry->has_something(); });
+  };
   Looked all = Looked::Nothing;
-  for (const auto& entry : led_) {
-    if (entry->lent && entry->begun && !entry->link->ended()) continue;
-    const Looked looked = look_at(*entry, spare_, who);
+  for (auto entry = next(led_.cbegin()); entry != led_.cend();) {
+    const auto after = next(entry + 1);
+    turns.others_wait = after != led_.cend();
+    const Looked looked = look_at(**entry, spare_, turns);
     if (looked == Looked::Replaced) return looked;
-    if (looked == Looked::Nothing) continue;
-    all = looked;
-    entry->sleeps_in_vain = 0;
+    if (looked == Looked::Something) {
+      all = looked;
+      (*entry)->sleeps_in_vain = 0;
+    }
+    if (turns.sleepers.due()) wake(turns.sleepers);  // also where no whole message has come
+    entry = after;
   }
   return all;
 }
 
 // On the thread that leads, or a caller's.
-Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
+Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Turns& turns) {
   Link& link = *entry.link;
   if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return Looked::Nothing;
   std::unique_lock lock(entry.mutex);
@@ -364,15 +396,11 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Who who) {
       const auto message = link.receive(spare);
       if (!message) break;
       if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
-      OwnTurn turn(*this, who, link, spare, lock);
-      {
-        std::optional<Link::Answering> answering;
-        if (who != Who::Caller) answering.emplace(link);
-        entry.inbox.on_message(link, *message, turn);
-      }
+      OwnTurn turn(*this, turns, link, spare, lock);
+      entry.inbox.on_message(link, *message, turn);
       const bool left = turn.left();
       if (left && !turn.come_back()) return Looked::Replaced;
-      if (link.lets_sleep() && !link.in().ready()) link.wake_peer();
+      if (turns.sleepers.due()) wake(turns.sleepers);
       if (left) return Looked::Something;
       link.release(spare);
     }
@@ -434,14 +462,18 @@ void Receiver::leave_quiet_ones() {
   });
 }
 
-// Those whose threads were let sleep. Where a thread has been replaced in its turn, the next one
-// that has nothing to do does it.
+void Receiver::wake(Sleepers& sleepers) const {
+  if (!sleepers.any()) return;
+  sleepers.clear();
+  wake_peers();
+}
+
 void Receiver::wake_peers() const {
-  for (const auto& entry : led_) entry->link->wake_peer();
+  Wakes wakes;
+  for (const auto& entry : led_) entry->link->wake_peer(wakes);
 }
 
 void Receiver::await() {
-  wake_peers();
   leave_quiet_ones();
   const auto ready = [&] {
     return notified_->load() != 0 || std::ranges::any_of(led_, [](const auto& entry) {

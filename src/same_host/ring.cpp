@@ -47,10 +47,12 @@ void check_distance(std::uint64_t distance, std::size_t capacity, const char* wh
 // From 1 on; 0 where the system does not tell.
 std::uint32_t this_core() { return static_cast<std::uint32_t>(sched_getcpu() + 1); }
 
-// Where a thread sleeps that can wait for its turn: one of a real-time policy is woken at once.
+// Where a thread sleeps that can wait for its turn: one that had a real-time policy when it slept
+// for the first time is woken at once.
 std::uint32_t sleeping_core() {
-  thread_local const int policy = sched_getscheduler(0);
-  return policy == SCHED_FIFO || policy == SCHED_RR ? 0 : this_core();
+  thread_local const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
+  const bool can_wait = policy == SCHED_OTHER || policy == SCHED_BATCH || policy == SCHED_IDLE;
+  return can_wait ? this_core() : 0;
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ bool RingWriter::put(Part& part) {
     put_frame((part.begun ? 0 : kFirst) | end, content);
     part.begun = true;
     if (last) {
-      publish(part.more ? More::Follows : More::No);
+      publish(part.lets_sleep ? More::Follows : More::No);
       return true;
     }
     if (content.size() == kLargestFrame) publish(More::Follows);
@@ -116,7 +118,7 @@ bool RingWriter::put(Part& part) {
 
 // In one order with what the reader does before it sleeps: either it sees this, or this sees it.
 // Who sleeps on this core would only get its turn in place of this thread: it is woken once, at the
-// end, or where there is no room. `written` is stored again where nothing has been written since.
+// end, or where there is no room.
 void RingWriter::publish(More more) {
   RingState& state = *place_.state;
   state.written.store(written_);
@@ -135,10 +137,20 @@ bool RingWriter::reader_sleeps_here() const {
          ((reader && state.reader_core == here) || (caller && state.caller_core == here));
 }
 
+void RingWriter::wake_reader(Wakes& wakes) {
+  for (Word* sleeps : {&place_.state->reader_sleeps, &place_.state->caller_sleeps}) {
+    if (is_to_be_woken(*sleeps)) wakes.add(*sleeps);
+  }
+}
+
+bool RingWriter::is_to_be_woken(Word& sleeps) {
+  return sleeps.load() != 0 && sleeps.exchange(0) != 0;
+}
+
 bool RingWriter::wake(Word& sleeps) {
-  if (sleeps.load() == 0 || sleeps.exchange(0) == 0) return false;
-  futex_wake(sleeps);
-  return true;
+  const bool yes = is_to_be_woken(sleeps);
+  if (yes) futex_wake(sleeps);
+  return yes;
 }
 
 bool RingWriter::prepare_to_sleep() {

@@ -60,7 +60,8 @@ class RingWriter {
     std::span<const std::byte> rest;
     bool lends = false;  ///< See RingReader::lends().
     bool begun = false;
-    bool more = false;  ///< Another message follows soon: see wake_reader().
+    bool lets_sleep =
+        false;  ///< A reader that sleeps on this core is not woken: see wake_reader().
   };
 
   /// Puts in what there is room for, and wakes the reader if it sleeps; whether that was all. A
@@ -72,9 +73,8 @@ class RingWriter {
   /// (which wake() makes it look at), it gives up; false then. Throws BrokenRing.
   bool write(Part message, Duration patience, const std::function<bool()>& ended);
 
-  /// After messages that had others follow them: a reader that sleeps on this thread's core was not
-  /// woken for these.
-  void wake_reader() { publish(More::No); }
+  /// After messages that let it sleep. From any thread.
+  void wake_reader(Wakes& wakes);
   /// Whether a reader sleeps that was last seen on this thread's core.
   bool reader_sleeps_here() const;
 
@@ -93,6 +93,7 @@ class RingWriter {
   void stay_awake() { place_.state->writer_sleeps.store(0); }
 
  private:
+  static bool is_to_be_woken(Word& sleeps);
   static bool wake(Word& sleeps);
   std::uint64_t in_flight();
   bool may_restart(std::size_t offset, std::size_t size);

@@ -101,13 +101,13 @@ class Attacker {
         ring.read = chance(2) ? random_() : ring.read + 8 * (random_() % 64);
         break;
       case 3:
-        ring.reader_sleeps = static_cast<std::uint32_t>(random_() % 3);
+        pretend_asleep(ring.reader_sleeps, ring.reader_core);
         break;
       case 4:
         ring.writer_sleeps = static_cast<std::uint32_t>(random_());
         break;
       case 5:
-        ring.caller_sleeps = static_cast<std::uint32_t>(random_() % 3);
+        pretend_asleep(ring.caller_sleeps, ring.caller_core);
         break;
       case 6:  // again and again, while the other side reads
         for (int i = 0; i < 2000; ++i) scribble(which);
@@ -118,6 +118,12 @@ class Attacker {
     same_host::futex_wake(ring.reader_sleeps);
     same_host::futex_wake(ring.caller_sleeps);
     same_host::futex_wake(ring.writer_sleeps);
+  }
+
+  /// Says that it sleeps, mostly on the core where the other side is.
+  void pretend_asleep(same_host::Word& sleeps, same_host::Word& core) {
+    sleeps = static_cast<std::uint32_t>(chance(4) ? random_() : random_() % 3);
+    core = static_cast<std::uint32_t>(chance(4) ? random_() : 1 + random_() % 2);
   }
 
   /// Takes what the other side sends, mostly.

@@ -1,65 +1,126 @@
 #include "same_host/link.hpp"
 
-#include <sched.h>
-
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <cstddef>
+#include <initializer_list>
+#include <vector>
 
 #include "../tools/eventually.hpp"
+#include "../tools/one_core.hpp"
 #include "connection.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
 using skein::test::Connection;
 using skein::test::eventually;
+using skein::test::OneCore;
 
 namespace {
 
-/// Keeps this thread on the core where it is.
-struct OneCore {
-  OneCore() {
-    sched_getaffinity(0, sizeof before, &before);
-    cpu_set_t here;
-    CPU_ZERO(&here);
-    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &here);
-    REQUIRE(sched_setaffinity(0, sizeof here, &here) == 0);
+/// Who answers the requests of connections, on this thread.
+struct Server {
+  /// The next request of one, whose client sleeps if it has nothing; whether it still does.
+  bool answer_lets_sleep(const Connection& connection, bool others_wait = false) {
+    while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
+    connection.take_request();
+    const Link::Answering answering(*connection.server, sleepers, others_wait);
+    connection.answer();
+    return sleeps(connection);
   }
-  ~OneCore() { sched_setaffinity(0, sizeof before, &before); }
+  static bool sleeps(const Connection& connection) { return connection.client->in().word() != 0; }
 
-  cpu_set_t before{};
+  void wake(std::initializer_list<const Connection*> connections) {
+    sleepers.clear();
+    Wakes wakes;
+    for (const Connection* each : connections) each->server->wake_peer(wakes);
+  }
+
+  bool replaced = false;
+  Sleepers sleepers{[this] { return replaced; }};
 };
-
-/// The server answers the next request, while the client sleeps if it has nothing; whether it
-/// still does.
-bool answer_lets_sleep(const Connection& connection) {
-  while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
-  connection.take_request();
-  const Link::Answering answering(*connection.server);
-  connection.answer();
-  return connection.client->in().word() != 0;
-}
 
 }  // namespace
 
+// On a busy machine calls may take too long to let anybody sleep.
 TEST_CASE("a client that sleeps where its requests are answered is woken for several answers") {
   const OneCore one_core;
   const Connection connection;
-  for (int i = 0; i < 3; ++i) connection.request();
-  CHECK_FALSE(answer_lets_sleep(connection));  // nobody knows yet how long answers take
-  // On a busy machine the next one may come late.
+  Server server;
+  connection.request();
   REQUIRE(eventually([&] {
     connection.request();
-    return answer_lets_sleep(connection);
+    return server.answer_lets_sleep(connection);
   }));
-  connection.server->wake_peer();
-  CHECK(connection.client->in().word() == 0);
+  server.wake({&connection});
+  CHECK_FALSE(Server::sleeps(connection));
 }
 
-TEST_CASE("a client is woken by the answer to its last request") {
+TEST_CASE("clients that sleep where their requests are answered are woken together") {
+  const OneCore one_core;
+  const Connection connections[3];
+  const auto& [first, second, last] = connections;
+  Server server;
+  REQUIRE(eventually([&] {
+    for (const Connection& each : connections) each.request();
+    const bool first_sleeps = server.answer_lets_sleep(first, true);
+    const bool second_sleeps = server.answer_lets_sleep(second, true);
+    const bool last_sleeps = server.answer_lets_sleep(last);
+    if (first_sleeps && second_sleeps && last_sleeps) return true;
+    server.wake({&first, &second, &last});
+    return false;
+  }));
+  CHECK(server.sleepers.any());
+  server.wake({&first, &second, &last});
+  for (const Connection& each : connections) CHECK_FALSE(Server::sleeps(each));
+}
+
+TEST_CASE("a client is woken by the answer to the last request of all") {
   const OneCore one_core;
   const Connection connection;
-  for (int i = 0; i < 100; ++i) connection.request();
-  for (int i = 0; i < 99; ++i) answer_lets_sleep(connection);
-  CHECK_FALSE(answer_lets_sleep(connection));
+  Server server;
+  connection.request();
+  CHECK_FALSE(server.answer_lets_sleep(connection));
+}
+
+TEST_CASE("a client is woken at once while one has been let sleep for long") {
+  const OneCore one_core;
+  const Connection some, other;
+  Server server;
+  REQUIRE(eventually([&] {
+    some.request();
+    return server.answer_lets_sleep(some, true);
+  }));
+  REQUIRE(eventually([&] { return server.sleepers.due(); }));
+  for (int i = 0; i < 10; ++i) {  // The first call is too long, the others are quick.
+    other.request();
+    CHECK_FALSE(server.answer_lets_sleep(other, true));
+  }
+}
+
+TEST_CASE("a client is woken at once where another thread goes on") {
+  const OneCore one_core;
+  const Connection connection;
+  Server server;
+  server.replaced = true;
+  CHECK(eventually([&] {
+    server.sleepers.clear();
+    connection.request();
+    REQUIRE_FALSE(server.answer_lets_sleep(connection, true));
+    return server.sleepers.any();  // It would have been let sleep.
+  }));
+}
+
+TEST_CASE("a client is woken at once where there is no room for its answer") {
+  const OneCore one_core;
+  const Connection connection;
+  Server server;
+  const std::vector<std::byte> longer(2 * Link::kCapacity);
+  connection.request();
+  REQUIRE(connection.client->in().prepare_to_sleep());
+  const Link::Answering answering(*connection.server, server.sleepers, true);
+  CHECK(connection.server->send(longer, std::chrono::milliseconds(1)) == Link::Sent::NoRoom);
+  CHECK_FALSE(Server::sleeps(connection));
 }
 
 TEST_CASE("a client is woken at once by what is no answer, or comes from another thread") {
@@ -70,6 +131,6 @@ TEST_CASE("a client is woken at once by what is no answer, or comes from another
     connection.request();
     while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
     connection.answer();
-    CHECK(connection.client->in().word() == 0);
+    CHECK_FALSE(Server::sleeps(connection));
   }
 }

@@ -6,11 +6,14 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
+#include "../tools/one_core.hpp"
+#include "connection.hpp"
 #include "core/abstract_socket.hpp"
 #include "same_host/meeting.hpp"
 
@@ -59,6 +62,54 @@ struct Notes final : Inbox {
   std::atomic<bool> left{false};
   std::atomic<int> inside{0};
   std::atomic<bool> go_on{false};
+};
+
+/// A receiver on this thread's core, and three clients that sleep there until they have their
+/// answers.
+struct OneCoreService final : Inbox {
+  OneCoreService() {
+    for (const auto& each : connections) receiver.add(each.server, *this);
+  }
+  ~OneCoreService() {
+    may_answer = last_may_answer = true;
+    receiver.remove(*this);
+  }
+
+  void on_begin(Link&) override {}
+  void on_message(Link& link, std::span<const std::byte>, Turn& turn) override {
+    eventually([&] { return may_answer.load(); });
+    if (&link == connections[2].server.get() && !last_may_answer) {
+      turn.leave();
+      eventually([&] { return last_may_answer.load(); });
+    }
+    if (link.send(std::as_bytes(std::span("1", 1)), 1h) != Link::Sent::Yes) return;
+    are_let_sleep = std::ranges::count_if(connections, let_sleep);
+  }
+  void on_end(Link&) override {}
+
+  /// All clients call and sleep, and then are answered.
+  void call() {
+    are_let_sleep = 0;
+    may_answer = false;
+    for (const auto& each : connections) {
+      while (!each.client->in().prepare_to_sleep()) each.take_answer();
+      each.request();
+    }
+    may_answer = true;
+  }
+  bool wakes(std::size_t client) const {
+    return eventually([&] { return connections[client].client->in().word() == 0; });
+  }
+  static bool let_sleep(const test::Connection& connection) {
+    return connection.client->in().ready() && connection.client->in().word() != 0;
+  }
+
+  const test::OneCore one_core;
+  const test::Connection connections[3];
+  std::atomic<bool> may_answer{false};
+  std::atomic<bool> last_may_answer{true};
+  std::atomic<std::ptrdiff_t> are_let_sleep{0};  // after the latest answer
+  Receiver receiver{"test-requests", 0us};
 };
 
 /// A provider whose receiver takes what its guests send.
@@ -174,6 +225,43 @@ TEST_CASE("one thread takes what many links bring, each in its order, the end af
     CHECK(eventually([&] { return host.notes.about(client->id) == expected; }));
   }
   CHECK(eventually([&] { return host.receiver.links() == 0; }));
+}
+
+// On a busy machine a call may take so long that its client is woken at once.
+TEST_CASE("clients on the receiver's core are woken together: none of them takes another's turn") {
+  OneCoreService service;
+  CHECK(eventually([&] {
+    service.call();
+    for (const std::size_t client : {0, 1, 2}) REQUIRE(service.wakes(client));
+    return service.are_let_sleep >= 2;
+  }));
+}
+
+TEST_CASE("clients that were let sleep are woken by who goes on in the place of a long call") {
+  OneCoreService service;
+  CHECK(eventually([&] {
+    service.last_may_answer = false;
+    service.call();
+    for (const std::size_t client : {0, 1}) REQUIRE(service.wakes(client));
+    const bool was_let_sleep = service.are_let_sleep > 0;
+    service.last_may_answer = true;
+    REQUIRE(service.wakes(2));
+    return was_let_sleep;
+  }));
+}
+
+TEST_CASE("clients that were let sleep are woken by the end of the inbox during a long call") {
+  bool was_let_sleep = false;
+  CHECK(eventually([&] {
+    OneCoreService service;
+    service.last_may_answer = false;
+    service.call();
+    REQUIRE(eventually([&] { return service.connections[1].client->in().ready(); }));
+    was_let_sleep = OneCoreService::let_sleep(service.connections[1]);
+    service.receiver.remove(service);
+    REQUIRE(service.connections[1].client->in().word() == 0);
+    return was_let_sleep;
+  }));
 }
 
 TEST_CASE("a receiver that sleeps is woken by each message") {

@@ -1,6 +1,5 @@
 #include "same_host/ring.hpp"
 
-#include <sched.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "../tools/one_core.hpp"
 #include "same_host/shared_memory.hpp"
 
 using namespace skein;
@@ -91,25 +91,16 @@ TEST_CASE("messages of every size arrive whole and in order, also those longer t
 TEST_CASE("a reader that sleeps on the writer's core is woken when it has much to do, or all") {
   constexpr std::size_t kSize = 16 << 20;
   constexpr std::size_t kCapacity = 256 << 10;
-  const auto pin = [] {
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(sched_getcpu(), &one);
-    sched_setaffinity(0, sizeof one, &one);
-  };
+  const test::OneCore one_core;
   Memory memory(kCapacity);
   RingWriter writer(memory.place());
   RingReader reader(memory.place(), kSize);
   const auto sent = message(kSize, 1);
   Bytes taken;
   bool whole = false;
-  std::thread both([&] {
-    pin();
-    std::thread reading([&] { whole = take_one(reader, taken, soon()); });  // on the same core
-    CHECK(writer.write({sent}, 20s, never));
-    reading.join();
-  });
-  both.join();
+  std::thread reading([&] { whole = take_one(reader, taken, soon()); });
+  CHECK(writer.write({sent}, 20s, never));
+  reading.join();
   REQUIRE(whole);
   CHECK(equal(taken, sent));
   // It sleeps where the ring is empty, and is woken where that is full, or at the end.
