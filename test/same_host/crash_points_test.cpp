@@ -15,6 +15,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <random>
@@ -124,20 +125,21 @@ class Client {
       from.take([this](const dds::Sample& sample) {
         (text_of(sample.cdr) == kAnswer ? answers_ : nonsense_)++;
       });
+      delivery_->wake();  // The answer to the first call may be taken by another thread.
     };
     reader_ = ports_.create_reader(kReplies, in_partition(writer_->guid()), std::move(reader));
+    delivery_ = reader_->caller_delivery();
   }
 
   Outcome call() {
     const int before = answers_ + nonsense_;
-    const auto delivery = reader_->caller_delivery();
-    delivery->lend();
+    delivery_->lend();
     try {
       writer_->write(message(kQuestion));
     } catch (const Error&) {
       return Outcome::Ended;
     }
-    delivery->deliver_until([&] { return answers_ + nonsense_ > before; });
+    delivery_->deliver_until([&] { return answers_ + nonsense_ > before; });
     if (nonsense_ > 0) return Outcome::Nonsense;
     return answers_ > before ? Outcome::Answered : Outcome::Ended;
   }
@@ -152,6 +154,7 @@ class Client {
   std::atomic<int> nonsense_{0};
   std::atomic<bool> ended_{false};
   std::unique_ptr<dds::Writer> writer_;
+  std::shared_ptr<dds::CallerDelivery> delivery_;
   std::unique_ptr<dds::Reader> reader_;
 };
 
