@@ -104,6 +104,7 @@ std::optional<int> as_another_user(Action&& action) {
   REQUIRE(child >= 0);
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    alarm(60);
     _exit(setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99);
   }
   int status = 0;
@@ -275,6 +276,7 @@ TEST_CASE("a process has its share of the connections, and the log tells once wh
   const pid_t child = fork();
   REQUIRE(child >= 0);
   if (child == 0) {
+    alarm(60);
     const FileDescriptor socket = stranger(host);
     const auto hello = hello_of(Guid::random());
     char answer[128] = {};
