@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <fstream>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -95,7 +97,9 @@ void damage(const std::function<void(RingState& requests, RingState& replies)>& 
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
     if (line.find("memfd:skein") == std::string::npos) continue;
-    auto* const states = reinterpret_cast<RingState*>(std::stoull(line, nullptr, 16));
+    void* begin = nullptr;
+    REQUIRE(std::sscanf(line.c_str(), "%p", &begin) == 1);
+    auto* const states = static_cast<RingState*>(begin);
     how(states[0], states[1]);
   }
 }
@@ -290,7 +294,7 @@ TEST_CASE("a provider that has damaged what it shared is not met there again") {
   ClientPort clients(meeting, {participant()});
   std::shared_ptr<Link> link;  // the meeting's thread's
   meeting.offer(
-      id, id, [] {}, [&](std::shared_ptr<Link> made) { link = made; });
+      id, id, [] {}, [&](std::shared_ptr<Link> made) { link = std::move(made); });
   Story at_client;
   const auto request = clients.create_writer(kRequests, in_partition(id), {});
   const auto replies =

@@ -59,7 +59,9 @@ TEST_CASE("a client that sleeps where its requests are answered is woken for sev
 TEST_CASE("clients that sleep where their requests are answered are woken together") {
   const OneCore one_core;
   const Connection connections[3];
-  const auto& [first, second, last] = connections;
+  const Connection& first = connections[0];
+  const Connection& second = connections[1];
+  const Connection& last = connections[2];
   Server server;
   REQUIRE(eventually([&] {
     for (const Connection& each : connections) each.request();

@@ -70,7 +70,7 @@ struct OneCoreService final : Inbox {
   OneCoreService() {
     for (const auto& each : connections) receiver.add(each.server, *this);
   }
-  ~OneCoreService() {
+  ~OneCoreService() override {
     may_answer = last_may_answer = true;
     receiver.remove(*this);
   }
