@@ -32,9 +32,9 @@ void SpinPolicy::note(Duration waited) {
   score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
 }
 
-/// The turns of a thread that leads, or of a caller.
-struct Receiver::Turns {
-  Turns(Who who_, Lead* lead_) : who(who_), lead(lead_) {}
+/// A thread that takes messages: one that leads, or a caller.
+struct Receiver::Taker {
+  Taker(Who who_, Lead* lead_) : who(who_), lead(lead_) {}
 
   const Who who;
   Lead* const lead;        ///< Null for a caller.
@@ -46,28 +46,28 @@ struct Receiver::Turns {
 /// A turn whose link is locked.
 class Receiver::OwnTurn final : public Turn {
  public:
-  OwnTurn(Receiver& receiver, Turns& turns, Link& link, Bytes& spare,
+  OwnTurn(Receiver& receiver, Taker& taker, Link& link, Bytes& spare,
           std::unique_lock<std::mutex>& lock)
-      : receiver_(receiver), turns_(turns), link_(link), spare_(spare), lock_(lock) {
-    if (turns.who != Who::Caller) answering_.emplace(link, turns.sleepers, turns.others_wait);
+      : receiver_(receiver), taker_(taker), link_(link), spare_(spare), lock_(lock) {
+    if (taker.who != Who::Caller) answering_.emplace(link, taker.sleepers, taker.others_wait);
   }
 
   // Of a consumer the receiver itself is the stand-in.
   bool leave() override {
     if (left()) return true;
-    if (turns_.who == Who::Caller) return false;
-    if (turns_.who == Who::Leader && !receiver_.has_stand_in()) return false;
+    if (taker_.who == Who::Caller) return false;
+    if (taker_.who == Who::Leader && !receiver_.has_stand_in()) return false;
     link_.release(spare_);
     lock_.unlock();
-    turns_.left = turns_.lead->leave();
+    taker_.left = taker_.lead->leave();
     return true;
   }
-  bool left() const { return turns_.left != 0; }
-  bool come_back() { return turns_.lead->take_back(std::exchange(turns_.left, 0)); }
+  bool left() const { return taker_.left != 0; }
+  bool come_back() { return taker_.lead->take_back(std::exchange(taker_.left, 0)); }
 
  private:
   Receiver& receiver_;  // gone, perhaps, once a consumer has left its turn
-  Turns& turns_;
+  Taker& taker_;
   Link& link_;
   Bytes& spare_;
   std::unique_lock<std::mutex>& lock_;
@@ -126,10 +126,10 @@ class Receiver::Entry final : public dds::CallerDelivery, public WatchedLink {
 
 void Receiver::Entry::deliver_until(const std::function<bool()>& over_) noexcept {
   thread_local Bytes spare;
-  Turns turns(Who::Caller, nullptr);
+  Taker taker(Who::Caller, nullptr);
   if (has_caller.exchange(true)) return take_back();
   while (!over && !over_()) {
-    if (receiver.look_at(*this, spare, turns) == Looked::Nothing) sleep(over_);
+    if (receiver.look_at(*this, spare, taker) == Looked::Nothing) sleep(over_);
   }
   has_caller = false;
   if (over) take_back();
@@ -318,10 +318,10 @@ bool Receiver::is_stopping() const {
 // By who has the lead, until `over`, which notify() makes it look at, or the receiver ends. False
 // where somebody has stood in; a consumer's receiver may be gone then.
 bool Receiver::lead(Who who, const std::function<bool()>& over) {
-  Turns turns(who, lead_.get());
+  Taker taker(who, lead_.get());
   while (true) {
     wake_peers();  // also those whom the thread that led before has let sleep
-    turns.sleepers.clear();
+    taker.sleepers.clear();
     notified_->store(0);
     Entries entries;  // at last those before, whose links may end with them: not under the lock
     {
@@ -334,13 +334,13 @@ bool Receiver::lead(Who who, const std::function<bool()>& over) {
     entries.clear();
     while (notified_->load() == 0) {
       if (over()) {
-        wake(turns.sleepers);
+        wake(taker.sleepers);
         return true;
       }
-      const Looked looked = look_at_all(turns);
+      const Looked looked = look_at_all(taker);
       if (looked == Looked::Replaced) return false;
       if (looked == Looked::Nothing) {
-        wake(turns.sleepers);
+        wake(taker.sleepers);
         await();
       }
     }
@@ -361,7 +361,7 @@ bool Receiver::has_stand_in() {
   return true;
 }
 
-Receiver::Looked Receiver::look_at_all(Turns& turns) {
+Receiver::Looked Receiver::look_at_all(Taker& taker) {
   const auto next = [&](Entries::const_iterator from) {
     return std::find_if(from, led_.cend(),
                         [](const auto& entry) { return entry->has_something(); });
@@ -369,21 +369,21 @@ Receiver::Looked Receiver::look_at_all(Turns& turns) {
   Looked all = Looked::Nothing;
   for (auto entry = next(led_.cbegin()); entry != led_.cend();) {
     const auto after = next(entry + 1);
-    turns.others_wait = after != led_.cend();
-    const Looked looked = look_at(**entry, spare_, turns);
+    taker.others_wait = after != led_.cend();
+    const Looked looked = look_at(**entry, spare_, taker);
     if (looked == Looked::Replaced) return looked;
     if (looked == Looked::Something) {
       all = looked;
       (*entry)->sleeps_in_vain = 0;
     }
-    if (turns.sleepers.due()) wake(turns.sleepers);  // also where no whole message has come
+    if (taker.sleepers.due()) wake(taker.sleepers);  // also where no whole message has come
     entry = after;
   }
   return all;
 }
 
 // On the thread that leads, or a caller's.
-Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Turns& turns) {
+Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
   Link& link = *entry.link;
   if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return Looked::Nothing;
   std::unique_lock lock(entry.mutex);
@@ -396,11 +396,11 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Turns& turns) {
       const auto message = link.receive(spare);
       if (!message) break;
       if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
-      OwnTurn turn(*this, turns, link, spare, lock);
+      OwnTurn turn(*this, taker, link, spare, lock);
       entry.inbox.on_message(link, *message, turn);
       const bool left = turn.left();
       if (left && !turn.come_back()) return Looked::Replaced;
-      if (turns.sleepers.due()) wake(turns.sleepers);
+      if (taker.sleepers.due()) wake(taker.sleepers);
       if (left) return Looked::Something;
       link.release(spare);
     }

@@ -124,15 +124,15 @@ class Receiver {
   using Entries = std::vector<std::shared_ptr<Entry>>;
   enum class Who { Leader, Consumer, Caller };
   enum class Looked { Nothing, Something, Replaced };
-  struct Turns;
+  struct Taker;
 
   void run(bool leads);
   bool lead(Who who, const std::function<bool()>& over);
   bool has_stand_in();
   bool is_stopping() const;
-  Looked look_at(Entry& entry, Bytes& spare, Turns& turns);
+  Looked look_at(Entry& entry, Bytes& spare, Taker& taker);
   bool brings_too_much(Entry& entry);
-  Looked look_at_all(Turns& turns);
+  Looked look_at_all(Taker& taker);
   void drop_ended();
   void leave_quiet_ones();
   void wake(Sleepers& sleepers) const;

@@ -47,13 +47,14 @@ class Sleeper {
   std::thread thread_;
 };
 
-Instant soon() { return std::chrono::steady_clock::now() + test::kPatience; }
+/// Long after a test has failed, so that it ends.
+Instant late() { return std::chrono::steady_clock::now() + 3 * test::kPatience; }
 
-void sleep_on(Word& word) { futex_wait(word, 1, Instant::max()); }
+void sleep_on(Word& word) { futex_wait(word, 1, late()); }
 
 void sleep_on_both(Word& one, Word& other) {
   futex_waitv words[] = {while_it_is(one, 1), while_it_is(other, 1)};
-  futex_wait(words);
+  futex_wait(words, late());
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ TEST_CASE("what a hostile client makes of its own word keeps nobody else asleep"
   SECTION("such that the kernel refuses to wake anybody") {
     // As the lock of a mutex with priority inheritance, which this thread holds.
     const Sleeper waits_for_lock([&] {
-      const auto until = to_timespec(soon());
+      const auto until = to_timespec(late());
       syscall(SYS_futex, &hostile, FUTEX_LOCK_PI2, 0, &*until, nullptr, 0);
       syscall(SYS_futex, &hostile, FUTEX_UNLOCK_PI, 0, nullptr, nullptr, 0);
     });

@@ -8,12 +8,12 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/one_core.hpp"
-#include "connection.hpp"
+#include "link_pair.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
-using skein::test::Connection;
 using skein::test::eventually;
+using skein::test::LinkPair;
 using skein::test::OneCore;
 
 namespace {
@@ -21,19 +21,19 @@ namespace {
 /// Who answers the requests of connections, on this thread.
 struct Server {
   /// The next request of one, whose client sleeps if it has nothing; whether it still does.
-  bool answer_lets_sleep(const Connection& connection, bool others_wait = false) {
+  bool answer_lets_sleep(const LinkPair& connection, bool others_wait = false) {
     while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
     connection.take_request();
     const Link::Answering answering(*connection.server, sleepers, others_wait);
     connection.answer();
     return sleeps(connection);
   }
-  static bool sleeps(const Connection& connection) { return connection.client->in().word() != 0; }
+  static bool sleeps(const LinkPair& connection) { return connection.client->in().word() != 0; }
 
-  void wake(std::initializer_list<const Connection*> connections) {
+  void wake(std::initializer_list<const LinkPair*> connections) {
     sleepers.clear();
     Wakes wakes;
-    for (const Connection* each : connections) each->server->wake_peer(wakes);
+    for (const LinkPair* each : connections) each->server->wake_peer(wakes);
   }
 
   bool replaced = false;
@@ -45,7 +45,7 @@ struct Server {
 // On a busy machine calls may take too long to let anybody sleep.
 TEST_CASE("a client that sleeps where its requests are answered is woken for several answers") {
   const OneCore one_core;
-  const Connection connection;
+  const LinkPair connection;
   Server server;
   connection.request();
   REQUIRE(eventually([&] {
@@ -58,13 +58,13 @@ TEST_CASE("a client that sleeps where its requests are answered is woken for sev
 
 TEST_CASE("clients that sleep where their requests are answered are woken together") {
   const OneCore one_core;
-  const Connection connections[3];
-  const Connection& first = connections[0];
-  const Connection& second = connections[1];
-  const Connection& last = connections[2];
+  const LinkPair connections[3];
+  const LinkPair& first = connections[0];
+  const LinkPair& second = connections[1];
+  const LinkPair& last = connections[2];
   Server server;
   REQUIRE(eventually([&] {
-    for (const Connection& each : connections) each.request();
+    for (const LinkPair& each : connections) each.request();
     const bool first_sleeps = server.answer_lets_sleep(first, true);
     const bool second_sleeps = server.answer_lets_sleep(second, true);
     const bool last_sleeps = server.answer_lets_sleep(last);
@@ -74,12 +74,12 @@ TEST_CASE("clients that sleep where their requests are answered are woken togeth
   }));
   CHECK(server.sleepers.any());
   server.wake({&first, &second, &last});
-  for (const Connection& each : connections) CHECK_FALSE(Server::sleeps(each));
+  for (const LinkPair& each : connections) CHECK_FALSE(Server::sleeps(each));
 }
 
 TEST_CASE("a client is woken by the answer to the last request of all") {
   const OneCore one_core;
-  const Connection connection;
+  const LinkPair connection;
   Server server;
   connection.request();
   CHECK_FALSE(server.answer_lets_sleep(connection));
@@ -87,7 +87,7 @@ TEST_CASE("a client is woken by the answer to the last request of all") {
 
 TEST_CASE("a client is woken at once while one has been let sleep for long") {
   const OneCore one_core;
-  const Connection some, other;
+  const LinkPair some, other;
   Server server;
   REQUIRE(eventually([&] {
     some.request();
@@ -102,7 +102,7 @@ TEST_CASE("a client is woken at once while one has been let sleep for long") {
 
 TEST_CASE("a client is woken at once where another thread goes on") {
   const OneCore one_core;
-  const Connection connection;
+  const LinkPair connection;
   Server server;
   server.replaced = true;
   CHECK(eventually([&] {
@@ -115,7 +115,7 @@ TEST_CASE("a client is woken at once where another thread goes on") {
 
 TEST_CASE("a client is woken at once where there is no room for its answer") {
   const OneCore one_core;
-  const Connection connection;
+  const LinkPair connection;
   Server server;
   const std::vector<std::byte> longer(2 * Link::kCapacity);
   connection.request();
@@ -127,7 +127,7 @@ TEST_CASE("a client is woken at once where there is no room for its answer") {
 
 TEST_CASE("a client is woken at once by what is no answer, or comes from another thread") {
   const OneCore one_core;
-  const Connection connection;
+  const LinkPair connection;
   for (int i = 0; i < 20; ++i) {
     connection.request();
     connection.request();

@@ -7,18 +7,18 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/threads.hpp"
-#include "connection.hpp"
+#include "link_pair.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
-using skein::test::Connection;
 using skein::test::eventually;
+using skein::test::LinkPair;
 using skein::test::threads_named;
 
 namespace {
 
 /// A connection whose server is waited for.
-struct WatchedConnection : Connection {
+struct WatchedPair : LinkPair {
   std::shared_ptr<WatchedLink> watched = std::make_shared<WatchedLink>(server);
 };
 
@@ -36,7 +36,7 @@ struct Watched {
 
 TEST_CASE("a link is quiet until something has come") {
   Watched watched;
-  WatchedConnection some, other;
+  WatchedPair some, other;
   REQUIRE(watched.links.add(some.watched));
   REQUIRE(watched.links.add(other.watched));
   CHECK(some.watched->quiet);
@@ -51,7 +51,7 @@ TEST_CASE("a link is quiet until something has come") {
 
 TEST_CASE("a link to which something has come already is not quiet") {
   Watched watched;
-  WatchedConnection connection;
+  WatchedPair connection;
   connection.request();
   CHECK_FALSE(watched.links.add(connection.watched));
   CHECK_FALSE(connection.watched->quiet);
@@ -60,7 +60,7 @@ TEST_CASE("a link to which something has come already is not quiet") {
 
 TEST_CASE("what somebody else takes from a quiet link has come all the same") {
   Watched watched;
-  WatchedConnection connection;
+  WatchedPair connection;
   REQUIRE(watched.links.add(connection.watched));
   connection.request();
   connection.take_request();
@@ -70,7 +70,7 @@ TEST_CASE("what somebody else takes from a quiet link has come all the same") {
 
 TEST_CASE("a link can be quiet again, and its reader has left no sleep behind") {
   Watched watched;
-  WatchedConnection connection;
+  WatchedPair connection;
   for (int i = 0; i < 3; ++i) {
     REQUIRE(watched.links.add(connection.watched));
     connection.request();
@@ -82,7 +82,7 @@ TEST_CASE("a link can be quiet again, and its reader has left no sleep behind") 
 
 TEST_CASE("a link that is over is let go of") {
   Watched watched;
-  WatchedConnection connection;
+  WatchedPair connection;
   REQUIRE(watched.links.add(connection.watched));
   const std::weak_ptr<WatchedLink> gone = connection.watched;
   connection.watched->over = true;
@@ -95,14 +95,14 @@ TEST_CASE("a link that is over is let go of") {
 TEST_CASE("as many threads as quiet links need wait for them, and end with the last") {
   {
     QuietLinks none("test-quiet", [] {});
-    std::vector<WatchedConnection> connections(kMostWords);
+    std::vector<WatchedPair> connections(kMostWords);
     CHECK_FALSE(none.add(connections.front().watched));
     CHECK(eventually([] { return threads_named("test-quiet").empty(); }));
     Watched watched;
     watched.links.reserve(kMostWords);
-    for (const WatchedConnection& each : connections) REQUIRE(watched.links.add(each.watched));
+    for (const WatchedPair& each : connections) REQUIRE(watched.links.add(each.watched));
     CHECK(eventually([] { return threads_named("test-quiet").size() == 2; }));
-    for (const WatchedConnection& each : connections) {
+    for (const WatchedPair& each : connections) {
       each.request();
       CHECK(watched.has_told());
       CHECK_FALSE(each.watched->quiet);

@@ -13,8 +13,8 @@
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
 #include "../tools/one_core.hpp"
-#include "connection.hpp"
 #include "core/abstract_socket.hpp"
+#include "link_pair.hpp"
 #include "same_host/meeting.hpp"
 
 using namespace skein;
@@ -100,12 +100,12 @@ struct OneCoreService final : Inbox {
   bool wakes(std::size_t client) const {
     return eventually([&] { return connections[client].client->in().word() == 0; });
   }
-  static bool let_sleep(const test::Connection& connection) {
+  static bool let_sleep(const test::LinkPair& connection) {
     return connection.client->in().ready() && connection.client->in().word() != 0;
   }
 
   const test::OneCore one_core;
-  const test::Connection connections[3];
+  const test::LinkPair connections[3];
   std::atomic<bool> may_answer{false};
   std::atomic<bool> last_may_answer{true};
   std::atomic<std::ptrdiff_t> are_let_sleep{0};  // after the latest answer

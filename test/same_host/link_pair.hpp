@@ -12,8 +12,8 @@
 namespace skein::test {
 
 /// Both ends of a connection through shared memory, without a meeting.
-struct Connection {
-  Connection() {
+struct LinkPair {
+  LinkPair() {
     auto memory = same_host::SharedMemory::make(same_host::Link::kMemory);
     auto theirs = same_host::SharedMemory::map(memory.take_descriptor(), same_host::Link::kMemory);
     server = end(same_host::Link::Side::Provider, std::move(memory));
