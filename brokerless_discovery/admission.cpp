@@ -44,7 +44,7 @@ void check_text(const char* what, const std::string& text, std::size_t most = kM
   }
 }
 
-void check_name(const char* what, const std::string& name) {
+void check_announced_name(const char* what, const std::string& name) {
   check_text(what, name);
   if (!is_name(name)) throw Refused(Refusal::Malformed, std::string(what) + " is no name");
 }
@@ -60,8 +60,8 @@ void check_interface(const std::string& name) {
 void check_owner(const std::string& owner) {
   if (owner.empty()) return;
   const auto slash = owner.find('/');
-  check_name("its owner's system", owner.substr(0, slash));
-  check_name("its owner", slash == std::string::npos ? "" : owner.substr(slash + 1));
+  check_announced_name("its owner's system", owner.substr(0, slash));
+  check_announced_name("its owner", slash == std::string::npos ? "" : owner.substr(slash + 1));
 }
 
 }  // namespace
@@ -87,8 +87,8 @@ void check_description(const discovery::ServiceDescription& description, const G
   check_count("members of types that may grow", description.growing.size(), kMaxGrowing);
   check_count("subcomponents", description.subcomponents.size(), kMaxBases);
   check_count("attributes", description.attributes.size(), kMaxAttributes);
-  check_name("its system", description.system);
-  check_name("its entity", description.entity);
+  check_announced_name("its system", description.system);
+  check_announced_name("its entity", description.entity);
   check_owner(description.owner);
   check_interface(description.service);
   for (const auto& base : description.bases) check_text("a base", base);

@@ -55,9 +55,9 @@ struct Victim {
   }
 };
 
-Comparison comparison_of(const char* claim, const Victim& victim,
-                         const std::vector<double>& samples, const Limit& limit,
-                         const std::string& where) {
+Comparison death_comparison(const char* claim, const Victim& victim,
+                            const std::vector<double>& samples, const Limit& limit,
+                            const std::string& where) {
   Comparison comparison{claim, victim.configuration.name, limit.name, {{"where", where}}};
   fill(comparison, {samples, victim.absence}, {{limit.time_us}});
   return comparison;
@@ -81,8 +81,8 @@ std::vector<Comparison> compare_deaths(std::span<const Victim> victims, const Li
                                        const std::string& where) {
   std::vector<Comparison> comparisons;
   for (const Victim& victim : victims) {
-    comparisons.push_back(comparison_of(kToldClaim, victim, victim.told_us, limit, where));
-    comparisons.push_back(comparison_of(kGoneClaim, victim, victim.gone_us, limit, where));
+    comparisons.push_back(death_comparison(kToldClaim, victim, victim.told_us, limit, where));
+    comparisons.push_back(death_comparison(kGoneClaim, victim, victim.gone_us, limit, where));
   }
   return comparisons;
 }

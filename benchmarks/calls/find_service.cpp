@@ -70,8 +70,8 @@ class Finder {
   Absence absence_;
 };
 
-Comparison comparison_of(const char* claim, const char* rival, std::size_t count,
-                         const Outcome& own, const Outcome& other) {
+Comparison search_comparison(const char* claim, const char* rival, std::size_t count,
+                             const Outcome& own, const Outcome& other) {
   Comparison comparison{claim, "skein", rival, {{"descriptions", count}}};
   comparison.parameters["placement"] = "anywhere";
   fill(comparison, own, other);
@@ -96,10 +96,10 @@ std::vector<Comparison> compare_find_service(Configurations& configurations, con
                kSeed);
     for (std::size_t i = 0; i < plan.rounds; ++i) own.search("choose", plan.searches, chosen);
     comparisons.push_back(
-        comparison_of(kClaim, "omniORB's name server", count, found, found_there));
-    comparisons.push_back(comparison_of(kClaim, kLimit, count, found, promise));
+        search_comparison(kClaim, "omniORB's name server", count, found, found_there));
+    comparisons.push_back(search_comparison(kClaim, kLimit, count, found, promise));
     // omniORB's name server knows no constraints.
-    comparisons.push_back(comparison_of(kChoosing, kLimit, count, chosen, promise));
+    comparisons.push_back(search_comparison(kChoosing, kLimit, count, chosen, promise));
   }
   return comparisons;
 }

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kContent = 16;
 
 template <class Run>
-Times timed(std::uint32_t count, Run run) {
+Times timed_runs(std::uint32_t count, Run run) {
   Times times;
   times.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -59,14 +59,14 @@ class StopwatchBody final : public Stopwatch {
   Times direct(std::uint32_t count) override {
     auto echo = direct_.proxy();
     const Content content(kContent, 1);
-    return timed(count, [&] { echo.echo(content); });
+    return timed_runs(count, [&] { echo.echo(content); });
   }
 
   Times perform(std::uint32_t count) override {
     const Content content(kContent, 1);
     Task<Echo, Content> task;
     task.run = [&](Echo::Proxy& echo, Duration) { return echo.echo(content); };
-    return timed(count, [&] { head_.perform(task); });
+    return timed_runs(count, [&] { head_.perform(task); });
   }
 
  private:

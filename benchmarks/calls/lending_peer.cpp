@@ -27,7 +27,7 @@ class LastOctet final : public Viewer {
 
 /// `pass(value, number)` returns what has been seen of a value that ends with this number.
 template <class T, class Pass>
-std::string timed(const std::string& count, T& value, Pass pass) {
+std::string timed_passes(const std::string& count, T& value, Pass pass) {
   std::string times = "times";
   for (std::size_t i = 0; i < std::stoul(count); ++i) {
     const auto number = static_cast<std::uint8_t>(i);
@@ -57,16 +57,18 @@ void lend(const SkeinPeer& peer) {
   const auto copy = std::make_unique<OneMebibyte>();
   run_commands({{"lend_one",
                  [&](const std::string& count) {
-                   return timed(count, *one,
-                                [&](const OneMebibyte& value) { return viewer.see_one(value); });
+                   return timed_passes(count, *one, [&](const OneMebibyte& value) {
+                     return viewer.see_one(value);
+                   });
                  }},
                 {"lend_many",
                  [&](const std::string& count) {
-                   return timed(count, *many,
-                                [&](const ManyMebibytes& value) { return viewer.see_many(value); });
+                   return timed_passes(count, *many, [&](const ManyMebibytes& value) {
+                     return viewer.see_many(value);
+                   });
                  }},
                 {"copy_one", [&](const std::string& count) {
-                   return timed(count, *one, [&](const OneMebibyte& value) {
+                   return timed_passes(count, *one, [&](const OneMebibyte& value) {
                      std::memcpy(copy->data(), value.data(), value.size());
                      return copy->back();
                    });

@@ -41,7 +41,7 @@ std::string head_of(const Trial& trial) {
   return head + "\n";
 }
 
-std::string row_of(const Trial& trial, const std::string& single_best) {
+std::string trial_row(const Trial& trial, const std::string& single_best) {
   const Request& request = *trial.request;
   const Answer& answer = trial.answers.at("learned");
   std::string row =
@@ -65,7 +65,7 @@ void write_decision_table(const std::vector<Trial>& trials, const std::filesyste
   const std::string single_best = single_best_of(trials);
   std::ofstream table(file);
   if (!trials.empty()) table << head_of(trials.front());
-  for (const Trial& trial : trials) table << row_of(trial, single_best);
+  for (const Trial& trial : trials) table << trial_row(trial, single_best);
   if (!table.flush())
     throw Internal(file.string() + " cannot be written; is its folder there and writable?");
 }

@@ -37,7 +37,7 @@ std::string judgement_of(const Verdict& verdict) {
   return fmt::format("{} ({} of {}{})", word, verdict.met, verdict.measured, failed);
 }
 
-std::string row_of(const Verdict& verdict) {
+std::string verdict_row(const Verdict& verdict) {
   const std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", escaped(verdict.goal->text),
                                       limit_text(*verdict.goal));
   if (verdict.worst == nullptr) {
@@ -65,7 +65,7 @@ std::string markdown_row_of(const Verdict& verdict) {
 
 std::string goals_section(const std::vector<Comparison>& comparisons) {
   std::string rows;
-  for (const Verdict& verdict : judge(comparisons)) rows += row_of(verdict);
+  for (const Verdict& verdict : judge(comparisons)) rows += verdict_row(verdict);
   return "<section><h2>Goals</h2><table><thead><tr><th>goal</th><th>limit</th><th>worst in this "
          "run</th><th>medians</th><th>where</th><th>comparisons that meet "
          "it</th></tr></thead><tbody>" +

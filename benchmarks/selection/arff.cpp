@@ -96,9 +96,9 @@ class Line {
   std::size_t at_ = 0;
 };
 
-class Reader {
+class ArffReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : stream_(file) {
+  explicit ArffReader(const std::filesystem::path& file) : stream_(file) {
     arff_.file = file;
     if (!stream_) throw InvalidArgument(file.string() + " cannot be read; name a file that can");
   }
@@ -245,6 +245,6 @@ std::optional<double> Arff::number(const ArffRow& row, std::size_t column) const
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-Arff read_arff(const std::filesystem::path& file) { return Reader(file).read(); }
+Arff read_arff(const std::filesystem::path& file) { return ArffReader(file).read(); }
 
 }  // namespace skein::benchmarks::selection

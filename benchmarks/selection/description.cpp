@@ -11,9 +11,9 @@
 namespace skein::benchmarks::selection {
 namespace {
 
-class Reader {
+class DescriptionReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file) {
+  explicit DescriptionReader(const std::filesystem::path& file) : file_(file) {
     std::ifstream stream(file);
     if (!stream) throw InvalidArgument(file.string() + " cannot be read; name an ASlib folder");
     try {
@@ -188,6 +188,8 @@ std::vector<std::string> Description::used_steps() const {
   return used;
 }
 
-Description read_description(const std::filesystem::path& file) { return Reader(file).read(); }
+Description read_description(const std::filesystem::path& file) {
+  return DescriptionReader(file).read();
+}
 
 }  // namespace skein::benchmarks::selection

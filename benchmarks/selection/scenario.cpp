@@ -34,9 +34,9 @@ struct Repetitions {
   bool late = false;
 };
 
-class Reader {
+class ScenarioReader {
  public:
-  explicit Reader(const std::filesystem::path& folder)
+  explicit ScenarioReader(const std::filesystem::path& folder)
       : folder_(folder), description_(read_description(folder / "description.txt")) {
     scenario_.id = description_.id;
     scenario_.cutoff_s = description_.cutoff_s;
@@ -263,6 +263,8 @@ std::size_t Scenario::virtual_best(const Instance& instance) const {
   return static_cast<std::size_t>(best - instance.runs.begin());
 }
 
-Scenario read_scenario(const std::filesystem::path& folder) { return Reader(folder).read(); }
+Scenario read_scenario(const std::filesystem::path& folder) {
+  return ScenarioReader(folder).read();
+}
 
 }  // namespace skein::benchmarks::selection

@@ -41,7 +41,7 @@ class Server {
   const pid_t pid_;
 };
 
-void print(const Rows& rows) {
+void print_rows(const Rows& rows) {
   std::printf("%-10s %-18s %-13s %8s %7s %9s %9s %9s\n", "what", "vendor", "transport", "payload",
               "samples", "p50 us", "p90 us", "p99 us");
   for (const Rows& row : rows) {
@@ -57,7 +57,7 @@ void save(const Rows& rows, const std::string& path) {
   write_output([&] { write_whole_file("the report", path, rows.dump(2) + '\n'); });
 }
 
-int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&)) {
+int run_bench(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&)) {
   if (arguments.serve) {
     bench::serve(arguments);
     return 0;
@@ -68,7 +68,7 @@ int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&))
   std::unique_ptr<Server> server;
   if (!arguments.remote) server = std::make_unique<Server>(arguments);
   const Rows rows = measure(arguments);
-  print(rows);
+  print_rows(rows);
   if (!arguments.output.empty()) save(rows, arguments.output);
   return 0;
 }
@@ -76,15 +76,15 @@ int run(const BenchArguments& arguments, Rows (*measure)(const BenchArguments&))
 }  // namespace
 
 int bench_latency(const BenchArguments& arguments) {
-  return run(arguments, bench::measure_latency);
+  return run_bench(arguments, bench::measure_latency);
 }
 
 int bench_throughput(const BenchArguments& arguments) {
-  return run(arguments, bench::measure_throughput);
+  return run_bench(arguments, bench::measure_throughput);
 }
 
 int bench_discovery(const BenchArguments& arguments) {
-  return run(arguments, bench::measure_discovery);
+  return run_bench(arguments, bench::measure_discovery);
 }
 
 }  // namespace skein::command

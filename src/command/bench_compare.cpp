@@ -36,7 +36,7 @@ std::string way_of(const Rows& row) {
   return transport == "DDS" ? vendor : vendor + ", " + transport;
 }
 
-void print(const Rows& before, const Rows& after) {
+void print_comparison(const Rows& before, const Rows& after) {
   const double old_p50 = before["p50_us"], new_p50 = after["p50_us"];
   const double old_p99 = before["p99_us"], new_p99 = after["p99_us"];
   std::printf("%-10s %8d  %-25s %-25s %9.1f %9.1f %7.2f %7.2f\n",
@@ -56,7 +56,7 @@ int bench_compare(const BenchCompareArguments& arguments) {
   for (const Rows& old_row : old_rows) {
     for (const Rows& new_row : new_rows) {
       if (!same(old_row, new_row)) continue;
-      print(old_row, new_row);
+      print_comparison(old_row, new_row);
       ++shared;
     }
   }

@@ -22,7 +22,7 @@ namespace skein::command {
 namespace {
 
 constexpr std::size_t kLongestException = 4096;
-constexpr std::chrono::milliseconds kLookAgain{20};
+constexpr std::chrono::milliseconds kTablePeriod{20};
 
 std::string values_of(const CallArguments& arguments) {
   if (arguments.values != "-") return arguments.values;
@@ -30,14 +30,14 @@ std::string values_of(const CallArguments& arguments) {
 }
 
 /// What the operation returns, where it has no out parameters beside it; otherwise all of them.
-std::string shown(const std::string& result, bool json) {
+std::string result_text(const std::string& result, bool json) {
   const auto members = nlohmann::ordered_json::parse(result);
   const bool alone = members.size() == 1 && members.contains("return_");
   return json_text(alone ? members["return_"].dump() : result, !json);
 }
 
 /// What JSON has for a type.
-std::string word_of(const types::Type& type) {
+std::string type_word(const types::Type& type) {
   switch (type.kind) {
     case types::Kind::Boolean:
       return "true or false";
@@ -49,11 +49,11 @@ std::string word_of(const types::Type& type) {
       return "string";
     case types::Kind::Sequence:
     case types::Kind::Array:
-      return "array of " + word_of(type.elements.at(0));
+      return "array of " + type_word(type.elements.at(0));
     case types::Kind::Map:
       return "array of pairs";
     case types::Kind::OptionalMember:
-      return word_of(type.elements.at(0)) + " or null";
+      return type_word(type.elements.at(0)) + " or null";
     case types::Kind::Declared:
       return type.name;
     case types::Kind::Reference:
@@ -67,7 +67,7 @@ bool is_text(const types::Type& type) {
   return type.kind == types::Kind::String || type.kind == types::Kind::WideString;
 }
 
-std::vector<types::Parameter> parameters_of(const types::Operation& operation) {
+std::vector<types::Parameter> accepted_parameters(const types::Operation& operation) {
   std::vector<types::Parameter> taken;
   std::ranges::copy_if(operation.parameters, std::back_inserter(taken), [](const auto& parameter) {
     return parameter.direction != types::Direction::Out;
@@ -77,11 +77,11 @@ std::vector<types::Parameter> parameters_of(const types::Operation& operation) {
 
 /// What the operation needs, and how to write it.
 std::string needs_of(const types::Operation& operation, const std::string& values) {
-  const auto parameters = parameters_of(operation);
+  const auto parameters = accepted_parameters(operation);
   std::string text;
   for (const types::Parameter& parameter : parameters) {
     text += (text.empty() ? operation.name + " needs " : ", ") + parameter.name + " (" +
-            word_of(parameter.type) + ")";
+            type_word(parameter.type) + ")";
   }
   const bool structured = values.starts_with('{') || values.starts_with('[');
   const bool one_line = values.find('\n') == std::string::npos && !structured;
@@ -94,7 +94,7 @@ std::string needs_of(const types::Operation& operation, const std::string& value
 /// Before anything is sent: people forget arguments, and the quotes of JSON within those of the
 /// shell.
 void demand_arguments(const types::Operation& operation, const std::string& values) {
-  if (parameters_of(operation).empty()) {
+  if (accepted_parameters(operation).empty()) {
     if (values.empty() || values == "{}") return;
     throw InvalidArgument(operation.name + " takes no arguments; leave out '" + values + "'");
   }
@@ -132,7 +132,7 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   const auto is_there = [&](const auto& service) { return is_named(*service, arguments.name); };
   const Instant end = entity.clock().now() + options.timeout;
   while (std::ranges::none_of(broker.all(), is_there) && entity.clock().now() < end)
-    std::this_thread::sleep_for(kLookAgain);
+    std::this_thread::sleep_for(kTablePeriod);
   options.timeout = std::max(Duration::zero(), end - entity.clock().now());
   const auto services = services_of(broker, arguments.name);
   if (services.empty()) return options;
@@ -142,8 +142,8 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   return options;
 }
 
-void print(const std::string& result, bool json) {
-  if (result != "{}" || json) std::printf("%s\n", shown(result, json).c_str());
+void print_result(const std::string& result, bool json) {
+  if (result != "{}" || json) std::printf("%s\n", result_text(result, json).c_str());
   std::fflush(stdout);
 }
 
@@ -165,10 +165,10 @@ int call(const CallArguments& arguments) {
   try {
     if (idl::has(flags, types::OperationFlags::stream)) {
       for (const std::string& result : proxy.stream(arguments.operation, values)) {
-        print(result, arguments.json);
+        print_result(result, arguments.json);
       }
     } else {
-      print(proxy.call(arguments.operation, values), arguments.json);
+      print_result(proxy.call(arguments.operation, values), arguments.json);
     }
   } catch (const DynamicException& exception) {
     std::fflush(stdout);

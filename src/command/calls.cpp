@@ -19,7 +19,7 @@
 namespace skein::command {
 namespace {
 
-constexpr std::size_t kLongestError = 4096;
+constexpr std::size_t kLongestFailure = 4096;
 
 const char* word_of(introspection::CallStep step) {
   switch (step) {
@@ -39,7 +39,7 @@ const char* word_of(introspection::CallStep step) {
   return "failed";
 }
 
-void print(const introspection::CallEvent& event) {
+void print_event(const introspection::CallEvent& event) {
   constexpr std::uint64_t kSecond = 1'000'000'000;
   std::array<char, 32> step{};
   std::snprintf(step.data(), step.size(), ".%06u %-8s ",
@@ -48,17 +48,17 @@ void print(const introspection::CallEvent& event) {
                            printable(event.entity) + " " + printable(event.service) + "." +
                            printable(event.operation) + " #" + Guid{event.client}.hex() + ":" +
                            std::to_string(event.number) + (event.error.empty() ? "" : "  ") +
-                           printable(event.error, kLongestError);
+                           printable(event.error, kLongestFailure);
   std::printf("%s\n", folded(line, terminal_width()).c_str());
 }
 
-void print_as_json(const introspection::CallEvent& event) { print_json(json_of(event), false); }
+void print_event_json(const introspection::CallEvent& event) { print_json(json_of(event), false); }
 
 /// Tells of drops where there are more than the last time.
 class Narration {
  public:
   Narration(std::string entity, bool json)
-      : entity_(std::move(entity)), print_(json ? print_as_json : print) {}
+      : entity_(std::move(entity)), print_(json ? print_event_json : print_event) {}
 
   void tell(const introspection::CallEvents& batch) {
     if (batch.values.empty()) return;

@@ -45,7 +45,7 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
 
 namespace {
 
-std::string to_json(const std::vector<profile::Finding>& findings) {
+std::string json_of_findings(const std::vector<profile::Finding>& findings) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& finding : findings) {
     list.push_back({{"file", finding.where.file},
@@ -64,7 +64,7 @@ int check(const CheckArguments& arguments) {
   const auto findings = findings_of(arguments);
   const int result = profile::has_errors(findings) ? launch::kConfigurationError : 0;
   if (arguments.json) {
-    std::printf("%s\n", to_json(findings).c_str());
+    std::printf("%s\n", json_of_findings(findings).c_str());
     return result;
   }
   std::fputs(profile::to_text(findings).c_str(), stderr);

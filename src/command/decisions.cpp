@@ -29,12 +29,14 @@ namespace {
 constexpr std::size_t kLongestDifference = 4096;
 constexpr std::size_t kLongestPlace = 4096;
 
-void print(const introspection::Decision& record) {
+void print_decision(const introspection::Decision& record) {
   std::fputs(folded(explain(record), terminal_width()).c_str(), stdout);
   std::fflush(stdout);
 }
 
-void print_as_json(const introspection::Decision& record) { print_json(json_of(record), false); }
+void print_decision_json(const introspection::Decision& record) {
+  print_json(json_of(record), false);
+}
 
 bool is_wanted(const introspection::Decision& record, const DecisionsArguments& arguments) {
   return arguments.entity.empty() || is_entity_named(record.entity, arguments.entity);
@@ -47,7 +49,7 @@ void watch(const DecisionsArguments& arguments) {
       entity.participant(), introspection::kDecisions,
       [&arguments](const introspection::Decision& record) {
         if (!is_wanted(record, arguments)) return;
-        arguments.json ? print_as_json(record) : print(record);
+        arguments.json ? print_decision_json(record) : print_decision(record);
       });
   tell_waiting(arguments, "the next decision");
   interruption.wait(arguments.seconds);
@@ -153,14 +155,14 @@ void print_counts(std::size_t count, std::size_t different, bool json) {
 }
 
 // 0 where every decision comes out again; 1 otherwise.
-int read(const DecisionsArguments& arguments) {
+int read_log(const DecisionsArguments& arguments) {
   const StrategyFactory strategies = strategies_of(arguments);
   std::size_t count = 0, different = 0;
   const auto read_one = [&](const introspection::Decision& record, const std::string& place) {
     if (!is_wanted(record, arguments)) return;
     ++count;
     if (!arguments.replays) {
-      arguments.json ? print_as_json(record) : print(record);
+      arguments.json ? print_decision_json(record) : print_decision(record);
     } else if (const std::string what = difference(record, strategies); !what.empty()) {
       ++different;
       print_difference(record, place, what, arguments.json);
@@ -181,7 +183,7 @@ int read(const DecisionsArguments& arguments) {
 }  // namespace
 
 int show_decisions(const DecisionsArguments& arguments) {
-  if (!arguments.log.empty()) return read(arguments);
+  if (!arguments.log.empty()) return read_log(arguments);
   watch(arguments);
   return 0;
 }

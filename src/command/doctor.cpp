@@ -45,7 +45,7 @@ struct Read {
   bool sound = false;                              ///< Whether the profile has no errors.
 };
 
-Read read(const DoctorArguments& arguments) {
+Read read_mission(const DoctorArguments& arguments) {
   if (arguments.profile.empty()) return {};
   std::vector<profile::Finding> findings;
   auto mission = profile::read_and_check(arguments.profile, findings,
@@ -115,7 +115,7 @@ std::vector<std::string> usable_vendors(const doctor::Facts& facts) {
 
 int examine(const DoctorArguments& arguments) {
   const Interruption interruption;
-  const auto [mission, sound] = read(arguments);
+  const auto [mission, sound] = read_mission(arguments);
   const doctor::Purpose purpose = purpose_of(arguments, mission);
   const doctor::Facts facts = doctor::collect_facts();
   Symptoms symptoms = doctor::diagnose(purpose, facts);

@@ -9,7 +9,7 @@
 namespace skein::command {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{1000};
+constexpr std::chrono::milliseconds kAnswersWithin{1000};
 
 PeerPicture& of_participant(DomainPicture& picture, const Guid& participant,
                             const std::string& name) {
@@ -25,7 +25,8 @@ PeerPicture& of_participant(DomainPicture& picture, const Guid& participant,
 
 DomainPicture DomainLook::take(bool whole) {
   DomainPicture picture;
-  for (auto& [participant, answer] : inspector_.ask_all(inspection::Subject::Self, kPatience)) {
+  for (auto& [participant, answer] :
+       inspector_.ask_all(inspection::Subject::Self, kAnswersWithin)) {
     PeerPicture& peer = of_participant(picture, participant.participant(), answer.entity);
     if (!answer.peer.empty()) peer.process = answer.peer.front();
   }
@@ -39,10 +40,10 @@ DomainPicture DomainLook::take(bool whole) {
   }
   if (whole) {
     for (auto& [participant, answer] :
-         inspector_.ask_all(inspection::Subject::Topics, kPatience / 2))
+         inspector_.ask_all(inspection::Subject::Topics, kAnswersWithin / 2))
       of_participant(picture, participant.participant(), answer.entity).topics = answer.topics;
     for (auto& [participant, answer] :
-         inspector_.ask_all(inspection::Subject::Connections, kPatience / 2))
+         inspector_.ask_all(inspection::Subject::Connections, kAnswersWithin / 2))
       of_participant(picture, participant.participant(), answer.entity).connections =
           answer.connections;
   }

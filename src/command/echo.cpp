@@ -14,8 +14,8 @@ namespace skein::command {
 namespace {
 
 /// Until its time is over or it is interrupted; tells where nobody publishes any more.
-void watch(const DynamicSubscription& subscription, const KnownTopic& topic, double seconds,
-           const Interruption& interruption) {
+void watch_topic(const DynamicSubscription& subscription, const KnownTopic& topic, double seconds,
+                 const Interruption& interruption) {
   constexpr double kLookAgain = 1;
   bool has_publisher = false;
   for (double left = seconds; seconds <= 0 || left > 0; left -= kLookAgain) {
@@ -48,7 +48,7 @@ int echo(const TopicArguments& arguments) {
                                            std::fflush(stdout);
                                            if (++printed == arguments.count) interruption.end();
                                          });
-  watch(subscription, topic, arguments.seconds, interruption);
+  watch_topic(subscription, topic, arguments.seconds, interruption);
   const SubscriptionCounters lost = subscription.counters();
   if (lost.dropped + lost.malformed > 0) {
     std::fprintf(stderr, "skein: %llu values came too fast to be shown, %llu were no %s\n",

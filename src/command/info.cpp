@@ -14,7 +14,7 @@ namespace {
 constexpr double kNanoseconds = 1e9;
 constexpr std::size_t kLongestPath = 4096;
 
-nlohmann::ordered_json json_of(const recording::Reader& reader) {
+nlohmann::ordered_json json_of_recording(const recording::Reader& reader) {
   nlohmann::ordered_json json{{"complete", reader.is_complete()},
                               {"messages", reader.message_count()},
                               {"problems", reader.problems()},
@@ -40,8 +40,8 @@ nlohmann::ordered_json json_of(const recording::Reader& reader) {
   return json;
 }
 
-void print(const recording::Reader& reader) {
-  const auto json = json_of(reader);
+void print_recording(const recording::Reader& reader) {
+  const auto json = json_of_recording(reader);
   for (const auto& channel : json["channels"]) {
     std::printf("%-48s %-40s %llu messages", printable(channel["topic"].get<std::string>()).c_str(),
                 printable(channel["schema"].get<std::string>()).c_str(),
@@ -67,9 +67,9 @@ void print(const recording::Reader& reader) {
 int show_recording(const InfoArguments& arguments) {
   const recording::Reader reader(arguments.file);
   if (arguments.json) {
-    print_json(json_of(reader), true);
+    print_json(json_of_recording(reader), true);
   } else {
-    print(reader);
+    print_recording(reader);
   }
   if (reader.message_count() > 0) return 0;
   std::fprintf(stderr, "skein: %s holds nothing: %s\n",

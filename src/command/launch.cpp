@@ -83,7 +83,7 @@ launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
 }
 
 /// Where it flies, and where commands look that are not told.
-std::string place_of(const profile::MissionProfile& mission) {
+std::string mission_place(const profile::MissionProfile& mission) {
   const std::string domain = std::to_string(mission.domain);
   const char* const variable = std::getenv(kDomainVariable);
   const std::string named = variable ? variable : "";
@@ -147,7 +147,7 @@ int launch(const LaunchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);
   if (arguments.attended) return run_for_another(plan, claim, mission);
   const auto narrator = std::make_shared<Narrator>(plan, arguments.verbose);
-  narrator->tell_error("* mission: " + place_of(mission));
+  narrator->tell_error("* mission: " + mission_place(mission));
   if (!beside.empty()) narrator->tell_error("* mission: " + beside);
   for (const std::string& name : plan.elsewhere)
     narrator->tell_error("* mission: not started here: " + name);

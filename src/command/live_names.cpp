@@ -21,7 +21,7 @@ using Names = std::set<std::string>;
 
 /// Who presses the tab key waits for this.
 constexpr std::chrono::milliseconds kListening{600};
-constexpr std::chrono::milliseconds kPatience{500};
+constexpr std::chrono::milliseconds kCompletionWithin{500};
 
 bool is_public(const discovery::ServiceDescription& service) {
   return service.owner.empty() && !is_built_in_interface(service.service);
@@ -48,7 +48,8 @@ Names operations(Entity& entity, const std::string& service_name) {
 Names topics(Entity& entity) {
   Names names;
   Inspector inspector(entity);
-  for (const KnownTopic& topic : known_topics(inspector, kPatience)) names.insert(topic.name);
+  for (const KnownTopic& topic : known_topics(inspector, kCompletionWithin))
+    names.insert(topic.name);
   return names;
 }
 
@@ -62,7 +63,7 @@ Names entities(Entity& entity) {
 Names parameters(Entity& entity, const std::string& name) {
   Names names;
   for (const auto& service : tellers(entity, name)) {
-    for (const auto& parameter : connect(entity, *service, kPatience).parameters())
+    for (const auto& parameter : connect(entity, *service, kCompletionWithin).parameters())
       names.insert(parameter.name);
   }
   return names;

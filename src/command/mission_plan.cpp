@@ -18,8 +18,8 @@ namespace {
 
 std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
-void add(std::vector<std::string>& argv, const char* option,
-         const std::vector<std::string>& values) {
+void add_option(std::vector<std::string>& argv, const char* option,
+                const std::vector<std::string>& values) {
   for (const std::string& value : values) argv.insert(argv.end(), {option, value});
 }
 
@@ -89,13 +89,13 @@ launch::LaunchPlan plan_of(const profile::MissionProfile& mission, const PlanArg
 }
 
 void pass_on(std::vector<std::string>& argv, const MissionArguments& arguments) {
-  add(argv, "--set", arguments.settings);
-  add(argv, "--variable", arguments.variables);
+  add_option(argv, "--set", arguments.settings);
+  add_option(argv, "--variable", arguments.variables);
 }
 
 void pass_on_choice(std::vector<std::string>& argv, const PlanArguments& arguments) {
   pass_on(argv, arguments);
-  add(argv, "--only", arguments.only);
+  add_option(argv, "--only", arguments.only);
 }
 
 void add_other_hosts(launch::LaunchPlan& plan, const profile::MissionProfile& mission,

@@ -22,7 +22,7 @@
 namespace skein::command {
 namespace {
 
-constexpr std::size_t kLongestError = 4096;
+constexpr std::size_t kLongestComplaint = 4096;
 
 /// As a peer of this host speaks: one with an interface, where there is one.
 dds::Network network_of(const profile::MissionProfile& mission, const std::string& host) {
@@ -53,7 +53,7 @@ int fail(const Onlooker& onlooker, const Error& error, int code) {
   if (text.find(place) == std::string::npos) text += "; it looked on " + place;
   const std::string elsewhere = missions_elsewhere(domain);
   if (!elsewhere.empty()) text += "; " + elsewhere;
-  std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
+  std::fprintf(stderr, "skein: %s\n", printable(text, kLongestComplaint).c_str());
   return code;
 }
 

@@ -28,11 +28,11 @@ using brokerless_discovery::Table;
 using launch::ILiveParameters;
 using launch::RunningParameter;
 
-constexpr std::chrono::milliseconds kLookAgain{20};
+constexpr std::chrono::milliseconds kParameterPeriod{20};
 constexpr std::chrono::milliseconds kAskAgain{200};
 /// A name alone may be that of entities in several systems, which are not found at once.
 constexpr std::chrono::seconds kSettling{1};
-constexpr std::size_t kLongestText = 4096;
+constexpr std::size_t kLongestAssignment = 4096;
 
 /// Who answers, by names.
 struct Present {
@@ -86,7 +86,7 @@ Table::Found::value_type await_teller(Entity& entity, const ParamArguments& argu
   Inspector inspector(entity);
   Instant settled = Instant::max();
   std::optional<Instant> silent;  // since when it is known to be there, and tells nothing
-  for (;; std::this_thread::sleep_for(kLookAgain)) {
+  for (;; std::this_thread::sleep_for(kParameterPeriod)) {
     const auto found = tellers(entity, arguments.entity);
     if (found.empty()) {
       settled = Instant::max();
@@ -152,7 +152,7 @@ nlohmann::ordered_json value_of(const RunningParameter& parameter) {
   return parameter.value;
 }
 
-nlohmann::ordered_json to_json(const RunningParameter& parameter) {
+nlohmann::ordered_json json_of_parameter(const RunningParameter& parameter) {
   nlohmann::ordered_json json{{"name", parameter.name},
                               {"value", value_of(parameter)},
                               {"unit", parameter.unit},
@@ -168,18 +168,18 @@ std::string assignment(const RunningParameter& parameter) {
   return parameter.name + " = " + with_unit(parameter.value, parameter);
 }
 
-void print(const std::string& entity, const std::vector<RunningParameter>& parameters) {
+void print_parameters(const std::string& entity, const std::vector<RunningParameter>& parameters) {
   std::printf("%s\n", printable(entity).c_str());
   for (const RunningParameter& parameter : parameters) {
-    std::printf("    %-32s %s\n", printable(assignment(parameter), kLongestText).c_str(),
+    std::printf("    %-32s %s\n", printable(assignment(parameter), kLongestAssignment).c_str(),
                 printable(kind_of(parameter)).c_str());
   }
 }
 
-nlohmann::ordered_json to_json(const std::string& entity,
-                               const std::vector<RunningParameter>& parameters) {
+nlohmann::ordered_json json_of_parameter(const std::string& entity,
+                                         const std::vector<RunningParameter>& parameters) {
   auto list = nlohmann::ordered_json::array();
-  for (const RunningParameter& parameter : parameters) list.push_back(to_json(parameter));
+  for (const RunningParameter& parameter : parameters) list.push_back(json_of_parameter(parameter));
   return {{"entity", entity}, {"parameters", list}};
 }
 
@@ -219,13 +219,13 @@ int list_parameters(const ParamArguments& arguments) {
     const std::string name = entity_name_of(*asked[i]);
     try {
       const auto parameters = answers[i].get();
-      all.push_back(to_json(name, parameters));
-      if (!arguments.json) print(name, parameters);
+      all.push_back(json_of_parameter(name, parameters));
+      if (!arguments.json) print_parameters(name, parameters);
     } catch (const Error& error) {
       if (!of_all) throw;
       complete = false;
       std::fprintf(stderr, "skein: %s: %s\n", printable(name).c_str(),
-                   printable(error.what(), kLongestText).c_str());
+                   printable(error.what(), kLongestAssignment).c_str());
     }
   }
   if (arguments.json) print_json(all, true);
@@ -245,9 +245,10 @@ int get_parameter(const ParamArguments& arguments) {
   const auto all = parameters_of(entity, *service, arguments.within);
   const RunningParameter& parameter = find(all, arguments.parameter);
   if (arguments.json) {
-    print_json(to_json(parameter), false);
+    print_json(json_of_parameter(parameter), false);
   } else {
-    std::printf("%s\n", printable(with_unit(parameter.value, parameter), kLongestText).c_str());
+    std::printf("%s\n",
+                printable(with_unit(parameter.value, parameter), kLongestAssignment).c_str());
   }
   return 0;
 }
@@ -263,16 +264,16 @@ int set_parameter(const ParamArguments& arguments) {
         });
     if (arguments.json) {
       nlohmann::ordered_json json{{"entity", name}};
-      json.update(to_json(parameter));
+      json.update(json_of_parameter(parameter));
       print_json(json, false);
     } else {
       std::printf("%s: %s\n", printable(name).c_str(),
-                  printable(assignment(parameter), kLongestText).c_str());
+                  printable(assignment(parameter), kLongestAssignment).c_str());
     }
     return 0;
   } catch (const launch::ValueRefused& refusal) {
     std::fprintf(stderr, "skein: %s does not take it: %s\n", printable(name).c_str(),
-                 printable(refusal.reason, kLongestText).c_str());
+                 printable(refusal.reason, kLongestAssignment).c_str());
     return 1;
   }
 }

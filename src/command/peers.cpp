@@ -38,7 +38,7 @@ void print_services(const PeerPicture& peer) {
   }
 }
 
-void print(const PeerPicture& peer) {
+void print_peer(const PeerPicture& peer) {
   const Row row = row_of(peer);
   std::printf("%-28s %s, pid %u, on %s", printable(peer.name).c_str(), printable(row.host).c_str(),
               row.pid, printable(row.vendor).c_str());
@@ -54,7 +54,7 @@ void print(const PeerPicture& peer) {
   print_services(peer);
 }
 
-nlohmann::ordered_json to_json(const PeerPicture& peer) {
+nlohmann::ordered_json json_of_peer(const PeerPicture& peer) {
   const Row row = row_of(peer);
   auto services = nlohmann::ordered_json::array();
   for (const auto& service : peer.services) {
@@ -79,11 +79,11 @@ int list_peers(const PeersArguments& arguments) {
   const DomainPicture picture = look.take(false);
   if (arguments.json) {
     auto list = nlohmann::ordered_json::array();
-    for (const PeerPicture& peer : picture) list.push_back(to_json(peer));
+    for (const PeerPicture& peer : picture) list.push_back(json_of_peer(peer));
     print_json(list, true);
     return 0;
   }
-  for (const PeerPicture& peer : picture) print(peer);
+  for (const PeerPicture& peer : picture) print_peer(peer);
   std::printf("%zu %s in %s\n", picture.size(), picture.size() == 1 ? "peer" : "peers",
               entity.broker().options().place.c_str());
   if (picture.empty()) tell_missions_elsewhere(arguments);

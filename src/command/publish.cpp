@@ -13,7 +13,7 @@ namespace skein::command {
 namespace {
 
 constexpr std::chrono::seconds kDeliveryPatience{5};
-constexpr double kLookAgain = 0.01;
+constexpr double kSubscribersPeriod_s = 0.01;
 
 std::size_t subscribers_of(const KnownTopic& topic) {
   std::size_t count = 0;
@@ -24,8 +24,8 @@ std::size_t subscribers_of(const KnownTopic& topic) {
 void await_subscribers(const DynamicPublisher& publisher, std::size_t expected, double seconds,
                        const Interruption& interruption) {
   for (double waited = 0; publisher.subscribers() < expected && waited < seconds;
-       waited += kLookAgain) {
-    if (interruption.wait(kLookAgain)) {
+       waited += kSubscribersPeriod_s) {
+    if (interruption.wait(kSubscribersPeriod_s)) {
       throw Interrupted("interrupted before it published", interruption.signal());
     }
   }
@@ -64,7 +64,8 @@ Outcome publish_value(DynamicPublisher& publisher, const PublishArguments& argum
   return {outcome.published, endless};
 }
 
-void print(std::uint64_t published, std::size_t subscribers, bool acknowledged, bool json) {
+void print_published(std::uint64_t published, std::size_t subscribers, bool acknowledged,
+                     bool json) {
   if (json) {
     print_json(
         {{"published", published}, {"subscribers", subscribers}, {"acknowledged", acknowledged}},
@@ -90,7 +91,7 @@ int publish(const PublishArguments& arguments) {
                               ? publish_lines(publisher, arguments, interruption)
                               : publish_value(publisher, arguments, interruption);
   const bool acknowledged = publisher.wait_for_acknowledgments(kDeliveryPatience);
-  print(outcome.published, publisher.subscribers(), acknowledged, arguments.json);
+  print_published(outcome.published, publisher.subscribers(), acknowledged, arguments.json);
   if (!outcome.done) {
     throw Interrupted("interrupted before all was published", interruption.signal());
   }

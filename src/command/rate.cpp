@@ -77,7 +77,7 @@ class Arrivals {
   std::vector<double> intervals_;
 };
 
-void print(const nlohmann::ordered_json& figures) {
+void print_rates(const nlohmann::ordered_json& figures) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(), "%.1f values/s  %.0f bytes/s",
                 figures["values_per_second"].get<double>(),
@@ -113,7 +113,7 @@ int show_rate(const TopicArguments& arguments) {
     watched += kInterval;
     ++lines;
     const auto figures = arrivals.take(kInterval);
-    arguments.json ? void(std::printf("%s\n", figures.dump().c_str())) : print(figures);
+    arguments.json ? void(std::printf("%s\n", figures.dump().c_str())) : print_rates(figures);
     std::fflush(stdout);
   }
   return 0;

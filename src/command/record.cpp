@@ -21,7 +21,7 @@
 namespace skein::command {
 namespace {
 
-constexpr double kLookAgain = 1;
+constexpr double kReportPeriod_s = 1;
 constexpr std::size_t kLongestProblem = 1024;
 
 std::string file_of(const RecordArguments& arguments) {
@@ -37,7 +37,7 @@ recording::RecorderOptions options_of(const RecordArguments& arguments) {
   return options;
 }
 
-void print(const recording::WriterStatistics& statistics) {
+void print_counts_text(const recording::WriterStatistics& statistics) {
   for (const auto& channel : statistics.channels) {
     if (channel.written + channel.dropped == 0) continue;
     std::printf("  %-48s %llu", printable(channel.topic).c_str(),
@@ -54,7 +54,7 @@ void print(const recording::WriterStatistics& statistics) {
               static_cast<unsigned long long>(statistics.dropped()));
 }
 
-void print_as_json(const recording::WriterStatistics& statistics) {
+void print_counts_json(const recording::WriterStatistics& statistics) {
   auto channels = nlohmann::ordered_json::array();
   for (const auto& channel : statistics.channels) {
     if (channel.written + channel.dropped == 0) continue;
@@ -105,8 +105,9 @@ int record(const RecordArguments& arguments) {
     if (!recorder.statistics().failure.empty()) break;
     if (std::exchange(alone, false) && entity.broker().all().empty())
       tell_missions_elsewhere(arguments);
-  } while (!interruption.wait(kLookAgain) && (arguments.seconds <= 0 || steady_clock::now() < end));
-  const auto print_counts = arguments.json ? print_as_json : print;
+  } while (!interruption.wait(kReportPeriod_s) &&
+           (arguments.seconds <= 0 || steady_clock::now() < end));
+  const auto print_counts = arguments.json ? print_counts_json : print_counts_text;
   try {
     recorder.close();
   } catch (const WriteFailed& error) {  // a full disk: what is in the file counts all the same

@@ -16,8 +16,8 @@ namespace {
 /// Until those who listen have found the replay.
 constexpr double kDiscovery = 1.5;
 
-void print(const recording::Player& player, std::uint64_t published, std::uint32_t domain,
-           bool json) {
+void print_replayed(const recording::Player& player, std::uint64_t published, std::uint32_t domain,
+                    bool json) {
   if (json) {
     print_json({{"topics", player.topics()},
                 {"published", published},
@@ -63,7 +63,7 @@ int replay_recording(const ReplayArguments& arguments) {
     return interruption.came() || (time > Duration::zero() &&
                                    interruption.wait(std::chrono::duration<double>(time).count()));
   });
-  print(player, published, domain, arguments.json);
+  print_replayed(player, published, domain, arguments.json);
   if (player.subscribers() == 0) tell_missions_elsewhere(arguments);
   if (interruption.signal() != 0) {
     throw Interrupted("interrupted before all was published", interruption.signal());

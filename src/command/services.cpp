@@ -18,7 +18,7 @@ namespace skein::command {
 namespace {
 
 // Of who is asked for its connections; who hangs is left out.
-constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::seconds kConnectionsWithin{1};
 
 double microseconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1000; }
 
@@ -46,7 +46,7 @@ Clients clients_in(std::vector<Inspected>&& answers) {
   return clients;
 }
 
-void print(const Client& client) {
+void print_service(const Client& client) {
   const inspection::Connection& connection = client.connection;
   std::printf("    from %s: %s, %llu calls%s%s\n", printable(client.name).c_str(),
               printable(connection.transport).c_str(),
@@ -55,7 +55,7 @@ void print(const Client& client) {
               printable(connection.not_faster).c_str());
 }
 
-nlohmann::ordered_json to_json(const Client& client) {
+nlohmann::ordered_json json_of_service(const Client& client) {
   return {{"client", client.name},
           {"transport", client.connection.transport},
           {"not_faster", client.connection.not_faster},
@@ -63,7 +63,7 @@ nlohmann::ordered_json to_json(const Client& client) {
           {"calls", client.connection.calls}};
 }
 
-void print(const introspection::ServiceStatistics& service) {
+void print_service(const introspection::ServiceStatistics& service) {
   std::printf("%-40s %s/%s  waiting %u  running %u\n", printable(service.service).c_str(),
               printable(service.system).c_str(), printable(service.entity).c_str(), service.waiting,
               service.running);
@@ -82,7 +82,7 @@ void print(const introspection::ServiceStatistics& service) {
   }
 }
 
-nlohmann::ordered_json to_json(const discovery::ServiceDescription& service) {
+nlohmann::ordered_json json_of_service(const discovery::ServiceDescription& service) {
   auto attributes = nlohmann::ordered_json::object();
   for (const auto& attribute : service.attributes) attributes[attribute.name] = attribute.value;
   return {{"service", service.service}, {"system", service.system}, {"entity", service.entity},
@@ -93,9 +93,9 @@ nlohmann::ordered_json to_json(const discovery::ServiceDescription& service) {
 void print_statistics(const std::vector<introspection::ServiceStatistics>& services,
                       const Clients& clients) {
   for (const auto& service : services) {
-    print(service);
+    print_service(service);
     const auto [first, last] = clients.equal_range(Guid{service.provider});
-    for (auto client = first; client != last; ++client) print(client->second);
+    for (auto client = first; client != last; ++client) print_service(client->second);
   }
 }
 
@@ -107,13 +107,13 @@ void print_statistics_as_json(const std::vector<introspection::ServiceStatistics
     json["connections"] = nlohmann::ordered_json::array();
     const auto [first, last] = clients.equal_range(Guid{service.provider});
     for (auto client = first; client != last; ++client) {
-      json["connections"].push_back(to_json(client->second));
+      json["connections"].push_back(json_of_service(client->second));
     }
   }
   print_json(list, true);
 }
 
-void print(const brokerless_discovery::Table::Found& services, const std::string& place) {
+void print_service(const brokerless_discovery::Table::Found& services, const std::string& place) {
   for (const auto& service : services) {
     std::printf("%-40s %s/%s  pid %u  %s\n", printable(service->service).c_str(),
                 printable(service->system).c_str(), printable(service->entity).c_str(),
@@ -129,7 +129,7 @@ void print(const brokerless_discovery::Table::Found& services, const std::string
 
 void print_as_json(const brokerless_discovery::Table::Found& services) {
   auto list = nlohmann::ordered_json::array();
-  for (const auto& service : services) list.push_back(to_json(*service));
+  for (const auto& service : services) list.push_back(json_of_service(*service));
   print_json(list, true);
 }
 
@@ -147,13 +147,14 @@ int list_services(const ServicesArguments& arguments) {
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   if (statistics) {
     const Clients clients =
-        clients_in(inspector->ask_all(inspection::Subject::Connections, kPatience));
+        clients_in(inspector->ask_all(inspection::Subject::Connections, kConnectionsWithin));
     arguments.json ? print_statistics_as_json(statistics->latest(), clients)
                    : print_statistics(statistics->latest(), clients);
     return 0;
   }
   const auto services = entity.broker().all();
-  arguments.json ? print_as_json(services) : print(services, entity.broker().options().place);
+  arguments.json ? print_as_json(services)
+                 : print_service(services, entity.broker().options().place);
   if (services.empty()) tell_missions_elsewhere(arguments);
   return 0;
 }

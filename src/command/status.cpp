@@ -39,7 +39,7 @@ std::string seconds(double time) {
   return text.data();
 }
 
-void print(const launch::ProcessStatus& process) {
+void print_status(const launch::ProcessStatus& process) {
   std::string line = "  " + printable(process.name) + ": " + printable(process.state);
   if (process.pid != 0)
     line += ", process " + std::to_string(process.pid) + " for " + seconds(process.uptime);
@@ -49,13 +49,13 @@ void print(const launch::ProcessStatus& process) {
   std::printf("%s\n", line.c_str());
 }
 
-void print(const launch::MissionStatus& status) {
+void print_status(const launch::MissionStatus& status) {
   std::printf("mission %s, on domain %u, by launcher %u for %s%s\n",
               printable(status.mission).c_str(), status.domain, status.launcher,
               seconds(status.uptime).c_str(), status.degraded ? ", degraded" : "");
   if (!status.ending.empty())
     std::printf("  ends: %s\n", printable(status.ending, kLongestReason).c_str());
-  for (const auto& process : status.processes) print(process);
+  for (const auto& process : status.processes) print_status(process);
   for (const auto& name : status.elsewhere)
     std::printf("  not started here: %s\n", printable(name).c_str());
 }
@@ -73,7 +73,7 @@ int show_all(bool json) {
     if (json) {
       list.push_back(nlohmann::ordered_json::parse(answer.text));
     } else {
-      print(idl::from_json<launch::MissionStatus>(answer.text));
+      print_status(idl::from_json<launch::MissionStatus>(answer.text));
     }
     ++flown;
   }
@@ -101,7 +101,7 @@ int show_status(const StatusArguments& arguments) {
   if (arguments.json) {
     std::printf("%s\n", printable(answer, answer.size()).c_str());
   } else {
-    print(idl::from_json<launch::MissionStatus>(answer));
+    print_status(idl::from_json<launch::MissionStatus>(answer));
   }
   return 0;
 }

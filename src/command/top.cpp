@@ -152,16 +152,16 @@ void show(const Observer& observer, const Interruption& interruption) {
   }
 }
 
-nlohmann::ordered_json json_of(const std::optional<double>& rate) {
+nlohmann::ordered_json json_of_figures(const std::optional<double>& rate) {
   return rate ? nlohmann::ordered_json(*rate) : nlohmann::ordered_json();
 }
 
-nlohmann::ordered_json json_of(const top::Figures& figures) {
+nlohmann::ordered_json json_of_figures(const top::Figures& figures) {
   auto peers = nlohmann::ordered_json::array(), services = nlohmann::ordered_json::array();
   for (const top::PeerRow& row : figures.peers) {
     peers.push_back({{"name", row.name},
                      {"pid", row.pid},
-                     {"cpu_percent", json_of(row.cpu)},
+                     {"cpu_percent", json_of_figures(row.cpu)},
                      {"memory", row.memory},
                      {"threads", row.threads},
                      {"services", row.services},
@@ -170,8 +170,8 @@ nlohmann::ordered_json json_of(const top::Figures& figures) {
   for (const top::ServiceRow& row : figures.services) {
     services.push_back({{"service", row.service},
                         {"entity", row.entity},
-                        {"calls_per_second", json_of(row.calls)},
-                        {"failed_per_second", json_of(row.failed)},
+                        {"calls_per_second", json_of_figures(row.calls)},
+                        {"failed_per_second", json_of_figures(row.failed)},
                         {"waiting", row.waiting},
                         {"running", row.running},
                         {"p50_ns", row.p50},
@@ -195,7 +195,7 @@ void show_once(Watch& watch, const TopArguments& arguments, const Interruption& 
   listen();
   const top::Figures figures = watch.look();
   if (arguments.json) {
-    print_json(json_of(figures), true);
+    print_json(json_of_figures(figures), true);
   } else {
     constexpr std::size_t kWidth = 80;
     for (const top::Line& line : top::draw(figures, {}, kWidth, std::nullopt))

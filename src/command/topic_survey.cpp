@@ -11,8 +11,8 @@
 namespace skein::command {
 namespace {
 
-constexpr double kLookAgain = 0.1;
-constexpr std::size_t kLongestConflict = 1024;
+constexpr double kSurveyPeriod_s = 0.1;
+constexpr std::size_t kLongestNotice = 1024;
 /// After which it says what it waits for.
 constexpr std::chrono::milliseconds kSilence{1500};
 /// Of one round of questions.
@@ -25,7 +25,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return list.empty() ? "none" : list;
 }
 
-std::vector<std::string> names_of(const std::vector<KnownTopic>& topics) {
+std::vector<std::string> topic_names(const std::vector<KnownTopic>& topics) {
   std::vector<std::string> names;
   for (const KnownTopic& topic : topics) names.push_back(topic.name);
   return names;
@@ -57,16 +57,16 @@ KnownTopic await_topic(Inspector& inspector, const std::string& name, double sec
     if (!told && now - begin >= kSilence) {
       told = true;
       std::fprintf(stderr, "skein: waiting for the topic '%s'%s\n", printable(name).c_str(),
-                   suggestion(name, names_of(topics)).c_str());
+                   suggestion(name, topic_names(topics)).c_str());
     }
-    if (interruption.wait(kLookAgain)) {
+    if (interruption.wait(kSurveyPeriod_s)) {
       throw Interrupted("interrupted while it looked for the topic '" + name + "'",
                         interruption.signal());
     }
   }
   throw Unavailable("no entity here has a topic '" + name + "'" +
-                    suggestion(name, names_of(topics)) + "; there are " +
-                    list_of(names_of(topics)));
+                    suggestion(name, topic_names(topics)) + "; there are " +
+                    list_of(topic_names(topics)));
 }
 
 types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers) {
@@ -85,7 +85,7 @@ TellTypes types_told_by(Inspector& inspector) {
 
 void tell_conflicts(Inspector& inspector, const KnownTopic& topic) {
   for (const std::string& conflict : topic_conflicts(topic.endpoints, types_told_by(inspector)))
-    std::fprintf(stderr, "skein: %s\n", printable(conflict, kLongestConflict).c_str());
+    std::fprintf(stderr, "skein: %s\n", printable(conflict, kLongestNotice).c_str());
 }
 
 }  // namespace skein::command

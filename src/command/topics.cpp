@@ -13,9 +13,9 @@
 namespace skein::command {
 namespace {
 
-constexpr std::size_t kLongestConflict = 1024;
+constexpr std::size_t kLongestVerdict = 1024;
 
-std::string qos_of(const inspection::TopicEndpoint& endpoint) {
+std::string qos_words(const inspection::TopicEndpoint& endpoint) {
   std::string text = endpoint.reliable ? "reliable" : "best effort";
   if (endpoint.transient_local) text += ", kept for late joiners";
   if (endpoint.exclusive) text += ", exclusive";
@@ -29,7 +29,7 @@ std::string qos_of(const inspection::TopicEndpoint& endpoint) {
   return text;
 }
 
-void print(const KnownTopic& topic) {
+void print_topic(const KnownTopic& topic) {
   std::string systems;
   for (const std::string& system : topic.systems())
     systems += (systems.empty() ? "" : ", ") + printable(system);
@@ -37,14 +37,14 @@ void print(const KnownTopic& topic) {
               systems.c_str());
   for (const auto& [participant, entity, told] : topic.endpoints) {
     std::printf("    %s %-28s %s; %llu %s%s\n", told.publishes ? "published by " : "subscribed by",
-                printable(entity).c_str(), qos_of(told).c_str(),
+                printable(entity).c_str(), qos_words(told).c_str(),
                 static_cast<unsigned long long>(told.samples),
                 told.publishes ? "published" : "received",
                 told.matched == 0 ? "; matches nobody" : "");
   }
 }
 
-nlohmann::ordered_json json_of(const KnownTopic& topic) {
+nlohmann::ordered_json json_of_topic(const KnownTopic& topic) {
   nlohmann::ordered_json json{{"name", topic.name}, {"type", topic.type}};
   for (const auto& [participant, entity, told] : topic.endpoints) {
     auto endpoint = command::json_of(told);
@@ -69,19 +69,19 @@ int list_topics(const TopicsArguments& arguments) {
   }
   if (arguments.json) {
     auto all = nlohmann::ordered_json::array();
-    for (const KnownTopic& topic : topics) all.push_back(json_of(topic));
+    for (const KnownTopic& topic : topics) all.push_back(json_of_topic(topic));
     print_json(all, true);
     return 0;
   }
   std::vector<KnownTopic::Endpoint> endpoints;
   for (const KnownTopic& topic : topics) {
-    print(topic);
+    print_topic(topic);
     endpoints.insert(endpoints.end(), topic.endpoints.begin(), topic.endpoints.end());
   }
   for (const std::string& conflict : topic_conflicts(endpoints, types_told_by(inspector)))
-    std::printf("%s\n", printable(conflict, kLongestConflict).c_str());
+    std::printf("%s\n", printable(conflict, kLongestVerdict).c_str());
   for (const UnpublishedTopic& topic : unpublished_topics(endpoints))
-    if (topic.misspelt) std::printf("%s\n", printable(topic.sentence, kLongestConflict).c_str());
+    if (topic.misspelt) std::printf("%s\n", printable(topic.sentence, kLongestVerdict).c_str());
   std::printf("%zu %s in %s\n", topics.size(), topics.size() == 1 ? "topic" : "topics",
               entity.broker().options().place.c_str());
   if (topics.empty()) tell_missions_elsewhere(arguments);

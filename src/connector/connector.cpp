@@ -81,7 +81,7 @@ void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::Dds
   if (broker.is_leaving(connection.provider)) channel->retire(kLeaving);
 }
 
-bool contains(const std::vector<Guid>& providers, const ServiceDescription& provider) {
+bool contains_provider(const std::vector<Guid>& providers, const ServiceDescription& provider) {
   return std::find(providers.begin(), providers.end(), Guid{provider.provider}) != providers.end();
 }
 
@@ -108,10 +108,11 @@ void put_less_loaded_first(Table::Found& providers, std::size_t equals,
 // asked last.
 void arrange(Table::Found& providers, const ProviderQuery& wanted, const Query& query,
              const brokerless_discovery::LoadBoard& loads) {
-  std::erase_if(providers,
-                [&](const auto& provider) { return contains(wanted.excluded, *provider); });
+  std::erase_if(providers, [&](const auto& provider) {
+    return contains_provider(wanted.excluded, *provider);
+  });
   auto last = std::stable_partition(providers.begin(), providers.end(), [&](const auto& provider) {
-    return !contains(wanted.last, *provider);
+    return !contains_provider(wanted.last, *provider);
   });
   const auto complete = std::stable_partition(providers.begin(), last, [&](const auto& provider) {
     return brokerless_discovery::has_all_operations(*query.client, *provider);

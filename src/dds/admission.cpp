@@ -5,7 +5,7 @@
 namespace skein::dds {
 namespace {
 
-constexpr Admission::Verdict kGood;
+constexpr Admission::Verdict kTaken;
 
 /// Whether an entity id is one of DDS's own.
 bool is_of_discovery(std::uint32_t entity) { return (entity & 0xc0) == 0xc0; }
@@ -48,7 +48,7 @@ Admission::Verdict Admission::announced(const Origin& origin) {
   }
   known->heard = origin.now;
   place(*known, origin.source);
-  return kGood;
+  return kTaken;
 }
 
 bool Admission::has_announced_from(const Guid& participant, std::uint32_t source) const {
@@ -127,11 +127,11 @@ Admission::Verdict Admission::announce(Participant& participant, std::uint32_t e
     found->heard = true;
     found->highest = number;
     found->advanced = now;
-    return kGood;
+    return kTaken;
   }
   Writer& writer = known->second;
   found = &writer;
-  if (number <= writer.highest) return kGood;
+  if (number <= writer.highest) return kTaken;
   const auto since = std::chrono::duration_cast<std::chrono::microseconds>(now - writer.advanced);
   const std::int64_t allowance = std::min(kGreatestLeap, writer.allowance + since.count());
   const std::int64_t leap = number - writer.highest;
@@ -139,7 +139,7 @@ Admission::Verdict Admission::announce(Participant& participant, std::uint32_t e
   writer.highest = number;
   writer.allowance = allowance - leap;
   writer.advanced = now;
-  return kGood;
+  return kTaken;
 }
 
 Admission::Verdict Admission::sample(const Origin& origin, std::uint32_t writer,
@@ -175,11 +175,11 @@ Admission::Verdict Admission::heartbeat(const Origin& origin, std::uint32_t enti
   if (const auto verdict = announce(*sender, entity, last, origin.now, writer)) return verdict;
   const std::int64_t before = std::max(writer->counted, writer->held_up_to());
   const std::int64_t reached = let_skip(*sender, *writer, first - 1, origin.now);
-  if (reached == first - 1) return kGood;
+  if (reached == first - 1) return kTaken;
   if (reached <= before) return Refusal::Leap;
   first = reached + 1;
   last = reached;
-  return kGood;
+  return kTaken;
 }
 
 Admission::Verdict Admission::gap(const Origin& origin, std::uint32_t entity, std::int64_t start,
@@ -190,13 +190,13 @@ Admission::Verdict Admission::gap(const Origin& origin, std::uint32_t entity, st
   if (const auto verdict = announce(*sender, entity, last, origin.now, writer)) return verdict;
   if (skipped_ == SkippedNumbers::Noted) {
     last = std::min(last, start - 1 + kLongestGap);
-    return kGood;
+    return kTaken;
   }
   const std::int64_t held = writer->held_up_to();
   last = std::min(last, held + (start <= held + 1 ? kLongestGap : kGapAhead));
   if (last < start) return Refusal::Leap;
   last = std::min(last, let_skip(*sender, *writer, last, origin.now));
-  return last < start ? Verdict(Refusal::Leap) : kGood;
+  return last < start ? Verdict(Refusal::Leap) : kTaken;
 }
 
 // ---- readers here
@@ -268,7 +268,7 @@ Admission::Verdict Admission::fragments(const Origin& origin, std::uint32_t enti
     return Refusal::Fragment;
   }
   if (known && found->second.given_up) return Refusal::Room;
-  if (known && found->second.missing == 0) return kGood;
+  if (known && found->second.missing == 0) return kTaken;
   const std::uint32_t count = fragments.in_sample();
   if (!known || !found->second.open) {
     if (!begin(*sender, fragments.sample_size, origin.now)) return Refusal::Room;
@@ -289,7 +289,7 @@ Admission::Verdict Admission::fragments(const Origin& origin, std::uint32_t enti
     --sample.missing;
   }
   if (sample.missing == 0) close(*sender, sample);
-  return kGood;
+  return kTaken;
 }
 
 // Pays for a sample, with what its sender has earned first.

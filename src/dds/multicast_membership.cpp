@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* kGroup = "239.255.0.1";
 
-in_addr address_of(const std::string& dotted) {
+in_addr in_addr_of(const std::string& dotted) {
   in_addr address{};
   ::inet_pton(AF_INET, dotted.c_str(), &address);
   return address;
@@ -64,7 +64,7 @@ std::uint32_t udp_port(int descriptor) {
 }
 
 void join(int socket, const in_addr& interface) {
-  const ip_mreq membership{address_of(kGroup), interface};
+  const ip_mreq membership{in_addr_of(kGroup), interface};
   // Refused where it is a member already.
   ::setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership);
 }
@@ -120,7 +120,7 @@ void MulticastMembership::join_again() const {
     const std::uint32_t port = udp_port(descriptor);
     if (port == 0) continue;
     for (const std::string& address : addresses_) {
-      const in_addr interface = address_of(address);
+      const in_addr interface = in_addr_of(address);
       if (port == port_) join(descriptor, interface);
       renew_outgoing(descriptor, interface);
     }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace rtps_message;
 
-constexpr Admission::Verdict kGood;
+constexpr Admission::Verdict kSound;
 
 std::uint32_t entity_at(const unsigned char* id) { return get32(id, false); }
 
@@ -59,7 +59,7 @@ std::string to_text(std::uint32_t address) {
 
 bool is_header(const unsigned char* message, std::size_t size) {
   constexpr unsigned char kNobody[kPrefixSize] = {};
-  return size >= kHeaderSize && std::memcmp(message, "RTPS\x02", 5) == 0 &&
+  return size >= kRtpsHeaderSize && std::memcmp(message, "RTPS\x02", 5) == 0 &&
          std::memcmp(message + kPrefix, kNobody, kPrefixSize) != 0;
 }
 
@@ -100,7 +100,7 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
   }
   const Origin origin{sender(message), source, now};
   Passed passed;
-  for (std::size_t at = kHeaderSize; at < size;) {
+  for (std::size_t at = kRtpsHeaderSize; at < size;) {
     const auto submessage = submessage_at(message, size, at);
     if (!submessage || submessage->size % 4 != 0) {
       count(Refusal::Form, 0, source);
@@ -109,7 +109,7 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
     at += kSubmessageHeaderSize + submessage->size;
     // Vendors' own, which others pass over. Each message of Debian's Fast DDS ends with one.
     const bool passed_over = submessage->kind() >= kFirstOfVendors;
-    const Verdict verdict = passed_over ? kGood : judge(*submessage, origin);
+    const Verdict verdict = passed_over ? kSound : judge(*submessage, origin);
     if (!passed_over && !verdict) {
       passed.size = at;
       passed.announces |= is_announcement(*submessage);
@@ -176,10 +176,12 @@ void RtpsGuard::sent(const unsigned char* message, std::size_t size) {
 }
 
 RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const Origin& origin) {
-  const auto demand = [](bool well_formed) { return well_formed ? kGood : Verdict(Refusal::Form); };
+  const auto demand = [](bool well_formed) {
+    return well_formed ? kSound : Verdict(Refusal::Form);
+  };
   switch (submessage.kind()) {
     case kPad:
-      return kGood;
+      return kSound;
     case kInfoTimestamp:
       return demand(submessage.flag(0x02) || submessage.size >= 8);
     case kInfoDestination:
@@ -194,7 +196,9 @@ RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const Origin& 
 }
 
 RtpsGuard::Verdict RtpsGuard::judge_by_kind(const Submessage& submessage, const Origin& origin) {
-  const auto demand = [](bool well_formed) { return well_formed ? kGood : Verdict(Refusal::Form); };
+  const auto demand = [](bool well_formed) {
+    return well_formed ? kSound : Verdict(Refusal::Form);
+  };
   switch (submessage.kind()) {
     case kAckNack: {
       const auto set = sequence_number_set(submessage, 8);
@@ -249,7 +253,7 @@ RtpsGuard::Verdict RtpsGuard::judge_gap(const Submessage& submessage, const Orig
     put_sequence_number(body + 16, std::min(set->base, last + 1), submessage.little());
     put32(body + 24, 0, submessage.little());
   }
-  return kGood;
+  return kSound;
 }
 
 RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const Origin& origin) {
@@ -262,7 +266,7 @@ RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const Ori
     if (const auto verdict = judge_discovery(submessage, *found, service, origin)) return verdict;
   }
   // A farewell may come from who was never found.
-  if (service == Service::Participants && !admission_.knows(origin)) return kGood;
+  if (service == Service::Participants && !admission_.knows(origin)) return kSound;
   return admission_.sample(origin, entity_at(found->writer), found->number);
 }
 
@@ -271,18 +275,18 @@ RtpsGuard::Verdict RtpsGuard::judge_discovery(const Submessage& submessage, cons
   const unsigned char* prefix = origin.participant.bytes.data();
   const bool has_payload = submessage.flag(kHasData) || submessage.flag(kHasKey);
   if (service == Service::Liveliness) {
-    if (!has_payload) return kGood;
+    if (!has_payload) return kSound;
     if (submessage.flag(kHasData) && !check_liveliness(found.payload, found.payload_size)) {
       return Refusal::Parameters;
     }
     const bool own = is_liveliness_of(found.payload, found.payload_size, prefix);
-    return own ? kGood : Verdict(Refusal::Foreign);
+    return own ? kSound : Verdict(Refusal::Foreign);
   }
   if (has_payload && !check_discovery(found.payload, found.payload_size)) {
     return Refusal::Parameters;
   }
   if (!is_of_sender(submessage, prefix)) return Refusal::Foreign;
-  if (!submessage.flag(kHasData)) return kGood;
+  if (!submessage.flag(kHasData)) return kSound;
   if (service == Service::Participants) {
     constexpr std::uint32_t kLongestLease = 100;  // RTPS's default, in seconds
     if (!names_lease(found.payload, found.payload_size, kLongestLease)) return Refusal::Lease;
@@ -290,7 +294,7 @@ RtpsGuard::Verdict RtpsGuard::judge_discovery(const Submessage& submessage, cons
     return admission_.announced(origin);
   }
   check_locators(found, origin);
-  return kGood;
+  return kSound;
 }
 
 bool RtpsGuard::check_locators(const Data& found, const Origin& origin) const {

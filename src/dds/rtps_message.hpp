@@ -12,7 +12,7 @@
 /// before a vendor does.
 namespace skein::dds::rtps_message {
 
-inline constexpr std::size_t kHeaderSize = 20;
+inline constexpr std::size_t kRtpsHeaderSize = 20;
 inline constexpr std::size_t kVendor = 6;  // where it stands in the header
 inline constexpr std::size_t kPrefix = 8;  // the sender's GUID prefix
 inline constexpr std::size_t kPrefixSize = 12;
@@ -21,6 +21,12 @@ inline constexpr std::size_t kSubmessageHeaderSize = 4;
 /// The entity id of the writer that announces its participant, and of the reader of such.
 inline constexpr unsigned char kAnnouncer[] = {0x00, 0x01, 0x00, 0xc2};
 inline constexpr unsigned char kAnnouncementReader[] = {0x00, 0x01, 0x00, 0xc7};
+
+/// The entity ids of the writers that announce writers and readers, and of the readers of such.
+inline constexpr unsigned char kWriterAnnouncer[] = {0x00, 0x00, 0x03, 0xc2};
+inline constexpr unsigned char kWriterDetector[] = {0x00, 0x00, 0x03, 0xc7};
+inline constexpr unsigned char kReaderAnnouncer[] = {0x00, 0x00, 0x04, 0xc2};
+inline constexpr unsigned char kReaderDetector[] = {0x00, 0x00, 0x04, 0xc7};
 
 /// The entity id of the writer that says that its participant's writers live.
 inline constexpr unsigned char kLivelinessWriter[] = {0x00, 0x02, 0x00, 0xc2};
@@ -115,7 +121,7 @@ inline std::optional<Submessage> submessage_at(unsigned char* message, std::size
 /// Calls `visit` with each submessage of a message that the guard has passed.
 template <class Visit>
 void for_each_submessage(unsigned char* message, std::size_t size, Visit&& visit) {
-  for (std::size_t at = kHeaderSize; at < size;) {
+  for (std::size_t at = kRtpsHeaderSize; at < size;) {
     const auto submessage = submessage_at(message, size, at);
     if (!submessage) return;
     visit(*submessage);

@@ -16,7 +16,8 @@ types::Declaration struct_of(const types::Interface& interface, const types::Ope
   return declaration;
 }
 
-void add(types::Declaration& declaration, const std::string& name, const types::Type& type) {
+void add_parameter(types::Declaration& declaration, const std::string& name,
+                   const types::Type& type) {
   types::Member& member = declaration.members.emplace_back();
   member.name = name;
   member.type = type;
@@ -25,7 +26,7 @@ void add(types::Declaration& declaration, const std::string& name, const types::
 void add_parameters(types::Declaration& declaration, const types::Operation& operation,
                     Direction left_out) {
   for (const types::Parameter& parameter : operation.parameters) {
-    if (parameter.direction != left_out) add(declaration, parameter.name, parameter.type);
+    if (parameter.direction != left_out) add_parameter(declaration, parameter.name, parameter.type);
   }
 }
 
@@ -40,7 +41,7 @@ types::Declaration in_struct(const types::Interface& interface, const types::Ope
 types::Declaration out_struct(const types::Interface& interface,
                               const types::Operation& operation) {
   types::Declaration declaration = struct_of(interface, operation, "_Out");
-  if (!operation.result.empty()) add(declaration, "return_", operation.result.front());
+  if (!operation.result.empty()) add_parameter(declaration, "return_", operation.result.front());
   add_parameters(declaration, operation, Direction::In);
   return declaration;
 }

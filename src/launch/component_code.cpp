@@ -11,42 +11,42 @@ namespace skein::launch {
 namespace {
 
 /// How a plugin registers a component.
-enum class Kind { Body, Csp, Mission, Activity };
+enum class Role { Body, Csp, Mission, Activity };
 
 struct KindWords {
   const char* name;
   const char* registered_by;
 };
 
-KindWords words_for(Kind kind) {
+KindWords words_for(Role kind) {
   switch (kind) {
-    case Kind::Body:
+    case Role::Body:
       return {"component", "add_body"};
-    case Kind::Csp:
+    case Role::Csp:
       return {"CSP", "add_csp"};
-    case Kind::Mission:
+    case Role::Mission:
       return {"mission", "add_mission"};
-    case Kind::Activity:
+    case Role::Activity:
       break;
   }
   return {"activity", "add_activity"};
 }
 
-std::optional<Kind> kind_of(const std::string& component, const ComponentRegistry& registry) {
-  if (registry.find_body(component)) return Kind::Body;
-  if (registry.find_csp(component)) return Kind::Csp;
-  if (registry.find_mission(component)) return Kind::Mission;
-  if (registry.find_activity(component)) return Kind::Activity;
+std::optional<Role> kind_of(const std::string& component, const ComponentRegistry& registry) {
+  if (registry.find_body(component)) return Role::Body;
+  if (registry.find_csp(component)) return Role::Csp;
+  if (registry.find_mission(component)) return Role::Mission;
+  if (registry.find_activity(component)) return Role::Activity;
   return std::nullopt;
 }
 
 /// For a component that is registered, but as `found` where it has to be `wanted`.
-const char* remedy_for(Kind wanted, Kind found) {
-  if (found == Kind::Csp)
+const char* remedy_for(Role wanted, Role found) {
+  if (found == Role::Csp)
     return "write it as a <csp> of the peer that uses it, or name another component";
-  if (wanted == Kind::Csp) return "register it by add_csp";
-  if (found == Kind::Body) return "add what it implements to <interfaces> in its description";
-  if (found == Kind::Mission && wanted == Kind::Activity)
+  if (wanted == Role::Csp) return "register it by add_csp";
+  if (found == Role::Body) return "add what it implements to <interfaces> in its description";
+  if (found == Role::Mission && wanted == Role::Activity)
     return "write role=\"mission\", or register it by add_activity, so that it can be told to end";
   return "register what it provides by add_body, or remove <implements> from its description";
 }
@@ -71,7 +71,7 @@ CodeLack missing(const std::string& who, const std::string& component, const std
 }
 
 /// `wanted`: any of these will do; the first is the one that messages name.
-std::optional<CodeLack> find_lack(const std::string& component, const std::vector<Kind>& wanted,
+std::optional<CodeLack> find_lack(const std::string& component, const std::vector<Role>& wanted,
                                   const std::string& plugin, const LoadedPlugins& plugins) {
   const auto found = kind_of(component, plugins.registry());
   if (found && std::ranges::count(wanted, *found) > 0) return std::nullopt;
@@ -83,10 +83,10 @@ std::optional<CodeLack> find_lack(const std::string& component, const std::vecto
                   remedy_for(wanted.front(), *found)};
 }
 
-std::vector<Kind> wanted_of(const profile::PeerProfile& peer) {
-  if (!peer.component->interfaces.empty()) return {Kind::Body};
-  if (peer.runs_mission) return {Kind::Mission, Kind::Activity};
-  return {Kind::Activity};
+std::vector<Role> wanted_of(const profile::PeerProfile& peer) {
+  if (!peer.component->interfaces.empty()) return {Role::Body};
+  if (peer.runs_mission) return {Role::Mission, Role::Activity};
+  return {Role::Activity};
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ std::optional<CodeLack> find_lack(const profile::PeerProfile& peer, const Loaded
 }
 
 std::optional<CodeLack> find_lack(const profile::CspProfile& csp, const LoadedPlugins& plugins) {
-  return find_lack(csp.component->name, {Kind::Csp}, csp.plugin, plugins);
+  return find_lack(csp.component->name, {Role::Csp}, csp.plugin, plugins);
 }
 
 std::vector<profile::Finding> compare(const profile::ComponentDescription& component,

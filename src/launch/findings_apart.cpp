@@ -24,10 +24,10 @@ namespace {
 using profile::Finding;
 using profile::Severity;
 
-constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::seconds kCheckPatience{30};
 constexpr char kEndOfField = '\0';
 // In place of another finding's severity:
-constexpr std::string_view kEnd = "end";
+constexpr std::string_view kEndOfFindings = "end";
 constexpr std::string_view kStep = "step";  // what follows is no finding, but what begins
 
 std::string to_fields(std::string_view severity, const Finding& finding) {
@@ -42,7 +42,7 @@ std::string to_fields(std::string_view severity, const Finding& finding) {
 std::string to_fields(const std::vector<Finding>& findings) {
   std::string text;
   for (const Finding& finding : findings) text += to_fields(to_string(finding.severity), finding);
-  return text.append(kEnd) += kEndOfField;
+  return text.append(kEndOfFindings) += kEndOfField;
 }
 
 /// False where the end is missing; `step` is then what had begun.
@@ -54,7 +54,7 @@ bool read_fields(const std::string& text, std::vector<Finding>& findings, Findin
     return field;
   };
   for (std::string severity = next(); stream; severity = next()) {
-    if (severity == kEnd) return true;
+    if (severity == kEndOfFindings) return true;
     Finding finding;
     finding.severity = severity == "error" || severity == kStep ? Severity::Error
                        : severity == "warning"                  ? Severity::Warning
@@ -96,8 +96,8 @@ void write_all(int descriptor, const std::string& text) {
 }
 
 /// All that comes until the other side closes the pipe; false where that takes too long.
-bool read_all(int descriptor, std::string& text) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+bool read_to_end(int descriptor, std::string& text) {
+  const auto end = std::chrono::steady_clock::now() + kCheckPatience;
   std::array<char, 4096> buffer;
   for (;;) {
     const auto left =
@@ -120,7 +120,7 @@ std::vector<Finding> findings_apart(const Look& look, const std::string& file) {
   if (id == 0) look_and_tell(look, pipe.write_end.get(), file, parent);
   pipe.write_end.reset();
   std::string text;
-  const bool in_time = read_all(pipe.read_end.get(), text);
+  const bool in_time = read_to_end(pipe.read_end.get(), text);
   if (!in_time) ::kill(id, SIGKILL);
   siginfo_t end{};
   while (::waitid(P_PID, static_cast<id_t>(id), &end, WEXITED) < 0 && errno == EINTR) {
@@ -130,7 +130,7 @@ std::vector<Finding> findings_apart(const Look& look, const std::string& file) {
   if (read_fields(text, findings, step) && in_time) return findings;
   const std::string how =
       in_time ? "ends its process " + to_text(ExitStatus{end.si_code != CLD_EXITED, end.si_status})
-              : "takes longer than " + std::to_string(kPatience.count()) + " s";
+              : "takes longer than " + std::to_string(kCheckPatience.count()) + " s";
   step.problem += " " + how;
   findings.push_back(std::move(step));
   return findings;

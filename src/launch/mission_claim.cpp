@@ -125,7 +125,7 @@ std::optional<pid_t> own_holder_of(const std::string& name) {
   return std::nullopt;
 }
 
-constexpr timeval kPatience{10, 0};
+constexpr timeval kSocketPatience{10, 0};
 constexpr std::size_t kLongestAnswer = 1 << 20;
 
 /// All that comes until the other side ends; what has come where it takes too long.
@@ -145,7 +145,7 @@ FileDescriptor patient_socket() {
   FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!socket) throw_system_error("a socket");
   for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
-    ::setsockopt(socket.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
+    ::setsockopt(socket.get(), SOL_SOCKET, option, &kSocketPatience, sizeof kSocketPatience);
   return socket;
 }
 

@@ -26,8 +26,6 @@ using Kind = AttendedReport::Kind;
 constexpr int kSshFailed = 255;
 constexpr int kNotFound = 127;
 
-Time now() { return std::chrono::steady_clock::now(); }
-
 struct Ssh {
   pid_t id = -1;
   FileDescriptor input;
@@ -85,7 +83,7 @@ class Attending {
       if (watched[0].revents != 0) read(ssh_.output, output_lines_, true);
       if (watched[1].revents != 0) read(ssh_.errors, error_lines_, false);
       while (signals_.take().number != 0) stop();
-      if (started_ && now() >= next_heartbeat_) say(kAlive);
+      if (started_ && std::chrono::steady_clock::now() >= next_heartbeat_) say(kAlive);
     }
     int status = 0;
     while (::waitpid(ssh_.id, &status, 0) < 0 && errno == EINTR) {
@@ -154,7 +152,7 @@ class Attending {
 
   /// What does not go through is not waited for: the other side misses the heartbeat, then.
   void say(std::string_view word) {
-    next_heartbeat_ = now() + kHeartbeat;
+    next_heartbeat_ = std::chrono::steady_clock::now() + kHeartbeat;
     const std::string line = std::string(word) + "\n";
     [[maybe_unused]] const auto written = ::write(ssh_.input.get(), line.data(), line.size());
   }

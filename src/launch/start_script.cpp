@@ -223,7 +223,7 @@ stop() {
 }
 )sh";
 
-constexpr const char* kEnd = R"sh(
+constexpr const char* kEndOfScript = R"sh(
 trap '' HUP INT TERM
 exec 8>&-
 wait "$guard"
@@ -231,7 +231,7 @@ exit "$result"
 )sh";
 
 /// `1.333`, for sleep(1).
-std::string seconds(std::chrono::nanoseconds time) {
+std::string shell_seconds(std::chrono::nanoseconds time) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3f", std::chrono::duration<double>(time).count());
   return text.data();
@@ -278,9 +278,9 @@ std::string start_script(const LaunchPlan& plan) {
     const ChildPlan& child = plan.children[i];
     const auto terminate = time_to_terminate(child.rules.stop_timeout);
     text += "    " + std::to_string(i + 1) + ") name=" + shell_word(child.name) +
-            " role=" + role_of(child) + " start_limit=" + seconds(child.rules.ready_timeout) +
-            " terminate_limit=" + seconds(terminate) +
-            " kill_limit=" + seconds(child.rules.stop_timeout - terminate) +
+            " role=" + role_of(child) + " start_limit=" + shell_seconds(child.rules.ready_timeout) +
+            " terminate_limit=" + shell_seconds(terminate) +
+            " kill_limit=" + shell_seconds(child.rules.stop_timeout - terminate) +
             " tells_ready=" + (child.tells_ready ? "yes" : "no") + " ;;\n";
   }
   text += "  esac\n}\n";
@@ -299,7 +299,7 @@ std::string start_script(const LaunchPlan& plan) {
   text += "fly" + all + "\n";
   std::for_each(layers.rbegin(), layers.rend(),
                 [&](const std::string& numbers) { text += "stop" + numbers + "\n"; });
-  return text + kEnd;
+  return text + kEndOfScript;
 }
 
 }  // namespace skein::launch

@@ -63,7 +63,7 @@ std::string description(const std::string& text) {
   return escaped;
 }
 
-std::string seconds(std::chrono::nanoseconds time) {
+std::string systemd_seconds(std::chrono::nanoseconds time) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6f",
                 std::chrono::duration<double>(
@@ -97,11 +97,11 @@ void demand_plain_value(const ChildPlan& child, const std::string& name, const s
                         "' of " + child.name + " has");
 }
 
-std::string restart_text(const profile::RestartRules& rules) {
+std::string restart_lines(const profile::RestartRules& rules) {
   if (rules.policy == profile::RestartPolicy::Never) return "Restart=no\n";
   return "Restart=" + std::string(to_string(rules.policy)) +
          "\n# The wait does not grow with each restart, as it does in Skein.\nRestartSec=" +
-         seconds(rules.delay) +
+         systemd_seconds(rules.delay) +
          "\n# systemd takes these for an orderly end; Skein does not.\n"
          "RestartForceExitStatus=SIGHUP SIGINT SIGPIPE SIGTERM\n"
          "RestartPreventExitStatus=" +
@@ -134,7 +134,7 @@ std::string service_text(const LaunchPlan& plan, const ChildPlan& child) {
   if (is_needed(child)) text += "OnFailure=" + end_of(plan) + "\n";
   if (child.runs_mission) text += "OnSuccess=" + end_of(plan) + "\n";
   if (restart.policy != profile::RestartPolicy::Never) {
-    text += "StartLimitIntervalSec=" + seconds(restart.window) +
+    text += "StartLimitIntervalSec=" + systemd_seconds(restart.window) +
             "\nStartLimitBurst=" + std::to_string(restart.max_restarts + 1) + "\n";
   }
   text +=
@@ -147,10 +147,11 @@ std::string service_text(const LaunchPlan& plan, const ChildPlan& child) {
     text += "Environment=" + unit_word(name + "=" + value) + "\n";
   }
   text += "StateDirectory=" + folder_of(plan) + "\nWorkingDirectory=%S/" + folder_of(plan) + "\n" +
-          restart_text(restart) + "TimeoutStartSec=" + seconds(child.rules.ready_timeout) +
-          "\nTimeoutStopSec=" + seconds(child.rules.stop_timeout) + "\nKillMode=control-group\n";
+          restart_lines(restart) + "TimeoutStartSec=" + systemd_seconds(child.rules.ready_timeout) +
+          "\nTimeoutStopSec=" + systemd_seconds(child.rules.stop_timeout) +
+          "\nKillMode=control-group\n";
   if (child.rules.progress_timeout > child.rules.progress_timeout.zero())
-    text += "WatchdogSec=" + seconds(child.rules.progress_timeout) + "\n";
+    text += "WatchdogSec=" + systemd_seconds(child.rules.progress_timeout) + "\n";
   return text;
 }
 
@@ -164,7 +165,7 @@ std::string target_text(const LaunchPlan& plan) {
 }
 
 /// Reached when the mission is over: it ends what is left of it.
-std::string end_text(const LaunchPlan& plan) {
+std::string end_lines(const LaunchPlan& plan) {
   return "[Unit]\nDescription=" + description("End of mission " + plan.mission) +
          "\nConflicts=" + target_of(plan) + "\n";
 }
@@ -204,7 +205,7 @@ std::map<std::string, std::string> systemd_units(const LaunchPlan& plan) {
       "# The mission '" + printable(plan.mission) + "', by `skein script --systemd`.\n";
   std::map<std::string, std::string> units;
   units[target_of(plan)] = beginning + target_text(plan);
-  units[end_of(plan)] = beginning + end_text(plan);
+  units[end_of(plan)] = beginning + end_lines(plan);
   for (const ChildPlan& child : plan.children)
     units[service_of(plan, child.name)] = beginning + service_text(plan, child);
   return units;

@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string_view> kTypeWords{"integer", "real",     "boolean",
                                                "text",    "duration", "service"};
-const std::vector<std::string_view> kTimeUnits{"ns", "us", "ms", "s", "min", "h"};
+const std::vector<std::string_view> kUnitsOfTime{"ns", "us", "ms", "s", "min", "h"};
 
 bool is_number(ValueType type) {
   return type == ValueType::Integer || type == ValueType::Real || type == ValueType::Duration;
@@ -56,7 +56,7 @@ void read_unit_and_range(const XmlElement& element, DictionaryEntry& entry) {
   entry.maximum = read_limit(element, "max");
   auto& findings = element.findings();
   const bool unknown_unit =
-      std::find(kTimeUnits.begin(), kTimeUnits.end(), entry.unit) == kTimeUnits.end();
+      std::find(kUnitsOfTime.begin(), kUnitsOfTime.end(), entry.unit) == kUnitsOfTime.end();
   if (entry.type == ValueType::Duration && unknown_unit) {
     findings.error(unit ? unit->where : element.where(),
                    "the duration " + in_quotes(entry.name) + " has " +

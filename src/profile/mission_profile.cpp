@@ -8,7 +8,7 @@ namespace skein::profile {
 namespace {
 
 template <typename Items>
-auto find_named(Items& items, std::string_view name) {
+auto find_item(Items& items, std::string_view name) {
   const auto found =
       std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
   return found == items.end() ? nullptr : &*found;
@@ -23,7 +23,7 @@ std::vector<std::string_view> names_of(const Items& items) {
 
 template <typename Items>
 auto& demand_named(Items& items, std::string_view name, const std::string& kind) {
-  if (auto* found = find_named(items, name)) return *found;
+  if (auto* found = find_item(items, name)) return *found;
   throw InvalidArgument("there is no " + kind + " " + in_quotes(name) + "; " +
                         remedy_for(name, names_of(items)));
 }
@@ -69,7 +69,7 @@ void set_parameter(Owner& owner, const Dictionary& dictionary, const std::string
                           dictionary.suggestion(EntryKind::Parameter, name));
   }
   parse_value(*entry, value);
-  if (auto* setting = find_named(owner.parameters, name)) {
+  if (auto* setting = find_item(owner.parameters, name)) {
     setting->value = value;
   } else {
     owner.parameters.push_back({name, value, {"the command line", 0, 0}});
@@ -79,19 +79,19 @@ void set_parameter(Owner& owner, const Dictionary& dictionary, const std::string
 }  // namespace
 
 const Setting* CspProfile::find_parameter(std::string_view parameter_name) const {
-  return find_named(parameters, parameter_name);
+  return find_item(parameters, parameter_name);
 }
 
 const Setting* PeerProfile::find_parameter(std::string_view parameter_name) const {
-  return find_named(parameters, parameter_name);
+  return find_item(parameters, parameter_name);
 }
 
 const CspProfile* PeerProfile::find_csp(std::string_view csp_name) const {
-  return find_named(csps, csp_name);
+  return find_item(csps, csp_name);
 }
 
 const PeerProfile* MissionProfile::find_peer(std::string_view peer_name) const {
-  return find_named(peers, peer_name);
+  return find_item(peers, peer_name);
 }
 
 VariableValues parse_variables(const std::vector<std::string>& assignments) {

@@ -39,7 +39,7 @@ CallThread read_thread(const XmlElement& element) {
   return CallThread::Caller;
 }
 
-int read_number(const XmlElement& element, const char* name, int least, int greatest) {
+int read_in_range(const XmlElement& element, const char* name, int least, int greatest) {
   const auto text = element.maybe_attribute(name);
   if (!text) return 0;
   int number = 0;
@@ -92,11 +92,11 @@ void demand_agreement(const XmlElement& element, Scheduling scheduling) {
 ThreadRules read_thread_rules(const XmlElement& element) {
   ThreadRules rules;
   rules.thread = read_thread(element);
-  rules.count = static_cast<std::size_t>(read_number(element, "threads", 1, 256));
+  rules.count = static_cast<std::size_t>(read_in_range(element, "threads", 1, 256));
   ThreadSettings& settings = rules.settings;
   settings.scheduling = read_scheduling(element);
-  settings.priority = read_number(element, "priority", 1, 99);
-  settings.nice = read_number(element, "nice", -20, 19);
+  settings.priority = read_in_range(element, "priority", 1, 99);
+  settings.nice = read_in_range(element, "nice", -20, 19);
   settings.cpus = read_cpus(element, "cpus");
   settings.spin = read_spin(element);
   rules.lock_memory = read_boolean(element, kLockMemoryAttribute, false);

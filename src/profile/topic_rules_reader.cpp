@@ -28,8 +28,8 @@ std::optional<bool> read_word(const XmlElement& topic, const char* name, const c
 }
 
 template <class Number>
-std::optional<Number> read_number(const XmlElement& topic, const XmlAttribute& text, Number least,
-                                  const char* remedy) {
+std::optional<Number> read_bound(const XmlElement& topic, const XmlAttribute& text, Number least,
+                                 const char* remedy) {
   Number number{};
   const char* const end = text.value.data() + text.value.size();
   const auto result = std::from_chars(text.value.data(), end, number);
@@ -63,7 +63,7 @@ std::optional<TopicRules::Depth> read_history(const XmlElement& topic) {
   const auto text = topic.maybe_attribute("history");
   if (!text) return std::nullopt;
   if (text->value == "all") return TopicRules::Depth();
-  const auto depth = read_number<std::uint32_t>(
+  const auto depth = read_bound<std::uint32_t>(
       topic, *text, 1, "write how many values of each key are kept, or \"all\"");
   if (!depth) return std::nullopt;
   return TopicRules::Depth{*depth};
@@ -96,7 +96,7 @@ TopicRules read_rules(const XmlElement& topic) {
   const auto strength = topic.maybe_attribute("strength");
   if (strength) {
     rules.strength =
-        read_number<std::int32_t>(topic, *strength, 0, "write a number: 0, or more for stronger");
+        read_bound<std::int32_t>(topic, *strength, 0, "write a number: 0, or more for stronger");
   }
   if (strength && rules.exclusive == false && rules.strength.value_or(0) > 0) {
     topic.findings().error(strength->where, "a strength means nothing with shared ownership",

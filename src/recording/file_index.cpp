@@ -3,7 +3,7 @@
 namespace skein::recording {
 namespace {
 
-constexpr std::size_t kMostProblems = 100;
+constexpr std::size_t kMostIndexProblems = 100;
 
 void keep(FileIndex& index, std::uint64_t size) {
   if (index.kept + size > kMostKept) {
@@ -37,7 +37,7 @@ void FileIndex::add_channel(RecordReader fields) {
 }
 
 void FileIndex::add_problem(std::string problem) {
-  if (problems.size() < kMostProblems) problems.push_back(std::move(problem));
+  if (problems.size() < kMostIndexProblems) problems.push_back(std::move(problem));
 }
 
 void FileIndex::add_metadata(RecordReader fields) {

@@ -5,7 +5,7 @@
 namespace skein::recording {
 namespace {
 
-constexpr std::size_t kMostProblems = 100;
+constexpr std::size_t kMostCursorProblems = 100;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void MessageCursor::load_until_due() {
     try {
       load(place);
     } catch (const MalformedRecord& malformed) {
-      if (problems_.size() < kMostProblems) {
+      if (problems_.size() < kMostCursorProblems) {
         problems_.push_back("the chunk at byte " + std::to_string(place.offset) +
                             " is passed over: " + malformed.what());
       }

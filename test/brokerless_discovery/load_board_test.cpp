@@ -13,8 +13,8 @@ using skein::test::guid;
 namespace {
 
 /// Two peers on a network on which time passes only when told, and what was written there.
-struct World {
-  World() {
+struct Loads {
+  Loads() {
     network.judge_transfers([this](const dds::Transfer& transfer) {
       if (transfer.topic == "skein/loads") ++written[transfer.writer];
       return dds::Fate::deliver();
@@ -46,7 +46,7 @@ struct World {
 }  // namespace
 
 TEST_CASE("everybody hears of a provider's load, its own peer too, and a late joiner", "[R21]") {
-  World world;
+  Loads world;
   std::size_t load = 3;
   const auto told = world.provider.tell(world.id, [&] { return load; });
   CHECK(world.client.load_of(world.id) == 0);
@@ -63,7 +63,7 @@ TEST_CASE("everybody hears of a provider's load, its own peer too, and a late jo
 }
 
 TEST_CASE("a load is told when it has changed, and at most once in an interval", "[R21]") {
-  World world;
+  Loads world;
   std::size_t load = 0;
   const auto told = world.provider.tell(world.id, [&] { return load; });
   const auto change = world.provider.notifier();
@@ -88,7 +88,7 @@ TEST_CASE("a load is told when it has changed, and at most once in an interval",
 }
 
 TEST_CASE("of a provider that has withdrawn, or whose peer is gone, no load is known", "[R21]") {
-  World world;
+  Loads world;
   auto told = world.provider.tell(world.id, [] { return std::size_t{3}; });
   world.pass(LoadBoard::kInterval);
   REQUIRE(world.client.load_of(world.id) == 3);
@@ -101,7 +101,7 @@ TEST_CASE("of a provider that has withdrawn, or whose peer is gone, no load is k
 }
 
 TEST_CASE("a load that nobody says has changed is not even measured", "[R21]") {
-  World world;
+  Loads world;
   std::size_t measured = 0;
   const auto told = world.provider.tell(world.id, [&] { return ++measured; });
   for (int i = 0; i < 20; ++i) world.pass(LoadBoard::kInterval);
@@ -114,14 +114,14 @@ TEST_CASE("a load that nobody says has changed is not even measured", "[R21]") {
 TEST_CASE("a load may change after its board has gone", "[R21]") {
   std::function<void()> change;
   {
-    World world;
+    Loads world;
     change = world.provider.notifier();
   }
   CHECK_NOTHROW(change());
 }
 
 TEST_CASE("nobody tells another provider's load, nor withdraws it", "[R21][R23]") {
-  World world;
+  Loads world;
   const auto told = world.provider.tell(world.id, [] { return std::size_t{3}; });
   world.pass(LoadBoard::kInterval);
   const auto stranger = world.network.vendor()->create_participant({});
@@ -136,7 +136,7 @@ TEST_CASE("nobody tells another provider's load, nor withdraws it", "[R21][R23]"
 }
 
 TEST_CASE("a participant's loads have so much room", "[R21][R26]") {
-  World world;
+  Loads world;
   std::vector<Broker::Registration> told;
   for (std::size_t i = 0; i <= Room::kEntriesOfOne; ++i) {
     Guid provider = guid(static_cast<std::uint8_t>(i), world.near->guid());

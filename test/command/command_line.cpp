@@ -16,11 +16,11 @@ using Catch::Contains;
 
 namespace {
 
-struct Line {
+struct CommandLineRun {
   CLI::App app;
   int result = 0;
 
-  Line() { make_command_line(app, result); }
+  CommandLineRun() { make_command_line(app, result); }
 
   /// The command that the words of `text` begin with, `skein` first; nothing where there is none.
   const CLI::App* command_of(const std::string& text) const {
@@ -61,7 +61,7 @@ std::vector<std::string> examples_of(const CLI::App& command) {
 
 /// Why the command line is wrong. Nothing of it is run.
 std::string refusal(const char* text) {
-  Line line;
+  CommandLineRun line;
   try {
     line.app.parse(text);
   } catch (const CLI::ParseError& error) {
@@ -80,7 +80,7 @@ std::vector<std::string> words_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("each command says what it is for, and shows how it is used") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string&) {
     CHECK(!summary_of(command).empty());
     CHECK(summary_of(command).size() <= 75);
@@ -89,7 +89,7 @@ TEST_CASE("each command says what it is for, and shows how it is used") {
 }
 
 TEST_CASE("examples name commands and options that there are") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string&) {
     for (const std::string& example : examples_of(command)) {
       CAPTURE(example);
@@ -105,7 +105,7 @@ TEST_CASE("examples name commands and options that there are") {
 
 TEST_CASE(
     "each option says what it does; one with a value, in which unit and what stands without it") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string&) {
     for (const CLI::Option* option : command.get_options()) {
       CAPTURE(option->get_name());
@@ -120,7 +120,7 @@ TEST_CASE(
 }
 
 TEST_CASE("help fits into 80 columns and does not lose a word") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string& words) {
     const std::string help = command.get_formatter()->make_help(&command, words, {});
     std::istringstream lines(help);
@@ -136,7 +136,7 @@ TEST_CASE("help fits into 80 columns and does not lose a word") {
 }
 
 TEST_CASE("help and the manual page of the whole list every exit code once") {
-  const Line line;
+  const CommandLineRun line;
   for (const std::string& text : {line.app.help(), manual_page(line.app, "skein")}) {
     for (const char* code : {"\n  0 ", "\n  64 ", "\n  70 ", "\n  71 ", "\n  74 ", "\n  75 ",
                              "\n  76 ", "\n  78 ", "\n  128 + N "}) {
@@ -148,7 +148,7 @@ TEST_CASE("help and the manual page of the whole list every exit code once") {
 }
 
 TEST_CASE("a manual page has the sections that people look for") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string& words) {
     const std::string page = manual_page(command, words);
     for (const char* section :
@@ -188,7 +188,7 @@ TEST_CASE("a domain, vendor or interface that cannot be is refused with those th
 }
 
 TEST_CASE("help says once what a length of time is, where an option takes one") {
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string& words) {
     const std::string help = command.get_formatter()->make_help(&command, words, {});
     const std::size_t first = help.find(kDurationHelp);
@@ -198,7 +198,7 @@ TEST_CASE("help says once what a length of time is, where an option takes one") 
 }
 
 TEST_CASE("commands that look list their exit codes") {
-  const Line line;
+  const CommandLineRun line;
   for (const char* command : {"call", "echo", "describe", "info"}) {
     CAPTURE(command);
     const std::string help = line.command_of(std::string("skein ") + command)->get_footer();
@@ -209,7 +209,7 @@ TEST_CASE("commands that look list their exit codes") {
 
 TEST_CASE(
     "what asks a launcher lists its exit codes, and the whole what each means for both kinds") {
-  const Line line;
+  const CommandLineRun line;
   for (const char* command : {"status", "restart"}) {
     CAPTURE(command);
     CHECK_THAT(
@@ -228,7 +228,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what users of other software type leads to a command that there is") {
-  const Line line;
+  const CommandLineRun line;
   for (const FamiliarName& name : familiar_names()) {
     CAPTURE(name.theirs, name.ours);
     CHECK(line.command_of("skein " + name.ours) != &line.app);
@@ -243,12 +243,12 @@ TEST_CASE("a word that an option does not know is refused with those that it kno
              Contains("SHELL: 'fishh' is none of bash, zsh, fish (did you mean 'fish'?)"));
   CHECK_THAT(refusal("graph --format png"),
              Contains("--format: 'png' is none of dot, mermaid, json"));
-  const Line line;
+  const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string& words) {
     for (const CLI::Option* option : command.get_options()) {
       if (option->get_type_name().find('|') == std::string::npos) continue;
       CAPTURE(option->get_name());
-      Line tried;
+      CommandLineRun tried;
       auto* checked =
           const_cast<CLI::App*>(tried.command_of(words))->get_option(option->get_name());
       checked->add_result("neither");

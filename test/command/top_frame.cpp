@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-PeerRow peer(const std::string& name, double cpu, std::uint64_t memory) {
+PeerRow peer_row(const std::string& name, double cpu, std::uint64_t memory) {
   return {name, 1234, cpu, memory, 12, 2, "ok"};
 }
 
@@ -26,7 +26,7 @@ Figures some_figures(std::size_t count) {
   Figures figures{"domain 42 on 127.0.0.1", "12:00:00", {}, {}, {}};
   for (std::size_t i = 0; i < count; ++i) {
     const std::string number = std::to_string(i);
-    figures.peers.push_back(peer("uav-1/peer-" + number, static_cast<double>(i), i << 20));
+    figures.peers.push_back(peer_row("uav-1/peer-" + number, static_cast<double>(i), i << 20));
     figures.services.push_back(
         service("ns/Service" + number, static_cast<double>(i), i * 1'000'000));
     figures.decisions.push_back("decision " + number);
@@ -124,7 +124,7 @@ TEST_CASE("a decision is cut with a mark on a screen, and whole as text") {
 
 TEST_CASE("rows are ordered as the keys say, of the pane that is chosen") {
   Figures figures = some_figures(0);
-  figures.peers = {peer("a", 1, 300), peer("b", 3, 200), peer("c", 2, 100)};
+  figures.peers = {peer_row("a", 1, 300), peer_row("b", 3, 200), peer_row("c", 2, 100)};
   figures.services = {service("x", 1, 10), service("y", 2, 5), service("z", 0, 20)};
   const auto drawn = [&](const View& view) { return text_of(draw(figures, view, 80, 24)); };
   View view;

@@ -67,7 +67,7 @@ template <class Visit>
 void for_each_submessage_of(const Packet& packet, Visit&& visit) {
   auto octets = packet.content;
   auto* message = reinterpret_cast<unsigned char*>(octets.data());
-  if (octets.size() < rtps_message::kHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return;
+  if (octets.size() < rtps_message::kRtpsHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return;
   rtps_message::for_each_submessage(message, octets.size(), visit);
 }
 

@@ -15,7 +15,7 @@ using ::test::LouderEcho;
 namespace {
 
 constexpr std::int32_t kNever = -1;
-constexpr std::int32_t kEndless = 1 << 30;
+constexpr std::int32_t kEndlessStream = 1 << 30;
 constexpr std::int32_t kWindow = PendingStream::kWindow;
 
 // A service and a client of it: in another entity, or in the service's own and so in one process.
@@ -112,7 +112,7 @@ TEST_CASE("a reader that drops or cancels its stream stops the server", "[wire]"
   const bool drop = GENERATE(true, false);
   auto echo = test.connect();
   {
-    auto numbers = echo.within(10min).count_up(kEndless, kNever);
+    auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
     CHECK(numbers.next() == 0);
     if (!drop) {
       numbers.cancel();
@@ -126,7 +126,7 @@ TEST_CASE("a reader that drops or cancels its stream stops the server", "[wire]"
 TEST_CASE("a stream that gives way to another is dropped at once") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
-  auto numbers = echo.within(10min).count_up(kEndless, kNever);
+  auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
   CHECK(numbers.next() == 1);
   auto others = echo.within(10min).count_up(3, kNever);
@@ -140,7 +140,7 @@ TEST_CASE("the deadline ends a stream at both ends") {
   auto echo = test.connect();
   std::optional<Stream<std::int32_t>> numbers;
   REQUIRE(with_enough_time(300ms, [&](auto limit) {
-    numbers.emplace(echo.within(limit).count_up(kEndless, kNever));
+    numbers.emplace(echo.within(limit).count_up(kEndlessStream, kNever));
     return eventually([&] { return test.service->stream_ended.load(); }, 2 * limit);
   }));
   std::int32_t taken = 0;
@@ -156,7 +156,7 @@ TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nob
           "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
-  auto numbers = echo.within(10min).count_up(kEndless, kNever);
+  auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
   test.server->withdraw(test.id);
   CHECK_THROWS_AS(
@@ -171,7 +171,7 @@ TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nob
 TEST_CASE("a stream whose reader disconnects stops the server", "[wire]") {
   Streaming test(GENERATE(false, true));
   auto echo = test.connect();
-  auto numbers = echo.within(10min).count_up(kEndless, kNever);
+  auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
   echo.disconnect();
   CHECK(eventually([&] { return test.service->stream_ended.load(); }));

@@ -41,7 +41,7 @@ class Gate {
 };
 
 /// Goes on until it is over, or for as long as it is worth while.
-struct Waiting final : IdleWork {
+struct WaitingWork final : IdleWork {
   void work_until(const std::function<bool()>& over) override {
     thread = std::this_thread::get_id();
     ++begun;
@@ -179,7 +179,7 @@ TEST_CASE("a thread that is stuck is left behind in bounded time") {
 }
 
 TEST_CASE("a thread without a task does its idle work, until there is one, or the end comes") {
-  const auto work = std::make_shared<Waiting>();
+  const auto work = std::make_shared<WaitingWork>();
   ThreadExecutor executor("test");
   executor.work_while_idle(work);
   std::atomic<int> ran{0};

@@ -35,9 +35,9 @@ struct Watched {
 using Names = std::vector<std::string>;
 
 /// A thread that waits in the kernel until it is let go.
-class Waiting {
+class WaitingThread {
  public:
-  explicit Waiting(bool takes_signals = true) {
+  explicit WaitingThread(bool takes_signals = true) {
     REQUIRE(pipe(ends_) == 0);
     thread_ = std::thread([this, takes_signals] {
       sigset_t all;
@@ -50,7 +50,7 @@ class Waiting {
     });
     REQUIRE(eventually([&] { return number_ != 0; }));
   }
-  ~Waiting() {
+  ~WaitingThread() {
     close(ends_[1]);
     thread_.join();
     close(ends_[0]);
@@ -144,7 +144,7 @@ TEST_CASE("who has ended is not looked at") {
 // TSan lets no handler run before the system call in which its thread waits has returned.
 #ifndef __SANITIZE_THREAD__
 TEST_CASE("the stack of a thread is seen while it waits, and it goes on waiting") {
-  Waiting waiting;
+  WaitingThread waiting;
   for (int i = 0; i < 3; ++i) {
     const auto functions = stack_of(waiting.number());
     CAPTURE(functions);
@@ -157,11 +157,11 @@ TEST_CASE("the stack of a thread is seen while it waits, and it goes on waiting"
 TEST_CASE("of a thread that has ended, or takes no signals, no stack is seen") {
   pid_t number = 0;
   {
-    const Waiting waiting;
+    const WaitingThread waiting;
     number = waiting.number();
   }
   CHECK(stack_of(number).empty());
-  CHECK(stack_of(Waiting(false).number()).empty());
-  CHECK_FALSE(stack_of(Waiting().number()).empty());  // others are seen again
+  CHECK(stack_of(WaitingThread(false).number()).empty());
+  CHECK_FALSE(stack_of(WaitingThread().number()).empty());  // others are seen again
 }
 #endif

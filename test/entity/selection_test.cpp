@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-Candidate candidate(std::string name, std::optional<Duration> latency, double quality) {
+Candidate declared(std::string name, std::optional<Duration> latency, double quality) {
   Candidate candidate;
   candidate.name = std::move(name);
   candidate.latency = latency;
@@ -19,9 +19,8 @@ Candidate candidate(std::string name, std::optional<Duration> latency, double qu
   return candidate;
 }
 
-const std::vector<Candidate> kThree{candidate("thorough", 1500ms, 0.95),
-                                    candidate("quick", 20ms, 0.5),
-                                    candidate("middling", 300ms, 0.9)};
+const std::vector<Candidate> kThree{declared("thorough", 1500ms, 0.95),
+                                    declared("quick", 20ms, 0.5), declared("middling", 300ms, 0.9)};
 
 Selection declared(Duration remaining) {
   return make_declared_selection()->select(kThree, {.remaining = remaining});
@@ -43,7 +42,7 @@ TEST_CASE("a strategy that selects a candidate that is not there is named") {
     }
   };
   const Beyond beyond;
-  CandidateIterator iterator(beyond, {candidate("only", 10ms, 1)}, {});
+  CandidateIterator iterator(beyond, {declared("only", 10ms, 1)}, {});
   CHECK_THROWS_WITH(iterator.next(1s), Catch::Contains("'beyond'"));
 }
 
@@ -58,7 +57,7 @@ TEST_CASE("a strategy that gives a CSP no time is named, and no CSP pays for it"
   };
   const auto next = [](Duration slice) {
     const Stingy stingy(slice);
-    CandidateIterator(stingy, {candidate("only", 10ms, 1)}, {}).next(1s);
+    CandidateIterator(stingy, {declared("only", 10ms, 1)}, {}).next(1s);
   };
   CHECK_THROWS_AS(next(-5ms), Internal);
   CHECK_THROWS_WITH(next(-5ms),
@@ -79,7 +78,7 @@ TEST_CASE("what a strategy throws is told as the strategy's") {
   };
   const auto next = [](std::function<void()> thrower) {
     const Broken broken(std::move(thrower));
-    CandidateIterator(broken, {candidate("only", 10ms, 1)}, {}).next(1s);
+    CandidateIterator(broken, {declared("only", 10ms, 1)}, {}).next(1s);
   };
   const auto standard = [] { throw std::runtime_error("table empty"); };
   const auto number = [] { throw 42; };
@@ -93,8 +92,8 @@ TEST_CASE("what a strategy throws is told as the strategy's") {
 }
 
 TEST_CASE("whoever is selected gets some time, also where others need just what is left") {
-  const std::vector<Candidate> pair{candidate("undeclared", std::nullopt, 0.9),
-                                    candidate("quick", 100ms, 0.5)};
+  const std::vector<Candidate> pair{declared("undeclared", std::nullopt, 0.9),
+                                    declared("quick", 100ms, 0.5)};
   const auto declared = make_declared_selection();
   CandidateIterator iterator(*declared, pair, {});
   CHECK(iterator.next(100ms).selection.slice == 100ms);
@@ -111,7 +110,7 @@ TEST_CASE("a slice is never longer than the time left") {
     }
   };
   const Generous generous;
-  CandidateIterator iterator(generous, {candidate("only", 10ms, 1)}, {});
+  CandidateIterator iterator(generous, {declared("only", 10ms, 1)}, {});
   CHECK(iterator.next(1s).selection.slice == 1s);
 }
 
@@ -141,7 +140,7 @@ TEST_CASE("of plenty of time half is kept in reserve: who needs more than that h
 TEST_CASE("where no other declares a latency, each has an even share of the time kept for it") {
   const auto slice = [](std::optional<Duration> latency) {
     return make_declared_selection()
-        ->select({candidate("best", latency, 0.9), candidate("silent", std::nullopt, 0.5)},
+        ->select({declared("best", latency, 0.9), declared("silent", std::nullopt, 0.5)},
                  {.remaining = 1s})
         .slice;
   };
@@ -151,11 +150,11 @@ TEST_CASE("where no other declares a latency, each has an even share of the time
 }
 
 TEST_CASE("equal quality is decided by latency") {
-  CHECK(chosen({candidate("slow", 30ms, 0.5), candidate("fast", 10ms, 0.5)}, 1s) == "fast");
+  CHECK(chosen({declared("slow", 30ms, 0.5), declared("fast", 10ms, 0.5)}, 1s) == "fast");
 }
 
 TEST_CASE("a candidate that declares no latency is not ruled out by time") {
-  CHECK(chosen({candidate("silent", std::nullopt, 0.9), candidate("fast", 10ms, 0.5)}, 20ms) ==
+  CHECK(chosen({declared("silent", std::nullopt, 0.9), declared("fast", 10ms, 0.5)}, 20ms) ==
         "silent");
 }
 

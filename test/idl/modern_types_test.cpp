@@ -6,7 +6,8 @@
 #include "skein/detail/codec.hpp"
 #include "skein/detail/type_support.hpp"
 
-using namespace modern;
+namespace modern {
+
 using skein::Bytes;
 using skein::InvalidArgument;
 using skein::idl::decode_message;
@@ -167,3 +168,5 @@ TEST_CASE("constants have the types of the mapping") {
   CHECK(LEAST == -128);
   CHECK(LEAST_LONG == std::numeric_limits<std::int32_t>::min());
 }
+
+}  // namespace modern

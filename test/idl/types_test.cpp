@@ -8,7 +8,8 @@
 #include "skein/detail/codec.hpp"
 #include "skein/detail/type_support.hpp"
 
-using namespace everything;
+namespace everything {
+
 using skein::idl::decode_message;
 using skein::idl::encode_message;
 using skein::idl::from_json;
@@ -301,3 +302,5 @@ TEST_CASE("an argument borrows, owns and copies") {
   CHECK(argument->size() == 3);
   CHECK(text == "borrowed");
 }
+
+}  // namespace everything

@@ -126,7 +126,7 @@ struct World {
 };
 
 /// Goes through every sequence of events up to a length; returns how many it saw.
-std::size_t explore(const World& world, int length, std::vector<Event>& way) {
+std::size_t explore_child(const World& world, int length, std::vector<Event>& way) {
   if (!world.broken.empty()) {
     std::string text = world.broken + " after";
     for (const Event event : way) text += " " + std::to_string(static_cast<int>(event));
@@ -139,7 +139,7 @@ std::size_t explore(const World& world, int length, std::vector<Event>& way) {
     World next = world;
     way.push_back(event);
     next.happen(event);
-    count += explore(next, length - 1, way);
+    count += explore_child(next, length - 1, way);
     way.pop_back();
   }
   return count;
@@ -171,7 +171,7 @@ TEST_CASE("No order of deaths, hangs, stops and restarts breaks a promise of the
   std::vector<Event> way;
   world.expect_stoppable();
   world.obey(world.machine.start(world.now));
-  CHECK(explore(world, 6, way) > 500'000);
+  CHECK(explore_child(world, 6, way) > 500'000);
 }
 
 TEST_CASE("A child becomes ready once for each process") {

@@ -11,7 +11,7 @@ using namespace skein::profile;
 
 namespace {
 
-std::vector<std::string> argv_of(const PeerProfile& peer, const CspProfile* csp) {
+std::vector<std::string> chosen_argv(const PeerProfile& peer, const CspProfile* csp) {
   return {"skein", "peer", "m.xml", csp ? peer.name + "/" + csp->name : peer.name};
 }
 
@@ -21,7 +21,7 @@ const std::string kGrouped = R"(<group name="pair">
 <peer name="a" component="f.xml"/><peer name="b" component="f.xml"/></group>
 <peer name="c" component="f.xml" role="mission"/>)";
 
-Words names_of(const LaunchPlan& plan) {
+Words chosen_names(const LaunchPlan& plan) {
   Words names;
   for (const auto& child : plan.children) names.push_back(child.name);
   return names;
@@ -36,7 +36,7 @@ TEST_CASE("Environment, arguments and CPUs of a process reach its command line")
 <peer name="n" component="n.xml" process_cpus="0,2-3"><environment name="SIZE" value="2"/>
   <argument value="--fast"/><argument value="a b"/>
   <csp component="p.xml" process="own"><environment name="SHAPE" value="round"/></csp></peer>)"));
-  const auto plan = make_launch_plan(mission, argv_of);
+  const auto plan = make_launch_plan(mission, chosen_argv);
   REQUIRE(plan.children.size() == 2);
   CHECK(plan.children[0].argv == Words{"taskset", "--cpu-list", "0,2,3", "skein", "peer", "m.xml",
                                        "n", "--", "--fast", "a b"});
@@ -55,7 +55,7 @@ TEST_CASE("A program of its own is run as it is, and is ready as soon as it runs
   const auto mission = read_mission_profile(folder.mission(R"(
 <peer name="log" program="logger"><argument value="-s"/></peer>
 <peer name="script" program="tools/go.sh" ready="told"/>)"));
-  const auto plan = make_launch_plan(mission, argv_of);
+  const auto plan = make_launch_plan(mission, chosen_argv);
   REQUIRE(plan.children.size() == 2);
   CHECK(plan.children[0].argv == Words{"logger", "-s"});
   CHECK_FALSE(plan.children[0].tells_ready);
@@ -83,19 +83,19 @@ TEST_CASE("The launcher does not wait for a program that says nothing") {
 TEST_CASE("Some peers can be started, and others left out") {
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(kGrouped));
-  CHECK(names_of(make_launch_plan(mission, argv_of)) == Words{"a", "b", "c"});
-  const auto plan = make_launch_plan(mission, argv_of, "", {"pair"});
-  CHECK(names_of(plan) == Words{"a", "b"});
+  CHECK(chosen_names(make_launch_plan(mission, chosen_argv)) == Words{"a", "b", "c"});
+  const auto plan = make_launch_plan(mission, chosen_argv, "", {"pair"});
+  CHECK(chosen_names(plan) == Words{"a", "b"});
   CHECK(plan.elsewhere == Words{"c, which --only leaves out"});
   CHECK(plan.mission_elsewhere == "c, which --only leaves out");
-  CHECK(names_of(make_launch_plan(mission, argv_of, "", {"c", "a"})) == Words{"a", "c"});
+  CHECK(chosen_names(make_launch_plan(mission, chosen_argv, "", {"c", "a"})) == Words{"a", "c"});
 }
 
 TEST_CASE("A peer to be started that there is not is refused with those that there are") {
   ProfileFolder folder;
   const auto mission = read_mission_profile(folder.mission(kGrouped));
   CHECK_THROWS_WITH(
-      make_launch_plan(mission, argv_of, "", {"paire"}),
+      make_launch_plan(mission, chosen_argv, "", {"paire"}),
       "mission 'm' has no peer and no group 'paire' (did you mean 'pair'?); it has a, "
       "pair, b, c");
 }

@@ -46,8 +46,8 @@ std::vector<std::size_t> spawned(const MissionState::Steps& steps) {
 using Children = std::vector<std::size_t>;
 
 /// A mission together with what its owner knows: which processes run.
-struct World {
-  explicit World(const LaunchPlan& its_plan)
+struct MissionWorld {
+  explicit MissionWorld(const LaunchPlan& its_plan)
       : plan(&its_plan), mission(its_plan), alive(its_plan.children.size()) {
     obey(mission.start(now));
   }
@@ -176,7 +176,7 @@ struct World {
 
   /// Whatever came before: once it is told to stop, and nobody ends before he is killed.
   void expect_stoppable() const {
-    World world = *this;
+    MissionWorld world = *this;
     world.happen({Kind::Stop, 0});
     int ticks = 0;
     for (; !world.mission.all_final() && ticks < 20; ++ticks) {
@@ -192,7 +192,7 @@ struct World {
 
   /// Whatever came before: if from now on everything goes well, all that can be ready is.
   void expect_no_deadlock() const {
-    World world = *this;
+    MissionWorld world = *this;
     for (int i = 0; i < 40 && !world.is_at_rest(); ++i) {
       for (std::size_t child = 0; child < world.alive.size(); ++child) {
         const ChildState state = world.mission.child(child).state();
@@ -217,7 +217,7 @@ struct World {
 };
 
 /// Goes through every sequence of events up to a length; returns how many it saw.
-std::size_t explore(const World& world, int length, std::vector<World::Event>& way) {
+std::size_t explore(const MissionWorld& world, int length, std::vector<MissionWorld::Event>& way) {
   if (!world.broken.empty()) {
     std::string text = world.broken + " after";
     for (const auto& event : way)
@@ -230,7 +230,7 @@ std::size_t explore(const World& world, int length, std::vector<World::Event>& w
   if (length == 0) return 1;
   std::size_t count = 1;
   for (const auto& event : world.events()) {
-    World next = world;
+    MissionWorld next = world;
     way.push_back(event);
     next.happen(event);
     count += explore(next, length - 1, way);
@@ -243,8 +243,8 @@ std::size_t explore(const World& world, int length, std::vector<World::Event>& w
 
 TEST_CASE("No order of deaths, restarts, hangs and stops wedges a mission or breaks its promises") {
   const LaunchPlan plan = small_mission();
-  std::vector<World::Event> way;
-  CHECK(explore(World(plan), 5, way) > 100'000);
+  std::vector<MissionWorld::Event> way;
+  CHECK(explore(MissionWorld(plan), 5, way) > 100'000);
 }
 
 TEST_CASE("A child starts with the very event that makes ready the last it waits for") {

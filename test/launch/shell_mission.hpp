@@ -11,6 +11,9 @@
 #include "launch/supervisor.hpp"
 
 /// A process that is a shell script; `ready` in it reports readiness.
+/// A child that is ready and runs until it is ended.
+inline const std::string kWait = "ready; while :; do sleep 1000; done";
+
 inline skein::launch::ChildPlan shell_child(const std::string& name, const std::string& script) {
   skein::launch::ChildPlan child;
   child.name = name;

@@ -88,8 +88,6 @@ class ScriptRun {
   pid_t id_ = -1;
 };
 
-const std::string kWait = "ready; while :; do sleep 1000; done";
-
 ChildPlan mission_child(const std::string& script) {
   auto child = shell_child("mission", script);
   child.runs_mission = true;

@@ -19,13 +19,11 @@ using skein::profile::RestartPolicy;
 
 namespace {
 
-ChildPlan mission_child(const std::string& script) {
+ChildPlan supervised_mission(const std::string& script) {
   auto child = shell_child("mission", script);
   child.runs_mission = true;
   return child;
 }
-
-const std::string kWait = "ready; while :; do sleep 1000; done";
 
 }  // namespace
 
@@ -37,7 +35,7 @@ TEST_CASE("The exit code of the mission's peer is the mission's") {
       {"kill -SEGV $$", 128 + SIGSEGV},
       {"kill -KILL $$", 128 + SIGKILL},
   }));
-  RecordedMission mission({shell_child("other", kWait), mission_child(script)});
+  RecordedMission mission({shell_child("other", kWait), supervised_mission(script)});
   const auto result = mission.run();
   CHECK(result.outcome == Outcome::MissionEnded);
   CHECK(result.exit_code == code);
@@ -56,15 +54,15 @@ TEST_CASE("A mission without a peer that runs it ends when all processes have en
 }
 
 TEST_CASE("Output comes line by line with the name of its process, also without a line break") {
-  RecordedMission mission({mission_child("echo one; echo two >&2; printf 'three\\n\\nrest'")});
+  RecordedMission mission({supervised_mission("echo one; echo two >&2; printf 'three\\n\\nrest'")});
   mission.run();
   CHECK(mission.lines == std::vector<std::string>{"mission|one", "mission|two", "mission|three",
                                                   "mission|", "mission|rest"});
 }
 
 TEST_CASE("No output is lost when a process ends in the middle of much of it") {
-  RecordedMission mission(
-      {mission_child("i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done; exit 5")});
+  RecordedMission mission({supervised_mission(
+      "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done; exit 5")});
   CHECK(mission.run().exit_code == 5);
   REQUIRE(mission.lines.size() == 20000);
   CHECK(mission.lines.back() == "mission|line 19999");
@@ -89,8 +87,8 @@ TEST_CASE("A restart for which there are no descriptors left is tried again") {
                                     ") -gt 1 ] || exit 1; while :; do sleep 1000; done");
   child.rules.restart.policy = RestartPolicy::OnFailure;
   child.rules.restart.max_restarts = 1000;
-  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + starts +
-                                                ") -lt 2 ]; do sleep 0.01; done")});
+  RecordedMission mission({child, supervised_mission("ready; while [ $(wc -l < " + starts +
+                                                     ") -lt 2 ]; do sleep 0.01; done")});
   std::vector<skein::FileDescriptor> hoard;
   rlimit before{};
   ::getrlimit(RLIMIT_NOFILE, &before);
@@ -166,7 +164,7 @@ TEST_CASE(
       {"ready; exit 4", Outcome::PeerLost, kPeerLost},
       {"exit 4", Outcome::StartFailed, kStartFailed},
   }));
-  RecordedMission mission({shell_child("a", script), mission_child(kWait)});
+  RecordedMission mission({shell_child("a", script), supervised_mission(kWait)});
   const auto result = mission.run();
   CHECK(result.outcome == outcome);
   CHECK(result.exit_code == code);
@@ -176,8 +174,8 @@ TEST_CASE(
 TEST_CASE("Readiness is reported for each process, and for all of them together") {
   TemporaryFolder folder;
   const std::string go = (folder.path() / "go").string();
-  RecordedMission mission({shell_child("a", kWait),
-                           mission_child("ready; while [ ! -e " + go + " ]; do sleep 0.01; done")});
+  RecordedMission mission({shell_child("a", kWait), supervised_mission("ready; while [ ! -e " + go +
+                                                                       " ]; do sleep 0.01; done")});
   mission.on_event = [&](const ChildEvent& event) {
     if (event.text.find("all 2 processes are ready") != std::string::npos) folder.write("go", "");
   };
@@ -198,7 +196,7 @@ TEST_CASE("Who has ended by himself is not waited for before it is told who is r
                                 ? "ready; "
                                 : "while [ ! -e " + ended + " ]; do sleep 0.01; done; ready; ";
   RecordedMission mission(
-      {brief, mission_child(begin + "while [ ! -e " + go + " ]; do sleep 0.01; done")});
+      {brief, supervised_mission(begin + "while [ ! -e " + go + " ]; do sleep 0.01; done")});
   mission.on_event = [&](const ChildEvent& event) {
     if (event.text.starts_with("ended with exit code")) folder.write("ended", "");
     if (event.text.starts_with("1 of 2 processes are ready after ") &&
@@ -217,7 +215,7 @@ TEST_CASE("A failing process is restarted by its rules and then given up") {
   auto child = shell_child("a", "ready; echo $$ >> " + starts + "; exit 1");
   child.rules.restart.policy = RestartPolicy::OnFailure;
   child.rules.restart.max_restarts = 3;
-  RecordedMission mission({child, mission_child(kWait)});
+  RecordedMission mission({child, supervised_mission(kWait)});
   const auto result = mission.run();
   CHECK(result.outcome == Outcome::PeerLost);
   CHECK(result.reason == "a ended with exit code 1, given up after 3 restarts");
@@ -232,7 +230,7 @@ TEST_CASE("A mission goes on without a process that it does not require") {
   child.rules.restart.policy = RestartPolicy::Always;
   child.rules.restart.max_restarts = 2;
   RecordedMission mission(
-      {child, mission_child("ready; while [ ! -e " + go + " ]; do sleep 0.01; done")});
+      {child, supervised_mission("ready; while [ ! -e " + go + " ]; do sleep 0.01; done")});
   mission.on_event = [&](const ChildEvent& event) {
     if (event.text.find("given up after 2 restarts") != std::string::npos) folder.write("go", "");
   };
@@ -248,7 +246,7 @@ namespace {
 std::chrono::nanoseconds time_to_start_a_dependant() {
   TemporaryFolder folder;
   const std::string go = (folder.path() / "go").string();
-  auto dependant = mission_child("exit 0");
+  auto dependant = supervised_mission("exit 0");
   dependant.layer = 1;
   dependant.after = {{"M/I", {"a"}}, {"M/J", {"b"}}};
   RecordedMission mission(
@@ -281,7 +279,7 @@ TEST_CASE("A dependant starts at once when what it depends on is ready, and not 
 TEST_CASE("Who depends on a process that is given up starts all the same") {
   auto lost = shell_child("a", "exit 1");
   lost.rules.on_loss = LossPolicy::Continue;
-  auto dependant = mission_child("exit 0");
+  auto dependant = supervised_mission("exit 0");
   dependant.layer = 1;
   dependant.after = {{"M/I", {"a"}}};
   RecordedMission mission({lost, dependant});
@@ -297,8 +295,8 @@ TEST_CASE("A process that runs and makes no progress is killed and started again
                                     "while :; do :; done");
   child.rules.progress_timeout = 100ms;
   child.rules.restart.policy = RestartPolicy::OnFailure;
-  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + starts +
-                                                ") -lt 2 ]; do sleep 0.01; done")});
+  RecordedMission mission({child, supervised_mission("ready; while [ $(wc -l < " + starts +
+                                                     ") -lt 2 ]; do sleep 0.01; done")});
   CHECK(mission.run().exit_code == 0);
   CHECK(mission.saw("a: made no progress for 0.10 s (last it said: deadlocked): killed"));
   CHECK(mission.saw("restart number 1 follows"));
@@ -310,8 +308,8 @@ TEST_CASE("A process that makes progress is left alone, however often it says so
   folder.write("signs", "");
   auto child = shell_child("a", "ready; while :; do ready; echo >> " + signs + "; done");
   child.rules.progress_timeout = 20s;
-  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + signs +
-                                                ") -lt 5000 ]; do sleep 0.01; done")});
+  RecordedMission mission({child, supervised_mission("ready; while [ $(wc -l < " + signs +
+                                                     ") -lt 5000 ]; do sleep 0.01; done")});
   CHECK(mission.run().exit_code == 0);
   CHECK_FALSE(mission.saw("a: made no progress"));
 }
@@ -347,8 +345,8 @@ TEST_CASE("A mission that lost what degrades it goes on, and its exit code says 
   auto child = shell_child("a", "ready; exit 1");
   child.rules.on_loss = LossPolicy::Degrade;
   RecordedMission mission(
-      {child, mission_child("ready; while [ ! -e " + go + " ]; do sleep 0.01; done; exit " +
-                            std::to_string(code))});
+      {child, supervised_mission("ready; while [ ! -e " + go + " ]; do sleep 0.01; done; exit " +
+                                 std::to_string(code))});
   mission.on_event = [&](const ChildEvent& event) {
     if (event.text == "goes on degraded, without a") folder.write("go", "");
   };
@@ -361,14 +359,14 @@ TEST_CASE("A mission that lost what degrades it goes on, and its exit code says 
 TEST_CASE("The first fault is told beside what ended the mission, where they differ") {
   auto first = shell_child("a", "ready; exit 4");
   first.rules.on_loss = LossPolicy::Continue;
-  auto second = mission_child("exit 5");
+  auto second = supervised_mission("exit 5");
   second.layer = 1;
   second.after = {{"M/I", {"a"}}};
   RecordedMission both({first, second});
   const auto result = both.run();
   CHECK(result.reason == "mission, which runs the mission, ended with exit code 5");
   CHECK_THAT(result.first_fault, Catch::Matches("after [0-9.]+ m?s, a ended with exit code 4"));
-  RecordedMission one({mission_child("exit 5")});
+  RecordedMission one({supervised_mission("exit 5")});
   CHECK(one.run().first_fault.empty());
 }
 
@@ -376,7 +374,7 @@ TEST_CASE("What left its process's group and session goes with the process") {
   TemporaryFolder folder;
   folder.write("pids", "");
   const std::string pids = (folder.path() / "pids").string();
-  RecordedMission mission({mission_child(
+  RecordedMission mission({supervised_mission(
       "setsid sh -c 'echo $$ >> " + pids + "; (sleep 1000 & echo $! >> " + pids +
       "); exec sleep 1000' & while [ $(wc -l < " + pids + ") -lt 2 ]; do sleep 0.01; done")});
   CHECK(mission.run().exit_code == 0);
@@ -389,8 +387,8 @@ TEST_CASE("A process killed from outside comes back") {
   const std::string starts = (folder.path() / "starts").string();
   auto child = shell_child("a", "echo $$ >> " + starts + "; " + kWait);
   child.rules.restart.policy = RestartPolicy::OnFailure;
-  RecordedMission mission({child, mission_child("ready; while [ $(wc -l < " + starts +
-                                                ") -lt 2 ]; do sleep 0.01; done")});
+  RecordedMission mission({child, supervised_mission("ready; while [ $(wc -l < " + starts +
+                                                     ") -lt 2 ]; do sleep 0.01; done")});
   folder.write("starts", "");
   mission.on_event = [&, killed = false](const ChildEvent& event) mutable {
     if (event.child != "a" || event.state != ChildState::Ready || killed) return;
@@ -412,7 +410,7 @@ TEST_CASE("When run() returns, no process of any group is left") {
   const std::string leaver = "sleep 1000 & echo $! >> " + pids + "; ready";
   RecordedMission mission(
       {child, shell_child("b", leaver),
-       mission_child("ready; while [ $(wc -l < " + pids + ") -lt 3 ]; do sleep 0.01; done")});
+       supervised_mission("ready; while [ $(wc -l < " + pids + ") -lt 3 ]; do sleep 0.01; done")});
   folder.write("pids", "");
   CHECK(mission.run().exit_code == 0);
   CHECK(mission.saw("a: did not end within 0.02 s: killed"));
@@ -423,9 +421,9 @@ TEST_CASE("When run() returns, no process of any group is left") {
 
 TEST_CASE("A child starts with a clean slate: four descriptors, no blocked or ignored signal") {
   RecordedMission mission(
-      {mission_child("for n in $(seq 0 99); do [ -e /proc/$$/fd/$n ] && printf \"$n \"; done; "
-                     "echo $SKEIN_READY_FD; readlink /proc/$$/fd/0; "
-                     "grep -E 'SigBlk|SigIgn' /proc/$$/status | tr -d '\\t'; echo $COLOUR")});
+      {supervised_mission("for n in $(seq 0 99); do [ -e /proc/$$/fd/$n ] && printf \"$n \"; done; "
+                          "echo $SKEIN_READY_FD; readlink /proc/$$/fd/0; "
+                          "grep -E 'SigBlk|SigIgn' /proc/$$/status | tr -d '\\t'; echo $COLOUR")});
   mission.plan.children[0].environment = {{"COLOUR", "grey"}};
   ::setenv("COLOUR", "white", 1);
   const auto before = std::signal(SIGPIPE, SIG_IGN);
@@ -439,13 +437,13 @@ TEST_CASE("A child starts with a clean slate: four descriptors, no blocked or ig
 
 TEST_CASE("A launcher whose parent ignored SIGCHLD sees its children end all the same") {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
-  RecordedMission mission({mission_child("exit 6")});
+  RecordedMission mission({supervised_mission("exit 6")});
   CHECK(mission.run().exit_code == 6);
   CHECK(std::signal(SIGCHLD, before) == SIG_IGN);
 }
 
 TEST_CASE("A process that closes its output and says nothing more is watched all the same") {
-  RecordedMission mission({mission_child("exec >&- 2>&- 3>&-; exit 7")});
+  RecordedMission mission({supervised_mission("exec >&- 2>&- 3>&-; exit 7")});
   CHECK(mission.run().exit_code == 7);
 }
 

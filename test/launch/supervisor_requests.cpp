@@ -22,8 +22,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kWait = "ready; while :; do sleep 1000; done";
-
 /// A mission that its launcher runs in another thread, until this object goes.
 class RunningMission {
  public:

@@ -19,7 +19,7 @@ std::filesystem::path tile() {
   std::_Exit(77);
 }
 
-std::string text_of(const std::filesystem::path& file) {
+std::string profile_text(const std::filesystem::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -45,6 +45,7 @@ TEST_CASE("the mission flies over an SRTM tile that is given by a relative path"
   CHECK_THAT(run.output(),
              Contains("5 routes, all valid; the unreachable goal was refused as such"));
   CHECK_THAT(run.output(), Contains("4 no-fly zones"));
-  CHECK_THAT(text_of(run.file("route.geojson")), Contains("Moor") && Contains("planner killed"));
-  CHECK_THAT(text_of(run.file("route.plan")), Contains("\"fileType\": \"Plan\""));
+  CHECK_THAT(profile_text(run.file("route.geojson")),
+             Contains("Moor") && Contains("planner killed"));
+  CHECK_THAT(profile_text(run.file("route.plan")), Contains("\"fileType\": \"Plan\""));
 }

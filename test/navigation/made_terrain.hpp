@@ -29,6 +29,11 @@ inline Terrain make_terrain(int posts, double spacing_m,
   return Terrain("made", posts, posts, spacing_m, spacing_m, heights);
 }
 
+/// 20 km each way, all of it at sea level.
+inline Terrain flat_terrain() {
+  return make_terrain(201, 100, [](double, double) { return 0.0; });
+}
+
 /// The ground at a place on the earth.
 inline double height_at(const Terrain& terrain, double latitude_deg, double longitude_deg) {
   const auto point = terrain.frame().value().to_ground({latitude_deg, longitude_deg});

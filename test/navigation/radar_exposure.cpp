@@ -14,10 +14,6 @@ namespace {
 
 const RadarSite kSite{"R", {10000, 10000}, 20, 4000, 1};
 
-Terrain flat() {
-  return make_terrain(201, 100, [](double, double) { return 0.0; });
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -29,7 +25,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A straight pass is as exposed as the integral says") {
-  const Terrain terrain = flat();
+  const Terrain terrain = flat_terrain();
   const RadarExposure exposure(terrain, std::span(&kSite, 1));
   // Past the antenna at a distance h, from -l to l: R^4 (l / (h^2 (h^2 + l^2)) + atan(l / h) /
   // h^3).
@@ -42,7 +38,7 @@ TEST_CASE("A straight pass is as exposed as the integral says") {
 }
 
 TEST_CASE("Passes on either side of a radar are equally exposed") {
-  const Terrain terrain = flat();
+  const Terrain terrain = flat_terrain();
   const RadarExposure exposure(terrain, std::span(&kSite, 1));
   const double east = exposure.along({4000, 12500, 300}, {16000, 12500, 300});
   CHECK(exposure.along({4000, 7500, 300}, {16000, 7500, 300}) == Approx(east));
@@ -71,7 +67,7 @@ TEST_CASE("Far away the curve of the earth hides what is low") {
 }
 
 TEST_CASE("Exposures of several sites add up") {
-  const Terrain terrain = flat();
+  const Terrain terrain = flat_terrain();
   const RadarSite sites[] = {kSite, {"S", {5000, 5000}, 30, 2000, 2}};
   const Position a{3000, 8000, 200}, b{12000, 14000, 250};
   const double one = RadarExposure(terrain, std::span(sites, 1)).along(a, b);

@@ -24,7 +24,7 @@ void write_hills(const TemporaryFolder& folder, const std::string& name, int sou
   });
 }
 
-std::string refusal(const std::filesystem::path& file) {
+std::string folder_refusal(const std::filesystem::path& file) {
   try {
     read_hgt(file);
   } catch (const skein::InvalidArgument& error) {
@@ -139,15 +139,15 @@ TEST_CASE("Tiles that make no terrain together are refused with the one that is 
   const auto at = [&](const char* name) { return folder.path() / name; };
   write_hills(folder, "N50E006.hgt", 50, 6);
   write_hills(folder, "N51E007.hgt", 51, 7);
-  CHECK_THAT(refusal(at("N50E006.hgt..N51E007.hgt")),
+  CHECK_THAT(folder_refusal(at("N50E006.hgt..N51E007.hgt")),
              Contains("lacks N50E007.hgt, N51E006.hgt in '" + folder.path().string() + "'"));
   std::ofstream(at("N50E007.hgt")) << std::string(2 * 3601 * 3601, '\0');
-  CHECK_THAT(refusal(at("N50E006.hgt..N50E007.hgt")),
+  CHECK_THAT(folder_refusal(at("N50E006.hgt..N50E007.hgt")),
              Contains("N50E007.hgt: has 3601 x 3601 posts, and N50E006.hgt has 1201 x 1201"));
-  CHECK_THAT(refusal(at("N51E007.hgt..N50E006.hgt")), Contains("the north-eastern one"));
-  CHECK_THAT(refusal(at("N50E006.hgt..N50E009.hgt")), Contains("spans 1 by 4 degrees"));
-  CHECK_THAT(refusal(at("N50E006.hgt..N50E009")), Contains("N53E027.hgt..N54E028.hgt"));
-  CHECK_THAT(refusal(at("N82E006.hgt..N84E006.hgt")), Contains("84 degrees north"));
+  CHECK_THAT(folder_refusal(at("N51E007.hgt..N50E006.hgt")), Contains("the north-eastern one"));
+  CHECK_THAT(folder_refusal(at("N50E006.hgt..N50E009.hgt")), Contains("spans 1 by 4 degrees"));
+  CHECK_THAT(folder_refusal(at("N50E006.hgt..N50E009")), Contains("N53E027.hgt..N54E028.hgt"));
+  CHECK_THAT(folder_refusal(at("N82E006.hgt..N84E006.hgt")), Contains("84 degrees north"));
   CHECK_THROWS_WITH(TerrainProvider({folder.path()}).load("N49E006.hgt..N50E006.hgt"),
                     Contains("looked for"));
 }

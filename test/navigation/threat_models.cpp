@@ -12,11 +12,7 @@ using AE_navigator::Position;
 
 namespace {
 
-const AE_navigator::MissileSite kSite{"S", {10000, 10000}, 10, 5000, 0.02};
-
-Terrain flat() {
-  return make_terrain(201, 100, [](double, double) { return 0.0; });
-}
+const AE_navigator::MissileSite kMissiles{"S", {10000, 10000}, 10, 5000, 0.02};
 
 }  // namespace
 
@@ -52,8 +48,8 @@ TEST_CASE("A target comes over the horizon at 4.12 km times the sum of the roots
 }
 
 TEST_CASE("Who flies past a missile site survives by the time that he is within range") {
-  const Terrain terrain = flat();
-  const MissileThreat threat(terrain, std::span(&kSite, 1));
+  const Terrain terrain = flat_terrain();
+  const MissileThreat threat(terrain, std::span(&kMissiles, 1));
   const double aside = std::hypot(3000, 500 - 10);
   const double inside_m = 2 * std::sqrt(5000.0 * 5000 - aside * aside);
   const Position route[] = {{13000, 2000, 500}, {13000, 9000, 500}, {13000, 18000, 500}};
@@ -67,19 +63,19 @@ TEST_CASE("Who flies past a missile site survives by the time that he is within 
 }
 
 TEST_CASE("Two missile sites must both be survived") {
-  const Terrain terrain = flat();
+  const Terrain terrain = flat_terrain();
   const AE_navigator::MissileSite other{"T", {12000, 6000}, 10, 3000, 0.01};
-  const AE_navigator::MissileSite both[] = {kSite, other};
+  const AE_navigator::MissileSite both[] = {kMissiles, other};
   const Position route[] = {{11000, 2000, 500}, {13000, 18000, 700}};
   CHECK(MissileThreat(terrain, both).survival(route, 80) ==
-        Approx(MissileThreat(terrain, std::span(&kSite, 1)).survival(route, 80) *
+        Approx(MissileThreat(terrain, std::span(&kMissiles, 1)).survival(route, 80) *
                MissileThreat(terrain, std::span(&other, 1)).survival(route, 80)));
 }
 
 TEST_CASE("A missile site does not reach behind a ridge") {
   const Terrain terrain =
       make_terrain(201, 100, [](double north, double) { return north == 12000 ? 400.0 : 0.0; });
-  const MissileThreat threat(terrain, std::span(&kSite, 1));
+  const MissileThreat threat(terrain, std::span(&kMissiles, 1));
   const Position low[] = {{13000, 2000, 300}, {13000, 18000, 300}};
   CHECK(threat.survival(low, 100) == 1);
   const Position high[] = {{13000, 2000, 900}, {13000, 18000, 900}};

@@ -22,7 +22,7 @@ DictionaryEntry entry_of(ValueType type, std::string unit = "",
   return entry;
 }
 
-std::string findings_of(const std::string& entries) {
+std::string findings_in(const std::string& entries) {
   try {
     parse_dictionary("<dictionary>" + entries + "</dictionary>", "d.xml");
   } catch (const DescriptionError& error) {
@@ -166,7 +166,7 @@ TEST_CASE("A name that is of the other kind is told as such") {
 
 TEST_CASE("Of a type that is none, nothing else is said") {
   const std::string findings =
-      findings_of(R"(<parameter name="Speed" type="double" unit="m/s" min="1">Fast.</parameter>)");
+      findings_in(R"(<parameter name="Speed" type="double" unit="m/s" min="1">Fast.</parameter>)");
   CHECK_THAT(findings, Catch::Contains("\"double\" is no type; write \"real\""));
   CHECK_THAT(findings, !Catch::Contains("has a unit"));
 }
@@ -215,10 +215,10 @@ TEST_CASE("A dictionary's own mistakes are found") {
       {R"(<attribute name="a" type="text">x</attribute><attribute name="a" type="text">y</attribute>)",
        "\"a\" is defined twice; the first is at d.xml:1:13"},
   }));
-  CHECK_THAT(findings_of(entries), Catch::Contains(problem));
+  CHECK_THAT(findings_in(entries), Catch::Contains(problem));
 }
 
 TEST_CASE("An attribute and a parameter may have the same name") {
-  CHECK(findings_of(R"(<attribute name="a" type="text">x</attribute>
+  CHECK(findings_in(R"(<attribute name="a" type="text">x</attribute>
                        <parameter name="a" type="real">y</parameter>)") == "");
 }

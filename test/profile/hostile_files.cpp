@@ -11,7 +11,7 @@ using namespace skein::profile;
 
 namespace {
 
-std::string refusal_of(const std::filesystem::path& file) {
+std::string refusal_of_file(const std::filesystem::path& file) {
   try {
     read_mission_profile(file);
   } catch (const DescriptionError& error) {
@@ -24,10 +24,11 @@ std::string refusal_of(const std::filesystem::path& file) {
 
 TEST_CASE("A missing file, a directory and a special file are told apart") {
   TemporaryFolder folder;
-  CHECK_THAT(refusal_of(folder.path() / "none.xml"), Catch::Contains("No such file or directory"));
-  CHECK_THAT(refusal_of(folder.path()), Catch::Contains("is a directory"));
-  CHECK_THAT(refusal_of("/dev/zero"), Catch::Contains("is no regular file"));
-  CHECK_THAT(refusal_of(""), Catch::Contains("cannot be opened"));
+  CHECK_THAT(refusal_of_file(folder.path() / "none.xml"),
+             Catch::Contains("No such file or directory"));
+  CHECK_THAT(refusal_of_file(folder.path()), Catch::Contains("is a directory"));
+  CHECK_THAT(refusal_of_file("/dev/zero"), Catch::Contains("is no regular file"));
+  CHECK_THAT(refusal_of_file(""), Catch::Contains("cannot be opened"));
 }
 
 TEST_CASE("Of a file that may not be read, the rights are to be checked") {
@@ -37,7 +38,7 @@ TEST_CASE("Of a file that may not be read, the rights are to be checked") {
   const uid_t self = ::geteuid();
   constexpr uid_t kNobody = 65534;
   if (self == 0) REQUIRE(::seteuid(kNobody) == 0);  // root may read everything
-  const std::string refusal = refusal_of(file);
+  const std::string refusal = refusal_of_file(file);
   if (self == 0) REQUIRE(::seteuid(self) == 0);
   CHECK_THAT(refusal, Catch::Contains("Permission denied; check its rights, and those of its "
                                       "folders"));
@@ -47,7 +48,7 @@ TEST_CASE("A named pipe that nobody writes does not hang the reader") {
   TemporaryFolder folder;
   const auto pipe = folder.path() / "pipe.xml";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK_THAT(refusal_of(pipe), Catch::Contains("is no regular file"));
+  CHECK_THAT(refusal_of_file(pipe), Catch::Contains("is no regular file"));
 }
 
 TEST_CASE("A file of any size is refused before it is read") {
@@ -57,13 +58,13 @@ TEST_CASE("A file of any size is refused before it is read") {
   const auto size = GENERATE(std::uintmax_t{8 * 1024 * 1024 + 1}, std::uintmax_t{100'000'000},
                              std::uintmax_t{1} << 40);
   std::filesystem::resize_file(file, size);
-  CHECK(refusal_of(file) == file.string() + ": error: is larger than 8 MiB");
+  CHECK(refusal_of_file(file) == file.string() + ": error: is larger than 8 MiB");
 }
 
 TEST_CASE("An empty file is called empty") {
   TemporaryFolder folder;
-  CHECK_THAT(refusal_of(folder.write("empty.xml", "")), Catch::Contains("is empty"));
-  CHECK_THAT(refusal_of(folder.write("blank.xml", " \n\n")), Catch::Contains("is empty"));
+  CHECK_THAT(refusal_of_file(folder.write("empty.xml", "")), Catch::Contains("is empty"));
+  CHECK_THAT(refusal_of_file(folder.write("blank.xml", " \n\n")), Catch::Contains("is empty"));
 }
 
 TEST_CASE("A file full of peers is cut off, not worked through") {

@@ -6,8 +6,8 @@ using namespace skein::profile;
 
 namespace {
 
-std::string findings_of(ProfileFolder& folder, const std::string& content,
-                        const VariableValues& values = {}) {
+std::string findings_of_mission(ProfileFolder& folder, const std::string& content,
+                                const VariableValues& values = {}) {
   return folder.without_folder(to_text(check_file(folder.mission(content), values)));
 }
 
@@ -75,12 +75,12 @@ TEST_CASE("What is wrong with a variable is a finding where it stands") {
        "the variable \"after\" is unknown here"},
   }));
   CAPTURE(content);
-  CHECK_THAT(findings_of(folder, kVendor + content), Catch::Contains(finding));
+  CHECK_THAT(findings_of_mission(folder, kVendor + content), Catch::Contains(finding));
 }
 
 TEST_CASE("A value that cannot be worked out is one finding, not several") {
   ProfileFolder folder;
-  const auto text = findings_of(folder, R"(<variable name="x"/>
+  const auto text = findings_of_mission(folder, R"(<variable name="x"/>
 <peer name="${x}" component="${x}" vendor="${x}" restart="${x}" threads="${y}"/>)");
   CHECK(std::count(text.begin(), text.end(), '\n') == 2);
 }
@@ -94,10 +94,11 @@ TEST_CASE("A variable without a default takes its value from the command line") 
 
 TEST_CASE("A value for a variable that there is not is a finding with the nearest") {
   ProfileFolder folder;
-  CHECK(findings_of(folder, kVendor + kPeer, {{"vendr", "fastdds"}}) ==
+  CHECK(findings_of_mission(folder, kVendor + kPeer, {{"vendr", "fastdds"}}) ==
         "m.xml: error: there is no variable \"vendr\", which --variable sets; did you mean "
         "'vendor'?\n");
-  CHECK(findings_of(folder, R"(<peer name="f" component="f.xml"/>)", {{"vendor", "fastdds"}}) ==
+  CHECK(findings_of_mission(folder, R"(<peer name="f" component="f.xml"/>)",
+                            {{"vendor", "fastdds"}}) ==
         "m.xml: error: there is no variable \"vendor\", which --variable sets; the profile has "
         "none\n");
 }
@@ -125,6 +126,7 @@ TEST_CASE("Variables that double each other do not fill the memory") {
     content +=
         "<variable name=\"v" + std::to_string(i) + "\" default=\"" + before + before + "\"/>";
   }
-  CHECK_THAT(findings_of(folder, content + R"(<peer name="f" component="f.xml" system="${v99}"/>)"),
+  CHECK_THAT(findings_of_mission(folder,
+                                 content + R"(<peer name="f" component="f.xml" system="${v99}"/>)"),
              Catch::Contains("with its variables, the value is longer than 4096 characters"));
 }

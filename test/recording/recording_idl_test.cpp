@@ -11,7 +11,7 @@ using recording::to_recording_idl;
 namespace {
 
 Type type(Kind kind, std::vector<Type> elements = {}) { return {kind, 0, {}, std::move(elements)}; }
-Type named(const std::string& name) { return {Kind::Declared, 0, name, {}}; }
+Type declared_type(const std::string& name) { return {Kind::Declared, 0, name, {}}; }
 
 Member member(const std::string& name, Type its_type) {
   Member member;
@@ -42,10 +42,11 @@ TEST_CASE("a plain struct is itself, in its module") {
 }
 
 TEST_CASE("a type inside an interface or a struct stands in the module") {
-  const auto idl = to_recording_idl({{structure("A::I::S", 1, {member("x", named("A::I::S::T"))}),
-                                      structure("A::I::S::T", 1, {})},
-                                     {}},
-                                    "A::I::S");
+  const auto idl =
+      to_recording_idl({{structure("A::I::S", 1, {member("x", declared_type("A::I::S::T"))}),
+                         structure("A::I::S::T", 1, {})},
+                        {}},
+                       "A::I::S");
   CHECK(idl.type == "A::I_S");
   CHECK_THAT(idl.text, Catch::Contains("struct I_S {\n  A::I_S_T x;\n}"));
 }
@@ -62,8 +63,8 @@ TEST_CASE("names that are words of viewers' parsers get an underscore") {
 
 TEST_CASE("a type that contains itself by a sequence has no schema, and the reason is said") {
   const TypeSystem types{
-      {structure("Tree", 0, {member("children", type(Kind::Sequence, {named("Tree")}))}),
-       structure("Park", 0, {member("tree", named("Tree"))})},
+      {structure("Tree", 0, {member("children", type(Kind::Sequence, {declared_type("Tree")}))}),
+       structure("Park", 0, {member("tree", declared_type("Tree"))})},
       {}};
   CHECK_THROWS_WITH(to_recording_idl(types, "Park"),
                     Catch::Contains("contains itself by a sequence"));

@@ -47,7 +47,7 @@ TEST_CASE("what was recorded is read again: schemas, channels, messages, attachm
   CHECK(reader.schemas().begin()->second.name == "A::S");
   REQUIRE(reader.channels().size() == 2);
   CHECK(reader.channels().begin()->second ==
-        Channel{1, 1, "position", "cdr", {{"system", "uav1"}}});
+        recording::Channel{1, 1, "position", "cdr", {{"system", "uav1"}}});
   CHECK(reader.message_count() == 3);
   CHECK(reader.times() == std::pair<std::uint64_t, std::uint64_t>(10, 30));
   CHECK(test::all_messages(reader) == std::vector<test::KeptMessage>{{"position", 1, 10, "one"},

@@ -113,8 +113,8 @@ struct OneCoreService final : Inbox {
 };
 
 /// A provider whose receiver takes what its guests send.
-struct Host {
-  Host() {
+struct ReceivingHost {
+  ReceivingHost() {
     meeting.offer(provider, provider, receiver.notifier(), [this](std::shared_ptr<Link> link) {
       const Guid client = link->peer();
       auto delivery = receiver.add(std::move(link), notes);
@@ -122,7 +122,7 @@ struct Host {
       deliveries[client] = std::move(delivery);
     });
   }
-  ~Host() { meeting.withdraw(provider); }
+  ~ReceivingHost() { meeting.withdraw(provider); }
 
   /// Of what the client brings.
   std::shared_ptr<dds::CallerDelivery> delivery(const Guid& client) {
@@ -144,7 +144,7 @@ struct Host {
 };
 
 struct Client {
-  explicit Client(Host& host) : link(meeting.join(host.provider, id, [] {})) {}
+  explicit Client(ReceivingHost& host) : link(meeting.join(host.provider, id, [] {})) {}
   void send(const std::string& text) {
     REQUIRE(link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
   }
@@ -156,7 +156,7 @@ struct Client {
 
 /// A client without a process of its own, which begins a message and does not end it.
 struct Hostile {
-  explicit Hostile(Host& host) {
+  explicit Hostile(ReceivingHost& host) {
     auto memory = SharedMemory::make(Link::kMemory);
     theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
     link = std::make_shared<Link>(Link::Side::Provider,
@@ -186,7 +186,7 @@ struct Hostile {
 
 /// A thread that leads in the receiver's place until it is told to stop.
 struct Consumer {
-  explicit Consumer(Host& host) : delivery(host.receiver.delivery()) {}
+  explicit Consumer(ReceivingHost& host) : delivery(host.receiver.delivery()) {}
   ~Consumer() { leave(); }
   void leave() {
     over = true;
@@ -211,7 +211,7 @@ struct Consumer {
 }  // namespace
 
 TEST_CASE("one thread takes what many links bring, each in its order, the end after all the rest") {
-  Host host;
+  ReceivingHost host;
   std::vector<std::unique_ptr<Client>> clients;
   for (int i = 0; i < 5; ++i) clients.push_back(std::make_unique<Client>(host));
   std::vector<std::string> expected{"begin"};
@@ -265,7 +265,7 @@ TEST_CASE("clients that were let sleep are woken by the end of the inbox during 
 }
 
 TEST_CASE("a receiver that sleeps is woken by each message") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   for (std::size_t i = 0; i < 200; ++i) {
     client.send("x");
@@ -274,7 +274,7 @@ TEST_CASE("a receiver that sleeps is woken by each message") {
 }
 
 TEST_CASE("a link that is found broken ends, is told of, and the others go on") {
-  Host host;
+  ReceivingHost host;
   const test::Log log;
   Client sound(host);
   sound.send("before");
@@ -298,7 +298,7 @@ TEST_CASE("a link that is found broken ends, is told of, and the others go on") 
 }
 
 TEST_CASE("messages without an end take no more memory than is left, and others go on") {
-  Host host;
+  ReceivingHost host;
   const test::Log log;
   Client sound(host);
   Hostile first(host);
@@ -319,7 +319,7 @@ TEST_CASE("messages without an end take no more memory than is left, and others 
 }
 
 TEST_CASE("a thread that waits for what a link brings takes it itself") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   const auto delivery = host.delivery(client.id);
   int taken_here = 0;
@@ -335,7 +335,7 @@ TEST_CASE("a thread that waits for what a link brings takes it itself") {
 }
 
 TEST_CASE("what comes when nobody waits any more is taken by the receiver") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   const auto delivery = host.delivery(client.id);
   delivery->lend();
@@ -349,7 +349,7 @@ TEST_CASE("what comes when nobody waits any more is taken by the receiver") {
 }
 
 TEST_CASE("a thread that waits for a link is woken, by its own side and by the link's end") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   const auto delivery = host.delivery(client.id);
   std::atomic<bool> over{false};
@@ -379,7 +379,7 @@ TEST_CASE("a thread that waits for a link is woken, by its own side and by the l
 }
 
 TEST_CASE("of two threads that wait for one link, one takes what comes, and the other goes away") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   const auto delivery = host.delivery(client.id);
   std::atomic<bool> asked{false};
@@ -399,7 +399,7 @@ TEST_CASE("of two threads that wait for one link, one takes what comes, and the 
 }
 
 TEST_CASE("a thread that waits is woken by its own side also where the other one lies about it") {
-  Host host;
+  ReceivingHost host;
   const Guid id = Guid::random();
   auto memory = SharedMemory::make(Link::kMemory);
   const auto theirs = SharedMemory::map(memory.take_descriptor(), Link::kMemory);
@@ -429,7 +429,7 @@ TEST_CASE("a thread that waits is woken by its own side also where the other one
 }
 
 TEST_CASE("who has left his turn for long is stood in for, and stands in for that one later") {
-  Host host;
+  ReceivingHost host;
   Client client(host), other(host);
   std::vector<std::string> expected{"begin"};
   const auto send = [&](const std::string& text) {
@@ -458,7 +458,7 @@ TEST_CASE("who has left his turn for long is stood in for, and stands in for tha
 }
 
 TEST_CASE("who has left his turn and comes back soon goes on himself") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   host.notes.go_on = true;
   std::vector<std::thread::id> threads;
@@ -474,7 +474,7 @@ TEST_CASE("who has left his turn and comes back soon goes on himself") {
 }
 
 TEST_CASE("a thread that takes what it waits for has no turn to leave") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   const auto delivery = host.delivery(client.id);
   host.notes.go_on = true;
@@ -493,7 +493,7 @@ TEST_CASE("a thread that takes what it waits for has no turn to leave") {
 }
 
 TEST_CASE("a receiver's end waits for who has left his turn") {
-  auto host = std::make_unique<Host>();
+  auto host = std::make_unique<ReceivingHost>();
   Client client(*host);
   client.send("long");
   REQUIRE(eventually([&] { return host->notes.inside == 1; }));
@@ -515,7 +515,7 @@ TEST_CASE("a receiver's end waits for who has left his turn") {
 }
 
 TEST_CASE("a thread that waits for all links leads in the receiver's place") {
-  Host host;
+  ReceivingHost host;
   Client first(host), second(host);
   first.send("before");
   REQUIRE(eventually([&] { return host.notes.about(first.id).size() == 2; }));
@@ -603,7 +603,7 @@ TEST_CASE("a receiver's end does not wait for the call of a thread that leads in
 }
 
 TEST_CASE("once an inbox is removed, nothing more is put in") {
-  Host host;
+  ReceivingHost host;
   Client client(host);
   client.send("1");
   REQUIRE(eventually([&] { return host.notes.about(client.id).size() == 2; }));
@@ -665,7 +665,7 @@ TEST_CASE("a receiver takes what more links bring than one thread can wait for")
 }
 
 TEST_CASE("links that bring nothing while another one does are waited for elsewhere, and heard") {
-  Host host;
+  ReceivingHost host;
   std::vector<std::unique_ptr<Client>> still;
   for (int i = 0; i < 10; ++i) still.push_back(std::make_unique<Client>(host));
   Client busy(host);

@@ -32,7 +32,7 @@ std::string unsubscribe(std::uint32_t id) {
   return R"({"op":"unsubscribe","subscriptionIds":[)" + std::to_string(id) + "]}";
 }
 
-std::string call(ServiceId service, std::string_view encoding, std::string_view request) {
+std::string call_frame(ServiceId service, std::string_view encoding, std::string_view request) {
   std::string bytes("\x02", 1);
   bytes += static_cast<char>(service);
   bytes.append(3, '\0');
@@ -200,19 +200,19 @@ TEST_CASE("Services answer, at once or later, or fail; each call ends once") {
                      [](std::string_view, const Answer&) { throw Unavailable("nobody there"); });
   WebClient client(server.url());
   REQUIRE(client.open());
-  client.send_binary(call(1, "json", "[1]"));
+  client.send_binary(call_frame(1, "json", "[1]"));
   CHECK(client.await("[1]") == std::string("\x03\x01\0\0\0\x07\0\0\0\x04\0\0\0json[1]", 20));
-  client.send_binary(call(2, "json", ""));
+  client.send_binary(call_frame(2, "json", ""));
   REQUIRE(eventually([&] { return called.load(); }));
-  client.send_binary(call(3, "json", ""));
+  client.send_binary(call_frame(3, "json", ""));
   CHECK(
       client.await("serviceCallFailure") ==
       R"({"op":"serviceCallFailure","serviceId":3,"callId":7,"message":"the service has given no answer"})");
-  client.send_binary(call(4, "json", ""));
+  client.send_binary(call_frame(4, "json", ""));
   CHECK_THAT(client.await("serviceCallFailure"), Contains("nobody there"));
-  client.send_binary(call(1, "cdr", ""));
+  client.send_binary(call_frame(1, "cdr", ""));
   CHECK_THAT(client.await("serviceCallFailure"), Contains("not as 'cdr'"));
-  client.send_binary(call(9, "json", ""));
+  client.send_binary(call_frame(9, "json", ""));
   CHECK_THAT(client.await("serviceCallFailure"), Contains("no service 9"));
   later->respond("late");
   CHECK_THAT(client.await("late"), !Contains("too late"));

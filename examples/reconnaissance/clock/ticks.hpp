@@ -11,6 +11,7 @@ namespace reconnaissance {
 /// The mission's time advances in ticks of 20 ms; tick 0 is its beginning.
 using Tick = std::int64_t;
 inline constexpr std::chrono::milliseconds kTick{20};
+inline constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 
 constexpr skein::Duration time_of(Tick tick) { return tick * skein::Duration(kTick); }
 

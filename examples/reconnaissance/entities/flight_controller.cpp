@@ -14,7 +14,6 @@
 namespace reconnaissance {
 namespace {
 
-constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 // Of winds in which turns that were planned are flown as tightly as that.
 constexpr double kTailWind_m_s = 7;
 
@@ -27,7 +26,7 @@ FlightRules rules_of(const AircraftType& type, const skein::ParameterValues& val
   return rules;
 }
 
-recon::FlightMode mode_of(Pilot::Mode mode) {
+recon::FlightMode told_mode(Pilot::Mode mode) {
   switch (mode) {
     case Pilot::Mode::Parked:
       return recon::FlightMode::Parked;
@@ -195,7 +194,7 @@ void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sig
   const Measurement& measured = sight.measured;
   recon::FlightState state;
   state.tick = tick;
-  state.mode = mode_of(pilot_.mode());
+  state.mode = told_mode(pilot_.mode());
   state.position = position(frame(), measured.position);
   state.north_m_s = measured.north_m_s;
   state.east_m_s = measured.east_m_s;

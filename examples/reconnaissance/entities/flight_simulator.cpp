@@ -15,7 +15,6 @@
 namespace reconnaissance {
 namespace {
 
-constexpr double kTick_s = std::chrono::duration<double>(kTick).count();
 constexpr int kRate_hz = 50;
 // Gusts of light turbulence change within some seconds.
 constexpr double kGustTime_s = 5;

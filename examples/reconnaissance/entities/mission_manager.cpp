@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 // Its providers have reported that they are ready; where there are several aircraft, at least those
 // of one have.
-constexpr auto kPatience = 60s;
+constexpr auto kServicesWithin = 60s;
 // Above the runway: higher than any hill, by as much as the camera likes.
 constexpr double kCollectionHeight_m = 750;
 constexpr double kLeastSurvival = 0.97;
@@ -94,8 +94,9 @@ MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValu
       member_(entity, values, [this](Tick tick) { manage(tick); }) {}
 
 void MissionManager::start() {
-  navigator_ = entity_.connect<recon::INavigator>({.timeout = kPatience}).within(kUnlessAllHang);
-  controller_ = entity_.connect<recon::IFlightController>({.timeout = kPatience});
+  navigator_ =
+      entity_.connect<recon::INavigator>({.timeout = kServicesWithin}).within(kUnlessAllHang);
+  controller_ = entity_.connect<recon::IFlightController>({.timeout = kServicesWithin});
   limits_ = controller_->limits();
   cruise_.speed_m_s = limits_.speed_m_s;
   cruise_.turn_radius_m = limits_.turn_radius_m;

@@ -21,7 +21,7 @@ constexpr Tick kHealthPeriod = 50;
 // Who has said nothing for a minute of the mission does not come back.
 constexpr Tick kGivenUp = 60 * kHealthPeriod;
 // What somebody has told in the tick before is on its way here.
-constexpr auto kOnTheWay = 1s;
+constexpr auto kHeardWithin = 1s;
 // Of the way home before it is planned, what turns and wind add.
 constexpr double kTurnsAndWind = 1.33;
 
@@ -64,7 +64,7 @@ void Nhp::judge(Tick tick) {
   std::unique_lock lock(mutex_);
   if (tick > 0) {
     const Tick wanted = (tick - 1) / kHealthPeriod * kHealthPeriod;
-    heard_.wait_for(lock, kOnTheWay, [&] { return all_heard(wanted); });
+    heard_.wait_for(lock, kHeardWithin, [&] { return all_heard(wanted); });
     for (const std::string& name : crew_) {
       const std::string trouble = trouble_of(name, wanted);
       if (trouble.empty()) continue;

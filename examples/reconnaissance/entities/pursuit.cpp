@@ -41,7 +41,7 @@ StandOffTask stand_off_task(const recon::LoiterTask& told) {
   return task;
 }
 
-Circle circle_of(const recon::LoiterCircle& told) {
+Circle ordered_circle(const recon::LoiterCircle& told) {
   return {{told.north_m, told.east_m, 0}, std::abs(told.radius_m), told.radius_m > 0};
 }
 
@@ -63,10 +63,10 @@ std::optional<Circle> ask_circle(skein::Entity& entity, const std::string& targe
   wanted.run = [&](recon::IStandOff::Proxy& csp, skein::Duration) { return csp.circle(told); };
   // Where weapons stand is no CSP's fault.
   wanted.evaluate.admitted("serves", [&](const recon::LoiterCircle& circle) {
-    return flaw_of(circle_of(circle), task);
+    return flaw_of(ordered_circle(circle), task);
   });
   const auto circle = decide(entity, wanted);
-  return circle ? std::optional(circle_of(*circle)) : std::nullopt;
+  return circle ? std::optional(ordered_circle(*circle)) : std::nullopt;
 }
 
 recon::Route drawn(const Circle& circle, const LocalFrame& frame, std::uint32_t number) {

@@ -11,14 +11,14 @@ namespace reconnaissance {
 namespace {
 
 // A slower aircraft cannot be steered by a bank.
-constexpr double kSlowest_m_s = 1;
+constexpr double kLeastGuided_m_s = 1;
 // A carrot's bank for each radian of its angle.
 constexpr double kCarrotGain = 1.5;
 // Sharper turns than this are led as this one: tan(eta / 2) grows beyond all bounds.
 constexpr double kSharpest_rad = 2.4;
 
 double speed_of(const Motion& motion) {
-  return std::max(std::hypot(motion.north_m_s, motion.east_m_s), kSlowest_m_s);
+  return std::max(std::hypot(motion.north_m_s, motion.east_m_s), kLeastGuided_m_s);
 }
 
 /// The bank for a lateral acceleration towards a point at that distance.
@@ -110,7 +110,7 @@ double climb_rad(const Line& line, const Motion& motion, double height_m, double
   const double slope =
       here.length_m > 0 ? (line.to.height_m - line.from.height_m) / here.length_m : 0;
   const double wanted = line.from.height_m + slope * std::clamp(here.along_m, 0.0, here.length_m);
-  const double speed = std::max(speed_m_s, kSlowest_m_s);
+  const double speed = std::max(speed_m_s, kLeastGuided_m_s);
   const bool on_it = here.along_m > 0 && here.along_m < here.length_m;
   return (on_it ? std::atan(slope) : 0) + std::atan((wanted - height_m) / (speed * time_s));
 }

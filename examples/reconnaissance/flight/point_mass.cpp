@@ -9,7 +9,7 @@ namespace reconnaissance {
 namespace {
 
 // Below this airspeed the lift's direction means nothing, and divisions by it are of no use.
-constexpr double kSlowest_m_s = 1;
+constexpr double kLeastFlown_m_s = 1;
 // The nose-down path of a stalled aircraft.
 constexpr double kStalledDive_rad = -0.2618;
 constexpr double kFlyingAgain = 1.1;
@@ -18,10 +18,10 @@ double approach(double from, double to, double time_s, double seconds) {
   return from + (to - from) * (1 - std::exp(-seconds / time_s));
 }
 
-double limited(double value, double limit) { return std::clamp(value, -limit, limit); }
+double within(double value, double limit) { return std::clamp(value, -limit, limit); }
 
 double limited_step(double from, double to, double greatest_rate, double seconds) {
-  return from + limited(to - from, greatest_rate * seconds);
+  return from + within(to - from, greatest_rate * seconds);
 }
 
 double drag_n(const Airframe& airframe, double mass, double airspeed, double load_factor) {
@@ -37,12 +37,12 @@ double thrust_n(const Airframe& airframe, const Aircraft& aircraft, double wante
   if (aircraft.fuel_kg <= 0 || aircraft.airspeed_m_s > airframe.never_exceed_m_s) return 0;
   const double available =
       std::min(airframe.greatest_thrust_n,
-               airframe.greatest_power_w / std::max(aircraft.airspeed_m_s, kSlowest_m_s));
+               airframe.greatest_power_w / std::max(aircraft.airspeed_m_s, kLeastFlown_m_s));
   return std::clamp(wanted_n, 0.0, available);
 }
 
 void burn(const Airframe& airframe, Aircraft& aircraft, double thrust, double seconds) {
-  const double power_w = thrust * std::max(aircraft.airspeed_m_s, kSlowest_m_s);
+  const double power_w = thrust * std::max(aircraft.airspeed_m_s, kLeastFlown_m_s);
   aircraft.fuel_kg =
       std::max(0.0, aircraft.fuel_kg - power_w * airframe.fuel_per_joule_kg * seconds);
 }
@@ -122,7 +122,7 @@ void roll(const Airframe& airframe, Aircraft& aircraft, const Demand& demand, co
 
 double turn_rate_rad_s(const Aircraft& aircraft) {
   return kGravity_m_s2 * std::tan(aircraft.bank_rad) /
-         std::max(aircraft.airspeed_m_s, kSlowest_m_s);
+         std::max(aircraft.airspeed_m_s, kLeastFlown_m_s);
 }
 
 void fly(const Airframe& airframe, Aircraft& aircraft, const Demand& demand, double seconds) {
@@ -138,7 +138,7 @@ void fly(const Airframe& airframe, Aircraft& aircraft, const Demand& demand, dou
   aircraft.climb_rad = approach(aircraft.climb_rad, climb, airframe.climb_time_s, seconds);
   const double load_factor = std::cos(aircraft.climb_rad) / std::cos(aircraft.bank_rad);
   const double drag =
-      drag_n(airframe, mass, std::max(aircraft.airspeed_m_s, kSlowest_m_s), load_factor);
+      drag_n(airframe, mass, std::max(aircraft.airspeed_m_s, kLeastFlown_m_s), load_factor);
   const double along_path = mass * kGravity_m_s2 * std::sin(aircraft.climb_rad);
   const double faster =
       mass * (demand.airspeed_m_s - aircraft.airspeed_m_s) / airframe.speed_time_s;
@@ -150,8 +150,8 @@ void fly(const Airframe& airframe, Aircraft& aircraft, const Demand& demand, dou
 }
 
 Demand within_limits(const Airframe& airframe, const Demand& demand) {
-  return {limited(demand.bank_rad, airframe.greatest_bank_rad),
-          limited(demand.climb_rad, airframe.greatest_climb_rad),
+  return {within(demand.bank_rad, airframe.greatest_bank_rad),
+          within(demand.climb_rad, airframe.greatest_climb_rad),
           std::clamp(demand.airspeed_m_s, 0.0, airframe.never_exceed_m_s)};
 }
 
@@ -189,7 +189,7 @@ Aircraft advance_kinematic(const Airframe& airframe, const Aircraft& aircraft, c
     roll(airframe, next, wanted, wind, seconds);
   } else {
     const double drag = drag_n(airframe, mass_kg(airframe, aircraft),
-                               std::max(aircraft.airspeed_m_s, kSlowest_m_s), 1);
+                               std::max(aircraft.airspeed_m_s, kLeastFlown_m_s), 1);
     burn(airframe, next, drag, seconds);
     next.airspeed_m_s =
         limited_step(next.airspeed_m_s, wanted.airspeed_m_s, airframe.braking_m_s2, seconds);

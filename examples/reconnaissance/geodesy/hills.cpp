@@ -16,7 +16,7 @@ constexpr double kFullHeight_m = 14000;
 // A ridge is a normal curve, of which further away nothing is left.
 constexpr double kDeviations = 4;
 
-double between(Random& random, double least, double greatest) {
+double drawn_between(Random& random, double least, double greatest) {
   return std::lerp(least, greatest, random.uniform());
 }
 
@@ -27,14 +27,14 @@ Hills::Hills(double airfield_height_m, std::uint64_t seed) : airfield_height_m_(
   Random random(seed);
   for (int i = 0; i < kRidges; ++i) {
     Ridge ridge{};
-    ridge.north_m = between(random, -kSpread_m, kSpread_m);
-    ridge.east_m = between(random, -kSpread_m, kSpread_m);
-    const double along_rad = between(random, 0, std::numbers::pi);
+    ridge.north_m = drawn_between(random, -kSpread_m, kSpread_m);
+    ridge.east_m = drawn_between(random, -kSpread_m, kSpread_m);
+    const double along_rad = drawn_between(random, 0, std::numbers::pi);
     ridge.along_north = std::cos(along_rad);
     ridge.along_east = std::sin(along_rad);
-    ridge.half_length_m = between(random, 3000, 8000);
-    ridge.half_width_m = between(random, 800, 2000);
-    ridge.height_m = between(random, 80, 330);
+    ridge.half_length_m = drawn_between(random, 3000, 8000);
+    ridge.half_width_m = drawn_between(random, 800, 2000);
+    ridge.height_m = drawn_between(random, 80, 330);
     ridges_.push_back(ridge);
   }
 }

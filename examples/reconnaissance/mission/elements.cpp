@@ -39,7 +39,7 @@ std::vector<std::string> split(const std::string& text) {
 // Further aside an element is too coarse in images from the heights that are flown.
 constexpr double kAside_m = 2500;
 
-double length_m(const Local& a, const Local& b) {
+double edge_m(const Local& a, const Local& b) {
   return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
 }
 
@@ -112,9 +112,9 @@ bool is_ahead(const Passage& passage) {
 
 Local middle_of(const std::vector<Local>& line) {
   double left = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) left += length_m(line[i - 1], line[i]) / 2;
+  for (std::size_t i = 1; i < line.size(); ++i) left += edge_m(line[i - 1], line[i]) / 2;
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const double length = length_m(line[i - 1], line[i]);
+    const double length = edge_m(line[i - 1], line[i]);
     if (left <= length && length > 0) return between(line[i - 1], line[i], left / length);
     left -= length;
   }
@@ -124,7 +124,7 @@ Local middle_of(const std::vector<Local>& line) {
 std::vector<Local> parts_of_line(const std::vector<Local>& line, double spacing_m) {
   std::vector<Local> parts{line.front()};
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const double length = length_m(line[i - 1], line[i]);
+    const double length = edge_m(line[i - 1], line[i]);
     const int steps = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
     for (int step = 1; step <= steps; ++step)
       parts.push_back(between(line[i - 1], line[i], static_cast<double>(step) / steps));

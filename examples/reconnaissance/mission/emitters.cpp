@@ -6,10 +6,10 @@
 namespace reconnaissance {
 namespace {
 
-constexpr double kDeviations = 5;
+constexpr double kReachDeviations = 5;
 constexpr double kPlaced_m = 1000;
 
-double distance_m(const ReportedEmitter& report, const HeardEmitter& heard) {
+double offset_m(const ReportedEmitter& report, const HeardEmitter& heard) {
   return std::hypot(heard.place.north_m - report.place.north_m,
                     heard.place.east_m - report.place.east_m);
 }
@@ -26,7 +26,7 @@ EmitterMatch match_emitters(const std::vector<ReportedEmitter>& reports,
   for (std::size_t report = 0; report < reports.size(); ++report) {
     for (std::size_t emitter = 0; emitter < heard.size(); ++emitter) {
       const double margin_m = reports[report].margin_m;
-      const double apart_m = distance_m(reports[report], heard[emitter]);
+      const double apart_m = offset_m(reports[report], heard[emitter]);
       if (apart_m <= margin_m && heard[emitter].deviation_m <= margin_m)
         pairs.push_back({apart_m, report, emitter});
     }
@@ -42,9 +42,10 @@ EmitterMatch match_emitters(const std::vector<ReportedEmitter>& reports,
   for (std::size_t emitter = 0; emitter < heard.size(); ++emitter) {
     bool may_be_reported = taken[emitter] || heard[emitter].deviation_m > kPlaced_m;
     for (std::size_t report = 0; report < reports.size(); ++report) {
-      const double reach_m = reports[report].margin_m + kDeviations * heard[emitter].deviation_m;
+      const double reach_m =
+          reports[report].margin_m + kReachDeviations * heard[emitter].deviation_m;
       may_be_reported |=
-          !match.of_reports[report] && distance_m(reports[report], heard[emitter]) <= reach_m;
+          !match.of_reports[report] && offset_m(reports[report], heard[emitter]) <= reach_m;
     }
     if (!may_be_reported) match.unreported.push_back(emitter);
   }

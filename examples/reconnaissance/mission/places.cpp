@@ -20,7 +20,7 @@ std::vector<double> numbers_in(const std::string& text, std::size_t count, const
   throw skein::InvalidArgument("'" + text + "' is no " + what);
 }
 
-Geodetic place(const std::vector<double>& numbers, const std::string& text) {
+Geodetic read_place(const std::vector<double>& numbers, const std::string& text) {
   const Geodetic place{numbers[0], numbers[1], numbers[2]};
   if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
     throw skein::InvalidArgument("'" + text +
@@ -45,7 +45,7 @@ RunwayText parse_runway(const std::string& text) {
   const auto numbers =
       numbers_in(text, 5, "runway; write `latitude longitude height course length`");
   if (numbers[4] <= 0) throw skein::InvalidArgument("'" + text + "': a runway has a length");
-  return {place(numbers, text), course(radians(numbers[3])), numbers[4]};
+  return {read_place(numbers, text), course(radians(numbers[3])), numbers[4]};
 }
 
 std::vector<RunwayText> parse_runways(const std::string& text) {
@@ -69,7 +69,7 @@ std::vector<SiteText> parse_sites(const std::string& text) {
                                     "lets the aircraft come",
                                     1);
     SiteText& site = sites.emplace_back();
-    site = {part.substr(0, split), place({numbers[0], numbers[1], 0}, part), numbers[2]};
+    site = {part.substr(0, split), read_place({numbers[0], numbers[1], 0}, part), numbers[2]};
     if (numbers.size() == 3) continue;
     site.silent_beyond_m = numbers[3];
     if (site.silent_beyond_m <= 0)

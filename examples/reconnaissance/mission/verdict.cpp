@@ -11,7 +11,7 @@ namespace {
 
 // Nearer to the runway an aircraft may be low.
 constexpr double kAirfield_m = 5000;
-constexpr double kStanding_m_s = 0.5;
+constexpr double kStood_m_s = 0.5;
 
 double level_m(const Local& one, const Local& other) {
   return std::hypot(one.north_m - other.north_m, one.east_m - other.east_m);
@@ -68,7 +68,7 @@ void Judge::see(const Sample& sample) {
     stalled_ = stalled_ || sample.stalled;
     if (sample.on_ground) touched_ = sample.position;
   }
-  if (touched_ && !stood_s_ && sample.ground_speed_m_s < kStanding_m_s) stood_s_ = sample.time_s;
+  if (touched_ && !stood_s_ && sample.ground_speed_m_s < kStood_m_s) stood_s_ = sample.time_s;
   if (!stood_s_ || *stood_s_ == sample.time_s) last_ = sample;
 }
 

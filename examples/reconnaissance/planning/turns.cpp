@@ -9,7 +9,7 @@
 namespace reconnaissance {
 namespace {
 
-double distance_m(const Local& a, const Local& b) {
+double leg_m(const Local& a, const Local& b) {
   return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
 }
 
@@ -32,9 +32,9 @@ void turn_onto(const Local& to, double from_course_rad, double to_course_rad, do
     way.push_back({corner.north_m, corner.east_m, 0});
   way.push_back(to);
   double length_m = 0, done_m = 0;
-  for (std::size_t i = first; i < way.size(); ++i) length_m += distance_m(way[i - 1], way[i]);
+  for (std::size_t i = first; i < way.size(); ++i) length_m += leg_m(way[i - 1], way[i]);
   for (std::size_t i = first; i + 1 < way.size(); ++i) {
-    done_m += distance_m(way[i - 1], way[i]);
+    done_m += leg_m(way[i - 1], way[i]);
     way[i].height_m = std::lerp(from.height_m, to.height_m, done_m / length_m);
   }
 }
@@ -53,7 +53,7 @@ std::vector<Local> with_turns(const std::vector<Local>& way, double begin_course
   const double near_m = 4 * radius_m;
   std::vector<Local> kept{turned.back()};
   for (std::size_t i = 1; i + 1 < way.size(); ++i)
-    if (distance_m(way.front(), way[i]) >= near_m && distance_m(way[i], way.back()) >= near_m)
+    if (leg_m(way.front(), way[i]) >= near_m && leg_m(way[i], way.back()) >= near_m)
       kept.push_back(way[i]);
   kept.push_back(way.back());
 

@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
-constexpr double kStep_m = 30;
+constexpr double kRayStep_m = 30;
 constexpr double kFurthest_m = 30000;
 constexpr double kSlopeBase_m = 15;
 
@@ -72,15 +72,15 @@ std::optional<ImagePoint> in_image(const CameraPose& pose, const Camera& camera,
 
 std::optional<Local> ground_at(const CameraPose& pose, const ImagePoint& point,
                                const GroundHeight& ground) {
-  const Vector3d step = ray(pose, point).normalized() * kStep_m;
+  const Vector3d step = ray(pose, point).normalized() * kRayStep_m;
   double above = 0;
   double below = 1;
   while (clearance_m(along(pose.place, below * step), ground) > 0) {
     above = below;
     below += 1;
-    if (below * kStep_m > kFurthest_m) return std::nullopt;
+    if (below * kRayStep_m > kFurthest_m) return std::nullopt;
   }
-  while ((below - above) * kStep_m > 1e-3) {
+  while ((below - above) * kRayStep_m > 1e-3) {
     const double middle = (above + below) / 2;
     (clearance_m(along(pose.place, middle * step), ground) > 0 ? above : below) = middle;
   }

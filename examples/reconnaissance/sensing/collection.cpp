@@ -53,7 +53,7 @@ double sample_distance_m(double height_m, double distance_m, const Camera& camer
   return std::max(slant * column, slant * row * slant / height_m);
 }
 
-double length_m(const Objective& objective) {
+double strip_m(const Objective& objective) {
   double length = 0;
   for (std::size_t i = 1; i < objective.line.size(); ++i) {
     length += std::hypot(objective.line[i].north_m - objective.line[i - 1].north_m,
@@ -63,7 +63,7 @@ double length_m(const Objective& objective) {
 }
 
 /// The place so far along the objective (beyond its ends straight on) and so far to its right.
-Local place(const Objective& objective, const Flyby& flyby, double along_m, double right_m) {
+Local place_beside(const Objective& objective, const Flyby& flyby, double along_m, double right_m) {
   Local start = objective.line.front();
   double course = flyby.course_rad;
   double rise = 0;
@@ -126,7 +126,7 @@ std::optional<CollectionPlan> settle(const Objective& objective, const Flyby& fl
 
 std::optional<CollectionPlan> plan_step_stare(const Objective& objective, const Flyby& flyby,
                                               const Camera& camera, const CameraMount& mount) {
-  const double length = length_m(objective);
+  const double length = strip_m(objective);
   const double along = length + 2 * objective.margin_m;
   return settle(objective, flyby, camera, [&](const View& frame) {
     const int columns = frames(along, frame.along_m);
@@ -136,9 +136,9 @@ std::optional<CollectionPlan> plan_step_stare(const Objective& objective, const 
       for (int i = 0; i < rows; ++i) {
         // To and fro across, so that each step is to a neighbour.
         const int row = column % 2 == 0 ? i : rows - 1 - i;
-        const Local aim =
-            place(objective, flyby, length / 2 + middle_m(column, columns, along, frame.along_m),
-                  middle_m(row, rows, 2 * objective.margin_m, frame.across_m));
+        const Local aim = place_beside(objective, flyby,
+                                       length / 2 + middle_m(column, columns, along, frame.along_m),
+                                       middle_m(row, rows, 2 * objective.margin_m, frame.across_m));
         if (!plan.pointings.empty()) {
           plan.seconds +=
               slant_range_m(plan.pointings.back().to, aim) / frame.slant_m / mount.slew_rad_s;
@@ -158,13 +158,13 @@ std::optional<CollectionPlan> plan_step_stare(const Objective& objective, const 
 
 std::optional<CollectionPlan> plan_line_scan(const Objective& objective, const Flyby& flyby,
                                              const Camera& camera, const CameraMount& mount) {
-  const double length = length_m(objective);
+  const double length = strip_m(objective);
   const double along = length + 2 * objective.margin_m;
   const double abeam_sample_m = sample_distance_m(flyby.height_m, flyby.offset_m, camera);
   // A road bends: a pointing for each leg.
   std::vector<double> stations{-objective.margin_m};
   for (std::size_t i = 1; i + 1 < objective.line.size(); ++i) {
-    stations.push_back(length_m({{objective.line.begin(), objective.line.begin() + i + 1}}));
+    stations.push_back(strip_m({{objective.line.begin(), objective.line.begin() + i + 1}}));
   }
   stations.push_back(length + objective.margin_m);
   return settle(objective, flyby, camera, [&](const View& frame) {
@@ -190,8 +190,9 @@ std::optional<CollectionPlan> plan_line_scan(const Objective& objective, const F
         const double to_m = stations[sweep % 2 == 0 ? leg : leg - 1];
         const double seconds = std::abs(to_m - from_m) / speed_m_s;
         aim(from_m);
-        plan.pointings.push_back({plan.seconds, seconds, place(objective, flyby, from_m, right_m),
-                                  place(objective, flyby, to_m, right_m)});
+        plan.pointings.push_back({plan.seconds, seconds,
+                                  place_beside(objective, flyby, from_m, right_m),
+                                  place_beside(objective, flyby, to_m, right_m)});
         plan.seconds += seconds;
         aim(to_m);
       }
@@ -202,12 +203,12 @@ std::optional<CollectionPlan> plan_line_scan(const Objective& objective, const F
 
 std::optional<CollectionPlan> plan_spot(const Objective& objective, const Flyby& flyby,
                                         const Camera& camera, const CameraMount& mount) {
-  const double length = length_m(objective);
+  const double length = strip_m(objective);
   const auto share = [](double frame_m, double extent_m) {
     return extent_m > frame_m ? frame_m / extent_m : 1;
   };
   return settle(objective, flyby, camera, [&](const View& frame) {
-    const Local aim = place(objective, flyby, length / 2, 0);
+    const Local aim = place_beside(objective, flyby, length / 2, 0);
     const double seconds = mount.settle_s + mount.dwell_s;
     const double coverage = share(frame.along_m, length + 2 * objective.margin_m) *
                             share(frame.across_m, 2 * objective.margin_m);

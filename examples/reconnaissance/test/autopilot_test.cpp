@@ -7,6 +7,8 @@
 #include "flight/angles.hpp"
 #include "skein/error.hpp"
 
+namespace autopilot_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -153,3 +155,5 @@ TEST_CASE("an aircraft that nobody knows is refused with those that are known", 
   CHECK_THROWS_WITH(aircraft_type("large"),
                     "'large' is no aircraft; there are medium and tactical");
 }
+
+}  // namespace autopilot_test

@@ -7,6 +7,8 @@
 #include "clock/pace.hpp"
 #include "clock/participation.hpp"
 
+namespace clock_test {
+
 using namespace reconnaissance;
 using namespace std::chrono_literals;
 using skein::Instant;
@@ -224,3 +226,5 @@ TEST_CASE("of several holds each must allow it") {
   part.release(measured);
   CHECK(part.acknowledge(begin + 20ms) == 2);
 }
+
+}  // namespace clock_test

@@ -2,6 +2,8 @@
 
 #include "collection_scene.hpp"
 
+namespace collection_plans_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -231,3 +233,5 @@ TEST_CASE("a problem that makes no sense is refused") {
   CHECK_THROWS_AS(with(std::vector<CollectionTask>(49, scene.tasks[0]), leg),
                   std::invalid_argument);
 }
+
+}  // namespace collection_plans_test

@@ -5,6 +5,8 @@
 
 #include "random.hpp"
 
+namespace contingency_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -283,3 +285,5 @@ TEST_CASE("by utility no mode is chosen that the rules do not allow") {
     if (chosen.mode > allowed.mode) REQUIRE(chosen.mode == FlightMode::ReturnHome);
   }
 }
+
+}  // namespace contingency_test

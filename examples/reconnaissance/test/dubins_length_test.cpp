@@ -7,6 +7,8 @@
 
 #include "random.hpp"
 
+namespace dubins_length_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("lengths keep the triangle inequality, and are the same mirrored or fl
     REQUIRE(dubins_length_m(reversed_c, reversed_a, radius) == Approx(length));
   }
 }
+
+}  // namespace dubins_length_test

@@ -6,6 +6,8 @@
 
 #include "random.hpp"
 
+namespace element_policies_test {
+
 using namespace reconnaissance;
 
 TEST_CASE("the probability of identification is that of the published multipliers") {
@@ -198,3 +200,5 @@ TEST_CASE("over many missions the policy by value knows more in the end than tha
   CHECK(by_value > 1.1 * by_priority);
   CHECK(better > 0.7 * kMissions);
 }
+
+}  // namespace element_policies_test

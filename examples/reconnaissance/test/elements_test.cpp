@@ -5,6 +5,8 @@
 
 #include "skein/error.hpp"
 
+namespace elements_test {
+
 using namespace reconnaissance;
 
 TEST_CASE("elements and objects are what a profile names") {
@@ -74,3 +76,5 @@ TEST_CASE("the middle of a line is half of its length from either end, its parts
   CHECK(parts.back().east_m == Approx(900));
   CHECK(parts_of_line({{7, 8, 9}}, 50).size() == 1);
 }
+
+}  // namespace elements_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace emitters_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -49,3 +51,5 @@ TEST_CASE("an emitter is unreported when it can be that of no report any more") 
 TEST_CASE("where nothing was reported all are new as soon as they are placed") {
   CHECK(match_emitters({}, {{{0, 0, 0}, 500}, {{9000, 0, 0}, 5000}}).unreported == Unreported{0});
 }
+
+}  // namespace emitters_test

@@ -9,6 +9,8 @@
 #include "flight/sensor_fault.hpp"
 #include "flight/sensors.hpp"
 
+namespace flight_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -354,3 +356,5 @@ TEST_CASE("each failure of a sensor does what its name says") {
   CHECK(silent > 70);
   CHECK(silent < 130);
 }
+
+}  // namespace flight_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace followed_target_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -74,3 +76,5 @@ TEST_CASE("a target may have turned while it was hidden") {
   CHECK(target.estimate().mean[3] == 0);
   CHECK(target.followed_s() == 1);
 }
+
+}  // namespace followed_target_test

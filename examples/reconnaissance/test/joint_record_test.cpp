@@ -4,6 +4,8 @@
 
 #include "traffic/encounter.hpp"
 
+namespace joint_record_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -85,3 +87,5 @@ TEST_CASE("A site that both know is shown once, where it is known best and since
   CHECK(joint.threats[0].from_s == 15);
   CHECK(joint.threats[1].place.north_m == 20000);
 }
+
+}  // namespace joint_record_test

@@ -5,6 +5,8 @@
 
 #include "report_scene.hpp"
 
+namespace live_view_test {
+
 using namespace reconnaissance;
 using Catch::Contains;
 using reconnaissance::test::flown_mission;
@@ -78,3 +80,5 @@ TEST_CASE("before anything is known the live view says so") {
   const auto view = live_view({}, {}, 80, 24);
   CHECK_THAT(view.front(), Contains("has not begun"));
 }
+
+}  // namespace live_view_test

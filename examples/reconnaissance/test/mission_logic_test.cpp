@@ -8,6 +8,8 @@
 #include "mission/verdict.hpp"
 #include "skein/error.hpp"
 
+namespace mission_logic_test {
+
 using namespace reconnaissance;
 using Catch::Contains;
 
@@ -318,3 +320,5 @@ TEST_CASE("what is judged of targets stands among the conditions, and fails the 
   CHECK(failed.checks[2].text == "1 of 1 elements followed as long as was ordered");
   CHECK(failed.checks[3].name == "found");
 }
+
+}  // namespace mission_logic_test

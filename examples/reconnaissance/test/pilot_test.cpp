@@ -6,6 +6,8 @@
 
 #include "flight/angles.hpp"
 
+namespace pilot_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -193,3 +195,5 @@ TEST_CASE("an advisory is followed far above the ground") {
   CHECK(climb(200, -3.5) > climb(230, -3.5));
   CHECK(climb(230, 3) == Approx(std::asin(3 / 35.)));
 }
+
+}  // namespace pilot_test

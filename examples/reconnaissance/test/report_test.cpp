@@ -6,6 +6,8 @@
 
 #include "report_scene.hpp"
 
+namespace report_test {
+
 using namespace reconnaissance;
 using Catch::Contains;
 using Catch::StartsWith;
@@ -167,3 +169,5 @@ TEST_CASE("the ground of a report lies around all that it shows") {
         hills(ground.south_m + 3 * ground.spacing_m, ground.west_m + 5 * ground.spacing_m));
   CHECK(ground_around({}, 100, hills).heights_m.empty());
 }
+
+}  // namespace report_test

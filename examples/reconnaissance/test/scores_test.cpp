@@ -5,6 +5,8 @@
 
 #include "mission/order_check.hpp"
 
+namespace scores_test {
+
 using namespace reconnaissance;
 using Catch::Contains;
 
@@ -181,3 +183,5 @@ TEST_CASE("an order that contradicts itself says in what") {
   // Images have no such order.
   CHECK_FALSE(contradiction_in({"depot"}, means));
 }
+
+}  // namespace scores_test

@@ -7,6 +7,8 @@
 #include "random.hpp"
 #include "skein/error.hpp"
 
+namespace sharing_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -94,3 +96,5 @@ TEST_CASE("Every element is in the share of one aircraft, by its middle") {
   CHECK(names(1) == std::vector<std::string>{"road", "far"});
   CHECK_THROWS_AS(share_of(elements, starts, 2), skein::InvalidArgument);
 }
+
+}  // namespace sharing_test

@@ -6,6 +6,8 @@
 
 #include "flight/pilot.hpp"
 
+namespace stand_off_test {
+
 using namespace reconnaissance;
 using Catch::Contains;
 
@@ -111,3 +113,5 @@ TEST_CASE("who circles about a target that drives and stops keeps it at a distan
   CHECK(nearest_m > 900);
   CHECK(furthest_m < 1500);
 }
+
+}  // namespace stand_off_test

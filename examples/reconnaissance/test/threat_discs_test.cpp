@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace threat_discs_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("an element is passed straight, as far aside as the camera wants, long
   for (const CollectionPass& pass : passes_by({{0, 5000, 0}}, kOne, kCruise))
     CHECK(pass.cost.hazard > 0.5);
 }
+
+}  // namespace threat_discs_test

@@ -19,6 +19,8 @@
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
 
+namespace time_test {
+
 using namespace reconnaissance;
 using namespace std::chrono_literals;
 
@@ -322,3 +324,5 @@ TEST_CASE("a rate that does not divide the second into ticks is refused") {
   const auto entity = make_entity("odd");
   CHECK_THROWS_AS(Participant(*entity, 7, {}), skein::InvalidArgument);
 }
+
+}  // namespace time_test

@@ -5,6 +5,8 @@
 
 #include "tracking_scene.hpp"
 
+namespace tracking_filters_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -242,3 +244,5 @@ TEST_CASE(
   CHECK(mean < 4.4);
   CHECK(both.nis == Approx(2).epsilon(0.1));
 }
+
+}  // namespace tracking_filters_test

@@ -5,6 +5,8 @@
 #include "sensing/tracking/track_fusion.hpp"
 #include "tracking_scene.hpp"
 
+namespace tracking_fusion_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("no tracks fuse to none") {
   CHECK(fuse_tracks({}, {}).empty());
   CHECK(fuse_tracks({track_at(1, 0, 0)}, {}).size() == 1);
 }
+
+}  // namespace tracking_fusion_test

@@ -4,6 +4,8 @@
 #include "sensing/tracking/tracker.hpp"
 #include "tracking_scene.hpp"
 
+namespace tracking_tracker_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_CASE("the same detections in another order give the same tracks") {
     }));
   }
 }
+
+}  // namespace tracking_tracker_test

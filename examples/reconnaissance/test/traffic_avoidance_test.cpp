@@ -4,6 +4,8 @@
 
 #include "encounter_scene.hpp"
 
+namespace traffic_avoidance_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -173,3 +175,5 @@ TEST_CASE("the bands avoid from a corrective alert on, not before, and until the
   const std::vector past{flying({-3000, 0, 1000}, kPi, 60)};
   CHECK(!avoider.advise(own, past, 0, AlertLevel::None).is_given());
 }
+
+}  // namespace traffic_avoidance_test

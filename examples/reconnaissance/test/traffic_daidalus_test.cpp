@@ -9,6 +9,8 @@
 #include "traffic/alerting.hpp"
 #include "traffic/bands.hpp"
 
+namespace traffic_daidalus_test {
+
 using namespace reconnaissance;
 
 // The judge is NASA's reference implementation: figures that DAIDALUS 2.0.4 (github.com/nasa/
@@ -271,3 +273,5 @@ TEST_CASE("an alert is raised, kept and dropped over time as by DAIDALUS") {
     CHECK(answers == shown);
   }
 }
+
+}  // namespace traffic_daidalus_test

@@ -3,6 +3,8 @@
 
 #include "traffic/encounter.hpp"
 
+namespace traffic_encounter_test {
+
 using namespace reconnaissance;
 
 TEST_CASE("an aircraft on collision course comes from where it is said, and would collide") {
@@ -21,3 +23,5 @@ TEST_CASE("one that is too slow to catch up never meets") {
   CHECK(on_collision_course({{}, 60, 0, 0}, 0, 5000, 50));
   CHECK(on_collision_course({{}, 60, 0, 0}, 0, 5000, 60));
 }
+
+}  // namespace traffic_encounter_test

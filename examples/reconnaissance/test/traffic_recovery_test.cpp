@@ -6,6 +6,8 @@
 
 #include "traffic/advisory.hpp"
 
+namespace traffic_recovery_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -96,3 +98,5 @@ TEST_CASE("where no course keeps well clear, the advised one is among DAIDALUS's
   }
   CHECK(count == 40);
 }
+
+}  // namespace traffic_recovery_test

@@ -4,6 +4,8 @@
 #include "random.hpp"
 #include "traffic/well_clear.hpp"
 
+namespace traffic_violation_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -147,3 +149,5 @@ TEST_CASE("the least separation in closed form agrees with stepping") {
     REQUIRE(closed >= stepped - 300 * 0.01 / 152.4 - 16 * 0.01 / 30.48 - 1e-9);
   }
 }
+
+}  // namespace traffic_violation_test

@@ -12,6 +12,8 @@
 #include "planning/threat_discs.hpp"
 #include "random.hpp"
 
+namespace turns_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -173,3 +175,5 @@ TEST_CASE("the points of a way that are far from its ends stay, and heights grow
   for (std::size_t i = 1; i < turned.size(); ++i)
     CHECK(turned[i].height_m > turned[i - 1].height_m);
 }
+
+}  // namespace turns_test

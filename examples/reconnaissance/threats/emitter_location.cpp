@@ -17,7 +17,7 @@ constexpr int kSteps = 20;
 constexpr double kNear = 0.1;
 constexpr double kKilometres_per_metre = 1e-3;  // The filter's numbers are of similar size.
 
-Vector2d place(const Local& local) { return {local.north_m, local.east_m}; }
+Vector2d on_plane(const Local& local) { return {local.north_m, local.east_m}; }
 
 Vector2d direction(double bearing_rad) { return {std::cos(bearing_rad), std::sin(bearing_rad)}; }
 Vector2d across(double bearing_rad) { return {-std::sin(bearing_rad), std::cos(bearing_rad)}; }
@@ -29,7 +29,7 @@ RowVector2d bearing_by_position(const Vector2d& way) {
   return RowVector2d(-way.y(), way.x()) / way.squaredNorm();
 }
 
-double wrapped(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
+double half_turn(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
 skein::fusion::Estimate estimate(const Vector2d& mean, const Matrix2d& covariance) {
   const double cross = (covariance(0, 1) + covariance(1, 0)) / 2;
@@ -44,7 +44,7 @@ std::optional<Vector2d> nearest_to_lines(std::span<const Bearing> bearings) {
     const RowVector2d normal_to_line = across(bearing.bearing_rad).transpose();
     const double weight = 1 / (bearing.sigma_rad * bearing.sigma_rad);
     normal += weight * normal_to_line.transpose() * normal_to_line;
-    right += weight * normal_to_line.transpose() * (normal_to_line * place(bearing.from));
+    right += weight * normal_to_line.transpose() * (normal_to_line * on_plane(bearing.from));
   }
   const Eigen::LDLT<Matrix2d> solver(normal);
   if (solver.rcond() < 1e-9) return std::nullopt;
@@ -54,8 +54,8 @@ std::optional<Vector2d> nearest_to_lines(std::span<const Bearing> bearings) {
 /// Whether a place is, with that standard deviation, from where the emitter was heard first and
 /// last: what seems to be just ahead may be far ahead.
 bool is_known(const Vector2d& emitter, double sigma_m, std::span<const Bearing> bearings) {
-  const double first_m = (emitter - place(bearings.front().from)).norm();
-  const double last_m = (emitter - place(bearings.back().from)).norm();
+  const double first_m = (emitter - on_plane(bearings.front().from)).norm();
+  const double last_m = (emitter - on_plane(bearings.back().from)).norm();
   return last_m >= kNear * first_m && sigma_m <= kPlacedSigma * std::min(first_m, last_m);
 }
 
@@ -73,10 +73,10 @@ std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bear
     Vector2d gradient = Vector2d::Zero();
     distance = 0;
     for (const Bearing& bearing : bearings) {
-      const Vector2d way = emitter - place(bearing.from);
+      const Vector2d way = emitter - on_plane(bearing.from);
       const RowVector2d slope = bearing_by_position(way);
       const double weight = 1 / (bearing.sigma_rad * bearing.sigma_rad);
-      const double residual = wrapped(bearing.bearing_rad - expected_bearing(way));
+      const double residual = half_turn(bearing.bearing_rad - expected_bearing(way));
       information += weight * slope.transpose() * slope;
       gradient += weight * slope.transpose() * residual;
       distance += way.norm() / static_cast<double>(bearings.size());
@@ -87,8 +87,8 @@ std::optional<skein::fusion::Estimate> triangulate(std::span<const Bearing> bear
     if (correction.norm() < 1e-6 * distance) break;
   }
   for (const Bearing& bearing : bearings) {
-    const Vector2d way = emitter - place(bearing.from);
-    if (std::abs(wrapped(bearing.bearing_rad - expected_bearing(way))) > std::numbers::pi / 2) {
+    const Vector2d way = emitter - on_plane(bearing.from);
+    if (std::abs(half_turn(bearing.bearing_rad - expected_bearing(way))) > std::numbers::pi / 2) {
       return std::nullopt;
     }
   }
@@ -106,7 +106,7 @@ struct BearingFilter::Expectation {
 };
 
 BearingFilter::BearingFilter(const Bearing& first, double least_range_m, double greatest_range_m)
-    : origin_km_(kKilometres_per_metre * place(first.from)) {
+    : origin_km_(kKilometres_per_metre * on_plane(first.from)) {
   // Mean and variance of 1 / r, if the logarithm of r is uniform.
   const double near = 1 / (kKilometres_per_metre * least_range_m);
   const double far = 1 / (kKilometres_per_metre * greatest_range_m);
@@ -120,11 +120,11 @@ BearingFilter::BearingFilter(const Bearing& first, double least_range_m, double 
 BearingFilter::Expectation BearingFilter::expect(const Bearing& bearing,
                                                  const Vector2d& state) const {
   // The way to the emitter times the inverse distance: finite however far the emitter is.
-  const Vector2d moved_km = kKilometres_per_metre * place(bearing.from) - origin_km_;
+  const Vector2d moved_km = kKilometres_per_metre * on_plane(bearing.from) - origin_km_;
   const Vector2d way = direction(state.x()) - state.y() * moved_km;
   Matrix2d way_by_state;
   way_by_state << across(state.x()), -moved_km;
-  return {wrapped(bearing.bearing_rad - expected_bearing(way)),
+  return {half_turn(bearing.bearing_rad - expected_bearing(way)),
           bearing_by_position(way) * way_by_state, way.norm()};
 }
 
@@ -180,7 +180,7 @@ std::optional<skein::fusion::Estimate> filter_bearings(std::span<const Bearing> 
   if (share > kPlacedSigma) return std::nullopt;
   const skein::fusion::Estimate found = filter.position();
   const Vector2d emitter{found.mean[0], found.mean[1]};
-  const double sigma_m = share * (emitter - place(bearings.front().from)).norm();
+  const double sigma_m = share * (emitter - on_plane(bearings.front().from)).norm();
   if (!is_known(emitter, sigma_m, bearings)) return std::nullopt;
   return found;
 }

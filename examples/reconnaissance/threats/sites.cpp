@@ -15,7 +15,7 @@ constexpr double kBoltzmann_J_K = 1.380649e-23;
 constexpr double kSignalToNoise = 20.8;
 constexpr double kWeaponHeight_m = 5000;
 // Once it guides, an aircraft in its zone lives for 50 s on average.
-constexpr double kKills_per_s = 0.02;
+constexpr double kSiteKills_per_s = 0.02;
 
 const EmitterType& find_type(const std::string& name) {
   std::string known;
@@ -59,7 +59,7 @@ RadarSite site_of_type(const std::string& type, std::uint32_t emitter, const Loc
   site.guidance = waveform_of(type, RadarMode::Guidance);
   site.zone = {.greatest_range_m = known.lethal_m,
                .greatest_height_m = kWeaponHeight_m,
-               .kills_per_s = known.lethal_m > 0 ? kKills_per_s : 0};
+               .kills_per_s = known.lethal_m > 0 ? kSiteKills_per_s : 0};
   return site;
 }
 

@@ -11,9 +11,9 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// What is known of a flight that is followed piece by piece.
-class Judge {
+class Outcome {
  public:
-  Judge(std::span<const TrafficState> others, const WellClearVolume& volume, double look_ahead_s)
+  Outcome(std::span<const TrafficState> others, const WellClearVolume& volume, double look_ahead_s)
       : others_(others), volume_(volume), look_ahead_s_(look_ahead_s) {}
 
   /// The aircraft flies straight on from this state at `from_s` to `to_s`.
@@ -63,10 +63,10 @@ TrafficState on_course(TrafficState state, double course_rad) {
 
 /// Turns to one side step by step; what was flown so far is common to all courses that follow.
 void add_courses(std::vector<Manoeuvre>& tried, const TrafficState& own, double side, int steps,
-                 const Judge& at_start, const ManoeuvreLimits& limits) {
+                 const Outcome& at_start, const ManoeuvreLimits& limits) {
   const double step_s = kCourseStep_rad / limits.turn_rate_rad_s;
   const double start_rad = own.course_rad();
-  Judge turning = at_start;
+  Outcome turning = at_start;
   TrafficState state = own;
   for (int i = 1; i <= steps; ++i) {
     // The chord of the step, flown on the course in its middle.
@@ -74,7 +74,7 @@ void add_courses(std::vector<Manoeuvre>& tried, const TrafficState& own, double 
     const TrafficState chord = on_course(state, start_rad + change - side * kCourseStep_rad / 2);
     turning.fly(chord, (i - 1) * step_s, i * step_s);
     state = on_course(straight_on(chord, step_s), start_rad + change);
-    Judge flight = turning;
+    Outcome flight = turning;
     flight.fly(state, i * step_s, limits.look_ahead_s);
     tried.push_back(flight.outcome(on_circle(start_rad + change), change));
   }
@@ -89,8 +89,8 @@ int at_least(double value, double step) { return static_cast<int>(std::ceil(valu
 
 std::vector<Manoeuvre> course_bands(const TrafficState& own, std::span<const TrafficState> others,
                                     const WellClearVolume& volume, const ManoeuvreLimits& limits) {
-  const Judge at_start(others, volume, limits.look_ahead_s);
-  Judge straight = at_start;
+  const Outcome at_start(others, volume, limits.look_ahead_s);
+  Outcome straight = at_start;
   straight.fly(own, 0, limits.look_ahead_s);
   std::vector<Manoeuvre> tried{straight.outcome(on_circle(own.course_rad()), 0)};
   add_courses(tried, own, 1, 180, at_start, limits);
@@ -108,7 +108,7 @@ std::vector<Manoeuvre> climb_bands(const TrafficState& own, std::span<const Traf
     changing.up_m_s = own.up_m_s + change / 2;
     TrafficState after = straight_on(changing, seconds);
     after.up_m_s = climb_m_s;
-    Judge flight(others, volume, limits.look_ahead_s);
+    Outcome flight(others, volume, limits.look_ahead_s);
     flight.fly(changing, 0, seconds);
     flight.fly(after, seconds, limits.look_ahead_s);
     tried.push_back(flight.outcome(climb_m_s, change));
@@ -132,7 +132,7 @@ std::vector<Manoeuvre> altitude_bands(const TrafficState& own, std::span<const T
     changing.up_m_s = std::copysign(limits.altitude_change_m_s, change);
     TrafficState after = straight_on(changing, seconds);
     after.up_m_s = 0;
-    Judge flight(others, volume, limits.look_ahead_s);
+    Outcome flight(others, volume, limits.look_ahead_s);
     if (seconds > 0) flight.fly(changing, 0, seconds);
     flight.fly(after, seconds, limits.look_ahead_s);
     tried.push_back(flight.outcome(altitude_m, change));

@@ -22,7 +22,7 @@ std::string line(const std::string& head, const std::string& text, std::size_t i
   return column(head, indent) + wrapped(printable(text, kLongest), kWidth, indent) + "\n";
 }
 
-std::string to_text(const Symptom& symptom) {
+std::string symptom_text(const Symptom& symptom) {
   constexpr std::size_t kSeverity = 9, kText = 24, kDetail = 20;
   const std::string head = column(to_string(symptom.severity), kSeverity) + symptom.about;
   return line(head, symptom.cause, kText) + line("         evidence", symptom.evidence, kDetail) +
@@ -38,7 +38,7 @@ std::string count(const Symptoms& symptoms, Severity severity, const std::string
 
 std::string to_text(const Symptoms& symptoms) {
   std::string text;
-  for (const Symptom& symptom : symptoms) text += to_text(symptom);
+  for (const Symptom& symptom : symptoms) text += symptom_text(symptom);
   return text + count(symptoms, Severity::Error, "error") + ", " +
          count(symptoms, Severity::Warning, "warning") + "\n";
 }

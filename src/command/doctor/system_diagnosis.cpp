@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = 1 << 20;
 
-std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes / kMiB) + " MiB"; }
+std::string whole_mebibytes(std::uint64_t bytes) { return std::to_string(bytes / kMiB) + " MiB"; }
 
 bool loads(const VendorModule& vendor) { return vendor.failure.empty(); }
 
@@ -94,10 +94,10 @@ void shared_memory(const Purpose& purpose, const Facts& facts, Symptoms& symptom
   constexpr std::uint64_t kSegment = 16 * kMiB;
   if (facts.shared_memory->free >= 4 * kSegment) return;
   symptoms.push_back({purpose.shared_memory ? Severity::Warning : Severity::Note, "shared memory",
-                      mebibytes(facts.shared_memory->free) +
+                      whole_mebibytes(facts.shared_memory->free) +
                           " are free in /dev/shm, and each peer "
                           "with shared_memory=\"true\" takes " +
-                          mebibytes(kSegment),
+                          whole_mebibytes(kSegment),
                       "df /dev/shm",
                       "sudo mount -o remount,size=1G /dev/shm; of a container: "
                       "--shm-size=1g"});
@@ -117,7 +117,7 @@ void address_space(const Facts& facts, Symptoms& symptoms) {
   const bool hopeless = *facts.limits.address_space < 256 * kMiB;
   symptoms.push_back({hopeless ? Severity::Error : Severity::Warning, "limits",
                       "the address space of a process is limited to " +
-                          mebibytes(*facts.limits.address_space) +
+                          whole_mebibytes(*facts.limits.address_space) +
                           ": stacks of threads count whole",
                       "ulimit -v", "ulimit -v unlimited; limit memory by a control group instead"});
 }
@@ -135,7 +135,7 @@ void real_time(const Purpose& purpose, const Facts& facts, Symptoms& symptoms) {
   if (purpose.locks_memory && facts.limits.locked_memory) {
     symptoms.push_back({Severity::Warning, "limits",
                         "the mission locks its memory, and this user may lock " +
-                            mebibytes(*facts.limits.locked_memory),
+                            whole_mebibytes(*facts.limits.locked_memory),
                         "ulimit -l",
                         "in /etc/security/limits.d/skein.conf: USER - memlock unlimited; then "
                         "log in again"});
@@ -172,7 +172,7 @@ void processors(const Facts& facts, Symptoms& symptoms) {
   }
   if (them.memory && *them.memory < 256 * kMiB) {
     symptoms.push_back({Severity::Warning, "memory",
-                        "the control group may use " + mebibytes(*them.memory) +
+                        "the control group may use " + whole_mebibytes(*them.memory) +
                             ": the kernel ends processes that need more",
                         "memory.max or memory.limit_in_bytes of the group",
                         "give it 256 MiB at least; of a container: --memory"});

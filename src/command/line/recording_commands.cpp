@@ -5,7 +5,7 @@
 namespace skein::command {
 namespace {
 
-void add_topics(CLI::App& command, std::vector<std::string>& topics, const char* type) {
+void add_topic_filter(CLI::App& command, std::vector<std::string>& topics, const char* type) {
   command.add_option("--topics", topics, "Topics, with commas between them; default: all")
       ->type_name(type)
       ->delimiter(',');
@@ -28,7 +28,7 @@ void add_record(CLI::App& app, int& result) {
       .add_option("--output", arguments.output,
                   "The file; default: mission_DATE_TIME.mcap, in this folder")
       ->type_name(kFile);
-  add_topics(command, arguments.topics, kTopic);
+  add_topic_filter(command, arguments.topics, kTopic);
   command.add_flag("--only-topics", arguments.only_topics, "Neither calls nor decisions");
   add_duration(command, "--for", arguments.seconds, "How long; default: until interrupted",
                Zero::Refused);
@@ -53,7 +53,7 @@ void add_replay(CLI::App& app, int& result) {
   auto& arguments = arguments_of(command, replay_recording, result);
   command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
   add_onlooker(command, arguments);
-  add_topics(command, arguments.topics, "NAMES");  // those of FILE, not of a domain
+  add_topic_filter(command, arguments.topics, "NAMES");  // those of FILE, not of a domain
   command.add_option("--rate", arguments.rate, "So many times as fast as it was recorded")
       ->check(above_zero())
       ->type_name("NUMBER")

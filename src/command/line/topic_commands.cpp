@@ -136,7 +136,7 @@ void add_topic(CLI::App& command, TopicArguments& arguments) {
       ->default_str(default_duration(arguments.wait));
 }
 
-void add_watching(CLI::App& command, TopicArguments& arguments, const char* what) {
+void add_topic_watching(CLI::App& command, TopicArguments& arguments, const char* what) {
   add_duration(command, "--for", arguments.seconds, "How long to watch; default: until interrupted",
                Zero::Refused);
   command.add_option("--count", arguments.count, what)->type_name("NUMBER")->check(above_zero());
@@ -151,7 +151,7 @@ void add_echo(CLI::App& app, int& result) {
                                {"skein echo pose --count 1 --json", "One value, in one line"}});
   auto& arguments = arguments_of(command, echo, result);
   add_topic(command, arguments);
-  add_watching(command, arguments, "End after so many values; default: no limit");
+  add_topic_watching(command, arguments, "End after so many values; default: no limit");
   add_exit_codes(command);
 }
 
@@ -161,7 +161,7 @@ void add_rate(CLI::App& app, int& result) {
       {{"skein rate pose --domain 42", "A line a second, until Ctrl-C"}});
   auto& arguments = arguments_of(command, show_rate, result);
   add_topic(command, arguments);
-  add_watching(command, arguments, "End after so many lines; default: no limit");
+  add_topic_watching(command, arguments, "End after so many lines; default: no limit");
   add_exit_codes(command);
 }
 

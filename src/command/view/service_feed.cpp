@@ -19,8 +19,8 @@
 namespace skein::command {
 namespace {
 
-constexpr std::chrono::seconds kPatience{2};
-constexpr std::size_t kLongestText = 1024;
+constexpr std::chrono::seconds kServiceWithin{2};
+constexpr std::size_t kLongestExplanation = 1024;
 
 /// One provider, connected to at the first call.
 class Provider {
@@ -87,15 +87,16 @@ bool ServiceFeed::offer(const discovery::ServiceDescription& service) {
   const auto participant = entity_.broker().participant_of(provider);
   if (!participant) return true;  // it has just gone
   try {
-    offered_.emplace(provider,
-                     offer(service, inspector_.types(service.service, *participant, kPatience)));
+    offered_.emplace(
+        provider, offer(service, inspector_.types(service.service, *participant, kServiceWithin)));
   } catch (const Unavailable& error) {
-    log(LogLevel::Warning, "view", printable(service.service + ": " + error.what(), kLongestText));
+    log(LogLevel::Warning, "view",
+        printable(service.service + ": " + error.what(), kLongestExplanation));
     return false;
   } catch (const InvalidArgument& error) {  // what was told makes no sense
     offered_.emplace(provider, std::vector<view::ServiceId>());
     log(LogLevel::Warning, "view",
-        printable(service.service + " is not offered: " + error.what(), kLongestText));
+        printable(service.service + " is not offered: " + error.what(), kLongestExplanation));
   }
   return true;
 }
@@ -106,7 +107,7 @@ std::vector<view::ServiceId> ServiceFeed::offer(const discovery::ServiceDescript
   options.name = service.service;
   options.system = std::string(ConnectOptions::kAnySystem);
   options.provider = Guid{service.provider};
-  options.timeout = kPatience;
+  options.timeout = kServiceWithin;
   const auto provider = std::make_shared<Provider>(entity_, std::move(options));
   const std::string interface = scoped_interface_name(service.service);
   const std::string prefix = interface + ".";

@@ -13,8 +13,8 @@ namespace skein::command {
 namespace {
 
 constexpr const char* kPlace = "view";
-constexpr std::chrono::seconds kPatience{2};
-constexpr std::size_t kLongestText = 1024;
+constexpr std::chrono::seconds kTypesWithin{2};
+constexpr std::size_t kLongestRefusal = 1024;
 /// Of a topic, in a reader's queue, while its samples are handed over.
 constexpr std::uint32_t kMaxWaiting = 1024;
 
@@ -80,17 +80,17 @@ TopicFeed::Source TopicFeed::source(const Key& key, const inspection::TopicEndpo
 
 bool TopicFeed::add(const Key& key, const Witness& witness) {
   try {
-    const auto types = inspector_.types(key.type, witness.participant, kPatience);
+    const auto types = inspector_.types(key.type, witness.participant, kTypesWithin);
     const auto channel =
         add(source(key, witness.endpoint), shown_name(key.system, key.name), types);
     shown_.emplace(key, Shown{witness.endpoint.signature, channel});
   } catch (const Unavailable& error) {
-    log(LogLevel::Warning, kPlace, printable(key.name + ": " + error.what(), kLongestText));
+    log(LogLevel::Warning, kPlace, printable(key.name + ": " + error.what(), kLongestRefusal));
     return false;
   } catch (const InvalidArgument& error) {  // IDL cannot say it, or what was told makes no sense
     shown_.emplace(key, Shown{witness.endpoint.signature, 0});
     log(LogLevel::Warning, kPlace,
-        printable(key.name + " is not shown: " + error.what(), kLongestText));
+        printable(key.name + " is not shown: " + error.what(), kLongestRefusal));
   }
   return true;
 }
@@ -116,7 +116,7 @@ std::unique_ptr<dds::Reader> TopicFeed::read(const Source& source, view::Channel
     });
   };
   listener.on_incompatible = [](const dds::Incompatibility& why) {
-    log(LogLevel::Warning, kPlace, printable(why.explanation, kLongestText));
+    log(LogLevel::Warning, kPlace, printable(why.explanation, kLongestRefusal));
   };
   return participant_.create_reader(source.topic, source.qos, std::move(listener));
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPeriodSeconds = 1;
 /// For the answers of all entities.
-constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::seconds kTopicsWithin{1};
 
 view::Options server_options(const ViewArguments& arguments) {
   view::Options options;
@@ -54,7 +54,7 @@ int serve_view(const ViewArguments& arguments) {
   std::fflush(stdout);
   do {
     if (server.clients() == 0) continue;  // nobody is asked while nobody looks
-    const auto entities = inspector.ask_all(inspection::Subject::Topics, kPatience);
+    const auto entities = inspector.ask_all(inspection::Subject::Topics, kTopicsWithin);
     topics.update(entities);
     if (arguments.calls) services.update();
     view::Graph graph;

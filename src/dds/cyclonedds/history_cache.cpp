@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kDisposed = 1;  // of the RTPS status info
 
-int32_t no_samples(dds_rhc*, bool, void**, dds_sample_info_t*, uint32_t, uint32_t,
-                   dds_instance_handle_t, dds_readcond*) {
+int32_t take_nothing(dds_rhc*, bool, void**, dds_sample_info_t*, uint32_t, uint32_t,
+                     dds_instance_handle_t, dds_readcond*) {
   return 0;
 }
 int32_t no_blobs(dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, uint32_t, uint32_t, uint32_t,
@@ -64,8 +64,8 @@ const dds_rhc_ops& HistoryCache::operations() {
                   .relinquish_ownership = [](ddsi_rhc*, std::uint64_t) {},
                   .set_qos = [](ddsi_rhc*, const dds_qos*) {},
                   .free = [](ddsi_rhc*) {}},  // the reader owns the cache
-      .read = no_samples,
-      .take = no_samples,
+      .read = take_nothing,
+      .take = take_nothing,
       .readcdr = no_blobs,
       .takecdr = no_blobs,
       .add_readcondition = [](dds_rhc*, dds_readcond*) { return false; },

@@ -61,7 +61,7 @@ ssize_t read_guarded(ddsi_tran_conn* connection, unsigned char* buffer, std::siz
 /// an RTPS header with nothing behind it.
 void wake_readers(const std::vector<ddsi_tran_conn*>& connections, const Network& network) {
   const FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  unsigned char message[rtps_message::kHeaderSize];
+  unsigned char message[rtps_message::kRtpsHeaderSize];
   rtps_message::put_header(message, Guid::random());
   sockaddr_in to{};
   to.sin_family = AF_INET;

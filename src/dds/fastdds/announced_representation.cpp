@@ -10,10 +10,6 @@ constexpr std::uint32_t kTopicScope = 1;
 constexpr std::uint16_t kRepresentation = 0x0073;
 constexpr std::uint16_t kXcdr2 = 2;
 
-/// The entity ids of the writers that announce writers and readers.
-constexpr unsigned char kWriterAnnouncer[] = {0x00, 0x00, 0x03, 0xc2};
-constexpr unsigned char kReaderAnnouncer[] = {0x00, 0x00, 0x04, 0xc2};
-
 bool is_from(const Data& data, const unsigned char (&writer)[4]) {
   return std::memcmp(data.writer, writer, sizeof writer) == 0;
 }

@@ -7,10 +7,6 @@ namespace {
 
 using namespace rtps_message;
 
-constexpr unsigned char kWriterAnnouncer[] = {0x00, 0x00, 0x03, 0xc2};
-constexpr unsigned char kWriterDetector[] = {0x00, 0x00, 0x03, 0xc7};
-constexpr unsigned char kReaderAnnouncer[] = {0x00, 0x00, 0x04, 0xc2};
-constexpr unsigned char kReaderDetector[] = {0x00, 0x00, 0x04, 0xc7};
 constexpr std::size_t kEntityIdSize = 4;
 
 bool is(const unsigned char* entity, const unsigned char* other) {
@@ -76,7 +72,7 @@ SentAnnouncements::Acknowledgment SentAnnouncements::acknowledged_by(
     const Guid& participant) const {
   Acknowledgment message{};
   put_header(message.data(), participant);
-  unsigned char* at = message.data() + kHeaderSize;
+  unsigned char* at = message.data() + kRtpsHeaderSize;
   at = append_acknack(at, kWriterDetector, kWriterAnnouncer, last_writer_);
   append_acknack(at, kReaderDetector, kReaderAnnouncer, last_reader_);
   return message;

@@ -53,7 +53,7 @@ Farewell make_farewell(const Guid& participant) {
 
   Farewell message{};
   put_header(message.data(), participant);
-  unsigned char* at = message.data() + kHeaderSize;
+  unsigned char* at = message.data() + kRtpsHeaderSize;
   const auto append = [&](const unsigned char* bytes, std::size_t size) {
     std::memcpy(at, bytes, size);
     at += size;

@@ -6,7 +6,7 @@
 namespace skein::navigation {
 namespace {
 
-constexpr int kMaxPoints = 100;
+constexpr int kMaxGridPoints = 100;
 
 class AStarPlanner final : public AE_navigator::IPlanner {
  public:
@@ -35,7 +35,7 @@ class AStarPlanner final : public AE_navigator::IPlanner {
     GroundPath path;
     for (const int node : found.path.nodes) path.push_back(graph.point(node));
     const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
-    return make_route(scene, path, cost, kMaxPoints, "AStar");
+    return make_route(scene, path, cost, kMaxGridPoints, "AStar");
   }
 
   /// The cheapest path has bends too tight for the aircraft; with room for turns there may be

@@ -15,7 +15,7 @@ namespace {
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
-GroundPoint point_of(const ob::State* state) {
+GroundPoint point_of_pose(const ob::State* state) {
   const auto* pose = state->as<ob::SE2StateSpace::StateType>();
   return {pose->getX(), pose->getY()};
 }
@@ -44,7 +44,7 @@ class LegacyDubinsPlanner final : public AE_navigator::IPlanner {
     auto& solution = *definition->getSolutionPath()->as<og::PathGeometric>();
     solution.interpolate();
     GroundPath path;
-    for (const ob::State* state : solution.getStates()) path.push_back(point_of(state));
+    for (const ob::State* state : solution.getStates()) path.push_back(point_of_pose(state));
     const LegCost length = [](const GroundPoint& a, const GroundPoint& b) {
       return distance_m(a, b);
     };
@@ -65,8 +65,9 @@ class LegacyDubinsPlanner final : public AE_navigator::IPlanner {
     bounds.setHigh(1, scene.terrain().east_extent_m());
     poses->setBounds(bounds);
     auto space = std::make_shared<ob::SpaceInformation>(poses);
-    space->setStateValidityChecker(
-        [&scene](const ob::State* state) { return scene.free(point_of(state), Berth::ForTurns); });
+    space->setStateValidityChecker([&scene](const ob::State* state) {
+      return scene.free(point_of_pose(state), Berth::ForTurns);
+    });
     space->setStateValidityCheckingResolution(scene.grid().spacing_m() / poses->getMaximumExtent());
     space->setup();
     return space;

@@ -13,7 +13,7 @@ using AE_navigator::Problem;
 using AE_navigator::Route;
 
 constexpr int kPointsOfARoute = 60;
-constexpr int kMaxPoints = 100;
+constexpr int kMaxHybridPoints = 100;
 // How many of a route's steps a leg from one route to another may be long.
 constexpr double kReach = 4;
 
@@ -102,7 +102,7 @@ std::optional<Route> hybridise(TerrainProvider& terrains, const Problem& problem
       flown.push_back(graph.route(node));
     }
     const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
-    Route hybrid = make_route(scene, path, cost, kMaxPoints, names_of(flown, routes));
+    Route hybrid = make_route(scene, path, cost, kMaxHybridPoints, names_of(flown, routes));
     if (cost_m(problem, hybrid) < least_m) return hybrid;
   } catch (const Unflyable&) {
     // The parts fit together on the map alone.

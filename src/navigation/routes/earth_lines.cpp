@@ -23,7 +23,7 @@ void add(EarthLine& line, EarthPosition position) {
   if (line.empty() || !same(line.back(), position)) line.push_back(position);
 }
 
-EarthPosition between(const EarthPosition& a, const EarthPosition& b, double share) {
+EarthPosition earth_between(const EarthPosition& a, const EarthPosition& b, double share) {
   return {std::lerp(a.longitude_deg, b.longitude_deg, share),
           std::lerp(a.latitude_deg, b.latitude_deg, share),
           std::lerp(a.altitude_m, b.altitude_m, share)};
@@ -57,7 +57,7 @@ std::vector<EarthLine> split(const EarthLine& line, double meridian) {
     if (!part.empty() &&
         (part.back().longitude_deg > meridian) != (position.longitude_deg > meridian)) {
       const EarthPosition& before = part.back();
-      EarthPosition crossing = between(
+      EarthPosition crossing = earth_between(
           before, position,
           (meridian - before.longitude_deg) / (position.longitude_deg - before.longitude_deg));
       crossing.longitude_deg = meridian;

@@ -35,7 +35,7 @@ void add_polygon(Json& polygons, const EarthFrame& frame, const std::vector<Grou
   polygons.push_back({{"inclusion", false}, {"polygon", std::move(outline)}, {"version", 1}});
 }
 
-void add_zone(Json& fence, const EarthFrame& frame, const NoFlyZone& zone) {
+void fence_zone(Json& fence, const EarthFrame& frame, const NoFlyZone& zone) {
   const auto& corners = zone.outline;
   if (corners.size() > 2) add_polygon(fence["polygons"], frame, corners);
   if (!(zone.margin_m > 0)) return;
@@ -106,7 +106,7 @@ FlightPlan to_flight_plan(const Terrain& terrain, const AE_navigator::Problem& p
     if (is_passed_on_map(zone, route)) {
       plan.zones_left_out.push_back(zone.name);
     } else {
-      add_zone(fence, frame, zone);
+      fence_zone(fence, frame, zone);
     }
   }
   const GroundPoint start = on_map(route.waypoints.front());

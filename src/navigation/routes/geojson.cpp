@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/routes/earth_lines.hpp"
+#include "navigation/routes/route_profiles.hpp"
 #include "navigation/terrain/plane_geometry.hpp"
 #include "skein/error.hpp"
 
@@ -91,14 +92,6 @@ Json route_feature(const EarthFrame& frame, const PicturedRoute& pictured) {
                   {"expected_kills", route.expected_kills}};
   properties["altitudes_m"] = altitudes.size() == 1 ? altitudes[0] : Json(altitudes);
   return feature(geometry("LineString", std::move(parts)), std::move(properties));
-}
-
-bool drawable(const AE_navigator::Route& route) {
-  return route.waypoints.size() > 1 &&
-         std::all_of(route.waypoints.begin(), route.waypoints.end(), [](const auto& point) {
-           return std::isfinite(point.north_m) && std::isfinite(point.east_m) &&
-                  std::isfinite(point.altitude_m);
-         });
 }
 
 /// Reads zones; each value comes with its place in the text.

@@ -100,7 +100,7 @@ int posts_per_side(const std::filesystem::path& file) {
                            size));
 }
 
-std::vector<float> read_posts(const std::filesystem::path& file, int side) {
+std::vector<float> read_heights(const std::filesystem::path& file, int side) {
   const std::size_t width = static_cast<std::size_t>(side);
   std::vector<unsigned char> bytes(2 * width * width);
   std::ifstream in(file, std::ios::binary);
@@ -159,7 +159,7 @@ DegreePosts read_tiles(const Tiles& tiles, const std::filesystem::path& file) {
                                  "have the same number",
                                  other, first.filename().string(), side));
       }
-      put(read_posts(tile, side), side, north, east, posts);
+      put(read_heights(tile, side), side, north, east, posts);
     }
   }
   return posts;
@@ -175,7 +175,7 @@ Terrain read_hgt(const std::filesystem::path& file) {
                           .western_longitude_deg = tiles.south_west.longitude_deg,
                           .rows = side,
                           .columns = side,
-                          .heights_m = read_posts(file, side)});
+                          .heights_m = read_heights(file, side)});
   }
   require_all(tiles, file);
   return lay_out(file, read_tiles(tiles, file));

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace hills_test {
+
 using namespace reconnaissance;
 
 TEST_CASE("Hills are a plain about the airfield, and no higher than they say elsewhere") {
@@ -26,3 +28,5 @@ TEST_CASE("A seed makes the same hills, another one others") {
   CHECK(Hills(0, 7)(20000, 12000) == Hills(0, 7)(20000, 12000));
   CHECK(Hills(0, 7)(20000, 12000) != Hills(0, 8)(20000, 12000));
 }
+
+}  // namespace hills_test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace line_of_sight_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("A ridge hides what is behind it, and not what flies above its shadow"
   CHECK(in_sight(radar, {3000, 0, 100}, ridge, kRadioEarth));
   CHECK(in_sight(radar, radar, ridge, kRadioEarth));
 }
+
+}  // namespace line_of_sight_test

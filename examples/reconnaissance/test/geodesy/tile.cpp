@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fstream>
 
+namespace tile_test {
+
 using namespace reconnaissance;
 
 TEST_CASE("a tile's places are those of WGS-84, and its distances nearly") {
@@ -40,3 +42,5 @@ TEST_CASE("a tile's file has the ground by its posts, from the north-west on") {
   }
   std::filesystem::remove(file);
 }
+
+}  // namespace tile_test

@@ -6,6 +6,8 @@
 
 #include "random.hpp"
 
+namespace camera_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -150,3 +152,5 @@ TEST_CASE("A target is seen in the frame and in the open only") {
   pose.gimbal = {ahead.azimuth_rad + kPi, -ahead.elevation_rad};
   CHECK_FALSE(in_image(pose, kCamera, target));
 }
+
+}  // namespace camera_test

@@ -8,6 +8,8 @@
 #include "sensing/image_quality.hpp"
 #include "skein/synthesis.hpp"
 
+namespace collection_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -272,3 +274,5 @@ TEST_CASE("a look that stays with a target aims at where it will be") {
         Approx(plan_spot({{place}, 0}, kFlyby, kCamera, kMount)->sample_distance_m).epsilon(0.05));
   CHECK_FALSE(plan_watch(place, 0, 0, {800, 60000, 60, 0}, kCamera));
 }
+
+}  // namespace collection_test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace image_quality_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -38,3 +40,5 @@ TEST_CASE("Collected is what has 0.3 m a pixel in both directions") {
   CHECK(is_collected({{}, 1000, 1, 0.2, 0.3}));
   CHECK_FALSE(is_collected({{}, 1000, 1, 0.2, 0.301}));
 }
+
+}  // namespace image_quality_test

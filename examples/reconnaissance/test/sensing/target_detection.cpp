@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace target_detection_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -143,3 +145,5 @@ TEST_CASE("The same seed gives the same detections") {
   CHECK(once() == once());
   CHECK(once().size() > 10);
 }
+
+}  // namespace target_detection_test

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace air_defence_picture_test {
+
 using namespace reconnaissance;
 using skein::fusion::chi_square_quantile;
 using skein::fusion::Estimate;
@@ -272,3 +274,5 @@ TEST_CASE(
   other.emitter = "coast radar";
   CHECK(differ({one}, {other}));
 }
+
+}  // namespace air_defence_picture_test

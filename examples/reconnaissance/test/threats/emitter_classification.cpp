@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace emitter_classification_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -223,3 +225,5 @@ TEST_CASE("The wideband receiver waits for a burst of one mode") {
   CHECK(found->emitter == "short-range site");
   CHECK(found->mode == RadarMode::Track);
 }
+
+}  // namespace emitter_classification_test

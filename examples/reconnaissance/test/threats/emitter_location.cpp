@@ -8,6 +8,8 @@
 
 #include "random.hpp"
 
+namespace emitter_location_test {
+
 using namespace reconnaissance;
 using skein::fusion::chi_square_quantile;
 using skein::fusion::Estimate;
@@ -224,3 +226,5 @@ TEST_CASE("A bearing of another emitter does not fit the filter, one of the same
   CHECK(heard.innovation(bearing(here, emitter)).variance_rad2 ==
         Approx(kSigma_rad * kSigma_rad).epsilon(0.1));
 }
+
+}  // namespace emitter_location_test

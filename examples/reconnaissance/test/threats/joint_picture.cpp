@@ -5,6 +5,8 @@
 
 #include "random.hpp"
 
+namespace joint_picture_test {
+
 using namespace reconnaissance;
 using skein::fusion::chi_square_quantile;
 using skein::fusion::Estimate;
@@ -141,3 +143,5 @@ TEST_CASE(
   CHECK(ten.added > 10 * bound(0.975));
   CHECK(ten.last_deviation_m == Approx(ten.first_deviation_m));
 }
+
+}  // namespace joint_picture_test

@@ -5,6 +5,8 @@
 #include <map>
 #include <vector>
 
+namespace radar_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -158,3 +160,5 @@ TEST_CASE("A radar that lies in wait is silent until the target is near, and not
   CHECK_FALSE(watch(radar, 160, 200, at(40000)).empty());
   CHECK(radar.mode() == RadarMode::Search);
 }
+
+}  // namespace radar_test

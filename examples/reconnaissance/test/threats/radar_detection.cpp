@@ -7,6 +7,8 @@
 
 #include "random.hpp"
 
+namespace radar_detection_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("Within n looks a track is confirmed as often as the binomial distribu
   // At least 3 of 5 at 0.6: 0.68256; four standard errors are 0.0132.
   CHECK(static_cast<double>(confirmed) / kRuns == Approx(0.68256).margin(0.0132));
 }
+
+}  // namespace radar_detection_test

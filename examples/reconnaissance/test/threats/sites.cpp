@@ -6,6 +6,8 @@
 #include "skein/error.hpp"
 #include "threats/emitter_classification.hpp"
 
+namespace sites_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -45,3 +47,5 @@ TEST_CASE("What a site transmits is taken for its type by the library") {
 TEST_CASE("A type that is unknown is refused with those that are known") {
   CHECK_THROWS_WITH(site_of_type("laser", 1, {}, 0), Catch::Contains("mobile gun"));
 }
+
+}  // namespace sites_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace survival_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_CASE("The survival of a possible site is that of both cases by their probab
   CHECK(survival_if_it_appears(1, 3) == Approx(std::exp(-3)));
   CHECK(survival_if_it_appears(0.25, 3) == Approx(0.75 + 0.25 * std::exp(-3)));
 }
+
+}  // namespace survival_test

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace warner_receiver_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -101,3 +103,5 @@ TEST_CASE("Distances by power scatter about the true one as their interval says"
   }
   CHECK(normalised / kRuns == Approx(1).margin(4 * std::sqrt(2.0 / kRuns)));
 }
+
+}  // namespace warner_receiver_test

@@ -6,6 +6,8 @@
 #include "threats/radar.hpp"
 #include "threats/survival.hpp"
 
+namespace warning_chain_test {
+
 using namespace reconnaissance;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("A site that pops up is placed by bearings and power within 20 s") {
     }
   }
 }
+
+}  // namespace warning_chain_test
