@@ -6,6 +6,7 @@ Prints each violation of a rule of ARCHITECTURE.md; the exit code is 1 where the
 import argparse
 import sys
 
+import budget_rules
 import compile_rules
 import definition_rules
 import include_rules
@@ -37,12 +38,14 @@ def main():
         "quotes": lambda: text_rules.quotes(tree),
         "links": lambda: text_rules.links(tree),
         "workarounds": lambda: text_rules.workarounds(tree),
+        "budget": lambda: budget_rules.budget(tree),
         "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
         "older_standard": lambda: compile_rules.older_standard(tree, compiler),
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),
         "generated_includes": lambda: compile_rules.generated_includes(arguments.header),
         "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library[0]),
         "one_definition": lambda: definition_rules.one_definition(arguments.library, arguments.build),
+        "unity_names": lambda: definition_rules.unity_names(arguments.build),
         "open_search_paths": lambda: compile_rules.open_search_paths(arguments.folder),
     }
     if arguments.check not in checks:

@@ -1,5 +1,6 @@
 """Each check finds what it is there to find: on trees made for that, which break one rule."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -7,6 +8,7 @@ import sys
 import tempfile
 import unittest
 
+import budget_rules
 import compile_rules
 import definition_rules
 import include_rules
@@ -37,6 +39,22 @@ class TreeTest(unittest.TestCase):
 
     def assertFindsNothing(self, violations):
         self.assertEqual(list(violations), [])
+
+
+class UnityNames(TreeTest):
+    def unity(self, *texts):
+        sources = [self.write(f"{number}.cpp", text) for number, text in enumerate(texts)]
+        self.write("build/CMakeFiles/a.dir/Unity/unity_0_cxx.cxx", "".join(f'#include "{source}"\n' for source in sources))
+        return definition_rules.unity_names(self.root)
+
+    def test_a_function_that_stands_in_two_sources_of_a_target_is_found(self):
+        self.assertFinds(self.unity("namespace a {\nnamespace {\n\nvoid check(const char* x) {\n}\n\n}  // namespace\n",
+                                    "namespace a {\nnamespace {\n\nvoid check(const std::string& x) {\n"),
+                         "check()", "0.cpp and 1.cpp")
+
+    def test_others_and_those_of_other_namespaces_are_not(self):
+        text = "namespace {\n\nint f(int x) {\n  return check(x);\n}\n\n}  // namespace\n"
+        self.assertFindsNothing(self.unity("namespace a {\n" + text + "void g() {\n", "namespace b {\n" + text + "void g() {\n"))
 
 
 class Homes(TreeTest):
@@ -119,10 +137,28 @@ class PublicHeaders(TreeTest):
         self.write_umbrella([name for name in self.names if name not in ("asio", "fusion", "skein")])
         self.assertFindsNothing(include_rules.public_headers(self.tree))
 
-    def test_too_many_are_found(self):
-        most, include_rules.MAX_USERS_HEADERS = include_rules.MAX_USERS_HEADERS, 5
-        self.addCleanup(setattr, include_rules, "MAX_USERS_HEADERS", most)
-        self.assertFinds(include_rules.public_headers(self.tree), "5 are enough")
+
+class Budget(TreeTest):
+    CEILINGS = {"words of documents": 3, "users' headers": 1, "sources in the fullest folder": 2,
+                "pronouns in 1,000 words of comments": 500}
+
+    def setUp(self):
+        super().setUp()
+        self.write(budget_rules.BUDGET, json.dumps(self.CEILINGS))
+        self.write("README.md", "three words here\n")
+        self.write("include/skein/call.hpp", "")
+        self.write("src/a/a.hpp", "// who calls\n")
+        self.write("src/a/a.cpp", "")
+
+    def test_what_is_within_it_is_not_found(self):
+        self.assertFindsNothing(budget_rules.budget(self.tree))
+
+    def test_each_figure_above_its_ceiling_is_found(self):
+        for path, text, figure in (("GUIDE.md", "more", "words of documents: 4"), ("include/skein/stream.hpp", "", "users' headers: 2"),
+                                   ("src/a/b.cpp", "", "fullest folder: 3"), ("src/b/b.cpp", "// what where", "comments: 750.0")):
+            whole = self.write(path, text)
+            self.assertFinds(budget_rules.budget(self.tree), figure)
+            os.remove(whole)
 
 
 class TestFloors(TreeTest):

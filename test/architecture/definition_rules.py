@@ -1,7 +1,8 @@
-"""What debug information tells of the types in several binaries together."""
+"""What two sources define under one name."""
 
 import collections
 import os
+import pathlib
 import re
 import subprocess
 
@@ -46,3 +47,36 @@ def _only_declares(path, line):
     except (OSError, IndexError):
         return False
     return re.match(r"\s*enum\b[^{]*;", text) is not None
+
+
+_NAMESPACE = re.compile(r"namespace(?: ([\w:]+))? \{$|\}  // namespace")
+_FUNCTION = re.compile(r"(?!return\b|using\b)[A-Za-z_][\w:<>,&*\[\] ]*[ &*>](\w+)\(")
+
+
+def unity_names(build):
+    """A function in the unnamed namespaces of two sources that are compiled as one: a call in one may take the other's."""
+    for unity in sorted(pathlib.Path(build).glob("**/Unity")):
+        places = collections.defaultdict(set)
+        for source in _included(unity):
+            for name in _unnamed_functions(source):
+                places[name].add(source.name)
+        for name, sources in places.items():
+            if len(sources) > 1:
+                yield f"{unity.parent.stem}: {name}() stands in the unnamed namespaces of {' and '.join(sorted(sources))}; rename one"
+
+
+def _included(unity):
+    for part in unity.glob("unity_*.cxx"):
+        for path in map(pathlib.Path, re.findall(r'#include "(.+)"', part.read_text(encoding="utf-8"))):
+            if path.exists():  # of what is generated, too
+                yield path
+
+
+def _unnamed_functions(source):
+    """The qualified names; of namespaces and functions that begin a line, as clang-format writes them."""
+    inside = []
+    for line in source.read_text(encoding="utf-8").splitlines():
+        if found := _NAMESPACE.match(line):
+            inside.append(found.group(1) or "") if line.endswith("{") else inside.pop()
+        elif "" in inside and (found := _FUNCTION.match(line)):
+            yield "::".join([*filter(None, inside), found.group(1)])
