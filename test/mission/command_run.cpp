@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -65,7 +66,9 @@ std::string CommandRun::output() const {
 }
 
 bool CommandRun::writes(const std::string& part, std::chrono::seconds limit) const {
-  return eventually([&] { return output().find(part) != std::string::npos; }, limit);
+  const bool written = eventually([&] { return output().find(part) != std::string::npos; }, limit);
+  if (!written) std::fprintf(stderr, "instead of '%s':\n%s\n", part.c_str(), output().c_str());
+  return written;
 }
 
 void CommandRun::signal(int number) const {
