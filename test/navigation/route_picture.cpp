@@ -96,7 +96,7 @@ TEST_CASE("A height profile has distances below it") {
 }
 
 // The missiles are those that the example's ground station reports before its fifth question.
-TEST_CASE("The picture and the text of the route-planning example show what A* plans today") {
+TEST_CASE("The text of the route-planning example tells what A* plans today") {
   const Demo demo;
   const auto planner = make_a_star(demo.terrains);
   const auto before = planner->plan(demo.problem);
@@ -107,22 +107,13 @@ TEST_CASE("The picture and the text of the route-planning example show what A* p
   problem.kill_weight_m = 100'000;
   const auto after = planner->plan(problem);
 
-  const auto example = skein::test::project_file("examples/route_planning");
-  pugi::xml_document picture;
-  REQUIRE(picture.load_file((example + "/route.svg").c_str()));
-  const auto shown = [&](const std::string& route) {
-    const auto label = picture.select_node(("//text[.='" + route + "']").c_str()).node();
-    return std::string(label.next_sibling("text").text().get());
-  };
   const auto figures = [](const auto& route) {
     return fmt::format("{:.1f} km, exposure {:.1f} km", route.length_m / 1000,
                        route.radar_exposure / 1000);
   };
-  CHECK(shown("planner killed: AStar") == figures(before));
-  CHECK(shown("fresh picture: AStar") == figures(after));
-
-  std::ifstream file(example + "/README.md");
+  std::ifstream file(skein::test::project_file("examples/route_planning/README.md"));
   const std::string text((std::istreambuf_iterator<char>(file)), {});
+  CHECK_THAT(text, Contains(figures(before)) && Contains(figures(after)));
   CHECK_THAT(text, Contains(fmt::format("  route     {:.2f} km by AStar, lowest {:.0f} m above "
                                         "ground, radar exposure {:.2f} km, {} waypoints\n",
                                         after.length_m / 1000, after.lowest_height_above_ground_m,
