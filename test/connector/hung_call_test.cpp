@@ -93,7 +93,7 @@ TEST_CASE("calls that return after their entity has been destroyed touch nothing
   CHECK_THROWS_AS(calls.stream->next(), Disconnected);
 }
 
-TEST_CASE("calls that return after their service was withdrawn touch nothing", "[wire]") {
+TEST_CASE("calls that return after their service was withdrawn touch nothing") {
   HungCalls calls;
   calls.provide(GENERATE(true, false));
   calls.call_it();

@@ -127,24 +127,23 @@ TEST_CASE("F2: when every planner hangs, the refusal comes at the deadline", "[l
 }
 
 TEST_CASE(
-    "F3: a planner that aborts by itself: its entity answers on, its restarts are capped, and it "
+    "F3: a planner that aborts: its entity answers on, its restarts are capped, and it "
     "is avoided") {
   PlanningStage stage(by("declared"));
   stage.add("quick", "AStar", {2000, 0.5});
-  // No route: the old library searches on until something in it fails.
   stage.problem = navigation::unreachable_demo_problem(
       *navigation::TerrainProvider().load(stage.problem.terrain));
 
   constexpr auto kBudget = 15s;  // half of it is enough for a proof on a loaded machine, too
   constexpr int kRestarts = 2;
-  launch::ChildPlan legacy;
-  legacy.name = "legacy";
-  legacy.argv = stage.command("legacy", "LegacyDubins", {100, 0.9});
-  legacy.rules.on_loss = profile::LossPolicy::Continue;
-  legacy.rules.restart.policy = profile::RestartPolicy::OnFailure;
-  legacy.rules.restart.delay = 10ms;
-  legacy.rules.restart.max_restarts = kRestarts;
-  legacy.rules.restart.window = 300s;
+  launch::ChildPlan aborting;
+  aborting.name = "aborting";
+  aborting.argv = stage.command("aborting", "aborts", {100, 0.9});
+  aborting.rules.on_loss = profile::LossPolicy::Continue;
+  aborting.rules.restart.policy = profile::RestartPolicy::OnFailure;
+  aborting.rules.restart.delay = 10ms;
+  aborting.rules.restart.max_restarts = kRestarts;
+  aborting.rules.restart.window = 300s;
   launch::ChildPlan keeper;  // The mission goes on without the planner.
   keeper.name = "keeper";
   keeper.argv = {"sh", "-c", "echo >&$SKEIN_READY_FD; exec sleep 1000"};
@@ -154,11 +153,11 @@ TEST_CASE(
   options.handle_signals = false;
   options.on_output = [](std::string_view, std::string_view) {};
   options.on_event = [&](const launch::ChildEvent& event) {
-    if (event.child != "legacy") return;
+    if (event.child != "aborting") return;
     if (event.text.find("signal 6") != std::string::npos) ++aborts;
     if (event.state == launch::ChildState::Lost) given_up = true;
   };
-  launch::Supervisor supervisor({"legacy", {legacy, keeper}, {}}, options);
+  launch::Supervisor supervisor({"aborting", {aborting, keeper}, {}}, options);
   std::thread running([&] { supervisor.run(); });
 
   int refused = 0;
@@ -172,11 +171,11 @@ TEST_CASE(
       },
       200s));
   CHECK(aborts == kRestarts + 1);
-  REQUIRE(eventually([&] { return !stage.is_available("legacy"); }));
+  REQUIRE(eventually([&] { return !stage.is_available("aborting"); }));
   const auto answer = stage.ask(kBudget);
   CHECK(answer.proven);
-  CHECK(answer.outcome_of("legacy").empty());
-  std::printf("F3: the old library aborted %d times in %d requests, each of which was answered\n",
+  CHECK(answer.outcome_of("aborting").empty());
+  std::printf("F3: the planner aborted %d times in %d requests, each of which was answered\n",
               aborts.load(), refused);
   supervisor.request_stop();
   running.join();

@@ -1,12 +1,13 @@
 // A planner of the navigator in a process of its own, to be struck:
 // planner_process VENDOR NAME OWNER KIND LATENCY_MS QUALITY SEED. KIND is a planner of
 // make_planner(), or one that misbehaves: `short_cut` flies straight through everything,
-// `not_a_number` has a waypoint nowhere, `slow` takes three times as long as it declares. It says
-// `ready`, and never ends by itself.
+// `not_a_number` has a waypoint nowhere, `slow` takes three times as long as it declares, `aborts`
+// ends its process. It says `ready`, and never ends by itself otherwise.
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <thread>
@@ -64,6 +65,10 @@ class Slow final : public Misbehaving {
   std::chrono::milliseconds declared_;
 };
 
+struct Aborting final : IPlanner {
+  Route plan(const Problem&) override { std::abort(); }
+};
+
 std::shared_ptr<IPlanner> make(const std::string& kind, std::uint32_t seed, int latency_ms) {
   const auto terrains = std::make_shared<TerrainProvider>();
   PlannerOptions options;
@@ -75,6 +80,7 @@ std::shared_ptr<IPlanner> make(const std::string& kind, std::uint32_t seed, int 
   if (kind == "not_a_number") return std::make_shared<NotANumber>(planner("RRTConnect"));
   if (kind == "slow")
     return std::make_shared<Slow>(planner("RRTConnect"), std::chrono::milliseconds(latency_ms));
+  if (kind == "aborts") return std::make_shared<Aborting>();
   return planner(kind);
 }
 

@@ -11,10 +11,16 @@
 
 namespace skein::navigation::testing {
 
+/// One for all tests of a program, as to invent a terrain takes longer than to plan on it.
+inline std::shared_ptr<TerrainProvider> shared_terrains() {
+  static const auto terrains = std::make_shared<TerrainProvider>();
+  return terrains;
+}
+
 /// The demonstration on one invented terrain, with what a test needs to judge its routes.
 struct Demo {
   explicit Demo(std::uint32_t seed = 7)
-      : terrains(std::make_shared<TerrainProvider>()),
+      : terrains(shared_terrains()),
         terrain(terrains->load("synthetic:" + std::to_string(seed))),
         problem(demo_problem(*terrain)),
         ground{terrain->rows(), terrain->columns(), terrain->north_spacing_m(),

@@ -7,10 +7,32 @@
 
 namespace skein::navigation::testing {
 
-/// A flat tile, the problem of crossing 40 km of it from west to east, and one radar half way.
+/// A flat tile, written and read once for all tests of a program.
+class FlatTile {
+ public:
+  static const FlatTile& shared() {
+    static const FlatTile tile;
+    return tile;
+  }
+
+  const std::shared_ptr<TerrainProvider>& terrains() const { return terrains_; }
+  const HeightGrid& ground() const { return ground_; }
+
+ private:
+  FlatTile() {
+    write_hgt(folder_.path() / "N00E000.hgt", [](int, int) { return 100; });
+    terrains_ = std::make_shared<TerrainProvider>(std::vector{folder_.path()});
+    ground_ = read_height_grid(folder_.path() / "N00E000.hgt");
+  }
+
+  TemporaryFolder folder_;
+  std::shared_ptr<TerrainProvider> terrains_;
+  HeightGrid ground_;
+};
+
+/// The problem of crossing 40 km of it from west to east, and one radar half way.
 struct FlatCrossing {
-  FlatCrossing() : terrains(std::make_shared<TerrainProvider>(std::vector{folder->path()})) {
-    write_hgt(folder->path() / "N00E000.hgt", [](int, int) { return 100; });
+  FlatCrossing() {
     problem.terrain = "N00E000.hgt";
     problem.start = {55000, 35000, 300};
     problem.goal = {55000, 75000, 300};
@@ -22,10 +44,9 @@ struct FlatCrossing {
 
   AE_navigator::Route plan() const { return make_a_star(terrains)->plan(problem); }
 
-  HeightGrid ground() const { return read_height_grid(folder->path() / "N00E000.hgt"); }
+  const HeightGrid& ground() const { return FlatTile::shared().ground(); }
 
-  std::shared_ptr<TemporaryFolder> folder = std::make_shared<TemporaryFolder>();
-  std::shared_ptr<TerrainProvider> terrains;
+  std::shared_ptr<TerrainProvider> terrains = FlatTile::shared().terrains();
   AE_navigator::Problem problem;
 };
 
