@@ -39,6 +39,7 @@ def main():
         "links": lambda: text_rules.links(tree),
         "workarounds": lambda: text_rules.workarounds(tree),
         "budget": lambda: budget_rules.budget(tree),
+        "mission_lines": lambda: budget_rules.mission_lines(tree, arguments.build),
         "lone_headers": lambda: compile_rules.lone_headers(tree, compiler),
         "older_standard": lambda: compile_rules.older_standard(tree, compiler),
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),

@@ -161,6 +161,25 @@ class Budget(TreeTest):
             os.remove(whole)
 
 
+class MissionLines(TreeTest):
+    def setUp(self):
+        super().setUp()
+        self.write("CMakePresets.json", '{"version": 6, "configurePresets": [{"name": "mission", "generator": "Ninja"}]}')
+        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(x LANGUAGES CXX)\nset(CMAKE_EXPORT_COMPILE_COMMANDS ON)\n"
+                                     "add_library(x OBJECT x.cpp)\nadd_custom_target(skein_generated)\n")
+        self.write("x.cpp", "".join(f"int x{number};\n" for number in range(3000)))
+
+    def violations(self, ceiling):
+        self.write(budget_rules.BUDGET, json.dumps({budget_rules.MISSION_LINES: ceiling}))
+        return budget_rules.mission_lines(self.tree, os.path.join(self.root, "build"))
+
+    def test_more_lines_than_the_ceiling_are_found(self):
+        self.assertFinds(self.violations(2), "mission: 3,", "allows 2")
+
+    def test_as_many_are_not(self):
+        self.assertFindsNothing(self.violations(3))
+
+
 class TestFloors(TreeTest):
     AREAS = "set(areas core:0 rpc:3)\nif(x)\n  list(APPEND areas profile:7)\nendif()\n"
 

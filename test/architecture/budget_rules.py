@@ -5,8 +5,10 @@ import collections
 import json
 import os
 import re
+import subprocess
 
 BUDGET = "test/architecture/budget.json"
+MISSION_LINES = "thousand lines read to compile the mission"
 _COMMENT = re.compile(r"//+(.*)")
 _PRONOUN = re.compile(r"(who|whom|whose|whoever|what|whatever|where)$", re.IGNORECASE)
 
@@ -27,6 +29,25 @@ def budget(tree):
     for name, figure in figures(tree).items():
         if figure > ceilings[name]:
             yield f"{name}: {figure}, and {BUDGET} allows {ceilings[name]}"
+
+
+def mission_lines(tree, build):
+    """More lines than the ceiling for a compiler to read for `./dev mission`, which is what most of its time goes to.
+
+    Preprocesses each unit of the preset, in the folder `build`: the same number on each machine that has the same headers.
+    """
+    subprocess.run(["cmake", "--preset", "mission", "-B", build], cwd=tree.root, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build, "--target", "skein_generated"], check=True, stdout=subprocess.DEVNULL)
+    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as stream:
+        commands = [unit["command"] for unit in json.load(stream) if unit["file"].endswith((".cxx", ".cpp")) and ".hxx." not in unit["file"]]
+    lines = 0
+    for command in commands:
+        preprocess = re.sub(r" -o \S+ -c ", " -E -P -w ", command)
+        lines += subprocess.run(preprocess, shell=True, cwd=build, check=True, capture_output=True).stdout.count(b"\n")
+    figure, ceiling = round(lines / 1000), json.loads(tree.text(BUDGET))[MISSION_LINES]
+    print(f"weight: {MISSION_LINES}: {figure}, of {ceiling} at most, in {len(commands)} units")
+    if figure > ceiling:
+        yield f"{MISSION_LINES}: {figure}, and {BUDGET} allows {ceiling}; `g++ -H` shows which headers a source brings"
 
 
 def _sources(tree):
