@@ -45,7 +45,7 @@ def main():
         "generated_version": lambda: compile_rules.generated_version(arguments.header, compiler),
         "generated_includes": lambda: compile_rules.generated_includes(arguments.header),
         "linked_vendors": lambda: compile_rules.linked_vendors(arguments.library[0]),
-        "one_definition": lambda: definition_rules.one_definition(arguments.library, arguments.build),
+        "one_definition": lambda: definition_rules.one_definition(arguments.library, arguments.build, arguments.root),
         "unity_names": lambda: definition_rules.unity_names(arguments.build),
         "open_search_paths": lambda: compile_rules.open_search_paths(arguments.folder),
     }

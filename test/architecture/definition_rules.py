@@ -9,15 +9,16 @@ import subprocess
 _TYPE = re.compile(r"^(\d+):\s+(?!typedef )(?:(?:class|struct|union|enum) )?(.+);$")
 
 
-def one_definition(libraries, build_folder):
+def one_definition(libraries, build_folder, root=""):
     """A type's name that two places define: the linker and the loader keep one destructor for both.
 
-    `libraries`: binaries with debug information; `build_folder`: what its relative paths are relative to.
+    `libraries`: binaries with debug information; `build_folder`: what its relative paths are relative to; `root`: the
+    tree, of which the compiler's cache may hold objects that were made in another clone.
     """
     places = collections.defaultdict(set)
     for library in libraries:
         for name, file, line in _types(library):
-            path = os.path.realpath(os.path.join(build_folder, file))
+            path = _in_tree(os.path.realpath(os.path.join(build_folder, file)), root)
             if "(anonymous namespace)" not in name and not _only_declares(path, line):
                 places[name].add(f"{path}:{line}")
     if not places:
@@ -25,6 +26,15 @@ def one_definition(libraries, build_folder):
     for name, found in sorted(places.items()):
         if len(found) > 1:
             yield f"{name} is defined in {' and in '.join(sorted(found))}: rename one, or give it a namespace of its own"
+
+
+def _in_tree(path, root):
+    """The file of `root` with the same path below it as `path` has below some clone's."""
+    parts = path.split("/")
+    for first in range(1, len(parts)) if root else ():
+        if os.path.exists(here := os.path.join(root, *parts[first:])):
+            return here
+    return path
 
 
 def _types(library):
