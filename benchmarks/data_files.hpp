@@ -2,8 +2,10 @@
 
 namespace skein::benchmarks {
 
-/// decisions/instances.csv and selection/random_forest.csv, where the project's sources lie.
+/// decisions/instances.csv, selection/random_forest.csv and selection/aslib.py, where the project's
+/// sources lie.
 extern const char* const kDecisionInstances;
 extern const char* const kRandomForestGaps;
+extern const char* const kAslibReader;
 
 }  // namespace skein::benchmarks

@@ -46,9 +46,9 @@ struct Scenario {
 /// Reads a folder with description.txt, algorithm_runs.arff, feature_values.arff and cv.arff, of
 /// which it takes the first repetition; feature_costs.arff and feature_runstatus.arff may be
 /// absent. Of several repetitions of a run the mean time counts, and it is solved if all are; costs
-/// and features count by their mean, too. Instances without a run or a fold are left out. Throws
-/// InvalidArgument with the file, the line where there is one, the cause and the remedy; also if
-/// the scenario measures no runtime or has no cutoff.
+/// and features count by their mean, too. Instances without a run or a fold are left out. aslib.py
+/// does the reading. Throws InvalidArgument with the file, the line if there is one, the cause and
+/// the remedy; also if the scenario measures no runtime or has no cutoff.
 Scenario read_scenario(const std::filesystem::path& folder);
 
 }  // namespace skein::benchmarks::selection

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "selection/arff.hpp"
 #include "selection/replay.hpp"
 #include "skein/error.hpp"
 
@@ -36,13 +35,6 @@ class Folder {
  private:
   fs::path path_;
 };
-
-Arff arff_of(const std::string& text) { return read_arff(Folder().write("a.arff", text)); }
-
-void check_refused(const std::string& text, const std::string& line, const std::string& cause) {
-  INFO(text);
-  CHECK_THROWS_WITH(arff_of(text), Contains("a.arff" + line) && Contains(cause) && Contains("; "));
-}
 
 const std::string kDescription =
     "scenario_id: tiny\n"
@@ -105,40 +97,6 @@ fs::path data() {
 }
 
 }  // namespace
-
-TEST_CASE("A file of attributes and rows is read, in either case, with comments and quotes") {
-  const Arff table = arff_of(
-      "\xEF\xBB\xBF% a comment\r\n\n@Relation 'x y'\n@attribute 'an id' String\n"
-      "@ATTRIBUTE n REAL\n@ATTRIBUTE s { ok , 'not ok' } % why\n\n@DATA\n"
-      "'a, \\'b\\'',+1.5e1,ok\n% between\n \"?\" , ? , 'not ok'\n");
-  REQUIRE(table.rows.size() == 2);
-  CHECK(table.rows[0].line == 9);
-  CHECK(table.text(table.rows[0], table.column("AN ID")) == "a, 'b'");
-  CHECK(table.number(table.rows[0], 1) == 15);
-  CHECK(table.text(table.rows[1], 0) == "?");
-  CHECK_FALSE(table.rows[1].cells[1]);
-  CHECK(table.number(table.rows[1], 2) == 1);
-}
-
-TEST_CASE("What is no such file is refused with its line, the cause and the remedy") {
-  const std::string header = "@ATTRIBUTE a NUMERIC\n@ATTRIBUTE b {x, y}\n@DATA\n";
-  check_refused(header + "1\n", ":4", "the row has 1 values");
-  check_refused(header + "1,x,2\n", ":4", "the row has 3 values");
-  check_refused(header + "one,x\n", ":4", "'one' is no number");
-  check_refused(header + "1,z\n", ":4", "no value 'z'");
-  check_refused(header + "1,\n", ":4", "a value is empty");
-  check_refused(header + "1,'x\n", ":4", "a quote is not closed");
-  check_refused(header + "1,'x' y\n", ":4", "text follows");
-  check_refused(header + "{0 1}\n", ":4", "sparse");
-  check_refused("@ATTRIBUTE a NUMERIC\n@ATTRIBUTE A REAL\n", ":2", "declared twice");
-  check_refused("@ATTRIBUTE a RELATIONAL\n", ":1", "'relational' is not supported");
-  check_refused("@ATTRIBUTE a {x, y\n", ":1", "not closed");
-  check_refused("@ATTRIBUTE\n", ":1", "no name");
-  check_refused("1,2\n", ":1", "no declaration");
-  check_refused("@DATA\n", ":1", "no attribute");
-  check_refused("@RELATION r\n", "", "has no @DATA");
-  CHECK_THROWS_WITH(read_arff("/nowhere/a.arff"), Contains("/nowhere/a.arff cannot be read"));
-}
 
 TEST_CASE("A scenario has runs, folds, and the features of its default steps at their cost") {
   const Folder folder;
