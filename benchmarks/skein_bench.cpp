@@ -6,18 +6,19 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
+#include "data_files.hpp"
 #include "decisions/compare_decisions.hpp"
 #include "grids/compare_grids.hpp"
 #include "harness/goals.hpp"
+#include "harness/machine.hpp"
 #include "harness/private_network.hpp"
 #include "recording/compare_recording.hpp"
-#include "report/goals.hpp"
-#include "report/report.hpp"
-#include "report/sections.hpp"
 #include "selection/compare_selection.hpp"
 #include "skein/error.hpp"
 
@@ -96,23 +97,19 @@ Plan quick_plan() {
           {1}};
 }
 
-void print_summary(const std::vector<Comparison>& comparisons) {
-  std::printf("%-72s %-30s %-24s %10s %10s %7s %7s\n", "claim", "subject", "rival", "p50 us",
-              "p99 us", "p50 x", "p99 x");
-  for (const Comparison& comparison : comparisons) {
-    const Absence& absence = comparison.absence;
-    if (!comparison.goal_p50 && !absence.failed) continue;
-    const std::string claim = comparison.claim + ", " + place_of(comparison);
-    if (absence) {
-      std::printf("%-72.72s %-30s %s: %s\n", claim.c_str(), comparison.subject.c_str(),
-                  absence.failed ? "failed" : "skipped", absence.reason.c_str());
-      continue;
-    }
-    const Summary own = comparison.summary();
-    std::printf("%-72.72s %-30s %-24s %10.1f %10.1f %7.2f %7.2f\n", claim.c_str(),
-                comparison.subject.c_str(), comparison.rival.c_str(), own.p50, own.p99,
-                comparison.ratio_p50(), comparison.ratio_p99());
-  }
+void write(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw Internal(path + " cannot be written; is its folder there and writable?");
+}
+
+/// What README.md says of results.json and goals.md; run.json has what the report needs besides.
+void write_results(const std::vector<Comparison>& comparisons, const nlohmann::json& run) {
+  nlohmann::json results = nlohmann::json::array();
+  for (const Comparison& comparison : comparisons) results.push_back(to_json(comparison));
+  write("results.json", results.dump(2) + '\n');
+  write("run.json", run.dump(2) + '\n');
+  write("goals.md", goals_table(comparisons));
 }
 
 struct Part {
@@ -187,8 +184,9 @@ std::vector<Comparison> measure(const Part& part, Configurations& configurations
 
 /// Whether everything was measured that could be.
 bool run(const std::string& output, bool quick, const std::vector<std::string>& wanted) {
-  RunFacts facts{machine_facts(), {quick ? "A quick run: its figures mean nothing." : ""}};
-  facts.remarks.push_back(enter_private_network());
+  const MachineFacts machine = machine_facts();
+  const nlohmann::json remarks{quick ? "A quick run: its figures mean nothing." : "",
+                               enter_private_network()};
   std::filesystem::create_directories(output);
   Plan plan = quick ? quick_plan() : full_plan();
   plan.output = output;
@@ -199,14 +197,16 @@ bool run(const std::string& output, bool quick, const std::vector<std::string>& 
     append(comparisons, measure(part, configurations, plan));
   }
   set_goals(comparisons);
-  write_results(comparisons, output + "/results.json");
-  write_report(comparisons, facts, output + "/report.html");
-  write_goals(comparisons, output + "/goals.md");
-  print_summary(comparisons);
+  std::filesystem::current_path(output);
+  write_results(comparisons, {{"machine", machine}, {"remarks", remarks}});
+  const bool reported = std::system(("'" + std::string(kReport) + "' .").c_str()) == 0;
+  if (!reported)
+    std::fprintf(stderr, "no report.html: see above; it needs the package python3-matplotlib\n");
   std::printf("\n%s\n", goals_table(comparisons).c_str());
   std::printf("%s/report.html, %s/results.json, %s/goals.md\n", output.c_str(), output.c_str(),
               output.c_str());
-  return std::ranges::none_of(comparisons, [](const auto& each) { return each.absence.failed; });
+  return reported &&
+         std::ranges::none_of(comparisons, [](const auto& each) { return each.absence.failed; });
 }
 
 }  // namespace

@@ -1,17 +1,18 @@
 #include "harness/comparison.hpp"
 
 #include <cmath>
-#include <fstream>
-
-#include "skein/error.hpp"
-
 namespace skein::benchmarks {
 namespace {
 
 using nlohmann::json;
 
-void put_figures(json& object, const std::string& prefix, const Summary& summary,
+constexpr std::size_t kFew = 500;
+
+void put_figures(json& object, const std::string& prefix, const std::vector<double>& samples,
                  const std::string& unit) {
+  const Summary summary = summarize(samples);
+  object[prefix + "samples"] = summary.samples;
+  if (!samples.empty() && samples.size() <= kFew) object[prefix + "values"] = samples;
   const auto put = [&](const char* name, double figure) {
     object[prefix + name + '_' + unit] = summary.samples == 0 ? json(nullptr) : json(figure);
   };
@@ -32,16 +33,16 @@ json ratio(const Comparison& comparison, double q) {
 }  // namespace
 
 json to_json(const Comparison& comparison) {
-  const Summary own = comparison.summary();
-  const Summary rival = comparison.rival_summary();
-  json object{{"claim", comparison.claim},     {"subject", comparison.subject},
-              {"rival", comparison.rival},     {"parameters", comparison.parameters},
-              {"unit", comparison.unit},       {"samples", own.samples},
-              {"rival_samples", rival.samples}};
-  put_figures(object, "", own, comparison.unit);
-  put_figures(object, "rival_", rival, comparison.unit);
+  json object{{"claim", comparison.claim},
+              {"subject", comparison.subject},
+              {"rival", comparison.rival},
+              {"parameters", comparison.parameters},
+              {"unit", comparison.unit}};
+  put_figures(object, "", comparison.samples, comparison.unit);
+  put_figures(object, "rival_", comparison.rival_samples, comparison.unit);
   object["ratio_p50"] = ratio(comparison, 0.5);
   object["ratio_p99"] = ratio(comparison, 0.99);
+  if (!comparison.goal.empty()) object["goal"] = comparison.goal;
   if (comparison.goal_p50) object["goal_p50"] = *comparison.goal_p50;
   if (comparison.goal_p99) object["goal_p99"] = *comparison.goal_p99;
   if (const Absence& absence = comparison.absence)
@@ -59,14 +60,6 @@ void fill(Comparison& comparison, const Outcome& own, const Outcome& rival) {
 
 void append(std::vector<Comparison>& all, std::vector<Comparison> more) {
   for (Comparison& comparison : more) all.push_back(std::move(comparison));
-}
-
-void write_results(const std::vector<Comparison>& comparisons, const std::string& path) {
-  json all = json::array();
-  for (const Comparison& comparison : comparisons) all.push_back(to_json(comparison));
-  std::ofstream file(path);
-  file << all.dump(2) << '\n';
-  if (!file.flush()) throw Internal(path + " cannot be written; is its folder there and writable?");
 }
 
 }  // namespace skein::benchmarks

@@ -28,7 +28,8 @@ struct Comparison {
   std::vector<double> rival_samples{};  ///< A promise is one sample.
   std::size_t rounds =
       0;  ///< Where the samples come turn after turn, a turn of both in each; else 0.
-  /// The greatest ratios that the project is content with, where it has said so.
+  /// The text of its goal, and the greatest ratios that meet it; empty if it has none.
+  std::string goal{};
   std::optional<double> goal_p50{};
   std::optional<double> goal_p99{};
   /// Why there are no samples, where there are none.
@@ -51,10 +52,8 @@ void append(std::vector<Comparison>& all, std::vector<Comparison> more);
 /// ...), the same with `rival_` before it, of all samples together, and the quotients `ratio_p50`
 /// and `ratio_p99` (see ratio_of_quantiles), below 1 where the subject is faster or thriftier.
 /// `unit` says which. All of them null where nothing was measured; `skipped` or `failed` then says
-/// why.
+/// why. Few samples stand there themselves, too (`values`, `rival_values`), since a plot shows
+/// them.
 nlohmann::json to_json(const Comparison& comparison);
-
-/// Writes results.json: an array of all comparisons. Throws Error where the file cannot be written.
-void write_results(const std::vector<Comparison>& comparisons, const std::string& path);
 
 }  // namespace skein::benchmarks

@@ -1,5 +1,7 @@
 #include "harness/goals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace skein::benchmarks {
@@ -60,6 +62,20 @@ const Goal* goal_of(const Comparison& comparison) {
   const auto found =
       std::ranges::find_if(goals(), [&](const Goal& goal) { return goal.covers(comparison); });
   return found == goals().end() ? nullptr : &*found;
+}
+
+std::string judgement_of(const Verdict& verdict) {
+  if (verdict.worst == nullptr) return verdict.failed > 0 ? "missed: failed" : "not measured";
+  const bool aim = verdict.goal->kind == Goal::Kind::Aim;
+  const char* word = is_met(verdict) ? "met" : aim ? "not yet" : "missed";
+  const std::string failed = verdict.failed > 0 ? fmt::format(", {} failed", verdict.failed) : "";
+  return fmt::format("{} ({} of {}{})", word, verdict.met, verdict.measured, failed);
+}
+
+/// `p50 ≤ 1.05×, p99 ≤ 1.15×`; the p99 only if the goal has one.
+std::string ratios_text(const Goal& goal, const char* relation, double p50, double p99) {
+  return fmt::format("p50 {}{:.2f}×", relation, p50) +
+         (goal.p99 ? fmt::format(", p99 {}{:.2f}×", relation, p99) : "");
 }
 
 }  // namespace
@@ -224,6 +240,7 @@ void set_goals(std::vector<Comparison>& comparisons) {
   for (Comparison& comparison : comparisons) {
     const Goal* goal = goal_of(comparison);
     if (goal == nullptr) continue;
+    comparison.goal = goal->text;
     comparison.goal_p50 = goal->p50;
     comparison.goal_p99 = goal->p99;
   }
@@ -252,6 +269,19 @@ std::vector<Verdict> judge(const std::vector<Comparison>& comparisons) {
     }
   }
   return verdicts;
+}
+
+std::string goals_table(const std::vector<Comparison>& comparisons) {
+  std::string table = "| goal | limit | worst | comparisons that meet it |\n|---|---|---|---|\n";
+  for (const Verdict& verdict : judge(comparisons)) {
+    const Goal& goal = *verdict.goal;
+    const Comparison* worst = verdict.worst;
+    table += fmt::format("| {} | {} | {} | {} |\n", goal.text,
+                         ratios_text(goal, "≤ ", goal.p50, goal.p99.value_or(0)),
+                         worst ? ratios_text(goal, "", worst->ratio_p50(), worst->ratio_p99()) : "",
+                         judgement_of(verdict));
+  }
+  return table;
 }
 
 }  // namespace skein::benchmarks

@@ -44,7 +44,7 @@ struct Goal {
 
 const std::vector<Goal>& goals();
 
-/// Writes each comparison's limits into it, where a goal covers it.
+/// Writes its goal and limits into each comparison that a goal covers.
 void set_goals(std::vector<Comparison>& comparisons);
 
 /// Of a measured comparison with a goal.
@@ -64,5 +64,8 @@ bool is_met(const Verdict& verdict);
 
 /// One for each goal, in their order. The comparisons must stay.
 std::vector<Verdict> judge(const std::vector<Comparison>& comparisons);
+
+/// All goals in Markdown, as README quotes them: the worst comparison of each, and the verdict.
+std::string goals_table(const std::vector<Comparison>& comparisons);
 
 }  // namespace skein::benchmarks
