@@ -1,39 +1,24 @@
 #include <signal.h>
 
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "../test/tools/child_process.hpp"
-#include "harness/private_network.hpp"
-#include "harness/skipped.hpp"
+#include "../test/tools/network_space.hpp"
 
-using namespace skein::benchmarks;
-using skein::test::ChildProcess;
+using namespace skein::test;
 
 namespace {
 
-const TwoHosts& two_hosts() {
-  try {
-    static const TwoHosts hosts;
-    return hosts;
-  } catch (const Skipped& reason) {
-    std::fprintf(stderr, "skipped: %s\n", reason.what());
-    std::_Exit(77);
-  }
-}
-
-ChildProcess start(const std::vector<std::string>& words, const TwoHosts::Host& own,
-                   const TwoHosts::Host& other) {
+ChildProcess start(const std::vector<std::string>& words, const NetworkSpace& space,
+                   const std::string& own, const std::string& other) {
   ChildProcess::Options options;
-  options.network = own.network;
+  options.network = space.descriptor();
   options.arguments = {"bench"};
   options.arguments.insert(options.arguments.end(), words.begin(), words.end());
-  for (const std::string& word :
-       {std::string("--interface"), own.address, std::string("--peer"), other.address})
+  for (const std::string& word : {std::string("--interface"), own, std::string("--peer"), other})
     options.arguments.push_back(word);
   return ChildProcess("skein", options);
 }
@@ -41,16 +26,18 @@ ChildProcess start(const std::vector<std::string>& words, const TwoHosts::Host& 
 }  // namespace
 
 TEST_CASE("one host serves, another measures the calls between them") {
-  const TwoHosts& hosts = two_hosts();
   const std::string vendor = GENERATE("fastdds", "cyclonedds");
   const std::string what = GENERATE("latency", "throughput", "discovery");
   CAPTURE(vendor, what);
+  const NetworkSpace here, there;
+  join(here, there, "10.77.0");
   const auto file = std::filesystem::current_path() / ("remote_" + what + "_" + vendor + ".json");
   std::filesystem::remove(file);
-  ChildProcess server = start({what, "--vendor", vendor, "--serve"}, hosts.first(), hosts.second());
+  ChildProcess server =
+      start({what, "--vendor", vendor, "--serve"}, there, "10.77.0.2", "10.77.0.1");
   std::vector<std::string> words{what, "--vendor", vendor, "--remote", "--output", file.string()};
   if (what != "discovery") words.insert(words.end(), {"--payload", "64", "--count", "200"});
-  ChildProcess client = start(words, hosts.second(), hosts.first());
+  ChildProcess client = start(words, here, "10.77.0.1", "10.77.0.2");
   REQUIRE(client.finish() == 0);
   std::ifstream saved(file);
   const auto row = nlohmann::json::parse(saved).at(0);

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <string>
 #include <vector>
 
+#include "../test/tools/child_process.hpp"
 #include "harness/skipped.hpp"
 #include "skein/clock.hpp"
 
@@ -18,36 +17,32 @@ class Child {
   static constexpr std::chrono::milliseconds kPatience{30'000};
 
   /// `network` is an open network namespace for the child, -1 for this process's own. Throws
-  /// Skipped where the program does not exist, Internal where it cannot be started.
-  explicit Child(std::vector<std::string> command, int network = -1);
-  Child(Child&& other) noexcept;
+  /// Skipped if the program does not exist.
+  explicit Child(const std::vector<std::string>& command, int network = -1);
+  Child(Child&& other) noexcept = default;
   Child& operator=(Child&&) = delete;
-  /// Closes the child's input, at which it ends; kills it where it does not.
+  /// Closes the child's input, at which it ends; kills it if it does not.
   ~Child();
 
   /// Just before the process was made; on the clock that all processes of a host share.
   Instant started() const noexcept { return started_; }
 
-  void send(const std::string& line);
+  void send(const std::string& line) { process_.send(line); }
 
-  /// The next line, without its end. Throws Skipped where it says so (`skipped REASON`), Internal
-  /// where the child has ended, says `failed REASON`, or is silent for longer than `patience`.
+  /// The next line, without its end. Throws Skipped if it says so (`skipped REASON`), and another
+  /// exception if the child has ended, says `failed REASON`, or is silent for longer than
+  /// `patience`.
   std::string receive(std::chrono::milliseconds patience = kPatience);
 
-  /// SIGKILL, where it has not ended yet. Returns the instant just before.
+  /// SIGKILL, if it has not ended yet. Returns the instant just before.
   Instant kill();
   /// SIGSTOP or SIGCONT; after SIGSTOP it has stopped when this returns the instant just before.
   Instant signal(int number);
 
  private:
-  void reap() noexcept;
-
-  std::vector<std::string> command_;
+  std::string program_;
   Instant started_;
-  pid_t pid_ = -1;
-  int input_ = -1;
-  int output_ = -1;
-  std::string received_;
+  test::ChildProcess process_;
 };
 
 }  // namespace skein::benchmarks

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include "../test/tools/network_space.hpp"
 
 namespace skein::benchmarks {
 
@@ -14,27 +17,23 @@ std::string enter_private_network();
 /// with this object.
 class TwoHosts {
  public:
-  /// Throws Skipped where the kernel or the rights do not allow it or `ip` is not installed.
+  /// Throws Skipped if the kernel or the rights do not allow it or `ip` is not installed.
   TwoHosts();
-  ~TwoHosts();
-  TwoHosts(const TwoHosts&) = delete;
-  TwoHosts& operator=(const TwoHosts&) = delete;
 
   struct Host {
     int network = -1;
     std::string address;
   };
+  Host first() const { return {first_->descriptor(), "10.77.0.1"}; }
+  Host second() const { return {second_->descriptor(), "10.77.0.2"}; }
+
   /// From now on nothing arrives at the other end, and nobody is told: as when a link fails far
   /// away.
   void cut();
   void heal();
 
-  const Host& first() const noexcept { return first_; }
-  const Host& second() const noexcept { return second_; }
-
  private:
-  Host first_{-1, "10.77.0.1"};
-  Host second_{-1, "10.77.0.2"};
+  std::optional<test::NetworkSpace> first_, second_;
 };
 
 }  // namespace skein::benchmarks

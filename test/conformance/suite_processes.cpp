@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "child.hpp"
+#include "../tools/child_process.hpp"
 #include "wire.hpp"
 
 using namespace skein;
 using namespace skein::dds;
 using namespace skein::dds::conformance;
+using skein::test::ChildProcess;
 using skein::test::eventually;
 using namespace std::chrono_literals;
 
@@ -17,15 +18,18 @@ namespace {
 
 constexpr const char* kPeer = "skein_conformance_peer";
 
-Child start(const std::string& role, std::uint32_t domain, const std::string& lease_ms,
-            std::vector<std::string> environment = {}, const std::string& directory = ".") {
+ChildProcess start(const std::string& role, std::uint32_t domain, const std::string& lease_ms,
+                   const std::vector<std::string>& environment = {},
+                   const std::string& directory = "") {
   const std::string& vendor = role == "read" ? kPairing.reading : kPairing.writing;
-  return Child(kPeer, {role, vendor, std::to_string(domain), lease_ms}, std::move(environment),
-               directory);
+  return {kPeer,
+          {.arguments = {role, vendor, std::to_string(domain), lease_ms},
+           .environment = environment,
+           .directory = directory}};
 }
 
 /// The GUID that the peer says first.
-Guid endpoint(Child& peer) {
+Guid endpoint(ChildProcess& peer) {
   const std::string line = peer.read();
   const auto guid = Guid::from_hex(line.substr(line.find(' ') + 1));
   REQUIRE(guid);
@@ -56,7 +60,7 @@ TEST_CASE("a killed process loses its liveliness, then its place") {
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain);
   Inbox inbox(*participant, keyed(), watched_state());
-  Child peer = start("write", domain, "1000");
+  ChildProcess peer = start("write", domain, "1000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() >= 1; }));
   CHECK(inbox.received()[0].writer == writer);
@@ -75,10 +79,10 @@ TEST_CASE("a process that is stopped shortly is silent, and alive again when it 
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain);
   Inbox inbox(*participant, keyed(), watched_state());
-  Child peer = start("write", domain, "60000");
+  ChildProcess peer = start("write", domain, "60000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
-  peer.stop();
+  peer.signal(SIGSTOP);
   REQUIRE(eventually([&] { return told_last(inbox.liveliness(), writer, false); }));
   CHECK(inbox.reader().matched_writers() == std::vector{writer});
   const std::size_t before = inbox.liveliness().size();
@@ -92,10 +96,10 @@ TEST_CASE("a process that is stopped beyond its lease is found again, and heard"
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain, 1s);
   Inbox inbox(*participant, keyed(), watched_state());
-  Child peer = start("write", domain, "1000");
+  ChildProcess peer = start("write", domain, "1000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() >= 1; }));
-  peer.stop();
+  peer.signal(SIGSTOP);
   REQUIRE(eventually([&] { return told_last(inbox.matches(), writer, false); }));
   const std::size_t before = inbox.matches().size();
   peer.signal(SIGCONT);
@@ -113,7 +117,7 @@ TEST_CASE("a process that ends in order is gone at once") {
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain, 60s);
   Inbox inbox(*participant, keyed(), last_state());
-  Child peer = start("write_rarely", domain, "60000");
+  ChildProcess peer = start("write_rarely", domain, "60000");
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(peer.finish() == 0);
@@ -125,10 +129,10 @@ TEST_CASE("a process whose wall clock is set back stays known") {
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain);
   Inbox inbox(*participant, keyed(), last_state());
-  Child peer = start("write_rarely", domain, "1000");
+  ChildProcess peer = start("write_rarely", domain, "1000");
   const Guid writer = endpoint(peer);
   // Found before the step: whoever is found wakes the threads that wait.
-  Child other = start("write_rarely", domain, "3000");
+  ChildProcess other = start("write_rarely", domain, "3000");
   const Guid others_writer = endpoint(other);
   REQUIRE(eventually([&] { return inbox.reader().matched_writers().size() == 2; }));
   peer.send("step back");
@@ -146,7 +150,7 @@ TEST_CASE("a stopped reader makes a bounded writer refuse, not hang, and nothing
   qos.max_samples = 8;
   qos.max_blocking = 100ms;
   Outbox outbox(*participant, keyless(), qos);
-  Child peer = start("read", domain, "60000");
+  ChildProcess peer = start("read", domain, "60000");
   const Guid reader = endpoint(peer);
   REQUIRE(eventually([&] { return outbox.writer().matched_readers() == std::vector{reader}; }));
   // The reader must have matched too, or the first samples are not for it.
@@ -162,7 +166,7 @@ TEST_CASE("a stopped reader makes a bounded writer refuse, not hang, and nothing
   const std::string before = peer.read();
   const std::uint32_t heard = static_cast<std::uint32_t>(std::stoul(before.substr(6)));
 
-  peer.stop();
+  peer.signal(SIGSTOP);
   std::uint32_t accepted = 0;
   bool refused = false;
   for (int i = 0; i < 1000 && !refused; ++i) {
@@ -191,11 +195,11 @@ TEST_CASE("one stopped reader does not keep samples from the others") {
   const auto reading = make_participant(kPairing.reading, domain, 60s);
   Outbox outbox(*writing, keyless(), keep_all());
   Inbox inbox(*reading, keyless(), keep_all());
-  Child peer = start("read", domain, "60000");
+  ChildProcess peer = start("read", domain, "60000");
   endpoint(peer);
   REQUIRE(matched(outbox, inbox));
   REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
-  peer.stop();
+  peer.signal(SIGSTOP);
   for (std::uint32_t i = 0; i < 200; ++i) outbox.writer().write(make_number(i));
   CHECK(eventually([&] { return inbox.count() == 200; }));
 }
@@ -266,7 +270,7 @@ TEST_CASE("a hostile environment changes nothing") {
   const std::uint32_t domain = fresh_domain();
   const auto participant = make_participant(kPairing.reading, domain);
   Inbox inbox(*participant, keyed(), last_state());
-  Child peer = start("write", domain, "10000", environment, at);
+  ChildProcess peer = start("write", domain, "10000", environment, at);
   const Guid writer = endpoint(peer);
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(inbox.reader().matched_writers() == std::vector{writer});

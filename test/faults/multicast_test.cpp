@@ -1,10 +1,6 @@
-#include <unistd.h>
-
-#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "../tools/network_space.hpp"
-#include "core/network_interface.hpp"
 #include "processes.hpp"
 
 using namespace skein::test;
@@ -29,23 +25,7 @@ struct TwoHosts {
     return peer;
   }
 
-  void make_devices() const {
-    here.run("ip link add skein0 type veth peer name other && ip link set other netns /proc/" +
-             std::to_string(getpid()) + "/fd/" + std::to_string(there.descriptor()) +
-             " && ip address add 10.77.0.1/24 dev skein0 && ip link set skein0 up");
-    there.run(
-        "ip link set other name skein0 && ip address add 10.77.0.2/24 dev skein0 && "
-        "ip link set skein0 up");
-    // Fast DDS uses none without a carrier, which the kernel gives it later.
-    REQUIRE(eventually([&] { return has_carrier(here) && has_carrier(there); }));
-  }
-  static bool has_carrier(const NetworkSpace& space) {
-    const Inside inside(space);
-    const auto interfaces = skein::network_interfaces();
-    return std::ranges::any_of(interfaces, [](const skein::NetworkInterface& interface) {
-      return interface.name == "skein0" && interface.running;
-    });
-  }
+  void make_devices() const { join(here, there, "10.77.0"); }
   void take_devices() const { here.run("ip link delete skein0"); }
 
   bool each_knows(int count) {

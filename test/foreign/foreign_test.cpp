@@ -3,9 +3,9 @@
 #include <thread>
 
 #include "../connector/pairing.hpp"
+#include "../tools/child_process.hpp"
 #include "../tools/eventually.hpp"
 #include "lookout_service.hpp"
-#include "program.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -14,11 +14,9 @@ using foreign::ILookout;
 
 namespace {
 
-Program start_client(const std::string& name, int calls) {
-  return Program({std::getenv("FOREIGN_CLIENT"), name, std::to_string(calls)});
+ChildProcess start_client(const std::string& name, int calls) {
+  return {std::getenv("FOREIGN_CLIENT"), {.arguments = {name, std::to_string(calls)}}};
 }
-
-Program start_server() { return Program({std::getenv("FOREIGN_SERVER")}); }
 
 /// What a foreign client prints, whose oneway call was the only one or one of several.
 std::string expected(int calls, const std::string& remembered) {
@@ -46,7 +44,7 @@ struct ForeignServer {
     return entity.connect<ILookout>({.timeout = 20s, .foreign = true});
   }
 
-  Program program = start_server();
+  ChildProcess program{std::getenv("FOREIGN_SERVER"), {}};
   std::unique_ptr<Entity> client = make_client();
   ILookout::Proxy lookout;
 };
@@ -57,9 +55,9 @@ TEST_CASE("a peer without Skein calls a Skein service") {
   const auto server = make_server();
   const auto service = std::make_shared<LookoutService>();
   server->provide<ILookout>(service);
-  Program client = start_client("solo", 100);
+  ChildProcess client = start_client("solo", 100);
   CHECK(client.read_all() == expected(100, "1"));
-  CHECK(client.wait() == 0);
+  CHECK(client.finish() == 0);
   CHECK(service->echoes == 103);
 }
 
@@ -69,15 +67,15 @@ TEST_CASE("several peers without Skein at once get each its own replies") {
   const auto server = make_server();
   const auto service = std::make_shared<LookoutService>();
   server->provide<ILookout>(service);
-  std::vector<Program> clients;
+  std::vector<ChildProcess> clients;
   for (int i = 0; i < kClients; ++i)
     clients.push_back(start_client("client " + std::to_string(i), kCalls));
-  for (Program& client : clients) {
+  for (ChildProcess& client : clients) {
     const std::string text = client.read_all();
     const std::string alike = expected(kCalls, "");
     const auto counted = alike.find("remembered: ") + 12;
     CHECK(text.substr(0, counted) == alike.substr(0, counted));
-    CHECK(client.wait() == 0);
+    CHECK(client.finish() == 0);
   }
   CHECK(service->echoes == kClients * (kCalls + 3));
   CHECK(service->remembered() == kClients);
@@ -88,7 +86,7 @@ TEST_CASE("a Skein client and one without Skein share a service") {
   server->provide<ILookout>(std::make_shared<LookoutService>());
   const auto entity = make_client();
   auto lookout = entity->connect<ILookout>({.timeout = 20s});
-  Program client = start_client("other", 200);
+  ChildProcess client = start_client("other", 200);
   for (int i = 0; i < 200; ++i)
     CHECK(lookout.echo("mine " + std::to_string(i)) == "mine " + std::to_string(i));
   CHECK(client.read_all() == expected(200, "1"));
@@ -168,8 +166,7 @@ TEST_CASE("a call that a server without Skein does not answer ends at its deadli
 TEST_CASE("when a server without Skein leaves, the pending call ends as Disconnected") {
   ForeignServer foreign;
   auto call = foreign.lookout.within(60s).async_echo("silence");
-  foreign.program.end_input();
-  CHECK(foreign.program.wait() == 0);
+  CHECK(foreign.program.finish() == 0);
   CHECK_THROWS_AS(call.get(), Disconnected);
   CHECK_THROWS_AS(foreign.lookout.echo("gone"), Unavailable);
 }

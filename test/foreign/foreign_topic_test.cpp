@@ -2,16 +2,16 @@
 #include <cstdlib>
 
 #include "../connector/pairing.hpp"
+#include "../tools/child_process.hpp"
 #include "../tools/eventually.hpp"
 #include "lookout.idl.hpp"
-#include "program.hpp"
 
 using namespace skein;
 using namespace skein::test;
 using foreign::Sounding;
 
 TEST_CASE("a peer without Skein hears a Skein publisher and is heard by a Skein subscriber") {
-  Program repeater({std::getenv("FOREIGN_REPEATER")});
+  ChildProcess repeater(std::getenv("FOREIGN_REPEATER"), {});
   const auto ship = make_server("ship");
   TopicQos qos;
   qos.systems = {""};
@@ -37,5 +37,5 @@ TEST_CASE("a peer without Skein hears a Skein publisher and is heard by a Skein 
   for (int i = 0; i < kCount; ++i) CHECK(heard[i] == Sounding{1, 1.0 * i, "keel", {1, 2, 3}});
   CHECK(heard.back() == Sounding{1, -14, "enough", {}});
   CHECK(repeated.counters().malformed == 0);
-  CHECK(repeater.wait() == 0);
+  CHECK(repeater.finish() == 0);
 }

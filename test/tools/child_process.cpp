@@ -17,6 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kRemembered = 4096;  // what a child has said is for error messages
+
 std::vector<char*> pointers(std::vector<std::string>& strings) {
   std::vector<char*> list;
   for (std::string& text : strings) list.push_back(text.data());
@@ -53,6 +55,8 @@ ChildProcess::ChildProcess(const std::string& program, const Options& options) :
     if (options.network >= 0 && setns(options.network, CLONE_NEWNET) != 0) _exit(126);
     dup2(to_child[0], STDIN_FILENO);
     dup2(from_child[1], STDOUT_FILENO);
+    std::signal(SIGPIPE, SIG_DFL);  // a new program would keep that it is ignored
+    if (!options.directory.empty() && chdir(options.directory.c_str()) != 0) _exit(126);
     close_range(STDERR_FILENO + 1, ~0u, 0);  // the vendors' sockets, with their ports
     execve(argument_list[0], argument_list.data(), environment_list.data());
     _exit(127);
@@ -74,7 +78,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
     signal(SIGKILL);
-    reap(nullptr);
+    waitpid(pid_, nullptr, 0);
   }
   for (const int end : {in_, out_}) {
     if (end >= 0) close(end);
@@ -95,6 +99,7 @@ std::string ChildProcess::read(Clock::duration patience) {
       std::string line = unread_.substr(0, at);
       unread_.erase(0, at + 1);
       heard_ += line + "\n";
+      if (heard_.size() > kRemembered) heard_.erase(0, heard_.size() - kRemembered);
       return line;
     }
     const auto left =
@@ -103,7 +108,7 @@ std::string ChildProcess::read(Clock::duration patience) {
     if (left <= 0 || poll(&waited, 1, static_cast<int>(left)) <= 0) {
       throw std::runtime_error(program_ + " says nothing more; it said:\n" + heard_);
     }
-    char buffer[4096];
+    char buffer[64 * 1024];
     const ssize_t count = ::read(out_, buffer, sizeof buffer);
     if (count <= 0) throw std::runtime_error(program_ + " has ended; it said:\n" + heard_);
     unread_.append(buffer, static_cast<std::size_t>(count));
@@ -124,13 +129,33 @@ void ChildProcess::signal(int number) {
   if (number == SIGSTOP) waitid(P_PID, static_cast<id_t>(pid_), &stopped, WSTOPPED | WNOWAIT);
 }
 
+std::string ChildProcess::read_all() {
+  std::string text = std::exchange(unread_, "");
+  char buffer[4096];
+  for (ssize_t count; (count = ::read(out_, buffer, sizeof buffer)) > 0;)
+    text.append(buffer, static_cast<std::size_t>(count));
+  return text;
+}
+
 int ChildProcess::finish() {
-  close(std::exchange(in_, -1));
+  end_input();
   int status = 0;
-  reap(&status);
+  if (pid_ > 0) waitpid(std::exchange(pid_, -1), &status, 0);  // -1 would be any child
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-void ChildProcess::reap(int* status) { waitpid(std::exchange(pid_, -1), status, 0); }
+bool ChildProcess::leaves(Clock::duration patience) {
+  end_input();
+  return eventually(
+      [&] {
+        if (pid_ > 0 && waitpid(pid_, nullptr, WNOHANG) == pid_) pid_ = -1;
+        return pid_ < 0;
+      },
+      patience);
+}
+
+void ChildProcess::end_input() {
+  if (in_ >= 0) close(std::exchange(in_, -1));
+}
 
 }  // namespace skein::test

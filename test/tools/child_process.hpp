@@ -20,8 +20,10 @@ class ChildProcess {
     std::vector<std::string> environment{};
     /// The network namespace that it lives in; -1 for the test's own.
     int network = -1;
+    std::string directory{};  ///< Where it runs; empty for the test's own.
   };
 
+  /// `program` is a path, from the folder of the test's own program if it is relative.
   ChildProcess(const std::string& program, const Options& options);
   /// Kills it, where nobody has yet, and waits for its end.
   ~ChildProcess();
@@ -51,11 +53,17 @@ class ChildProcess {
   /// After SIGSTOP it has stopped when this returns.
   void signal(int number);
 
+  /// All that it still writes, until it ends or closes its output.
+  std::string read_all();
+
   /// Closes its input and waits: the exit code, or 128 and the signal that ended it.
   int finish();
 
+  /// Closes its input; whether it ends in time.
+  bool leaves(std::chrono::steady_clock::duration patience);
+
  private:
-  void reap(int* status);
+  void end_input();
 
   std::string program_;
   pid_t pid_ = -1;
