@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "calls/benchmarks.hpp"
 #include "calls/skein_peer.hpp"
@@ -114,37 +115,31 @@ void write_results(const std::vector<Comparison>& comparisons, const nlohmann::j
 
 struct Part {
   const char* name;
-  std::vector<Comparison> (*measure)(Configurations&, const Plan&);
+  std::function<std::vector<Comparison>(Configurations&, const Plan&)> measure;
 };
 
+/// One that takes its own piece of the plan.
+template <class Piece, class Parameter>
+Part part(const char* name, std::vector<Comparison> (*compare)(Configurations&, Parameter),
+          Piece Plan::*piece) {
+  return {name, [=](Configurations& all, const Plan& plan) { return compare(all, plan.*piece); }};
+}
+
 const std::vector<Part> kParts{
-    {"calls", [](Configurations& all, const Plan& plan) { return compare_calls(all, plan.calls); }},
-    {"ways", [](Configurations& all, const Plan& plan) { return compare_ways(all, plan.ways); }},
-    {"same_host",
-     [](Configurations& all, const Plan& plan) { return compare_same_host(all, plan.same_host); }},
-    {"loans", [](Configurations& all, const Plan& plan) { return compare_loans(all, plan.loans); }},
-    {"rivals",
-     [](Configurations& all, const Plan& plan) { return compare_rivals(all, plan.rivals); }},
-    {"in_process",
-     [](Configurations& all, const Plan& plan) { return compare_in_process(all, plan.rivals); }},
-    {"head", [](Configurations& all, const Plan& plan) { return compare_head(all, plan.head); }},
-    {"idle_clients", [](Configurations& all,
-                        const Plan& plan) { return compare_idle_clients(all, plan.idle_clients); }},
-    {"recorded_calls",
-     [](Configurations& all, const Plan& plan) {
-       return compare_recorded_calls(all, plan.recorded_calls);
-     }},
-    {"recorded_topics",
-     [](Configurations& all, const Plan& plan) {
-       return compare_recorded_topics(all, plan.recorded_topics);
-     }},
-    {"find_service",
-     [](Configurations& all, const Plan& plan) { return compare_find_service(all, plan.find); }},
-    {"cold_starts", [](Configurations& all,
-                       const Plan& plan) { return compare_cold_starts(all, plan.cold_starts); }},
-    {"joins", [](Configurations& all, const Plan& plan) { return compare_joins(all, plan.joins); }},
-    {"idle_peers", [](Configurations& all,
-                      const Plan& plan) { return compare_idle_peers(all, plan.idle_peers); }},
+    part("calls", compare_calls, &Plan::calls),
+    part("ways", compare_ways, &Plan::ways),
+    part("same_host", compare_same_host, &Plan::same_host),
+    part("loans", compare_loans, &Plan::loans),
+    part("rivals", compare_rivals, &Plan::rivals),
+    part("in_process", compare_in_process, &Plan::rivals),
+    part("head", compare_head, &Plan::head),
+    part("idle_clients", compare_idle_clients, &Plan::idle_clients),
+    part("recorded_calls", compare_recorded_calls, &Plan::recorded_calls),
+    part("recorded_topics", compare_recorded_topics, &Plan::recorded_topics),
+    part("find_service", compare_find_service, &Plan::find),
+    part("cold_starts", compare_cold_starts, &Plan::cold_starts),
+    part("joins", compare_joins, &Plan::joins),
+    part("idle_peers", compare_idle_peers, &Plan::idle_peers),
     {"deaths",
      [](Configurations& all, const Plan& plan) {
        auto deaths = compare_deaths_on_one_host(all, plan.kills_on_one_host);

@@ -31,11 +31,7 @@ std::vector<Comparison> comparisons_of(const Contest& contest, const std::string
 }  // namespace
 
 std::vector<Comparison> compare_calls(Configurations& configurations, const CallPlan& plan) {
-  std::vector<Trial> trials;
-  for (const auto& size : plan.sizes) {
-    trials.push_back(closed_loop("a call over DDS", size.size_bytes, size.calls_per_turn));
-  }
-  Contest contest("calls", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("calls", closed_loops("a call over DDS", plan.sizes));
   for (const auto& [server, client] : vendor_pairs()) {
     contest.enter(configurations.skein(server, client));
     contest.enter(configurations.raw(server, client));
@@ -50,12 +46,7 @@ std::vector<Comparison> compare_calls(Configurations& configurations, const Call
 }
 
 std::vector<Comparison> compare_ways(Configurations& configurations, const CallPlan& plan) {
-  std::vector<Trial> trials;
-  for (const auto& size : plan.sizes) {
-    trials.push_back(
-        closed_loop("other ways of the vendors", size.size_bytes, size.calls_per_turn));
-  }
-  Contest contest("ways", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("ways", closed_loops("other ways of the vendors", plan.sizes));
   std::vector<std::pair<std::string, std::string>> pairs;
   const auto enter = [&](const std::string& vendor, std::initializer_list<const char*> ways) {
     const Configuration skein = configurations.skein(vendor, vendor);
@@ -69,9 +60,7 @@ std::vector<Comparison> compare_ways(Configurations& configurations, const CallP
   enter("fastdds", {"shared_memory", "data_sharing", "listener", "polling"});
   enter("cyclonedds", {"polling"});
   contest.run(plan.rounds);
-  std::vector<Comparison> comparisons;
-  for (const auto& [skein, other] : pairs) append(comparisons, contest.compare(skein, other));
-  return comparisons;
+  return contest.compare(pairs);
 }
 
 }  // namespace skein::benchmarks

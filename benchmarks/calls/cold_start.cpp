@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <map>
 
 #include "calls/benchmarks.hpp"
@@ -33,10 +32,7 @@ std::vector<Comparison> compare_cold_starts(Configurations& configurations, std:
       turns.push_back([&starter] { starter.start_once(); });
     }
   }
-  take_turns(starts, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rcold starts: round %zu of %zu ", round + 1, starts);
-  });
-  std::fputc('\n', stderr);
+  take_turns(starts, std::move(turns), kSeed, "cold starts");
 
   std::vector<Comparison> comparisons;
   for (const auto& [server, client] : vendor_pairs()) {

@@ -85,10 +85,7 @@ void Contest::run(std::size_t rounds) {
       }
     }
   }
-  take_turns(rounds, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\r%s: round %zu of %zu ", name_.c_str(), round + 1, rounds);
-  });
-  std::fputc('\n', stderr);
+  take_turns(rounds, std::move(turns), kSeed, name_);
   for (auto& [name, contender] : contenders_) contender.running.reset();
 }
 
@@ -119,11 +116,25 @@ std::vector<Comparison> Contest::compare(const std::string& subject, const Limit
                   [&](std::size_t, Placement) { return Outcome{{limit.time_us}}; });
 }
 
+std::vector<Comparison> Contest::compare(
+    const std::vector<std::pair<std::string, std::string>>& pairs) const {
+  std::vector<Comparison> comparisons;
+  for (const auto& [subject, rival] : pairs) append(comparisons, compare(subject, rival));
+  return comparisons;
+}
+
 Trial closed_loop(const std::string& claim, std::size_t size, std::size_t count) {
   return {claim, {{"size_bytes", size}}, [=](Running& running) {
             running.call(size, count / 10 + 1);  // wakes the processes up
             return running.call(size, count);
           }};
+}
+
+std::vector<Trial> closed_loops(const std::string& claim,
+                                const std::vector<CallPlan::Size>& sizes) {
+  std::vector<Trial> trials;
+  for (const auto& [size, calls] : sizes) trials.push_back(closed_loop(claim, size, calls));
+  return trials;
 }
 
 std::string words(std::initializer_list<std::size_t> numbers) {

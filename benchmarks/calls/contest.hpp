@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calls/configuration.hpp"
+#include "calls/benchmarks.hpp"
 #include "harness/comparison.hpp"
 
 namespace skein::benchmarks {
@@ -19,6 +19,7 @@ struct Trial {
 
 /// One call after the other, after some that wake the processes up.
 Trial closed_loop(const std::string& claim, std::size_t size_bytes, std::size_t count);
+std::vector<Trial> closed_loops(const std::string& claim, const std::vector<CallPlan::Size>& sizes);
 /// Calls of 64 octets at a fixed rate; a call's time starts when it should have been sent.
 Trial paced(const std::string& claim, std::size_t count, std::size_t interval_us);
 /// For a command to a peer: each with a space before it.
@@ -35,7 +36,8 @@ struct Limit {
 class Contest {
  public:
   /// `name` is for the progress line.
-  Contest(std::string name, std::vector<Trial> trials, std::vector<Placement> placements);
+  Contest(std::string name, std::vector<Trial> trials,
+          std::vector<Placement> placements = {Placement::OneCore, Placement::OneCoreEach});
   ~Contest();
 
   /// Starts its processes and prepares them. One that cannot be started, is skipped, or fails then
@@ -51,6 +53,9 @@ class Contest {
   /// which.
   std::vector<Comparison> compare(const std::string& subject, const std::string& rival) const;
   std::vector<Comparison> compare(const std::string& subject, const Limit& limit) const;
+  /// Of each subject with its rival.
+  std::vector<Comparison> compare(
+      const std::vector<std::pair<std::string, std::string>>& pairs) const;
 
  private:
   struct Contender;

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <map>
 #include <random>
 #include <span>
@@ -70,11 +69,7 @@ void kill_all(std::vector<Victim>& victims, std::size_t kills, const TwoHosts* h
   for (Victim& victim : victims) {
     turns.push_back([&] { victim.kill_once(hosts, random); });
   }
-  take_turns(kills, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rproviders killed, %s: round %zu of %zu ", where.c_str(), round + 1,
-                 kills);
-  });
-  std::fputc('\n', stderr);
+  take_turns(kills, std::move(turns), kSeed, "providers killed, " + where);
 }
 
 std::vector<Comparison> compare_deaths(std::span<const Victim> victims, const Limit& limit,

@@ -131,11 +131,7 @@ std::vector<Comparison> compare_faults_on_one_host(Configurations& configuration
   std::vector<std::function<void()>> turns;
   for (Survivors& pair : pairs)
     turns.push_back([&] { unless_absent(pair, [&] { stop_and_kill(pair, plan.calls); }); });
-  take_turns(plan.stops, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rproviders stopped and killed: round %zu of %zu ", round + 1,
-                 plan.stops);
-  });
-  std::fputc('\n', stderr);
+  take_turns(plan.stops, std::move(turns), kSeed, "providers stopped and killed");
   std::vector<Comparison> comparisons;
   add_comparisons(comparisons, pairs, kOverdueClaim, kStopped, "limit 50 ms", kOverdueUs);
   add_healing(comparisons, pairs, kStopped);

@@ -1,4 +1,3 @@
-#include <cstdio>
 
 #include "calls/benchmarks.hpp"
 #include "calls/flock.hpp"
@@ -42,10 +41,7 @@ std::vector<Comparison> compare_joins(Configurations& configurations, const Join
     turns.push_back([&joiner = own, &plan] { joiner.join_once(plan.peers); });
     turns.push_back([&joiner = raw, &plan] { joiner.join_once(plan.peers); });
   }
-  take_turns(plan.rounds, std::move(turns), kSeed, [&](std::size_t round) {
-    std::fprintf(stderr, "\rpeers join: round %zu of %zu ", round + 1, plan.rounds);
-  });
-  std::fputc('\n', stderr);
+  take_turns(plan.rounds, std::move(turns), kSeed, "peers join");
   std::vector<Comparison> comparisons;
   for (const auto& [own, raw] : pairs) comparisons.push_back(comparison_of(own, raw, plan.peers));
   return comparisons;

@@ -39,9 +39,7 @@ Trial cpu(std::size_t size, std::size_t count) {
 }
 
 std::vector<Trial> trials_of(const RivalPlan& plan) {
-  std::vector<Trial> trials;
-  for (const auto& size : plan.sizes)
-    trials.push_back(closed_loop("one call after the other", size.size_bytes, size.calls_per_turn));
+  std::vector<Trial> trials = closed_loops("one call after the other", plan.sizes);
   trials.push_back(paced("at a fixed rate, from the intended send", plan.paced_calls, 500));
   for (const std::size_t clients : {1, 4, 32}) trials.push_back(crowd(clients, plan.crowd_calls));
   trials.push_back(pipelined(plan.pipelined_calls, 64));
@@ -99,50 +97,38 @@ class Crowd {
 }  // namespace
 
 std::vector<Comparison> compare_rivals(Configurations& configurations, const RivalPlan& plan) {
-  Contest contest("rivals", trials_of(plan), {Placement::OneCore, Placement::OneCoreEach});
-  std::vector<std::string> rivals;
-  const auto enter_rival = [&](const Configuration& rival) {
-    rivals.push_back(rival.name);
-    contest.enter(rival);
-  };
-  std::vector<std::string> subjects;
-  const auto enter_subject = [&](const Configuration& skein) {
-    subjects.push_back(skein.name);
-    contest.enter(skein);
-  };
-  for (const char* vendor : kVendors) enter_subject(configurations.skein(vendor, vendor));
+  Contest contest("rivals", trials_of(plan));
   using Memory = Configurations::SharedMemory;
-  enter_subject(configurations.skein_same_host(Memory::OwnThread));
-  enter_subject(configurations.skein_same_host(Memory::OnArrival));
-  for (const char* transport : {"unix", "tcp"})
-    enter_rival(configurations.rival("omniorb", transport));
-  for (const char* transport : {"unix", "tcp"})
-    enter_rival(configurations.rival("grpc", transport));
-  for (const char* transport : {"ipc", "tcp"})
-    enter_rival(configurations.rival("zeromq", transport));
-  contest.enter(configurations.unix_socket());
-  contest.enter(configurations.shared_memory());
+  const std::vector<Configuration> subjects{configurations.skein("fastdds", "fastdds"),
+                                            configurations.skein("cyclonedds", "cyclonedds"),
+                                            configurations.skein_same_host(Memory::OwnThread),
+                                            configurations.skein_same_host(Memory::OnArrival)};
+  const std::vector<Configuration> rivals{configurations.rival("omniorb", "unix"),
+                                          configurations.rival("omniorb", "tcp"),
+                                          configurations.rival("grpc", "unix"),
+                                          configurations.rival("grpc", "tcp"),
+                                          configurations.rival("zeromq", "ipc"),
+                                          configurations.rival("zeromq", "tcp"),
+                                          configurations.unix_socket(),
+                                          configurations.shared_memory()};
+  for (const auto* entering : {&subjects, &rivals}) {
+    for (const Configuration& each : *entering) contest.enter(each);
+  }
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
-  for (const std::string& skein : subjects) {
-    for (const std::string& rival : rivals) append(comparisons, contest.compare(skein, rival));
-    for (const char* floor : {"unix socket", "spinning shared memory"}) {
-      append(comparisons, contest.compare(skein, std::string(floor)));
-    }
+  for (const Configuration& skein : subjects) {
+    for (const Configuration& rival : rivals)
+      append(comparisons, contest.compare(skein.name, rival.name));
   }
   return comparisons;
 }
 
 std::vector<Comparison> compare_in_process(Configurations& configurations, const RivalPlan& plan) {
-  std::vector<Trial> trials;
-  for (const std::size_t size : {16, 64, 1024}) {
-    trials.push_back(
-        {"a call in the same process", {{"size_bytes", size}}, [&, size](Running& running) {
-           running.call(size, plan.in_process_calls / 10 + 1);
-           return running.call(size, plan.in_process_calls);
-         }});
-  }
-  Contest contest("in one process", std::move(trials), {Placement::OneCore});
+  const std::size_t calls = plan.in_process_calls;
+  Contest contest(
+      "in one process",
+      closed_loops("a call in the same process", {{16, calls}, {64, calls}, {1024, calls}}),
+      {Placement::OneCore});
   const Configuration skein = configurations.skein_in_process();
   const Configuration collocated = configurations.omniorb_in_process("collocated");
   const Configuration shortcut = configurations.omniorb_in_process("shortcut");
@@ -157,12 +143,7 @@ std::vector<Comparison> compare_in_process(Configurations& configurations, const
 
 std::vector<Comparison> compare_idle_clients(Configurations& configurations,
                                              const IdleClientsPlan& plan) {
-  std::vector<Trial> trials;
-  for (const auto& size : plan.calls.sizes) {
-    trials.push_back(
-        closed_loop("a call beside idle clients", size.size_bytes, size.calls_per_turn));
-  }
-  Contest contest("idle clients", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("idle clients", closed_loops("a call beside idle clients", plan.calls.sizes));
   std::list<Crowd> crowds;
   std::vector<std::pair<std::string, std::string>> pairs;
   const auto enter = [&](const std::function<Configuration()>& make,
@@ -185,10 +166,7 @@ std::vector<Comparison> compare_idle_clients(Configurations& configurations,
   using Memory = Configurations::SharedMemory;
   enter([&] { return configurations.skein_same_host(Memory::OnArrival); }, {32, plan.many});
   contest.run(plan.calls.rounds);
-  std::vector<Comparison> comparisons;
-  for (const auto& [crowded, alone] : pairs) {
-    append(comparisons, contest.compare(crowded, alone));
-  }
+  std::vector<Comparison> comparisons = contest.compare(pairs);
   Comparison& memory = comparisons.emplace_back(
       Comparison{kIdleMemory, "skein shared memory", "limit 64 KiB", {{"connections", plan.many}}});
   memory.unit = "octets";

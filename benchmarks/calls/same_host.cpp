@@ -12,29 +12,23 @@ std::vector<Comparison> compare_same_host(Configurations& configurations, const 
     trials.push_back(paced(kCallThroughSharedMemory, size.calls_per_turn / 10 + 1, 1'000));
     trials.push_back(paced(kCallThroughSharedMemory, size.calls_per_turn / 100 + 1, 10'000));
   }
-  Contest contest("same host", std::move(trials), {Placement::OneCore, Placement::OneCoreEach});
-  std::vector<std::string> rivals;
-  const auto enter_rival = [&](const Configuration& rival) {
-    rivals.push_back(rival.name);
-    contest.enter(rival);
-  };
+  Contest contest("same host", std::move(trials));
   using Memory = Configurations::SharedMemory;
   const std::vector<Configuration> subjects{configurations.skein_same_host(Memory::OwnThread),
                                             configurations.skein_same_host(Memory::OnArrival),
                                             configurations.skein_same_host(Memory::Spinning)};
-  for (const Configuration& subject : subjects) contest.enter(subject);
-  enter_rival(configurations.skein("fastdds", "fastdds"));
-  for (const char* transport : {"unix", "tcp"}) {
-    enter_rival(configurations.rival("omniorb", transport));
+  const std::vector<Configuration> rivals{
+      configurations.skein("fastdds", "fastdds"), configurations.rival("omniorb", "unix"),
+      configurations.rival("omniorb", "tcp"), configurations.unix_socket(),
+      configurations.shared_memory()};
+  for (const auto* entering : {&subjects, &rivals}) {
+    for (const Configuration& each : *entering) contest.enter(each);
   }
-  enter_rival(configurations.unix_socket());
-  enter_rival(configurations.shared_memory());
   contest.run(plan.rounds);
   std::vector<Comparison> comparisons;
   for (const Configuration& subject : subjects) {
-    for (const std::string& rival : rivals) {
-      append(comparisons, contest.compare(subject.name, rival));
-    }
+    for (const Configuration& rival : rivals)
+      append(comparisons, contest.compare(subject.name, rival.name));
   }
   append(comparisons, contest.compare(subjects.back().name, Limit{"limit 1 us", kSpinningCallUs}));
   return comparisons;

@@ -45,7 +45,8 @@ class Contest {
     std::vector<std::function<void()>> turns;
     for (const auto& contestant : contestants_)
       turns.emplace_back([&] { take_turn(*contestant, requests_.all[now], trials[now]); });
-    take_turns(trials.size(), turns, kSeed, [&](std::size_t round) { now = round + 1; });
+    take_turns(trials.size(), turns, kSeed, "decisions",
+               [&](std::size_t round) { now = round + 1; });
     return trials;
   }
 

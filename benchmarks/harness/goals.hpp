@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +37,10 @@ struct Goal {
   /// missed.
   enum class Kind { Promise, Aim };
   std::string text;
-  double p50 = 0;  ///< The greatest ratio.
-  std::optional<double> p99{};
-  bool (*covers)(const Comparison&) = nullptr;
+  std::function<bool(const Comparison&)> covers;
   Kind kind = Kind::Promise;
+  double p50 = 1;  ///< The greatest ratio.
+  std::optional<double> p99{};
 };
 
 const std::vector<Goal>& goals();

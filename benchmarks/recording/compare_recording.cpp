@@ -73,10 +73,7 @@ Trial full_speed(const TopicPlan::Size& size, bool reliable) {
 
 std::vector<Comparison> compare_recorded_calls(Configurations& configurations,
                                                const CallPlan& plan) {
-  std::vector<Trial> trials;
-  for (const auto& size : plan.sizes) {
-    trials.push_back(closed_loop("a call that is recorded", size.size_bytes, size.calls_per_turn));
-  }
+  std::vector<Trial> trials = closed_loops("a call that is recorded", plan.sizes);
   trials.push_back({"a call that is recorded",
                     {{"size_bytes", 64}, {"calls_per_second", 1'000'000 / kIntervalUs}},
                     [&](Running& running) {
@@ -84,8 +81,7 @@ std::vector<Comparison> compare_recorded_calls(Configurations& configurations,
                                            std::to_string(plan.sizes.front().calls_per_turn) + " " +
                                            std::to_string(kIntervalUs));
                     }});
-  Contest contest("recorded calls", std::move(trials),
-                  {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("recorded calls", std::move(trials));
   std::list<Child> recorders;
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const char* vendor : kVendors) {
@@ -103,9 +99,7 @@ std::vector<Comparison> compare_recorded_calls(Configurations& configurations,
   }
   contest.run(plan.rounds);
   for (Child& recorder : recorders) refuse_drops(recorder);
-  std::vector<Comparison> comparisons;
-  for (const auto& [watched, alone] : pairs) append(comparisons, contest.compare(watched, alone));
-  return comparisons;
+  return contest.compare(pairs);
 }
 
 std::vector<Comparison> compare_recorded_topics(Configurations& configurations,
@@ -114,8 +108,7 @@ std::vector<Comparison> compare_recorded_topics(Configurations& configurations,
   for (const auto& size : plan.sizes) {
     for (const bool reliable : {true, false}) trials.push_back(full_speed(size, reliable));
   }
-  Contest contest("recorded topics", std::move(trials),
-                  {Placement::OneCore, Placement::OneCoreEach});
+  Contest contest("recorded topics", std::move(trials));
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const char* vendor : kVendors) {
     const Configuration recorder = configurations.skein_topic(vendor, "recorder");
@@ -129,10 +122,7 @@ std::vector<Comparison> compare_recorded_topics(Configurations& configurations,
     }
   }
   contest.run(plan.rounds);
-  std::vector<Comparison> comparisons;
-  for (const auto& [recorder, counter] : pairs)
-    append(comparisons, contest.compare(recorder, counter));
-  return comparisons;
+  return contest.compare(pairs);
 }
 
 }  // namespace skein::benchmarks
