@@ -7,6 +7,7 @@
 #include <set>
 
 #include "../test/tools/places.hpp"
+#include "../test/tools/shell.hpp"
 #include "harness/comparison.hpp"
 #include "harness/goals.hpp"
 
@@ -15,6 +16,8 @@ using nlohmann::json;
 using skein::benchmarks::Comparison;
 using skein::test::built_file;
 using skein::test::built_program;
+using skein::test::shell;
+using skein::test::ShellResult;
 
 namespace {
 
@@ -78,19 +81,8 @@ bool is_about_raw_fastdds(const json& row) {
 const std::set<std::string> kPairs{"fastdds", "cyclonedds", "fastdds-cyclonedds",
                                    "cyclonedds-fastdds"};
 
-struct CommandResult {
-  int exit_code;
-  std::string output;  // both streams
-};
-
-CommandResult command_result(const std::string& arguments) {
-  FILE* const pipe = popen((built_program("skein") + " " + arguments + " 2>&1").c_str(), "r");
-  CommandResult result{};
-  char buffer[4096];
-  for (std::size_t count; (count = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-    result.output.append(buffer, count);
-  result.exit_code = WEXITSTATUS(pclose(pipe));
-  return result;
+ShellResult command_result(const std::string& arguments) {
+  return shell(built_program("skein") + " " + arguments);
 }
 
 bool has(const json& results, const std::string& claim, const std::string& subject,
@@ -425,7 +417,7 @@ TEST_CASE("a user measures calls by the command, and compares what it saved") {
     for (const json& row : json::parse(saved))
       CHECK(row.at("transport") == (transport == "dds" ? "DDS" : "shared memory"));
   }
-  const CommandResult compared =
+  const ShellResult compared =
       command_result("bench compare" + file("dds") + file("shared-memory"));
   CHECK_THAT(compared.output, Contains(", shared memory "));
   std::ofstream(folder / "broken.json") << "{}";
@@ -449,7 +441,7 @@ TEST_CASE("calls are measured as a mission's peers would make them") {
   };
   const auto measured = [&](const std::string& options) {
     const auto file = folder / "result.json";
-    const CommandResult result = run(options + " --output '" + file.string() + "'");
+    const ShellResult result = run(options + " --output '" + file.string() + "'");
     INFO(result.output);
     REQUIRE(result.exit_code == 0);
     std::ifstream saved(file);
@@ -462,7 +454,7 @@ TEST_CASE("calls are measured as a mission's peers would make them") {
   CHECK(measured("--provider camera --caller navigator") == "fastdds-cyclonedds");
 
   const auto complaint = [&](const std::string& options) {
-    const CommandResult result = run(options);
+    const ShellResult result = run(options);
     CHECK(result.exit_code != 0);
     return result.output;
   };

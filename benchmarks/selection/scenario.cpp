@@ -1,9 +1,9 @@
 #include "selection/scenario.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "../test/tools/shell.hpp"
 #include "data_files.hpp"
 #include "skein/error.hpp"
 
@@ -31,16 +31,9 @@ Scenario read_scenario(const std::filesystem::path& folder) {
   std::string command = "'" + std::string(kAslibReader) + "' '";
   for (const char letter : folder.string())
     command += letter == '\'' ? "'\\''" : std::string(1, letter);
-  FILE* const pipe = popen((command + '\'').c_str(), "r");
-  if (pipe == nullptr) throw Internal("no process can be made to read " + folder.string());
-  std::string output;
-  char buffer[4096];
-  for (std::size_t count; (count = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-    output.append(buffer, count);
-  const bool was_read = pclose(pipe) == 0;
-  if (was_read) return nlohmann::json::parse(output).get<Scenario>();
-  output.resize(output.find_last_not_of('\n') + 1);
-  throw InvalidArgument(output.empty() ? folder.string() + " cannot be read; see above" : output);
+  const auto [exit_code, output] = test::shell(command + '\'');
+  if (exit_code == 0) return nlohmann::json::parse(output).get<Scenario>();
+  throw InvalidArgument(output.substr(0, output.find_last_not_of('\n') + 1));
 }
 
 }  // namespace skein::benchmarks::selection

@@ -1,11 +1,10 @@
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
+#include "../test/tools/temporary_folder.hpp"
 #include "selection/replay.hpp"
 #include "skein/error.hpp"
 
@@ -14,27 +13,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder that is removed with what is in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "select_test_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 const std::string kDescription =
     "scenario_id: tiny\n"
@@ -67,7 +45,7 @@ std::string keyed(const std::string& attributes, const std::string& rows) {
          attributes + "@data\n" + rows;
 }
 
-void write_tiny(const Folder& folder) {
+void write_tiny(const TemporaryFolder& folder) {
   folder.write("description.txt", kDescription);
   folder.write("algorithm_runs.arff", kRuns);
   folder.write("cv.arff",
@@ -83,7 +61,7 @@ void write_tiny(const Folder& folder) {
                      "i1,1,presolved,ok\ni2,1,ok,ok\n"));
 }
 
-void check_scenario_refused(const Folder& folder, const std::string& place,
+void check_scenario_refused(const TemporaryFolder& folder, const std::string& place,
                             const std::string& cause) {
   CHECK_THROWS_WITH(read_scenario(folder.path()), Contains(place) && Contains(cause));
 }
@@ -99,7 +77,7 @@ fs::path data() {
 }  // namespace
 
 TEST_CASE("A scenario has runs, folds, and the features of its default steps at their cost") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   const Scenario scenario = read_scenario(folder.path());
   CHECK(scenario.algorithms == std::vector<std::string>{"a", "b"});
@@ -122,7 +100,7 @@ TEST_CASE("A scenario has runs, folds, and the features of its default steps at 
 }
 
 TEST_CASE("In the Broker's order the scores are those that one computes by hand") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   const Scenario scenario = read_scenario(folder.path());
   const skein::ManualClock clock;
@@ -141,7 +119,7 @@ TEST_CASE("In the Broker's order the scores are those that one computes by hand"
 }
 
 TEST_CASE("What uses features pays for them, and is spared an instance that they solve") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   const Scenario scenario = read_scenario(folder.path());
   const skein::ManualClock clock;
@@ -155,7 +133,7 @@ TEST_CASE("What uses features pays for them, and is spared an instance that they
 }
 
 TEST_CASE("The table of answers has a row per instance") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   const Scenario scenario = read_scenario(folder.path());
   const skein::ManualClock clock;
@@ -172,7 +150,7 @@ TEST_CASE("The table of answers has a row per instance") {
 }
 
 TEST_CASE("Several repetitions of a run count by their mean, and as solved if all are") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   folder.write("algorithm_runs.arff",
                kRunsHeader + "i1,1,a,10,ok\ni1,2,a,30,ok\ni1,1,b,10,ok\ni1,2,b,100,timeout\n");
@@ -185,7 +163,7 @@ TEST_CASE("Several repetitions of a run count by their mean, and as solved if al
 }
 
 TEST_CASE("A scenario may list its algorithms elsewhere, and have no steps, costs or run states") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   folder.write("description.txt",
                "performance_measures: [PAR10]\nperformance_type: runtime\n"
@@ -202,7 +180,7 @@ TEST_CASE("A scenario may list its algorithms elsewhere, and have no steps, cost
 
 TEST_CASE(
     "A scenario is read as it was published: unknown limits, a comma, features of algorithms") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   std::string text = kDescription;
   text.replace(text.find("[more]"), 6, "\n- more\n- software");
@@ -221,7 +199,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A scenario that cannot be replayed is refused with the place and the cause") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_tiny(folder);
   const auto describe = [&](const std::string& from, const std::string& to) {
     std::string text = kDescription;

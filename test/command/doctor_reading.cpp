@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../tools/temporary_folder.hpp"
 #include "command/doctor/reading.hpp"
 #include "core/file_descriptor.hpp"
 #include "launch/mission_claim.hpp"
@@ -42,9 +43,8 @@ TEST_CASE("a library's version is what follows .so") {
 }
 
 TEST_CASE("a segment in shared memory is in use while somebody has it open, or holds its lock") {
-  std::string pattern = (fs::temp_directory_path() / "skein-shm-XXXXXX").string();
-  REQUIRE(mkdtemp(pattern.data()));
-  const fs::path folder = pattern;
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path();
   for (const char* name :
        {"fastrtps_dead", "fastrtps_open", "fastrtps_locked", "fastrtps_locked_el",
         "sem.fastrtps_open_mutex", "sem.fastrtps_dead_mutex", "somebody_elses"})

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "../tools/child_process.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "wire.hpp"
 
 using namespace skein;
@@ -216,19 +217,6 @@ TEST_CASE("more participants than the host may hold are refused, with a remedy")
 
 namespace {
 
-/// A directory that goes with the test.
-struct Scratch {
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skein_XXXXXX").string();
-    path = mkdtemp(pattern.data());
-  }
-  ~Scratch() { std::filesystem::remove_all(path); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name) << text;
-  }
-  std::filesystem::path path;
-};
-
 constexpr const char* kHostileProfiles = R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <log><use_default>FALSE</use_default><consumer><class>FileConsumer</class>
@@ -245,12 +233,12 @@ constexpr const char* kHostileProfiles = R"(<?xml version="1.0" encoding="UTF-8"
 }  // namespace
 
 TEST_CASE("a hostile environment changes nothing") {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   scratch.write("DEFAULT_FASTRTPS_PROFILES.xml", kHostileProfiles);
   scratch.write("profiles.xml", kHostileProfiles);
   scratch.write("environment.json",
                 R"({"environment_variables": {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}})");
-  const std::string at = scratch.path.string();
+  const std::string at = scratch.path().string();
   const std::vector<std::string> environment{
       "CYCLONEDDS_URI=<CycloneDDS><Domain><General><NetworkInterfaceAddress>192.0.2.1"
       "</NetworkInterfaceAddress><AllowMulticast>true</AllowMulticast></General><Discovery><Peers>"
@@ -276,7 +264,7 @@ TEST_CASE("a hostile environment changes nothing") {
   CHECK(inbox.reader().matched_writers() == std::vector{writer});
   CHECK(peer.finish() == 0);
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(scratch.path)) {
+  for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) {
     files.push_back(entry.path().filename());
   }
   std::sort(files.begin(), files.end());

@@ -11,6 +11,7 @@
 #include <functional>
 #include <utility>
 
+#include "../tools/temporary_folder.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -21,18 +22,10 @@ namespace {
 /// What happens in place of the system's fsync(), once.
 std::function<int()> instead_of_sync;
 
-/// A folder that goes with the test.
-struct Folder {
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skein_XXXXXX").string();
-    path = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path), {}));
-  }
-  std::filesystem::path path;
-};
+std::size_t files_in(const TemporaryFolder& folder) {
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator(folder.path()), {}));
+}
 
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -47,8 +40,8 @@ extern "C" int fsync(int) {
 }
 
 TEST_CASE("A file is on the disk before it takes the old one's place") {
-  const Folder folder;
-  const auto file = folder.path / "history";
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "history";
   write_whole_file("the history", file, "old");
   ::chmod(file.c_str(), 0640);
   bool synced = false;
@@ -61,13 +54,13 @@ TEST_CASE("A file is on the disk before it takes the old one's place") {
   CHECK(content_of(file) == "new");
   CHECK((std::filesystem::status(file).permissions() & std::filesystem::perms::all) ==
         std::filesystem::perms(0640));
-  CHECK(folder.files() == 1);
+  CHECK(files_in(folder) == 1);
 }
 
 TEST_CASE(
     "A file that cannot be written says which, at which step and why, and the old one stays") {
-  const Folder folder;
-  const auto file = folder.path / "history";
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "history";
   write_whole_file("the history", file, "old");
   instead_of_sync = [] {
     errno = EIO;
@@ -78,7 +71,7 @@ TEST_CASE(
                         "' cannot be written: bringing to the disk '" + file.string() +
                         ".new': Input/output error");
   CHECK(content_of(file) == "old");
-  CHECK(folder.files() == 1);
+  CHECK(files_in(folder) == 1);
   CHECK_THROWS_WITH(
       write_whole_file("the picture", "/dev/full", "new"),
       "the picture '/dev/full' cannot be written: writing '/dev/full': No space left on device");
@@ -86,24 +79,24 @@ TEST_CASE(
 }
 
 TEST_CASE("Whether a file can be written is tried without a trace") {
-  const Folder folder;
-  const auto file = folder.path / "route.svg";
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "route.svg";
   try_whole_file("the picture", file);
-  CHECK(folder.files() == 0);
+  CHECK(files_in(folder) == 0);
   write_whole_file("the picture", file, "old");
   try_whole_file("the picture", file);
   CHECK(content_of(file) == "old");
-  CHECK_THROWS_AS(try_whole_file("the picture", folder.path / "nowhere" / "x"), InvalidArgument);
-  CHECK_THROWS_WITH(try_whole_file("the picture", folder.path / "nowhere" / "x"),
+  CHECK_THROWS_AS(try_whole_file("the picture", folder.path() / "nowhere" / "x"), InvalidArgument);
+  CHECK_THROWS_WITH(try_whole_file("the picture", folder.path() / "nowhere" / "x"),
                     Contains("x.new': No such file or directory; name a file in a "
                              "folder that may be written to"));
-  CHECK_THROWS_WITH(try_whole_file("the picture", folder.path), Contains("Is a directory"));
+  CHECK_THROWS_WITH(try_whole_file("the picture", folder.path()), Contains("Is a directory"));
 }
 
 TEST_CASE("A file is written through a link to it, and a device directly") {
-  const Folder folder;
-  const auto file = folder.path / "file";
-  const auto link = folder.path / "link";
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "file";
+  const auto link = folder.path() / "link";
   write_whole_file("the picture", file, "old");
   std::filesystem::create_symlink(file, link);
   write_whole_file("the picture", link, "new");

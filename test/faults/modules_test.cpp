@@ -6,6 +6,7 @@
 
 #include "../tools/child_process.hpp"
 #include "../tools/places.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/error.hpp"
 
@@ -15,22 +16,6 @@ using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(fs::temp_directory_path() / ("skein_modules_" + std::to_string(getpid()))) {
-    fs::create_directory(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// A copy of libskein that does not know where it was built: there stand the modules.
 void copy_library(const fs::path& folder) {

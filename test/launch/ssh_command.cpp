@@ -1,11 +1,10 @@
-#include <array>
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <cstdlib>
 
+#include "../tools/shell.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "launch/shell_word.hpp"
 #include "launch/ssh_attendance.hpp"
-#include "temporary_folder.hpp"
 
 using namespace skein::launch;
 
@@ -24,13 +23,8 @@ TEST_CASE("A connection to another host is its own, whatever the user's ssh woul
   for (const std::string& word : ssh_command(attendance))
     command += (command.empty() ? "" : " ") + shell_word(word) +
                (command.empty() ? " -G -F " + config : "");
-  std::FILE* output = ::popen(command.c_str(), "r");
-  REQUIRE(output != nullptr);
-  std::string said;
-  std::array<char, 4096> buffer;
-  while (const auto size = std::fread(buffer.data(), 1, buffer.size(), output))
-    said.append(buffer.data(), size);
-  CHECK(::pclose(output) == 0);
+  const auto [exit_code, said] = skein::test::shell(command);
+  CHECK(exit_code == 0);
   CHECK_THAT(said, Catch::Contains("controlmaster false\n"));
   CHECK_THAT(said, !Catch::Contains("/tmp/shared"));
 }

@@ -13,8 +13,8 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/seed.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "shell_mission.hpp"
-#include "temporary_folder.hpp"
 
 using namespace skein::launch;
 using namespace std::chrono_literals;

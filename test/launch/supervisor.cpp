@@ -7,10 +7,10 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "../tools/temporary_folder.hpp"
 #include "core/file_descriptor.hpp"
 #include "shell_mission.hpp"
 #include "supervised_child.hpp"
-#include "temporary_folder.hpp"
 
 using namespace skein::launch;
 using namespace std::chrono_literals;

@@ -6,8 +6,8 @@
 #include <csignal>
 
 #include "../tools/places.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "shell_mission.hpp"
-#include "temporary_folder.hpp"
 
 using skein::test::built_program;
 

@@ -13,11 +13,12 @@
 #include <sstream>
 
 #include "../tools/seed.hpp"
+#include "../tools/shell.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "launch/ready.hpp"
 #include "service_manager.hpp"
 #include "shell_mission.hpp"
 #include "skein/error.hpp"
-#include "temporary_folder.hpp"
 
 using namespace skein::launch;
 using namespace std::chrono_literals;
@@ -33,27 +34,18 @@ void write_units(const TemporaryFolder& folder, const LaunchPlan& plan) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
 }
 
-std::string output_of(const std::string& command) {
-  std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
-  std::string text;
-  std::array<char, 4096> part;
-  while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe))
-    text.append(part.data(), size);
-  ::pclose(pipe);
-  return text;
-}
-
 /// What systemd understood of a unit: its own account of the transaction that would start it.
 /// Empty where systemd does not give one here.
 std::string understood(const TemporaryFolder& folder, const std::string& unit) {
   if (::access(kManager, X_OK) != 0 || ::geteuid() != 0) return "";
   TemporaryFolder home;  // It gives its account to others than root alone.
   std::filesystem::permissions(home.path(), std::filesystem::perms(0777));
-  const std::string text =
-      output_of("env SYSTEMD_UNIT_PATH='" + folder.path().string() + ":' XDG_RUNTIME_DIR='" +
-                home.path().string() + "' HOME='" + home.path().string() +
-                "' timeout 60 setpriv --reuid=65534 --clear-groups " + kManager +
-                " --test --user --unit='" + unit + "'");
+  const std::string text = skein::test::shell("env SYSTEMD_UNIT_PATH='" + folder.path().string() +
+                                              ":' XDG_RUNTIME_DIR='" + home.path().string() +
+                                              "' HOME='" + home.path().string() +
+                                              "' timeout 60 setpriv --reuid=65534 --clear-groups " +
+                                              kManager + " --test --user --unit='" + unit + "'")
+                               .output;
   const auto begin = text.find("-> Unit " + unit + ":");
   if (begin == std::string::npos) return "";
   return text.substr(begin, text.find("-> Unit ", begin + 1) - begin);
@@ -214,8 +206,9 @@ TEST_CASE("systemd finds nothing wrong with the units") {
     WARN("skipped: systemd-analyze is not installed");
     return;
   }
-  CHECK(output_of("cd '" + folder.path().string() + "' && SYSTEMD_UNIT_PATH=\"$PWD:\" " +
-                  "systemd-analyze verify ./*.service ./*.target") == "");
+  CHECK(skein::test::shell("cd '" + folder.path().string() + "' && SYSTEMD_UNIT_PATH=\"$PWD:\" " +
+                           "systemd-analyze verify ./*.service ./*.target")
+            .output == "");
 }
 
 TEST_CASE("What a unit cannot hold is refused, and said") {

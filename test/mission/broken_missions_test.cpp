@@ -6,8 +6,8 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "../profile/temporary_folder.hpp"
 #include "../tools/places.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "command_run.hpp"
 #include "installed.hpp"
 

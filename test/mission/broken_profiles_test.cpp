@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "../profile/temporary_folder.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "command_run.hpp"
 
 using namespace skein::test;

@@ -16,32 +16,21 @@
 #include "../tools/places.hpp"
 
 namespace skein::test {
-namespace {
-
-std::filesystem::path make_folder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "skein-command-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for a command: " + pattern);
-  return pattern;
-}
-
-}  // namespace
-
-CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandOptions& options)
-    : folder_(make_folder()) {
+CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandOptions& options) {
   std::vector<std::string> words{built_program("skein")};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const std::string file = (folder_ / "output").string();
+  const std::string file = (folder() / "output").string();
   const std::string taker = options.output.empty() ? file : options.output;
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("no process for a command");
   if (pid_ > 0) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (options.network >= 0 && setns(options.network, CLONE_NEWNET) != 0) _exit(126);
-  if (chdir(folder_.c_str()) != 0) _exit(126);
-  setenv("XDG_STATE_HOME", folder_.c_str(), 1);
+  if (chdir(folder().c_str()) != 0) _exit(126);
+  setenv("XDG_STATE_HOME", folder().c_str(), 1);
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(open(taker.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDOUT_FILENO);
   dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDERR_FILENO);
@@ -55,13 +44,11 @@ CommandRun::~CommandRun() {
     kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 std::string CommandRun::output() const {
   std::ostringstream text;
-  text << std::ifstream(folder_ / "output").rdbuf();
+  text << std::ifstream(folder() / "output").rdbuf();
   return text.str();
 }
 

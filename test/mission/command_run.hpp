@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../tools/eventually.hpp"
+#include "../tools/temporary_folder.hpp"
 
 namespace skein::test {
 
@@ -29,7 +30,7 @@ class CommandRun {
   CommandRun& operator=(const CommandRun&) = delete;
 
   pid_t pid() const noexcept { return pid_; }
-  const std::filesystem::path& folder() const noexcept { return folder_; }
+  const std::filesystem::path& folder() const noexcept { return folder_.path(); }
 
   /// All that it and its processes have written until now.
   std::string output() const;
@@ -40,7 +41,7 @@ class CommandRun {
   int wait(std::chrono::seconds limit = 3 * kPatience);
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   pid_t pid_ = -1;
   int exit_code_ = -1;
 };

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "../tools/child_process.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "command_run.hpp"
 #include "core/file_descriptor.hpp"
 #include "installed.hpp"
@@ -124,22 +125,10 @@ class Input {
 /// A folder for recordings.
 class Shelf {
  public:
-  Shelf() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skein-shelf-XXXXXX").string();
-    REQUIRE(mkdtemp(pattern.data()));
-    folder_ = pattern;
-  }
-  ~Shelf() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Shelf(const Shelf&) = delete;
-  Shelf& operator=(const Shelf&) = delete;
-
-  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  std::string operator/(const std::string& name) const { return (folder_.path() / name).string(); }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// Lists are taken of what is known after a while: repeats the command until it succeeds and

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../tools/places.hpp"
+#include "../tools/temporary_folder.hpp"
 
 namespace skein::test {
 
@@ -19,9 +20,6 @@ namespace skein::test {
 class Errand {
  public:
   Errand() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skein-errand-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for a profile");
-    folder_ = pattern;
     for (const std::string desk : {"office", "sick", "bad", "bad_clerk"}) {
       write(desk + ".xml", "<component name='" + desk +
                                "'><interfaces><implements>IDL:crew/Desk</implements>"
@@ -35,19 +33,12 @@ class Errand {
     for (const std::string lone : {"clumsy", "herald", "page", "thinker", "thrower"})
       write(lone + ".xml", "<component name='" + lone + "'/>");
   }
-  ~Errand() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Errand(const Errand&) = delete;
-  Errand& operator=(const Errand&) = delete;
 
-  const std::filesystem::path& path() const noexcept { return folder_; }
+  const std::filesystem::path& path() const noexcept { return folder_.path(); }
 
   /// A file beside the profile; its path.
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return folder_.write(name, text).string();
   }
 
   /// A profile with these attributes of <mission> and these peers.
@@ -59,7 +50,7 @@ class Errand {
   }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 }  // namespace skein::test

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "../profile/temporary_folder.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "command_run.hpp"
 #include "core/file_descriptor.hpp"
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "../tools/temporary_folder.hpp"
+
 namespace skein::test {
 
 /// A whole mission, flown by `skein launch` in a folder of its own that goes with this object.
@@ -13,17 +15,14 @@ class MissionRun {
   /// minutes is ended, and shows as exit code 124.
   explicit MissionRun(const std::filesystem::path& profile,
                       const std::vector<std::string>& arguments = {});
-  ~MissionRun();
-  MissionRun(const MissionRun&) = delete;
-  MissionRun& operator=(const MissionRun&) = delete;
 
   int exit_code() const noexcept { return exit_code_; }
   /// All that the launcher and its processes wrote, with every run of white space as one blank.
   const std::string& output() const noexcept { return output_; }
-  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+  std::filesystem::path file(const std::string& name) const { return folder_.path() / name; }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::string output_;
   int exit_code_ = -1;
 };

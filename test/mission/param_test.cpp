@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../tools/places.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "command_run.hpp"
 #include "errand.hpp"
 #include "installed.hpp"
@@ -57,15 +58,8 @@ class Patrol {
 
  private:
   std::string profile(const std::string& system, const std::string& mission) const {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skein-patrol-XXXXXX").string();
-    REQUIRE(mkdtemp(pattern.data()));
-    folder_ = {new std::filesystem::path(pattern), [](const std::filesystem::path* path) {
-                 std::error_code ignored;
-                 std::filesystem::remove_all(*path, ignored);
-                 delete path;
-               }};
     const std::string guide = project_file("test/guide/");
-    const std::string file = (*folder_ / "patrol.xml").string();
+    const std::string file = (folder_.path() / "patrol.xml").string();
     std::ofstream(file) << "<mission name='" << mission << "' domain='48' system='" << system
                         << "' vendor='" << vendor_ << "' plugin='patrol_components' dictionary='"
                         << guide << "dictionary.xml'><peer name='beacon' component='" << guide
@@ -74,7 +68,7 @@ class Patrol {
   }
 
   const std::string vendor_;
-  mutable std::shared_ptr<const std::filesystem::path> folder_;
+  const TemporaryFolder folder_;
   CommandRun launch_;
 };
 

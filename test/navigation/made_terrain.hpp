@@ -1,7 +1,5 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../tools/temporary_folder.hpp"
 #include "navigation/terrain/terrain.hpp"
 #include "navigation/terrain/terrain_provider.hpp"
 
@@ -48,23 +47,6 @@ inline double largest_difference_m(const std::vector<float>& a, const std::vecto
   }
   return largest;
 }
-
-/// A folder of its own that goes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "skein-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Writes posts as a tile, the first row being the northernmost.
 inline void write_hgt(const std::filesystem::path& file, const std::vector<int>& posts) {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "../tools/temporary_folder.hpp"
 #include "profile/check.hpp"
-#include "temporary_folder.hpp"
 
 /// A folder with a small dictionary and components to compose missions from: N depends on IF and
 /// has the subcomponent IP; F implements IF; P is a CSP with IP; G is a client of N.

@@ -1,7 +1,7 @@
 // What xmllint, which knows the schemas alone, makes of files, beside what the reader makes of
 // them.
 #include <catch2/catch.hpp>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -12,9 +12,10 @@
 
 #include "../tools/places.hpp"
 #include "../tools/prepare.hpp"
+#include "../tools/shell.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "profile/component_xml.hpp"
 #include "profile/mission_profile.hpp"
-#include "temporary_folder.hpp"
 
 using namespace skein::profile;
 using skein::test::project_file;
@@ -40,13 +41,8 @@ std::set<std::string> valid(const std::string& schema, const std::vector<std::st
     std::string command = "xmllint --noout --nonet --schema '" + (kSchemas / schema).string() + "'";
     for (std::size_t i = first; i < std::min(files.size(), first + kFilesAtOnce); ++i)
       command += " '" + files[i] + "'";
-    std::FILE* output = popen((command + " 2>&1").c_str(), "r");
-    REQUIRE(output != nullptr);
-    std::string text;
-    for (int c = 0; (c = std::fgetc(output)) != EOF;) text += static_cast<char>(c);
-    pclose(output);
     constexpr std::string_view kEnd = " validates";
-    std::istringstream lines(text);
+    std::istringstream lines(skein::test::shell(command).output);
     for (std::string line; std::getline(lines, line);) {
       if (line.ends_with(kEnd)) found.insert(line.substr(0, line.size() - kEnd.size()));
     }

@@ -12,6 +12,7 @@
 #include <functional>
 #include <thread>
 
+#include "../tools/temporary_folder.hpp"
 #include "jsbsim/failure.hpp"
 #include "jsbsim/flight.hpp"
 #include "jsbsim/link.hpp"
@@ -102,19 +103,14 @@ std::string failure_with(Peer::Behaviour behave, const std::string& greeting = "
 class Program {
  public:
   explicit Program(const std::string& script) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "no-jsbsim-XXXXXX").string();
-    REQUIRE(mkdtemp(pattern.data()));
-    folder_ = pattern;
-    std::ofstream(file()) << "#!/bin/sh\n" << script << "\n";
+    folder_.write("program", "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(file(), std::filesystem::perms(0755));
   }
-  ~Program() { std::filesystem::remove_all(folder_); }
-  Program(const Program&) = delete;
 
-  std::string file() const { return (folder_ / "program").string(); }
+  std::string file() const { return (folder_.path() / "program").string(); }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 Aircraft standing() {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "../profile/temporary_folder.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "recordings.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"

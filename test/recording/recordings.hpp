@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../profile/temporary_folder.hpp"
+#include "../tools/temporary_folder.hpp"
 #include "recording/reader.hpp"
 #include "recording/writer.hpp"
 

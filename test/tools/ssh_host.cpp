@@ -30,10 +30,6 @@ std::string server() {
   skip("there is no OpenSSH server (./dev test unpacks one)");
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file) << text;
-}
-
 void run(const std::string& command) {
   if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
 }
@@ -55,22 +51,19 @@ SshHost::SshHost(const NetworkSpace& space, const std::string& address,
   fstat(space.descriptor(), &status);
   space_ = status.st_ino;
 
-  std::string pattern = (std::filesystem::temp_directory_path() / "skein-ssh-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for an ssh server");
-  folder_ = pattern;
-  const std::string folder = folder_.string();
+  const std::string folder = folder_.path().string();
   for (const std::string key : {"host_key", "user_key"})
     run("ssh-keygen -q -t ed25519 -N '' -f '" + folder + "/" + key + "'");
-  write(folder_ / "passwd",
-        "root:*:0:0:root:" + folder + ":/bin/sh\nsshd:*:100:65534::/run/sshd:/usr/sbin/nologin\n");
-  write(folder_ / "server_config", "ListenAddress " + address + "\nHostKey " + folder +
-                                       "/host_key\nAuthorizedKeysFile " + folder +
-                                       "/user_key.pub\nStrictModes no\nUsePAM no\nPidFile none\n");
-  write(folder_ / "client_config", "User root\nIdentityFile " + folder +
-                                       "/user_key\nUserKnownHostsFile " + folder +
-                                       "/known_hosts\nStrictHostKeyChecking no\n");
-  write(folder_ / "ssh", "#!/bin/sh\nexec /usr/bin/ssh -F '" + folder + "/client_config' \"$@\"\n");
-  std::filesystem::permissions(folder_ / "ssh", std::filesystem::perms(0755));
+  folder_.write("passwd", "root:*:0:0:root:" + folder +
+                              ":/bin/sh\nsshd:*:100:65534::/run/sshd:/usr/sbin/nologin\n");
+  folder_.write("server_config", "ListenAddress " + address + "\nHostKey " + folder +
+                                     "/host_key\nAuthorizedKeysFile " + folder +
+                                     "/user_key.pub\nStrictModes no\nUsePAM no\nPidFile none\n");
+  folder_.write("client_config", "User root\nIdentityFile " + folder +
+                                     "/user_key\nUserKnownHostsFile " + folder +
+                                     "/known_hosts\nStrictHostKeyChecking no\n");
+  folder_.write("ssh", "#!/bin/sh\nexec /usr/bin/ssh -F '" + folder + "/client_config' \"$@\"\n");
+  std::filesystem::permissions(folder_.path() / "ssh", std::filesystem::perms(0755));
 
   // A user and a folder of its own, which the machine need not have, in a mount namespace.
   space.run("unshare -m sh -c \"mount --bind '" + folder +
@@ -80,7 +73,7 @@ SshHost::SshHost(const NetworkSpace& space, const std::string& address,
             root + "/usr/lib/x86_64-linux-gnu' '" + root + "/usr/sbin/sshd' -f '" + folder +
             "/server_config' -E '" + folder + "/server_log'\"");
   const bool listens = eventually([&] {  // it goes on in the background before it does
-    std::ifstream log(folder_ / "server_log");
+    std::ifstream log(folder_.path() / "server_log");
     const std::string said(std::istreambuf_iterator<char>(log), {});
     return said.find("Server listening") != std::string::npos;
   });
@@ -93,8 +86,6 @@ SshHost::~SshHost() {
     for (const pid_t process : left) kill(process, SIGKILL);
     return left.empty();
   });
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 std::vector<pid_t> SshHost::processes() const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "network_space.hpp"
+#include "temporary_folder.hpp"
 
 namespace skein::test {
 
@@ -26,7 +27,7 @@ class SshHost {
 
   /// A folder with the program `ssh` that knows this host, for the beginning of PATH. It may not be
   /// asked for a password.
-  const std::filesystem::path& client_folder() const noexcept { return folder_; }
+  const std::filesystem::path& client_folder() const noexcept { return folder_.path(); }
 
   /// What runs in the namespace beside the server: the names of the programs.
   std::vector<std::string> programs() const;
@@ -34,7 +35,7 @@ class SshHost {
  private:
   std::vector<pid_t> processes() const;
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   ino_t space_ = 0;
 };
 
