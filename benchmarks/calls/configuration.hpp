@@ -45,12 +45,11 @@ class Configurations {
     Spinning,   ///< That, and whoever waits spins.
   };
   Configuration skein_same_host(SharedMemory how, std::size_t threads = 1);
-  /// Of roles `viewer` and `lender` (calls/lending_peer.hpp).
+  /// Of roles `viewer` and `lender` (calls/skein_peer.hpp).
   Configuration skein_lending();
-  /// Records the domain of a Skein configuration (recording/recording_peer.hpp).
+  /// Records the domain of a Skein configuration.
   static std::vector<std::string> recorder_of(const Configuration& skein);
-  /// A Skein publisher as `client`, and as `server` who receives: `recorder` or `counter`, by
-  /// recording/recording_peer.hpp.
+  /// A Skein publisher as `client`, and as `server` who receives: `recorder` or `counter`.
   Configuration skein_topic(const std::string& vendor, const std::string& receiver);
   Configuration raw(const std::string& server, const std::string& client);
   /// The vendor's own API in a way that differs from Skein's: `shared_memory`, `data_sharing`,
@@ -70,7 +69,7 @@ class Configurations {
   Configuration skein_in_process();
   /// `transport` is `shortcut` for a POA whose calls within the process pass by the ORB.
   Configuration omniorb_in_process(const std::string& transport);
-  /// A Head and its CSPs in one process; knows what calls/head_peer.hpp says.
+  /// A Head and its CSPs in one process; knows what perform_tasks() says.
   Configuration skein_head();
   /// Clients that know `bind COUNT` and `find COUNT`: of a Broker's table, and of omniORB's name
   /// server.

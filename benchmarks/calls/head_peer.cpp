@@ -1,11 +1,10 @@
-#include "calls/head_peer.hpp"
-
 #include <map>
 #include <sstream>
 #include <thread>
 
 #include "calls/alone.hpp"
 #include "calls/plain_echo.hpp"
+#include "calls/skein_peer.hpp"
 #include "rpc/local_channel.hpp"
 #include "skein/head.hpp"
 

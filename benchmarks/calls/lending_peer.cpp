@@ -1,10 +1,9 @@
-#include "calls/lending_peer.hpp"
-
 #include <chrono>
 #include <cstring>
 #include <memory>
 #include <string>
 
+#include "calls/skein_peer.hpp"
 #include "harness/peer.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

@@ -1,14 +1,12 @@
-#include "calls/skein_neighbour.hpp"
-
 #include <unistd.h>
 
-#include <condition_variable>
 #include <future>
 #include <mutex>
-#include <set>
 
 #include "brokerless_discovery/broker.hpp"
 #include "calls/plain_echo.hpp"
+#include "calls/skein_peer.hpp"
+#include "harness/census.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
 #include "skein/entity.hpp"
@@ -45,32 +43,6 @@ void await_services(brokerless_discovery::Broker& broker, std::size_t count) {
                  " services");
 }
 
-/// Who is there. Thread-safe.
-class Attendance {
- public:
-  void note(const Guid& participant, bool present) {
-    std::lock_guard lock(mutex_);
-    if (present) {
-      present_.insert(participant);
-    } else {
-      present_.erase(participant);
-    }
-    changed_.notify_all();
-  }
-
-  void await(std::size_t count) {
-    std::unique_lock lock(mutex_);
-    if (changed_.wait_for(lock, kJoinPatience, [&] { return present_.size() >= count; })) return;
-    throw Internal("found " + std::to_string(present_.size()) + " of " + std::to_string(count) +
-                   " participants");
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::set<Guid> present_;
-};
-
 }  // namespace
 
 std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
@@ -83,13 +55,13 @@ std::shared_ptr<dds::Vendor> load_or_skip(const std::string& vendor) {
 
 void be_bystander(const SkeinPeer& peer) {
   const auto vendor = load_or_skip(peer.vendor);
-  Attendance attendance;
+  Census<Guid> known;
   auto options = options_of<dds::ParticipantOptions>(peer);
   options.on_participant = [&](const Guid& participant, bool present) {
-    attendance.note(participant, present);
+    present ? known.add(participant) : known.remove(participant);
   };
   const auto participant = vendor->create_participant(options);
-  attendance.await(peer.peers - 1);  // all but itself
+  known.await(peer.peers - 1);  // all but itself
   run_server();
 }
 

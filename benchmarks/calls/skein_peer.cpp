@@ -6,14 +6,9 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "calls/alone.hpp"
-#include "calls/head_peer.hpp"
-#include "calls/lending_peer.hpp"
-#include "calls/skein_neighbour.hpp"
-#include "calls/survivor.hpp"
 #include "echo.idl.hpp"
 #include "harness/peer.hpp"
 #include "harness/skipped.hpp"
-#include "recording/recording_peer.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 

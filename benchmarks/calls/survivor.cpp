@@ -1,9 +1,8 @@
-#include "calls/survivor.hpp"
-
 #include <thread>
 
 #include "brokerless_discovery/broker.hpp"
 #include "calls/plain_echo.hpp"
+#include "calls/skein_peer.hpp"
 #include "skein/error.hpp"
 
 namespace skein::benchmarks {

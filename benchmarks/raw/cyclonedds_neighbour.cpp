@@ -1,5 +1,3 @@
-#include "raw/cyclonedds_neighbour.hpp"
-
 #include <cstring>
 
 #include "raw/cyclonedds_participant.hpp"
@@ -10,13 +8,13 @@ namespace {
 
 void read_announcements(dds_entity_t reader, void* census) {
   for (Message message; take(reader, message);)
-    static_cast<Census*>(census)->add(message.head.client);
+    static_cast<Heard*>(census)->add(message.head.client);
 }
 
 }  // namespace
 
 void cyclonedds_neighbour(const RawOptions& options) {
-  Census census;
+  Heard census;
   // One more: Cyclone 0.10 reports the last index as taken after taking it.
   CycloneddsParticipant participant(options.domain, options.peers);
   dds_listener_t* listener = dds_create_listener(&census);
@@ -40,7 +38,7 @@ void cyclonedds_neighbour(const RawOptions& options) {
   Outgoing announcement{{}, &content};
   std::memcpy(announcement.head.client.data(), guid.v, announcement.head.client.size());
   write(own, topic.type, announcement);
-  census.await(options.peers, kJoinPatience);
+  census.await(options.peers);
   run_server();
 }
 

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
-#include "raw/cyclonedds_neighbour.hpp"
 #include "raw/cyclonedds_participant.hpp"
+#include "raw/neighbour.hpp"
 
 namespace skein::benchmarks::raw {
 namespace {

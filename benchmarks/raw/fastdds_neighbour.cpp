@@ -1,5 +1,3 @@
-#include "raw/fastdds_neighbour.hpp"
-
 #include <cstring>
 
 #include "raw/fastdds_participant.hpp"
@@ -19,7 +17,7 @@ class AnnouncementListener final : public dds::DataReaderListener {
     }
   }
 
-  Census census{};
+  Heard census{};
 };
 
 }  // namespace
@@ -42,7 +40,7 @@ void fastdds_neighbour(const RawOptions& options) {
   Outgoing announcement{{}, &content};
   std::memcpy(announcement.head.client.data(), &own->guid(), announcement.head.client.size());
   own->write(&announcement);
-  listener.census.await(options.peers, kJoinPatience);
+  listener.census.await(options.peers);
   run_server();
 }
 

@@ -8,10 +8,10 @@
 #include <mutex>
 #include <thread>
 
-#include "raw/fastdds_neighbour.hpp"
 #include "raw/fastdds_participant.hpp"
 #include "raw/main.hpp"
 #include "raw/message.hpp"
+#include "raw/neighbour.hpp"
 
 namespace skein::benchmarks::raw {
 namespace {

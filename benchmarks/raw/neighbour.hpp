@@ -1,12 +1,10 @@
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <set>
+#include <cstddef>
 
+#include "harness/census.hpp"
+#include "raw/main.hpp"
 #include "raw/message.hpp"
-#include "skein/error.hpp"
 
 /// A raw peer with the endpoints of a Skein entity that provides one service: it announces itself
 /// on a topic that all read, and is ready once it has read all others' announcements.
@@ -24,26 +22,11 @@ inline constexpr const char* kCallRecordsTopic = "benchmark_raw_CallRecords";
 inline constexpr const char* kQuestionsTopic = "benchmark_raw_Questions";
 inline constexpr const char* kAnswersTopic = "benchmark_raw_Answers";
 
-/// The peers that have been heard of, oneself among them. Thread-safe.
-class Census {
- public:
-  void add(const ClientId& peer) {
-    std::lock_guard lock(mutex_);
-    known_.insert(peer);
-    changed_.notify_all();
-  }
+/// By the announcements.
+using Heard = Census<ClientId>;
 
-  void await(std::size_t count, std::chrono::seconds patience) {
-    std::unique_lock lock(mutex_);
-    if (changed_.wait_for(lock, patience, [&] { return known_.size() >= count; })) return;
-    throw Internal("heard of " + std::to_string(known_.size()) + " of " + std::to_string(count) +
-                   " peers");
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::set<ClientId> known_;
-};
+/// One of `options.peers` on that vendor.
+void fastdds_neighbour(const RawOptions& options);
+void cyclonedds_neighbour(const RawOptions& options);
 
 }  // namespace skein::benchmarks::raw

@@ -1,5 +1,3 @@
-#include "recording/recording_peer.hpp"
-
 #include <unistd.h>
 
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include <sstream>
 #include <thread>
 
+#include "calls/skein_peer.hpp"
 #include "echo.idl.hpp"
 #include "entity/topic_tap.hpp"
 #include "harness/peer.hpp"
