@@ -43,11 +43,11 @@ class Report(unittest.TestCase):
         cls.addClassCleanup(cls.page.__exit__)
 
     def open(self, name="flown.html", width=1280, height=900):
-        self.page.complaints.clear()
+        self.page.complaints()
         self.page.prefer("light")
         self.page.resize(width, height)
         self.page.open(self.folder / name)
-        self.addCleanup(lambda: self.assertEqual(self.page.complaints, []))
+        self.addCleanup(lambda: self.assertEqual(self.page.complaints(), []))
 
     def of(self, expression):
         return self.page.value(expression)
@@ -186,6 +186,6 @@ class Report(unittest.TestCase):
 
 if __name__ == "__main__":
     if not headless_chromium.installed():
-        print("Chromium is not installed")
+        print("Chromium, its driver or python3-selenium is not installed")
         sys.exit(77)
     unittest.main(argv=sys.argv[:1])
