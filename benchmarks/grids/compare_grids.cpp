@@ -1,77 +1,23 @@
 #include "grids/compare_grids.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
-#include <memory>
-#include <numeric>
-#include <optional>
 #include <stdexcept>
-#include <string>
 
+#include "grids/grid_contest.hpp"
 #include "grids/made_maps.hpp"
-#include "harness/turns.hpp"
-#include "navigation/grid/grid_planner.hpp"
-#include "navigation/grid/scenario.hpp"
 
 namespace skein::benchmarks {
 namespace {
 
 using navigation::grid::GridMap;
 using navigation::grid::Scenario;
-using std::chrono::steady_clock;
 
 constexpr const char* kEach = "a path on a grid";
 constexpr const char* kMean = "a path on a grid, mean over a map";
 constexpr const char* kRival = "plain A*";
-
-/// A planner on grids, and what came of its tasks so far.
-struct GridContestant {
-  std::string name;
-  std::unique_ptr<navigation::grid::GridPlanner> planner;
-  double preparation_ms = 0;
-  std::vector<double> times_us{};
-  std::vector<std::optional<double>> lengths{};  ///< Empty where it found no path.
-
-  double mean_us() const {
-    const double sum = std::accumulate(times_us.begin(), times_us.end(), 0.0);
-    return times_us.empty() ? 0 : sum / static_cast<double>(times_us.size());
-  }
-};
-
-template <class Period>
-double since(steady_clock::time_point begin) {
-  return std::chrono::duration<double, Period>(steady_clock::now() - begin).count();
-}
-
-void plan(GridContestant& contestant, const Scenario& scenario) {
-  const auto begin = steady_clock::now();
-  const auto path = contestant.planner->plan(scenario.start, scenario.goal);
-  contestant.times_us.push_back(since<std::micro>(begin));
-  contestant.lengths.push_back(path ? std::optional(path->length) : std::nullopt);
-}
-
-/// Makes a planner for the map and takes the time. Throws what make_grid_planner() throws.
-GridContestant prepare(const std::string& name, const std::shared_ptr<const GridMap>& map) {
-  const auto begin = steady_clock::now();
-  auto planner = navigation::grid::make_grid_planner(name, map);
-  return {name, std::move(planner), since<std::milli>(begin)};
-}
-
-/// For each task all contestants, in a new random order.
-void plan_in_turns(std::vector<GridContestant>& contestants,
-                   const std::vector<Scenario>& scenarios) {
-  std::size_t scenario = 0;
-  std::vector<std::function<void()>> turns;
-  for (GridContestant& contestant : contestants) {
-    turns.emplace_back([&] { plan(contestant, scenarios[scenario]); });
-  }
-  constexpr std::uint32_t kSeed = 1;
-  take_turns(scenarios.size(), turns, kSeed, "", [&](std::size_t round) { scenario = round + 1; });
-}
 
 Comparison skipped(const char* planner, const char* maps) {
   Comparison comparison{kMean, planner, kRival, {{"where", maps}}};
