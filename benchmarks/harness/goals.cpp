@@ -1,8 +1,7 @@
 #include "harness/goals.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cstdio>
 
 namespace skein::benchmarks {
 namespace {
@@ -72,14 +71,17 @@ std::string judgement_of(const Verdict& verdict) {
   if (verdict.worst == nullptr) return verdict.failed > 0 ? "missed: failed" : "not measured";
   const bool aim = verdict.goal->kind == Goal::Kind::Aim;
   const char* word = is_met(verdict) ? "met" : aim ? "not yet" : "missed";
-  const std::string failed = verdict.failed > 0 ? fmt::format(", {} failed", verdict.failed) : "";
-  return fmt::format("{} ({} of {}{})", word, verdict.met, verdict.measured, failed);
+  return std::string(word) + " (" + std::to_string(verdict.met) + " of " +
+         std::to_string(verdict.measured) +
+         (verdict.failed > 0 ? ", " + std::to_string(verdict.failed) + " failed)" : ")");
 }
 
 /// `p50 ≤ 1.05×, p99 ≤ 1.15×`; the p99 only if the goal has one.
 std::string ratios_text(const Goal& goal, const char* relation, double p50, double p99) {
-  return fmt::format("p50 {}{:.2f}×", relation, p50) +
-         (goal.p99 ? fmt::format(", p99 {}{:.2f}×", relation, p99) : "");
+  char text[64];
+  std::snprintf(text, sizeof text, goal.p99 ? "p50 %s%.2f×, p99 %s%.2f×" : "p50 %s%.2f×", relation,
+                p50, relation, p99);
+  return text;
 }
 
 }  // namespace
@@ -203,10 +205,9 @@ std::string goals_table(const std::vector<Comparison>& comparisons) {
   for (const Verdict& verdict : judge(comparisons)) {
     const Goal& goal = *verdict.goal;
     const Comparison* worst = verdict.worst;
-    table += fmt::format("| {} | {} | {} | {} |\n", goal.text,
-                         ratios_text(goal, "≤ ", goal.p50, goal.p99.value_or(0)),
-                         worst ? ratios_text(goal, "", worst->ratio_p50(), worst->ratio_p99()) : "",
-                         judgement_of(verdict));
+    table += "| " + goal.text + " | " + ratios_text(goal, "≤ ", goal.p50, goal.p99.value_or(0)) +
+             " | " + (worst ? ratios_text(goal, "", worst->ratio_p50(), worst->ratio_p99()) : "") +
+             " | " + judgement_of(verdict) + " |\n";
   }
   return table;
 }
