@@ -1,9 +1,9 @@
 #include "recording/perfetto_trace.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/whole_file.hpp"
-#include "recording/protobuf_writer.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 
@@ -45,7 +45,11 @@ void PerfettoTrace::add(const CallEvent& event) {
   if (is_beginning(event.step)) {
     Slice slice{.begin = event.time, .name = event.service + "." + event.operation};
     // Older recordings have no number where a call stayed within its process.
-    if (event.number != 0) slice.flow = flow_of(event);
+    if (event.number != 0) {
+      slice.flow = flow_of(event);
+      auto& begin = flows_.try_emplace(*slice.flow, event.time).first->second;
+      begin = std::min(begin, event.time);
+    }
     auto& slices = slices_[event.entity][at_provider ? "provides" : "calls"];
     open_[key].push_back(&slices.emplace_back(std::move(slice)));
     return;
@@ -63,6 +67,7 @@ void PerfettoTrace::add(const Decision& decision) {
   Slice slice{.begin = decision.time,
               .end = decision.time + positive(decision.took),
               .name = "decide " + decision.service};
+  see(slice.begin);
   see(*slice.end);
   slice.details = {{"request", decision.request},
                    {"strategy", decision.strategy},
@@ -90,20 +95,15 @@ struct PerfettoTrace::Lane {
   std::uint64_t end;
 };
 
-/// The messages of perfetto.protos.Trace.
+/// Trace events as JSON. Their times are microseconds since the first one: so a double has their
+/// nanoseconds, too.
 class PerfettoTrace::Writer {
  public:
-  explicit Writer(std::uint64_t last) : last_(last) {}
+  explicit Writer(const PerfettoTrace& trace) : trace_(trace) {}
 
   void begin_process(const std::string& name) {
     process_ = ++tracks_;
-    ProtobufWriter process;
-    process.number(kPid, process_);
-    process.text(kProcessName, name);
-    ProtobufWriter descriptor;
-    descriptor.number(kUuid, process_);
-    descriptor.message(kProcess, process);
-    describe(descriptor);
+    describe("process_name", process_, name);
   }
 
   void write(const std::string& kind, std::deque<Slice> slices) {
@@ -111,14 +111,14 @@ class PerfettoTrace::Writer {
     std::vector<Lane> lanes;
     for (const Slice& slice : slices) {
       const std::size_t lane = free_lane(lanes, kind, slice.begin);
-      lanes[lane].end = slice.end.value_or(last_);
+      lanes[lane].end = slice.end.value_or(trace_.last_);
       begin(lanes[lane].track, kind, slice);
       std::uint64_t inner_end = slice.begin;
       for (const Slice& inner : slice.inner) {
         const bool fits = inner.begin >= inner_end;
         const std::size_t place = fits ? lane : free_lane(lanes, kind, inner.begin);
         auto& place_end = fits ? inner_end : lanes[place].end;
-        place_end = inner.end.value_or(last_);
+        place_end = inner.end.value_or(trace_.last_);
         begin(lanes[place].track, kind, inner);
         end(lanes[place].track, inner);
       }
@@ -126,89 +126,62 @@ class PerfettoTrace::Writer {
     }
   }
 
-  const std::string& bytes() const { return trace_.bytes(); }
+  std::string text() const { return R"({"traceEvents":[)" + events_ + "]}\n"; }
 
  private:
-  // Numbers of fields.
-  static constexpr unsigned kPacket = 1;
-  static constexpr unsigned kTimestamp = 8, kSequence = 10, kTrackEvent = 11, kSequenceFlags = 13,
-                            kTrackDescriptor = 60;
-  static constexpr unsigned kUuid = 1, kName = 2, kProcess = 3, kParent = 5;
-  static constexpr unsigned kPid = 1, kProcessName = 6;
-  static constexpr unsigned kDetail = 4, kType = 9, kTrack = 11, kCategory = 22, kEventName = 23,
-                            kFlow = 47;
-  static constexpr unsigned kDetailText = 6, kDetailName = 10;
-  static constexpr std::uint64_t kSliceBegin = 1, kSliceEnd = 2;
-
   std::size_t free_lane(std::vector<Lane>& lanes, const std::string& kind, std::uint64_t from) {
     const auto found =
         std::ranges::find_if(lanes, [from](const Lane& lane) { return lane.end <= from; });
     if (found != lanes.end()) return static_cast<std::size_t>(found - lanes.begin());
     lanes.push_back({++tracks_, 0});
-    ProtobufWriter descriptor;
-    descriptor.number(kUuid, tracks_);
-    descriptor.number(kParent, process_);
-    descriptor.text(kName, kind);
-    describe(descriptor);
+    describe("thread_name", tracks_, kind);
     return lanes.size() - 1;
   }
 
-  void describe(const ProtobufWriter& descriptor) {
-    ProtobufWriter packet;
-    packet.message(kTrackDescriptor, descriptor);
-    add(packet);
+  void describe(const char* what, std::uint64_t track, const std::string& name) {
+    add({{"ph", "M"}, {"name", what}, {"args", {{"name", name}}}}, track);
   }
 
   void begin(std::uint64_t track, const std::string& kind, const Slice& slice) {
-    ProtobufWriter event;
-    event.number(kType, kSliceBegin);
-    event.number(kTrack, track);
-    event.text(kCategory, kind);
-    event.text(kEventName, slice.name);
-    if (slice.flow) event.fixed(kFlow, *slice.flow);
-    for (const auto& [name, text] : slice.details) {
-      ProtobufWriter detail;
-      detail.text(kDetailName, name);
-      detail.text(kDetailText, text);
-      event.message(kDetail, detail);
+    nlohmann::json event{{"ph", "B"}, {"cat", kind}, {"name", slice.name}};
+    event["ts"] = microseconds(slice.begin);
+    if (!slice.details.empty()) event["args"] = slice.details;
+    if (slice.flow) {  // the viewer knows no arrow that ends before it begins
+      const bool is_first = slice.begin == trace_.flows_.at(*slice.flow);
+      event["bind_id"] = *slice.flow;
+      event[is_first ? "flow_out" : "flow_in"] = true;
     }
-    add_event(slice.begin, event);
+    add(std::move(event), track);
   }
 
   void end(std::uint64_t track, const Slice& slice) {
-    ProtobufWriter event;
-    event.number(kType, kSliceEnd);
-    event.number(kTrack, track);
-    add_event(slice.end.value_or(last_), event);
+    add({{"ph", "E"}, {"ts", microseconds(slice.end.value_or(trace_.last_))}}, track);
   }
 
-  void add_event(std::uint64_t time, const ProtobufWriter& event) {
-    ProtobufWriter packet;
-    packet.number(kTimestamp, time);
-    packet.message(kTrackEvent, event);
-    add(packet);
+  double microseconds(std::uint64_t time) const {
+    return static_cast<double>(time - trace_.first_) / 1000;
   }
 
-  void add(ProtobufWriter& packet) {
-    packet.number(kSequence, 1);
-    // The first packet says that nothing was said before.
-    if (trace_.bytes().empty()) packet.number(kSequenceFlags, 1);
-    trace_.message(kPacket, packet);
+  void add(nlohmann::json event, std::uint64_t track) {
+    event["pid"] = process_;
+    event["tid"] = track;
+    events_ += events_.empty() ? "\n" : ",\n";
+    events_ += event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
 
-  const std::uint64_t last_;
-  ProtobufWriter trace_;
+  const PerfettoTrace& trace_;
+  std::string events_;
   std::uint64_t tracks_ = 0;
   std::uint64_t process_ = 0;
 };
 
 std::string PerfettoTrace::finish() {
-  Writer writer(last_);
+  Writer writer(*this);
   for (const auto& [entity, kinds] : slices_) {
     writer.begin_process(entity);
     for (const auto& [kind, slices] : kinds) writer.write(kind, slices);
   }
-  return writer.bytes();
+  return writer.text();
 }
 
 PerfettoExport export_to_perfetto(const Reader& recording, const std::string& path) {

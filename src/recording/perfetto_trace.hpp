@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,10 +15,11 @@
 
 namespace skein::recording {
 
-/// A trace that Perfetto's viewer opens, of what entities say of calls and decisions: a process for
-/// each entity, a slice for each call at its caller and at its provider with an arrow between them,
-/// and a slice for each decision with its attempts inside. What goes on at the same time lies on
-/// tracks of its own. Times are those of each entity's clock. Not thread-safe.
+/// A trace in Chrome's JSON format, which Perfetto's viewer opens, of what entities say of calls
+/// and decisions: a process for each entity, a slice for each call at its caller and at its
+/// provider with an arrow between them, and a slice for each decision with its attempts inside.
+/// What goes on at the same time lies on tracks of its own. Times are those of each entity's clock.
+/// Not thread-safe.
 class PerfettoTrace {
  public:
   /// Events of one entity in the order in which they happened. A call of which the end is missing
@@ -42,11 +45,16 @@ class PerfettoTrace {
   struct Lane;
   class Writer;
 
-  void see(std::uint64_t time) { last_ = std::max(last_, time); }
+  void see(std::uint64_t time) {
+    first_ = std::min(first_, time);
+    last_ = std::max(last_, time);
+  }
 
   /// By entity, and then by what they show.
   std::map<std::string, std::map<std::string, std::deque<Slice>>> slices_;
   std::map<CallKey, std::deque<Slice*>> open_;
+  std::map<std::uint64_t, std::uint64_t> flows_;  // when they begin
+  std::uint64_t first_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t last_ = 0;
 };
 

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <stdexcept>
+#include <set>
 #include <vector>
 
 #include "core/printable.hpp"
-#include "idl/flags.hpp"
+#include "idl/dynamic_type.hpp"
 #include "idl/scoped_name.hpp"
-#include "recording/type_graph.hpp"
 #include "recording/viewer_names.hpp"
 #include "skein/error.hpp"
 
@@ -17,10 +15,16 @@ namespace skein::recording {
 namespace {
 
 using namespace types;
-using idl::has;
+using idl::DynamicType, idl::has;
 
 std::string bound_of(std::uint32_t bound, const char* before, const char* after) {
   return bound == 0 ? "" : before + std::to_string(bound) + after;
+}
+
+bool names_any(const DynamicType& type, const std::set<const DynamicType*>& any) {
+  return any.contains(&type) || std::ranges::any_of(type.elements, [&](const DynamicType* element) {
+           return names_any(*element, any);
+         });
 }
 
 /// How a type is written where it is used.
@@ -38,86 +42,90 @@ struct Spelling {
 /// too. What cannot be said so, but has a length, becomes octets.
 class IdlWriter {
  public:
-  IdlWriter(const TypeSystem& types, const std::string& root)
-      : graph_(types), representation_(graph_.representation(root)) {
-    const auto parts = graph_.parts(root);
-    for (const std::string& name : parts) names_.of_type(graph_.at(name));
+  explicit IdlWriter(const DynamicType& root) : root_(root) {
+    const auto parts = parts_of(root);
+    for (const DynamicType* part : parts) names_.of_type(*part->declaration);
     check_recursion(parts);
   }
 
-  RecordingIdl write(const std::string& root) {
-    const Declaration& declaration = graph_.at(root);
-    if (declaration.kind != DeclarationKind::Struct && declaration.kind != DeclarationKind::Union) {
-      throw InvalidArgument("'" + printable(root) + "' is no struct or union: it is no message");
+  RecordingIdl write() {
+    if (!root_.is(DeclarationKind::Struct) && !root_.is(DeclarationKind::Union)) {
+      throw InvalidArgument("'" + printable(root_.declaration->name) +
+                            "' is no struct or union: it is no message");
     }
-    const std::string type = declared(declaration).type;
+    const std::string type = declared(root_).type;
     while (!open_.empty()) {
-      const std::string name = open_.back();
+      const DynamicType& next = *open_.back();
       open_.pop_back();
-      define(graph_.at(name));
+      add(names_.of_type(*next.declaration), definition(next));
     }
     return {type, text_};
   }
 
  private:
-  bool is_xcdr2() const { return skein::is_xcdr2(representation_); }
-  bool keeps_mutable() const { return representation_ == Representation::Xcdr2ParameterList; }
-  bool is_kept(const Declaration& declaration) const {
-    return declaration.extensibility == Extensibility::Mutable && keeps_mutable();
+  bool is_xcdr2() const { return skein::is_xcdr2(root_.representation); }
+  bool keeps_mutable() const { return root_.representation == Representation::Xcdr2ParameterList; }
+  bool is_mutable(const DynamicType& type) const {
+    return type.declaration->extensibility == Extensibility::Mutable;
+  }
+  bool is_kept(const DynamicType& type) const { return is_mutable(type) && keeps_mutable(); }
+
+  /// The declared types that it consists of, and itself.
+  static std::set<const DynamicType*> parts_of(const DynamicType& root) {
+    std::set<const DynamicType*> parts;
+    std::vector<const DynamicType*> open{&root};
+    while (!open.empty()) {
+      const DynamicType& type = *open.back();
+      open.pop_back();
+      if (type.declaration && !parts.insert(&type).second) continue;
+      open.insert(open.end(), type.elements.begin(), type.elements.end());
+      for (const DynamicType::Member& member : type.members) open.push_back(member.type);
+      if (type.discriminator) open.push_back(type.discriminator);
+    }
+    return parts;
   }
 
   // ---- types that contain themselves
 
   /// The viewer works out each struct before it reads any, unions when it meets one. A type that
   /// contains itself must do so by a union, or by an optional member, which can become one.
-  void check_recursion(std::set<std::string> parts) const {
-    const auto is_leaf = [&](const std::string& name) {
-      const Declaration& declaration = graph_.at(name);
-      if (declaration.kind == DeclarationKind::Union) return true;
-      return std::ranges::none_of(declaration.members, [&](const Member& member) {
-        return !becomes_union(declaration, member) &&
-               std::ranges::any_of(names_in(member.type),
-                                   [&](const auto& used) { return parts.contains(used); });
+  void check_recursion(std::set<const DynamicType*> parts) const {
+    const auto is_leaf = [&](const DynamicType* type) {
+      if (type->is(DeclarationKind::Union)) return true;
+      return std::ranges::none_of(type->members, [&](const DynamicType::Member& member) {
+        return !becomes_union(*type, member) && names_any(*member.type, parts);
       });
     };
     while (std::erase_if(parts, is_leaf) > 0) continue;
     if (parts.empty()) return;
-    throw InvalidArgument("the type '" + printable(*parts.begin()) +
+    throw InvalidArgument("the type '" + printable((*parts.begin())->declaration->name) +
                           "' contains itself by a sequence, or consists of one that does: viewers "
                           "of recordings cannot decode it");
   }
 
-  bool becomes_union(const Declaration& declaration, const Member& member) const {
-    return member.type.kind == Kind::OptionalMember && !is_kept(declaration);
+  bool becomes_union(const DynamicType& type, const DynamicType::Member& member) const {
+    return member.type->kind == Kind::OptionalMember && !is_kept(type);
   }
 
   // ---- declarations
 
   /// Headers of members that may be missing.
-  bool is_opaque(const Declaration& declaration) const {
-    if (declaration.extensibility != Extensibility::Mutable || keeps_mutable()) return false;
-    return declaration.kind == DeclarationKind::Union ||
-           std::ranges::any_of(declaration.members, [](const Member& member) {
-             return member.type.kind == Kind::OptionalMember;
+  bool is_opaque(const DynamicType& type) const {
+    if (!is_mutable(type) || keeps_mutable()) return false;
+    return type.is(DeclarationKind::Union) ||
+           std::ranges::any_of(type.members, [](const DynamicType::Member& member) {
+             return member.type->kind == Kind::OptionalMember;
            });
   }
 
   /// A length in bytes stands before it.
-  bool has_length(const Declaration& declaration) const {
-    return declaration.extensibility != Extensibility::Final && !is_kept(declaration);
+  bool has_length(const DynamicType& type) const {
+    return type.declaration->extensibility != Extensibility::Final && !is_kept(type);
   }
 
-  void define(const Declaration& declaration) {
-    switch (declaration.kind) {
-      case DeclarationKind::Enumeration:
-        add(names_.of_type(declaration), enumeration(declaration));
-        break;
-      case DeclarationKind::Union:
-        add(names_.of_type(declaration), union_text(declaration));
-        break;
-      default:
-        add(names_.of_type(declaration), structure(declaration));
-    }
+  std::string definition(const DynamicType& type) {
+    if (type.is(DeclarationKind::Enumeration)) return enumeration(*type.declaration);
+    return type.is(DeclarationKind::Union) ? union_text(type) : structure(type);
   }
 
   /// A type, in its modules.
@@ -129,18 +137,18 @@ class IdlWriter {
     text_ += text;
   }
 
-  std::string extensibility(const Declaration& declaration) const {
-    return is_kept(declaration) ? "@mutable " : "@final ";
+  std::string extensibility(const DynamicType& type) const {
+    return is_kept(type) ? "@mutable " : "@final ";
   }
 
-  std::string structure(const Declaration& declaration) {
+  std::string structure(const DynamicType& type) {
     taken_.clear();
-    for (const Member& member : declaration.members) taken_.insert(viewer_member(member.name));
+    for (const std::string_view name : type.names) taken_.insert(viewer_member(std::string(name)));
     std::string text;
-    if (has_length(declaration)) text += number("bytes");
-    if (declaration.members.empty()) text += "  octet dummy;\n";  // as on the wire
-    for (const Member& member : declaration.members) text += member_of(declaration, member);
-    return extensibility(declaration) + "struct " + idl::last_part(names_.of_type(declaration)) +
+    if (has_length(type)) text += number("bytes");
+    if (type.members.empty()) text += "  octet dummy;\n";  // as on the wire
+    for (const DynamicType::Member& member : type.members) text += member_of(type, member);
+    return extensibility(type) + "struct " + idl::last_part(names_.of_type(*type.declaration)) +
            " {\n" + text + "}";
   }
 
@@ -150,26 +158,24 @@ class IdlWriter {
     return "  unsigned long " + name + ";\n";
   }
 
-  std::string member_of(const Declaration& declaration, const Member& member) {
-    const std::string name = viewer_member(member.name);
-    const bool is_optional = member.type.kind == Kind::OptionalMember;
-    const Type& type = is_optional ? member.type.elements.at(0) : member.type;
-    const std::string annotations = has(member.flags, MemberFlags::key) ? "@key " : "";
-    if (is_kept(declaration)) {
+  std::string member_of(const DynamicType& outer, const DynamicType::Member& member) {
+    const std::string name = viewer_member(member.described->name);
+    const bool is_optional = member.type->kind == Kind::OptionalMember;
+    const DynamicType& type = is_optional ? *member.type->elements[0] : *member.type;
+    const std::string annotations = has(member.described->flags, MemberFlags::key) ? "@key " : "";
+    if (is_kept(outer)) {
       return single_member(type, name,
-                           annotations + "@id(" + std::to_string(member.id) + ") " +
+                           annotations + "@id(" + std::to_string(member.described->id) + ") " +
                                (is_optional ? "@optional " : ""));
     }
     if (is_optional) return "  " + annotations + optional(type) + " " + name + ";\n";
-    std::string header;
-    if (declaration.extensibility == Extensibility::Mutable) {
-      header = number("header_of_" + name) + number("length_of_" + name);
-    }
+    const std::string header =
+        is_mutable(outer) ? number("header_of_" + name) + number("length_of_" + name) : "";
     return header + members(type, name, annotations);
   }
 
   /// A member, and before it the length that it may have.
-  std::string members(const Type& type, const std::string& name,
+  std::string members(const DynamicType& type, const std::string& name,
                       const std::string& annotations = {}) {
     const Spelling spelling = spell(type);
     return (spelling.is_delimited ? number("bytes_of_" + name) : "") +
@@ -177,7 +183,7 @@ class IdlWriter {
   }
 
   /// A member where none of ours can stand before it.
-  std::string single_member(const Type& type, const std::string& name,
+  std::string single_member(const DynamicType& type, const std::string& name,
                             const std::string& annotations = {}) {
     const Spelling spelling = spell(type);
     return member_text(spelling.is_delimited ? Spelling{wrapped(type)} : spelling, name,
@@ -200,22 +206,22 @@ class IdlWriter {
     return text + " }";
   }
 
-  std::string union_text(const Declaration& declaration) {
-    const Type& discriminator = declaration.discriminator.at(0);
-    std::string text = extensibility(declaration) + "union " +
-                       idl::last_part(names_.of_type(declaration)) + " switch (" +
-                       switch_type(discriminator) + ") {\n";
+  std::string union_text(const DynamicType& type) {
+    std::string text = extensibility(type) + "union " +
+                       idl::last_part(names_.of_type(*type.declaration)) + " switch (" +
+                       switch_type(*type.discriminator) + ") {\n";
     bool has_default = false;
     std::set<std::string> taken;
-    for (const Member& member : declaration.members) {
-      for (const std::int64_t value : member.labels) {
-        text += "  case " + label(discriminator, value) + ":";
+    for (const DynamicType::Member& member : type.members) {
+      for (const std::int64_t value : member.described->labels) {
+        text += "  case " + label(*type.discriminator, value) + ":";
       }
-      const bool by_default = has(member.flags, MemberFlags::by_default);
+      const bool by_default = has(member.described->flags, MemberFlags::by_default);
       if (by_default) text += "  default:";
       has_default = has_default || by_default;
-      taken.insert(viewer_member(member.name));
-      text += single_member(member.type, viewer_member(member.name));
+      const std::string name = viewer_member(member.described->name);
+      taken.insert(name);
+      text += single_member(*member.type, name);
     }
     if (has_default) return text + "}";
     std::string name = "nothing";
@@ -228,13 +234,13 @@ class IdlWriter {
     return "  default:  " + helper("Nothing", "@final struct ", " {\n}") + " " + name + ";\n";
   }
 
-  std::string optional(const Type& type) {
+  std::string optional(const DynamicType& type) {
     return helper("Optional", "@final union ",
                   " switch (boolean) {\n  case TRUE:" + single_member(type, "value") +
                       nothing_by_default("nothing") + "}");
   }
 
-  std::string switch_type(const Type& type) {
+  std::string switch_type(const DynamicType& type) {
     switch (type.kind) {
       case Kind::Char:
         return "octet";
@@ -248,7 +254,7 @@ class IdlWriter {
     }
   }
 
-  static std::string label(const Type& discriminator, std::int64_t value) {
+  static std::string label(const DynamicType& discriminator, std::int64_t value) {
     switch (discriminator.kind) {
       case Kind::Boolean:
         return value != 0 ? "TRUE" : "FALSE";
@@ -274,7 +280,7 @@ class IdlWriter {
   }
 
   /// A struct that holds nothing else: where a collection cannot stand.
-  std::string wrapped(const Type& type) {
+  std::string wrapped(const DynamicType& type) {
     return plain_struct("Value", [&] { return members(type, "value"); });
   }
 
@@ -288,7 +294,7 @@ class IdlWriter {
 
   // ---- types where they are used
 
-  Spelling spell(const Type& type) {
+  Spelling spell(const DynamicType& type) {
     switch (type.kind) {
       case Kind::String:
         return {.type = "string" + bound_of(type.bound, "<", ">")};
@@ -302,14 +308,14 @@ class IdlWriter {
                                " {\n  string interface_name;\n  octet provider[16];\n  string "
                                "instance;\n}")};
       case Kind::Sequence: {
-        Spelling spelling = collection_of(type.elements.at(0));
+        Spelling spelling = collection_of(*type.elements[0]);
         spelling.type = "sequence<" + spelling.type + bound_of(type.bound, ", ", "") + ">";
         return spelling;
       }
       case Kind::Array: {
         std::string sizes;
-        const Type* element = &type;
-        for (; element->kind == Kind::Array; element = &element->elements.at(0)) {
+        const DynamicType* element = &type;
+        for (; element->kind == Kind::Array; element = element->elements[0]) {
           sizes += "[" + std::to_string(element->bound) + "]";
         }
         Spelling spelling = collection_of(*element);
@@ -317,8 +323,8 @@ class IdlWriter {
         return spelling;
       }
       case Kind::Map: {
-        const Type& key = type.elements.at(0);
-        const Type& value = type.elements.at(1);
+        const DynamicType& key = *type.elements[0];
+        const DynamicType& value = *type.elements[1];
         const std::string pair =
             plain_struct("Pair", [&] { return members(key, "key") + members(value, "value"); });
         return {.type = "sequence<" + pair + bound_of(type.bound, ", ", "") + ">",
@@ -328,21 +334,22 @@ class IdlWriter {
       case Kind::OptionalMember:
         throw InvalidArgument("something is optional that is no member");
       case Kind::Declared:
-        return declared(graph_.at(type.name));
+        return declared(type);
       default:
         return {.type = primitive(type.kind)};
     }
   }
 
-  Spelling collection_of(const Type& element) {
+  Spelling collection_of(const DynamicType& element) {
     Spelling spelling = spell(element);
     if (spelling.is_collection) spelling = {.type = wrapped(element)};
     spelling.is_collection = true;
-    spelling.is_delimited = is_xcdr2() && is_delimited(element, graph_);
+    spelling.is_delimited = is_xcdr2() && element.is_delimited_element();
     return spelling;
   }
 
-  Spelling declared(const Declaration& declaration) {
+  Spelling declared(const DynamicType& type) {
+    const Declaration& declaration = *type.declaration;
     switch (declaration.kind) {
       case DeclarationKind::Enumeration: {
         const bool is_negative = std::ranges::any_of(
@@ -354,28 +361,17 @@ class IdlWriter {
       case DeclarationKind::Bitset:
         return {.type = integer(declaration, "u")};
       default:
-        if (is_opaque(declaration)) return {.type = "sequence<octet>", .is_collection = true};
+        if (is_opaque(type)) return {.type = "sequence<octet>", .is_collection = true};
     }
     const std::string& name = names_.of_type(declaration);
-    if (begun_.insert(declaration.name).second) open_.push_back(declaration.name);
-    if (declaration.kind != DeclarationKind::Union || !has_length(declaration)) {
-      return {.type = name};
-    }
+    if (begun_.insert(&type).second) open_.push_back(&type);
+    if (declaration.kind != DeclarationKind::Union || !has_length(type)) return {.type = name};
     return {.type = helper("Value", "@final struct ",
                            " {\n  unsigned long bytes;\n  " + name + " value;\n}")};
   }
 
-  static std::string integer(const Declaration& declaration, const std::string& sign) {
-    switch (declaration.bits) {
-      case 8:
-      case 16:
-      case 32:
-      case 64:
-        return sign + "int" + std::to_string(declaration.bits);
-      default:
-        throw InvalidArgument("'" + printable(declaration.name) + "' has " +
-                              std::to_string(declaration.bits) + " bits");
-    }
+  static std::string integer(const Declaration& declaration, const char* sign) {
+    return sign + ("int" + std::to_string(declaration.bits));
   }
 
   static std::string primitive(Kind kind) {
@@ -387,25 +383,20 @@ class IdlWriter {
     return kNames.at(static_cast<std::size_t>(kind));
   }
 
-  const TypeGraph graph_;
-  const Representation representation_;
+  const DynamicType& root_;
   ViewerNames names_;
   std::map<std::string, std::string> helpers_;  // definition → name
-  std::set<std::string> begun_;
-  std::vector<std::string> open_;  // to be defined
-  std::set<std::string> taken_;    // names of the members of the present struct
+  std::set<const DynamicType*> begun_;
+  std::vector<const DynamicType*> open_;  // to be defined
+  std::set<std::string> taken_;           // names of the members of the present struct
   std::string text_;
 };
 
 }  // namespace
 
 RecordingIdl to_recording_idl(const TypeSystem& types, const std::string& root) {
-  try {
-    return IdlWriter(types, root).write(root);
-  } catch (const std::out_of_range&) {
-    throw InvalidArgument(
-        "a description lacks what its kind has: the element of a sequence, or a discriminator");
-  }
+  const idl::DynamicTypes known(types);
+  return IdlWriter(known.type(root)).write();
 }
 
 }  // namespace skein::recording

@@ -1,7 +1,9 @@
 #include "recording/perfetto_trace.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "../tools/temporary_folder.hpp"
 #include "recordings.hpp"
@@ -15,72 +17,32 @@ using test::operator/;
 
 namespace {
 
-/// A message of Protocol Buffers: its fields, by number. Numbers are texts, too.
-using Fields = std::multimap<unsigned, std::string>;
-
-std::uint64_t take_varint(std::string_view& bytes) {
-  std::uint64_t value = 0;
-  for (unsigned shift = 0;; shift += 7) {
-    REQUIRE_FALSE(bytes.empty());
-    const auto byte = static_cast<unsigned char>(bytes.front());
-    bytes.remove_prefix(1);
-    value |= std::uint64_t{byte & 0x7FU} << shift;
-    if (byte < 0x80) return value;
-  }
-}
-
-Fields fields_of(std::string_view bytes) {
-  Fields fields;
-  while (!bytes.empty()) {
-    const auto tag = take_varint(bytes);
-    std::string value;
-    if ((tag & 7) == 0) {
-      value = std::to_string(take_varint(bytes));
-    } else {
-      const std::size_t size = (tag & 7) == 1 ? 8 : take_varint(bytes);
-      REQUIRE(size <= bytes.size());
-      value = bytes.substr(0, size);
-      bytes.remove_prefix(size);
-    }
-    fields.emplace(static_cast<unsigned>(tag >> 3), std::move(value));
-  }
-  return fields;
-}
-
 struct Shown {
   std::string process;
   std::string name;
   std::uint64_t begin;
   std::uint64_t end;
   std::size_t depth;  ///< So many slices lie around it.
-  std::string flow;
+  std::string flow;   ///< "from 7" or "to 7".
 };
 
 /// What a viewer shows. Fails where a slice ends that has not begun, or lies across another one.
 std::vector<Shown> shown(const std::string& trace) {
-  std::map<std::string, std::string> processes;  // track → name
-  std::map<std::string, std::vector<Shown>> open;
+  std::map<int, std::string> processes;  // by their numbers
+  std::map<int, std::vector<Shown>> open;
   std::vector<Shown> slices;
-  for (const auto& [number, packet] : fields_of(trace)) {
-    REQUIRE(number == 1);
-    const Fields fields = fields_of(packet);
-    if (const auto found = fields.find(60); found != fields.end()) {
-      const Fields track = fields_of(found->second);
-      const auto process = track.find(3);
-      processes[track.find(1)->second] = process != track.end()
-                                             ? fields_of(process->second).find(6)->second
-                                             : processes.at(track.find(5)->second);
+  for (const auto& event : nlohmann::json::parse(trace).at("traceEvents")) {
+    if (event.at("ph") == "M") {
+      if (event.at("name") == "process_name") processes[event["pid"]] = event["args"]["name"];
       continue;
     }
-    const Fields event = fields_of(fields.find(11)->second);
-    const std::uint64_t time = std::stoull(fields.find(8)->second);
-    const std::string track = event.find(11)->second;
-    auto& stack = open[track];
-    if (event.find(9)->second == "1") {
+    const auto time = static_cast<std::uint64_t>(std::llround(event.at("ts").get<double>() * 1000));
+    auto& stack = open[event.at("tid")];
+    if (event.at("ph") == "B") {
       if (!stack.empty()) REQUIRE(stack.back().begin <= time);
-      const auto flow = event.find(47);
-      stack.push_back({processes.at(track), event.find(23)->second, time, 0, stack.size(),
-                       flow == event.end() ? "" : flow->second});
+      const std::string arrow = event.contains("flow_out") ? "from " : "to ";
+      stack.push_back({processes.at(event.at("pid")), event.at("name"), time, 0, stack.size(),
+                       event.contains("bind_id") ? arrow + event["bind_id"].dump() : ""});
     } else {
       REQUIRE_FALSE(stack.empty());
       stack.back().end = time;
@@ -135,12 +97,12 @@ TEST_CASE("a call is a slice at its caller and one at its provider, with an arro
   REQUIRE(slices.size() == 2);
   const Shown& caller = named(slices, "uav/client", "IPlanner.plan");
   const Shown& provider = named(slices, "uav/navigator", "IPlanner.plan");
-  CHECK(caller.begin == 1000);
-  CHECK(caller.end == 1900);
-  CHECK(provider.begin == 1100);
-  CHECK(provider.end == 1800);
-  CHECK_FALSE(caller.flow.empty());
-  CHECK(caller.flow == provider.flow);
+  CHECK(caller.begin == 0);
+  CHECK(caller.end == 900);
+  CHECK(provider.begin == 100);
+  CHECK(provider.end == 800);
+  CHECK_THAT(caller.flow, Catch::StartsWith("from "));
+  CHECK(provider.flow == "to " + caller.flow.substr(5));
 }
 
 TEST_CASE("calls at the same time lie on tracks of their own") {
@@ -160,7 +122,7 @@ TEST_CASE("a call that has no end lasts until the last event; one without beginn
   trace.add(event(3, CallStep::Sent, "b", 900));
   const auto slices = shown(trace.finish());
   REQUIRE(slices.size() == 2);
-  CHECK(named(slices, "a", "IPlanner.plan").end == 900);
+  CHECK(named(slices, "a", "IPlanner.plan").end == 850);
 }
 
 TEST_CASE("a decision holds its attempts, those at the same time beside it") {
@@ -175,11 +137,11 @@ TEST_CASE("a decision holds its attempts, those at the same time beside it") {
   trace.add(decision);
   const auto slices = shown(trace.finish());
   REQUIRE(slices.size() == 4);
-  CHECK(named(slices, "uav/navigator", "decide IPlanner").end == 1500);
+  CHECK(named(slices, "uav/navigator", "decide IPlanner").end == 500);
   CHECK(named(slices, "uav/navigator", "a_star").depth == 1);
   CHECK(named(slices, "uav/navigator", "rrt").depth == 0);
   CHECK(named(slices, "uav/navigator", "dubins").depth == 1);
-  CHECK(named(slices, "uav/navigator", "dubins").end == 1500);
+  CHECK(named(slices, "uav/navigator", "dubins").end == 500);
 }
 
 TEST_CASE("a trace is made of the topics of calls and decisions in a recording") {
@@ -195,11 +157,11 @@ TEST_CASE("a trace is made of the topics of calls and decisions in a recording")
     writer.write({decisions, 1, 2, 2, decision});
     writer.write({calls, 2, 3, 3, test::bytes_of("no event")});
   }
-  const auto done = export_to_perfetto(recording::Reader(path), folder / "a.pftrace");
+  const auto done = export_to_perfetto(recording::Reader(path), folder / "a.json");
   CHECK(done.events == 1);
   CHECK(done.decisions == 1);
   CHECK(done.malformed == 1);
-  CHECK(shown(test::content_of(folder / "a.pftrace")).size() == 2);
+  CHECK(shown(test::content_of(folder / "a.json")).size() == 2);
 
   { const recording::Writer empty(folder / "b.mcap"); }
   CHECK_THROWS_WITH(export_to_perfetto(recording::Reader(folder / "b.mcap"), folder / "b"),

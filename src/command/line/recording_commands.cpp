@@ -82,7 +82,7 @@ void add_info(CLI::App& app, int& result) {
 
 void add_export(CLI::App& app, int& result) {
   auto& command = add_command(app, "export", "Write a recording for other viewers",
-                              {{"skein export flight.mcap --perfetto flight.pftrace",
+                              {{"skein export flight.mcap --perfetto flight.json",
                                 "Calls and decisions of all peers, for https://ui.perfetto.dev"}});
   auto& arguments = arguments_of(command, export_recording, result);
   command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
