@@ -1,14 +1,11 @@
 #include "skein/detail/cdr.hpp"
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/exceptions/BadParamException.h>
-#include <fastcdr/exceptions/NotEnoughMemoryException.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "encode_value.hpp"
 #include "left_out.hpp"
@@ -17,10 +14,6 @@
 
 namespace skein::idl {
 namespace {
-
-using eprosima::fastcdr::Cdr;
-using eprosima::fastcdr::FastBuffer;
-using eprosima::fastcdr::exception::NotEnoughMemoryException;
 
 constexpr std::size_t kHeaderSize = kEncapsulation.size();
 constexpr std::size_t kFirstCapacity = 512;
@@ -39,24 +32,24 @@ using Quad = long double;
 __extension__ using Quad = __float128;
 #endif
 
-/// Thrown by a bulk write that knows how much room it needs.
+/// Thrown by a write that finds too little.
 struct RoomNeeded {
   std::size_t capacity;
 };
-
-Cdr::Endianness endianness(ByteOrder order) {
-  return order == ByteOrder::Big ? Cdr::BIG_ENDIANNESS : Cdr::LITTLE_ENDIANNESS;
-}
 
 constexpr std::size_t kXcdr2Alignment = 4;
 constexpr ByteOrder kNativeOrder =
     std::endian::native == std::endian::little ? ByteOrder::Little : ByteOrder::Big;
 
+/// Copies elements, of which those of the other byte order are turned.
 template <class T>
-std::array<std::uint8_t, sizeof(T)> reversed(const T& value) {
-  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
-  std::ranges::reverse(bytes);
-  return bytes;
+void copy(void* to, const void* from, std::size_t count, ByteOrder order) {
+  std::memcpy(to, from, count * sizeof(T));
+  if (sizeof(T) == 1 || order == kNativeOrder) return;
+  auto* const bytes = static_cast<std::uint8_t*>(to);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
+  }
 }
 
 std::size_t padding(std::size_t position, std::size_t alignment) {
@@ -75,61 +68,38 @@ std::string beyond_bound(std::size_t size, std::size_t bound) {
 }  // namespace
 
 struct CdrWriter::State {
-  State(char* memory, std::size_t size, ByteOrder byte_order, bool is_xcdr2)
-      : memory(memory),
-        order(byte_order),
-        buffer(memory, size),
-        cdr(buffer, endianness(byte_order), Cdr::DDS_CDR),
-        xcdr2(is_xcdr2) {}
-
-  std::size_t position() const { return cdr.getSerializedDataLength(); }
-
-  /// Fast CDR skips padding; ours is written, so that no old memory goes out.
+  /// Zeros, so that no old memory goes out.
   void align(std::size_t alignment) {
-    if (xcdr2) alignment = std::min(alignment, kXcdr2Alignment);
-    for (std::size_t n = padding(position(), alignment); n > 0; --n) cdr.serialize(std::uint8_t{0});
+    const std::size_t size =
+        padding(position, xcdr2 ? std::min(alignment, kXcdr2Alignment) : alignment);
+    if (size > 0) std::memset(take(size), 0, size);
   }
 
-  /// Elements of eight bytes, which Fast CDR would align to eight.
-  template <class T>
-  void write_unaligned(const T* values, std::size_t count) {
-    if (order == kNativeOrder) {
-      cdr.serializeArray(reinterpret_cast<const std::uint8_t*>(values), count * sizeof(T));
-      return;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto swapped = reversed(values[i]);
-      cdr.serializeArray(swapped.data(), swapped.size());
-    }
+  /// The room of the next bytes.
+  char* take(std::size_t size) {
+    if (size > capacity - position) throw RoomNeeded{kHeaderSize + position + size};
+    return memory + std::exchange(position, position + size);
   }
 
-  char* memory;
-  ByteOrder order;
-  FastBuffer buffer;
-  Cdr cdr;
-  bool xcdr2;
+  char* const memory;
+  const std::size_t capacity;
+  const ByteOrder order;
+  const bool xcdr2;
+  std::size_t position;
   unsigned nesting = 0;
 };
 
 template <Primitive T>
 void CdrWriter::write(T value) {
   state_.align(sizeof(T));
-  if constexpr (sizeof(T) > kXcdr2Alignment) {
-    if (state_.xcdr2) return state_.write_unaligned(&value, 1);
-  }
-  state_.cdr.serialize(value);
+  copy<T>(state_.take(sizeof(T)), &value, 1, state_.order);
 }
 
 template <Primitive T>
 void CdrWriter::write_array(const T* values, std::size_t count) {
   if (count == 0) return;
   state_.align(sizeof(T));
-  const std::size_t end = state_.position() + count * sizeof(T);
-  if (end > state_.buffer.getBufferSize()) throw RoomNeeded{end + kHeaderSize};
-  if constexpr (sizeof(T) > kXcdr2Alignment) {
-    if (state_.xcdr2) return state_.write_unaligned(values, count);
-  }
-  state_.cdr.serializeArray(values, count);
+  copy<T>(state_.take(count * sizeof(T)), values, count, state_.order);
 }
 
 void CdrWriter::write_length(std::size_t length) {
@@ -202,24 +172,19 @@ bool CdrWriter::is_xcdr2() const noexcept { return state_.xcdr2; }
 CdrWriter::Delimiter::Delimiter(CdrWriter& writer, bool needed) : writer_(writer) {
   if (!needed) return;
   writer_.write(std::uint32_t{0});
-  start_ = writer_.state_.position();
+  start_ = writer_.state_.position;
 }
 
 CdrWriter::Delimiter::~Delimiter() {
   if (start_ == 0) return;
-  const auto length = static_cast<std::uint32_t>(writer_.state_.position() - start_);
-  char* to = writer_.state_.memory + start_ - sizeof length;
-  if (writer_.state_.order == kNativeOrder) {
-    std::memcpy(to, &length, sizeof length);
-  } else {
-    const auto swapped = reversed(length);
-    std::memcpy(to, swapped.data(), swapped.size());
-  }
+  const auto length = static_cast<std::uint32_t>(writer_.state_.position - start_);
+  copy<std::uint32_t>(writer_.state_.memory + start_ - sizeof length, &length, 1,
+                      writer_.state_.order);
 }
 
 bool CdrWriter::leave_out(const void* value, std::size_t size) {
   LeavingOut* const leaving_out = LeavingOut::current();
-  return leaving_out && leaving_out->take(value, size, kHeaderSize + state_.position());
+  return leaving_out && leaving_out->take(value, size, kHeaderSize + state_.position);
 }
 
 CdrWriter::Delimiter CdrWriter::member(std::uint32_t id, bool must_understand) {
@@ -228,44 +193,29 @@ CdrWriter::Delimiter CdrWriter::member(std::uint32_t id, bool must_understand) {
 }
 
 struct CdrReader::State {
-  State(std::span<const std::byte> content, ByteOrder byte_order, bool is_xcdr2)
-      : order(byte_order),
-        buffer(const_cast<char*>(reinterpret_cast<const char*>(content.data())), content.size()),
-        cdr(buffer, endianness(byte_order), Cdr::DDS_CDR),
-        size(content.size()),
-        whole(content.size()),
-        xcdr2(is_xcdr2) {}
-
-  std::size_t position() const { return cdr.getSerializedDataLength(); }
-
-  /// Fast CDR aligns by what it read last, which a jump over a string does not change.
-  void align(std::size_t alignment) { cdr.jump(skipped(alignment)); }
   std::size_t skipped(std::size_t alignment) const {
-    return padding(position(), xcdr2 ? std::min(alignment, kXcdr2Alignment) : alignment);
+    return padding(position, xcdr2 ? std::min(alignment, kXcdr2Alignment) : alignment);
   }
 
-  /// Elements of eight bytes, which Fast CDR would look for at a multiple of eight.
-  template <class T>
-  void read_unaligned(T* values, std::size_t count) {
-    cdr.deserializeArray(reinterpret_cast<std::uint8_t*>(values), count * sizeof(T));
-    if (order == kNativeOrder) return;
-    for (std::size_t i = 0; i < count; ++i) values[i] = std::bit_cast<T>(reversed(values[i]));
+  /// What stands next, which is there.
+  const std::byte* take(std::size_t size) {
+    return content + std::exchange(position, position + size);
   }
 
-  ByteOrder order;
-  FastBuffer buffer;
-  Cdr cdr;
-  std::size_t size;  ///< The end of what may be read now.
+  const std::byte* const content;
   const std::size_t whole;
-  std::size_t memory = 0;  ///< Of elements so far.
-  bool xcdr2;
+  const ByteOrder order;
+  const bool xcdr2;
+  std::size_t position;
+  std::size_t end = whole;  ///< Of what may be read now.
+  std::size_t memory = 0;   ///< Of elements so far.
   unsigned nesting = 0;
 };
 
 const void* CdrReader::left_out(std::size_t size, std::size_t alignment) {
   PuttingIn* const putting_in = PuttingIn::current();
   if (!putting_in) return nullptr;
-  const auto value = putting_in->take(kHeaderSize + state_.position());
+  const auto value = putting_in->take(kHeaderSize + state_.position);
   if (!value) return nullptr;
   if (value->size() != size || reinterpret_cast<std::uintptr_t>(value->data()) % alignment != 0) {
     fail(std::to_string(value->size()) + " octets are lent for a value of " + std::to_string(size));
@@ -273,26 +223,20 @@ const void* CdrReader::left_out(std::size_t size, std::size_t alignment) {
   return value->data();
 }
 
-std::size_t CdrReader::remaining() const noexcept { return state_.size - state_.position(); }
+std::size_t CdrReader::remaining() const noexcept { return state_.end - state_.position; }
 
 template <Primitive T>
 T CdrReader::read() {
-  if (remaining() < state_.skipped(sizeof(T)) + sizeof(T)) fail("the message ends here");
-  state_.align(sizeof(T));
+  const std::size_t skipped = state_.skipped(sizeof(T));
+  if (remaining() < skipped + sizeof(T)) fail("the message ends here");
+  state_.position += skipped;
   if constexpr (std::is_same_v<T, bool>) {
-    std::uint8_t value;
-    state_.cdr.deserialize(value);
+    const auto value = std::to_integer<unsigned>(*state_.take(1));
     if (value > 1) fail(std::to_string(value) + " is no boolean");
     return value == 1;
   } else {
     T value;
-    if constexpr (sizeof(T) > kXcdr2Alignment) {
-      if (state_.xcdr2) {
-        state_.read_unaligned(&value, 1);
-        return value;
-      }
-    }
-    state_.cdr.deserialize(value);
+    copy<T>(&value, state_.take(sizeof(T)), 1, state_.order);
     return value;
   }
 }
@@ -305,14 +249,11 @@ void CdrReader::read_array(T* values, std::size_t count) {
     fail(std::to_string(count) + " elements do not fit into the " + std::to_string(remaining()) +
          " bytes that are left");
   }
-  state_.align(sizeof(T));
+  state_.position += skipped;
   if constexpr (std::is_same_v<T, bool>) {
     for (std::size_t i = 0; i < count; ++i) values[i] = read<bool>();
   } else {
-    if constexpr (sizeof(T) > kXcdr2Alignment) {
-      if (state_.xcdr2) return state_.read_unaligned(values, count);
-    }
-    state_.cdr.deserializeArray(values, count);
+    copy<T>(values, state_.take(count * sizeof(T)), count, state_.order);
   }
 }
 
@@ -321,9 +262,7 @@ std::span<const std::byte> CdrReader::read_bytes(std::size_t count) {
     fail(std::to_string(count) + " bytes do not fit into the " + std::to_string(remaining()) +
          " that are left");
   }
-  const auto* first = reinterpret_cast<const std::byte*>(state_.cdr.getCurrentPosition());
-  state_.cdr.jump(count);
-  return {first, count};
+  return {state_.take(count), count};
 }
 
 std::uint32_t CdrReader::read_length(std::size_t element_size) {
@@ -346,7 +285,7 @@ void CdrReader::take_memory(std::size_t size) {
 
 void CdrReader::read_string(std::string& text) {
   const std::uint32_t length = read_length(1);
-  if (length == 0) return text.clear();  // Fast CDR writes a null char* so.
+  if (length == 0) return text.clear();  // As Fast CDR writes a null char*.
   const auto* characters = reinterpret_cast<const char*>(read_bytes(length).data());
   const void* end = std::memchr(characters, 0, length);
   if (end != characters + length - 1) {
@@ -396,8 +335,7 @@ void CdrReader::check_bound(std::size_t size, std::size_t bound, const char* pla
 
 void CdrReader::fail(std::string_view reason) const {
   throw MalformedSample("malformed sample: " + std::string(place_) + " at offset " +
-                        std::to_string(state_.position() + kHeaderSize) + ": " +
-                        std::string(reason));
+                        std::to_string(state_.position + kHeaderSize) + ": " + std::string(reason));
 }
 
 CdrReader::Nesting::Nesting(CdrReader& reader) : reader_(reader) {
@@ -415,18 +353,18 @@ CdrReader::Delimited::Delimited(CdrReader& reader, bool needed)
 }
 
 CdrReader::Delimited::Delimited(CdrReader& reader, std::size_t length)
-    : reader_(reader), end_(reader.state_.position() + length), outer_end_(reader.state_.size) {
+    : reader_(reader), end_(reader.state_.position + length), outer_end_(reader.state_.end) {
   if (length > reader.remaining()) {
     reader.fail("a length of " + std::to_string(length) + " does not fit into the " +
                 std::to_string(reader.remaining()) + " bytes that are left");
   }
-  reader_.state_.size = end_;
+  reader_.state_.end = end_;
 }
 
 CdrReader::Delimited::~Delimited() {
   if (end_ == 0) return;
-  reader_.state_.cdr.jump(end_ - reader_.state_.position());
-  reader_.state_.size = outer_end_;
+  reader_.state_.position = end_;
+  reader_.state_.end = outer_end_;
 }
 
 CdrReader::Member CdrReader::read_member() {
@@ -438,9 +376,9 @@ CdrReader::Member CdrReader::read_member() {
     member.length = read<std::uint32_t>();
   } else if (code > kLengthFollows) {
     // The length is also the first thing in the member: of bytes, or of elements of 4 or 8 bytes.
-    auto before = state_.cdr.getState();
+    const std::size_t begin = state_.position;
     const auto count = read<std::uint32_t>();
-    state_.cdr.setState(before);
+    state_.position = begin;
     member.length = sizeof count + std::size_t{count} * (code == 5 ? 1 : code == 6 ? 4 : 8);
   }
   return member;
@@ -471,17 +409,15 @@ void append_cdr_erased(Bytes& message, ByteOrder order, void (*write)(CdrWriter&
     message.reserve(needed);
     if (LeavingOut* const leaving_out = LeavingOut::current()) leaving_out->forget();
     try {
-      CdrWriter::State state(reinterpret_cast<char*>(message.data()) + kHeaderSize,
-                             message.capacity() - kHeaderSize, order, is_xcdr2(message));
-      state.cdr.jump(start - kHeaderSize);
+      CdrWriter::State state{reinterpret_cast<char*>(message.data()) + kHeaderSize,
+                             message.capacity() - kHeaderSize, order, is_xcdr2(message),
+                             start - kHeaderSize};
       CdrWriter writer(state);
       write(writer, context);
-      message.resize(kHeaderSize + state.position());
+      message.resize(kHeaderSize + state.position);
       return;
     } catch (const RoomNeeded& room) {
       needed = std::max(message.capacity() * 2, room.capacity + kFirstCapacity);
-    } catch (const NotEnoughMemoryException&) {
-      needed = message.capacity() * 2;
     }
   }
 }
@@ -503,12 +439,12 @@ std::size_t read_cdr_erased(std::span<const std::byte> message, std::size_t offs
                                ? " is not XCDR2 (6 to 11); the writer must be set to XCDR2"
                                : " is not PLAIN_CDR (0 or 1); the writer must be set to XCDR1"));
   }
-  CdrReader::State state(message.subspan(kHeaderSize),
-                         kind % 2 == 0 ? ByteOrder::Big : ByteOrder::Little, xcdr2);
-  state.cdr.jump(offset - kHeaderSize);
+  CdrReader::State state{message.data() + kHeaderSize, message.size() - kHeaderSize,
+                         kind % 2 == 0 ? ByteOrder::Big : ByteOrder::Little, xcdr2,
+                         offset - kHeaderSize};
   CdrReader reader(state);
   read(reader, context);
-  return kHeaderSize + state.position();
+  return kHeaderSize + state.position;
 }
 
 #define SKEIN_INSTANTIATE(T)                                      \

@@ -25,7 +25,7 @@ void write_json(JsonWriter& writer, const long double& value) {
   if (!std::isfinite(value)) return writer.write(static_cast<double>(value));
   std::array<char, 64> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  writer.write_string({digits.data(), end});
+  writer.write_name({digits.data(), end});
 }
 
 void read_json(const JsonReader& reader, long double& value) {
@@ -54,11 +54,17 @@ void write_json_flags(JsonWriter& writer, std::uint64_t value, std::span<const F
   writer.begin_array();
   for (const Flag& flag : flags) {
     if ((value & flag.bit) == 0) continue;
-    writer.write_string(flag.name);
+    writer.write_name(flag.name);
     value &= ~flag.bit;
   }
   if (value != 0) writer.write(value);
   writer.end_array();
+}
+
+std::string enumerator_text(std::string_view type, std::span<const std::string_view> names,
+                            std::size_t index, std::int64_t value) {
+  if (index < names.size()) return std::string(names[index]);
+  return std::string(type) + "(" + std::to_string(value) + ")";
 }
 
 std::uint64_t read_json_flags(const JsonReader& reader, std::string_view type,

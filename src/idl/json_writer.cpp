@@ -7,15 +7,35 @@
 
 namespace skein::idl {
 
+namespace {
+
+constexpr std::size_t kMostElements = 64;  // for people
+
+}  // namespace
+
 void JsonWriter::separate() {
-  if (!first_) text_ += ',';
+  if (!first_) text_ += style_ == Style::Json ? "," : ", ";
   first_ = false;
 }
 
-void JsonWriter::open(char bracket) {
+void JsonWriter::begin_object(std::string_view type) {
   separate();
-  text_ += bracket;
+  if (style_ == Style::Text) text_ += type;
+  text_ += '{';
   first_ = true;
+}
+
+void JsonWriter::begin_array() {
+  separate();
+  text_ += '[';
+  first_ = true;
+}
+
+bool JsonWriter::omits(std::size_t written, std::size_t size) {
+  if (style_ == Style::Json || written < kMostElements) return false;
+  separate();
+  text_ += "... " + std::to_string(size) + " elements";
+  return true;
 }
 
 void JsonWriter::close(char bracket) {
@@ -24,8 +44,13 @@ void JsonWriter::close(char bracket) {
 }
 
 void JsonWriter::key(std::string_view name) {
-  write_string(name);
-  text_ += ':';
+  if (style_ == Style::Json) {
+    write_string(name);
+    text_ += ':';
+  } else {
+    separate();
+    if (name != "_d") (text_ += name) += '=';
+  }
   first_ = true;
 }
 
@@ -34,10 +59,11 @@ void JsonWriter::write_string(std::string_view text) {
   text_ += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-void JsonWriter::write_null() {
-  separate();
-  text_ += "null";
+void JsonWriter::write_name(std::string_view name) {
+  style_ == Style::Json ? write_string(name) : write_raw(name);
 }
+
+void JsonWriter::write_null() { write_raw(style_ == Style::Json ? "null" : "nothing"); }
 
 void JsonWriter::write_raw(std::string_view json) {
   separate();
@@ -57,8 +83,8 @@ void JsonWriter::write(T value) {
     write_string(utf8);
   } else {
     if constexpr (std::is_floating_point_v<T>) {
-      if (std::isnan(value)) return write_string("NaN");
-      if (std::isinf(value)) return write_string(value > 0 ? "Infinity" : "-Infinity");
+      if (std::isnan(value)) return write_name("NaN");
+      if (std::isinf(value)) return write_name(value > 0 ? "Infinity" : "-Infinity");
     }
     separate();
     std::array<char, 32> digits;

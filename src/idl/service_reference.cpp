@@ -1,16 +1,13 @@
 #include "skein/detail/service_reference.hpp"
 
+#include <ostream>
+
 #include "skein/detail/make_type_support.hpp"
-#include "skein/detail/print.hpp"
 
 namespace skein {
 
 std::ostream& operator<<(std::ostream& stream, const ServiceReference& reference) {
-  stream << "ServiceReference{interface_name=";
-  idl::print(stream, reference.interface_name);
-  stream << ", provider=" << reference.provider.hex() << ", instance=";
-  idl::print(stream, reference.instance);
-  return stream << '}';
+  return stream << to_string(reference);
 }
 
 std::string to_string(const ServiceReference& reference) { return idl::text_of(reference); }
@@ -37,11 +34,11 @@ void skein_decode(idl::CdrReader& reader, ServiceReference& reference) {
 }
 
 void skein_write_json(idl::JsonWriter& writer, const ServiceReference& reference) {
-  writer.begin_object();
+  writer.begin_object("ServiceReference");
   writer.key("interface_name");
   writer.write_string(reference.interface_name);
   writer.key("provider");
-  writer.write_string(reference.provider.hex());
+  writer.write_name(reference.provider.hex());
   writer.key("instance");
   writer.write_string(reference.instance);
   writer.end_object();

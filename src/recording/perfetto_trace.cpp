@@ -1,10 +1,10 @@
 #include "recording/perfetto_trace.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/whole_file.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/json.hpp"
 #include "skein/error.hpp"
 
 namespace skein::recording {
@@ -95,11 +95,14 @@ struct PerfettoTrace::Lane {
   std::uint64_t end;
 };
 
-/// Trace events as JSON. Their times are microseconds since the first one: so a double has their
-/// nanoseconds, too.
+/// Trace events as JSON. Their times are microseconds since the first one.
 class PerfettoTrace::Writer {
  public:
-  explicit Writer(const PerfettoTrace& trace) : trace_(trace) {}
+  explicit Writer(const PerfettoTrace& trace) : trace_(trace) {
+    json_.begin_object();
+    json_.key("traceEvents");
+    json_.begin_array();
+  }
 
   void begin_process(const std::string& name) {
     process_ = ++tracks_;
@@ -126,7 +129,11 @@ class PerfettoTrace::Writer {
     }
   }
 
-  std::string text() const { return R"({"traceEvents":[)" + events_ + "]}\n"; }
+  std::string finish() {
+    json_.end_array();
+    json_.end_object();
+    return json_.take();
+  }
 
  private:
   std::size_t free_lane(std::vector<Lane>& lanes, const std::string& kind, std::uint64_t from) {
@@ -139,38 +146,64 @@ class PerfettoTrace::Writer {
   }
 
   void describe(const char* what, std::uint64_t track, const std::string& name) {
-    add({{"ph", "M"}, {"name", what}, {"args", {{"name", name}}}}, track);
+    begin_event("M", track);
+    text("name", what);
+    json_.key("args");
+    write({{"name", name}});
+    json_.end_object();
   }
 
   void begin(std::uint64_t track, const std::string& kind, const Slice& slice) {
-    nlohmann::json event{{"ph", "B"}, {"cat", kind}, {"name", slice.name}};
-    event["ts"] = microseconds(slice.begin);
-    if (!slice.details.empty()) event["args"] = slice.details;
+    begin_event("B", track);
+    time(slice.begin);
+    text("cat", kind);
+    text("name", slice.name);
     if (slice.flow) {  // the viewer knows no arrow that ends before it begins
-      const bool is_first = slice.begin == trace_.flows_.at(*slice.flow);
-      event["bind_id"] = *slice.flow;
-      event[is_first ? "flow_out" : "flow_in"] = true;
+      json_.key("bind_id");
+      json_.write(*slice.flow);
+      json_.key(slice.begin == trace_.flows_.at(*slice.flow) ? "flow_out" : "flow_in");
+      json_.write(true);
     }
-    add(std::move(event), track);
+    json_.key("args");
+    write(slice.details);
+    json_.end_object();
   }
 
   void end(std::uint64_t track, const Slice& slice) {
-    add({{"ph", "E"}, {"ts", microseconds(slice.end.value_or(trace_.last_))}}, track);
+    begin_event("E", track);
+    time(slice.end.value_or(trace_.last_));
+    json_.end_object();
   }
 
-  double microseconds(std::uint64_t time) const {
-    return static_cast<double>(time - trace_.first_) / 1000;
+  void begin_event(const char* phase, std::uint64_t track) {
+    json_.begin_object();
+    text("ph", phase);
+    json_.key("pid");
+    json_.write(process_);
+    json_.key("tid");
+    json_.write(track);
   }
 
-  void add(nlohmann::json event, std::uint64_t track) {
-    event["pid"] = process_;
-    event["tid"] = track;
-    events_ += events_.empty() ? "\n" : ",\n";
-    events_ += event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  void time(std::uint64_t time) {
+    const std::uint64_t since = time - trace_.first_;
+    json_.key("ts");
+    json_.write_raw(std::to_string(since / 1000) + "." +
+                    std::to_string(1000 + since % 1000).substr(1));
+  }
+
+  void text(std::string_view key, std::string_view value) {
+    json_.key(key);
+    json_.write_string(value);
+  }
+
+  void write(const std::map<std::string, std::string>& details) {
+    json_.begin_object();
+    for (const auto& [name, value] : details) text(name, value);
+    json_.end_object();
   }
 
   const PerfettoTrace& trace_;
-  std::string events_;
+  idl::JsonWriter json_;
   std::uint64_t tracks_ = 0;
   std::uint64_t process_ = 0;
 };
@@ -181,7 +214,7 @@ std::string PerfettoTrace::finish() {
     writer.begin_process(entity);
     for (const auto& [kind, slices] : kinds) writer.write(kind, slices);
   }
-  return writer.text();
+  return writer.finish();
 }
 
 PerfettoExport export_to_perfetto(const Reader& recording, const std::string& path) {

@@ -77,7 +77,7 @@ _OUTSIDE = ["benchmarks/raw", "test/foreign", "test/conformance"]
 HOMES = {
     "Fast DDS": (r"(fastdds|fastrtps)/", ["src/dds/fastdds", *_OUTSIDE]),
     "Cyclone DDS": (r"dds/(dds\.h|ddsc/|ddsi/|ddsrt/)", ["src/dds/cyclonedds", "test/idl", *_OUTSIDE]),
-    "Fast CDR": (r"fastcdr/", ["src/idl", "test/idl", *_OUTSIDE]),
+    "Fast CDR": (r"fastcdr/", _OUTSIDE),
     "OMPL": (r"ompl/", ["src/navigation/planners"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion", "examples/reconnaissance"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),

@@ -207,6 +207,7 @@ class WhatMakesNoSense(CompilerTest):
         self.assert_finding("const octet X = 256;", "256 does not fit into octet, which goes from 0 to 255")
         self.assert_finding("const long X = 1 << 31;", "2147483648 does not fit into long, which goes from -2147483648 to 2147483647")
         self.assert_finding("const long X = 5 / (3 - 3);", "division by zero")
+        self.assert_finding("const float X = 1e39;", "the number does not fit into float")
         self.assert_finding("const long X = 1.5;", "a whole number is expected here, for long")
         self.assert_finding("const long X = 089;", "'089' begins with 0 and so is octal, which has no 8 and no 9")
         self.assert_finding('const boolean X = "no";', "TRUE or FALSE is expected here, for boolean")

@@ -28,9 +28,8 @@ def bounds_check(decl):
 def _accesses(decl):
     if isinstance(decl, model.Struct):
         return [(m, f"value.{m.cpp_name}" + (".get()" if m.argument else ""), "") for m in decl.all_members()]
-    if isinstance(decl, (model.Bitmask, model.Bitset)):
-        return []
-    return [(c, f"value.{c.cpp_name}()", f"value.holds_{c.cpp_name}()") for c in decl.cases]
+    cases = decl.cases if isinstance(decl, model.Union) else []
+    return [(c, f"value.{c.cpp_name}()", f"value.holds_{c.cpp_name}()") for c in cases]
 
 
 def _checks(kind, access, place, depth):
@@ -78,13 +77,13 @@ def functions(decl):
         read = ["  const ::skein::idl::CdrReader::Delimited delimited(reader);", "  value = {};", *read]
     nesting = decl.recursive
     return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{_value_if(write)}) {{",
+        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{value_if(write)}) {{",
         *(["  const ::skein::idl::CdrWriter::Nesting nesting(writer);"] if nesting else []),
         *(["  check_bounds(value, writer);"] if bounded else []),
         *write,
         "}",
         "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{_value_if(read)}) {{",
+        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{value_if(read)}) {{",
         *(["  const ::skein::idl::CdrReader::Nesting nesting(reader);"] if nesting else []),
         *read,
         *(["  check_bounds(value, reader);"] if bounded else []),
@@ -93,7 +92,7 @@ def functions(decl):
     ]
 
 
-def _value_if(lines):
+def value_if(lines):
     """The parameter's name, where it is used."""
     return " value" if any(re.search(r"\bvalue\b", re.sub(r'"[^"]*"', "", line)) for line in lines) else ""
 
@@ -130,13 +129,13 @@ def _bitset(decl):
             else:
                 read.append(f"  value.{field.cpp_name} = static_cast<{kind}>({shifted});")
     return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{_value_if(write)}) {{",
+        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{value_if(write)}) {{",
         "  std::uint64_t bits = 0;",
         *write,
         f"  writer.write(static_cast<{underlying}>(bits));",
         "}",
         "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{_value_if(read)}) {{",
+        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{value_if(read)}) {{",
         f"  {'const auto bits = ' if read else ''}reader.read<{underlying}>();",
         *read,
         "}",

@@ -1,4 +1,4 @@
-"""JSON of each type."""
+"""JSON of each type, and its text for people, which is written in the same way."""
 
 import model
 
@@ -6,42 +6,38 @@ from . import cdr_template, cpp
 
 
 def functions(decl):
-    if isinstance(decl, model.Enum):
-        return _enum(decl)
-    if isinstance(decl, model.Bitmask):
-        return _bitmask(decl)
-    body = {model.Union: _union, model.Bitset: _bitset}.get(type(decl), _struct)
-    write, read = body(decl)
-    bounded = bool(cdr_template.bounds_check(decl))
-    empty = not (decl.all_members() if isinstance(decl, model.Struct) else _named(decl) if isinstance(decl, model.Bitset) else True)
-    value = "" if empty else " value"
+    body = {model.Enum: _enum, model.Bitmask: _bitmask, model.Union: _union, model.Bitset: _bitset}.get(type(decl), _struct)
+    text, write, read = body(decl)
+    value = cdr_template.value_if([*write, *read])
     return [
+        f"std::ostream& operator<<(std::ostream& stream, const {decl.cpp}& value) {{ return stream << to_string(value); }}",
+        "",
+        f"std::string to_string(const {decl.cpp}& value) {{ return {text}; }}",
+        "",
         f"void skein_write_json(::skein::idl::JsonWriter& writer, const {decl.cpp}&{value}) {{",
-        "  writer.begin_object();",
         *write,
-        "  writer.end_object();",
         "}",
         "",
         f"void skein_read_json(const ::skein::idl::JsonReader& reader, {decl.cpp}&{value}) {{",
         *read,
-        *(["  check_bounds(value, reader);"] if bounded else []),
+        *(["  check_bounds(value, reader);"] if cdr_template.bounds_check(decl) else []),
         "}",
         "",
     ]
+
+
+_TEXT = "::skein::idl::text_of(value)"
+
+
+def _object(decl, members):
+    name = decl.idl_name if isinstance(decl, model.Exception_) else decl.scope[-1]
+    return [f'  writer.begin_object("{name}");', *members, "  writer.end_object();"]
 
 
 def _bitmask(decl):
     flags = f"k{decl.cpp_name}Flags"
-    return [
-        f"void skein_write_json(::skein::idl::JsonWriter& writer, const {decl.cpp}& value) {{",
-        f"  ::skein::idl::write_json_flags(writer, static_cast<std::uint64_t>(value), {flags});",
-        "}",
-        "",
-        f"void skein_read_json(const ::skein::idl::JsonReader& reader, {decl.cpp}& value) {{",
-        f'  value = static_cast<{decl.cpp}>(::skein::idl::read_json_flags(reader, "{decl.idl_name}", {flags}));',
-        "}",
-        "",
-    ]
+    write = [f"  ::skein::idl::write_json_flags(writer, static_cast<std::uint64_t>(value), {flags});"]
+    return _TEXT, write, [f'  value = static_cast<{decl.cpp}>(::skein::idl::read_json_flags(reader, "{decl.idl_name}", {flags}));']
 
 
 def _named(bitset):
@@ -55,7 +51,7 @@ def _bitset(decl):
         write += [f'  writer.key("{field.name}");', f"  writer.write<{kind}>(value.{field.cpp_name});"]
         read.append(f"  value.{field.cpp_name} = ::skein::idl::read_json_bits<{kind}>("
                     f'reader.member("{field.name}"), {field.width});')  # fmt: skip
-    return write, _expected(decl, [field.name for field in _named(decl)]) + read
+    return _TEXT, _object(decl, write), _expected(decl, [field.name for field in _named(decl)]) + read
 
 
 def _expected(decl, names):
@@ -69,19 +65,13 @@ def _expected(decl, names):
 
 
 def _enum(decl):
-    index = f'reader.read_enum("{decl.idl_name}", k{decl.cpp_name}Names)'
+    names, values = f"k{decl.cpp_name}Names", f"k{decl.cpp_name}Values"
+    number, read = "static_cast<std::int64_t>(value)", f'reader.read_enum("{decl.idl_name}", {names})'
+    index = "static_cast<std::uint32_t>(value)"
     if not decl.counted:
-        index = f"k{decl.cpp_name}Values[{index}]"
-    return [
-        f"void skein_write_json(::skein::idl::JsonWriter& writer, const {decl.cpp}& value) {{",
-        "  writer.write_string(to_string(value));",
-        "}",
-        "",
-        f"void skein_read_json(const ::skein::idl::JsonReader& reader, {decl.cpp}& value) {{",
-        f"  value = static_cast<{decl.cpp}>({index});",
-        "}",
-        "",
-    ]
+        index, read = f"static_cast<std::size_t>(std::ranges::find({values}, {number}) - {values})", f"{values}[{read}]"
+    text = f'::skein::idl::enumerator_text("{decl.idl_name}", {names}, {index}, {number})'
+    return text, ["  writer.write_name(to_string(value));"], [f"  value = static_cast<{decl.cpp}>({read});"]
 
 
 def _struct(decl):
@@ -90,7 +80,7 @@ def _struct(decl):
         write.append(f'  writer.key("{member.name}");')
         write.append(f"  ::skein::idl::write_json(writer, value.{member.cpp_name});")
         read.append(f'  ::skein::idl::read_json(reader.member("{member.name}"), value.{member.cpp_name});')
-    return write, _expected(decl, [member.name for member in decl.all_members()]) + read
+    return _TEXT, _object(decl, write), _expected(decl, [member.name for member in decl.all_members()]) + read
 
 
 def _union(decl):
@@ -116,4 +106,18 @@ def _union(decl):
             f'    ::skein::idl::read_json(reader.member("{case.name}"), value.{case.cpp_name}());',
             "  }",
         ]
-    return write, read
+    return _TEXT, _object(decl, write), read
+
+
+def tables(decl):
+    """What CDR and JSON need to know of an enumeration or a bitmask."""
+    if isinstance(decl, model.Bitmask):
+        flags = ", ".join(f'{{"{idl}", {1 << position}ULL}}' for idl, _, position, _ in decl.flags)
+        return [f"constexpr ::skein::idl::Flag k{decl.cpp_name}Flags[] = {{{flags}}};", ""]
+    names = ", ".join(f'"{idl}"' for idl, _, _ in decl.enumerators)
+    lines = [f"constexpr std::string_view k{decl.cpp_name}Names[] = {{{names}}};"]
+    if not decl.counted:
+        kind = model.Primitive(model.SIGNED[decl.bits])
+        values = ", ".join(cpp.literal(kind, value) for value in decl.values)
+        lines.append(f"constexpr std::int{decl.bits}_t k{decl.cpp_name}Values[] = {{{values}}};")
+    return [*lines, ""]

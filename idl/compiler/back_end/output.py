@@ -12,13 +12,12 @@ from . import (
     interface_template,
     json_template,
     metadata_template,
-    print_template,
     proxy_template,
     skeleton_template,
     types_template,
 )
 
-VERSION = 7  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 8  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)
@@ -128,9 +127,10 @@ def source(file):
         f"// Generated from {name} by the IDL compiler of Skein. Do not edit.",
         f'#include "{file.header}"',
         "",
+        "#include <ostream>",
+        "",
         '#include "skein/detail/key_hash.hpp"',
         '#include "skein/detail/make_type_support.hpp"',
-        '#include "skein/detail/print.hpp"',
         '#include "skein/detail/unknown_operation.hpp"',
         "",
     ]
@@ -150,13 +150,13 @@ def _implementation(item):
 def _type(decl, parameters=False):
     private = []
     if isinstance(decl, (model.Enum, model.Bitmask)):
-        private = print_template.tables(decl)
+        private = json_template.tables(decl)
     else:
         private = cdr_template.bounds_check(decl)
     lines = ["namespace {", "", *private, "}  // namespace", ""] if private else []
     if isinstance(decl, model.Union):
         lines += types_template.union_source(decl)
-    lines += print_template.functions(decl) + cdr_template.functions(decl) + cdr_template.key_hash(decl)
+    lines += cdr_template.functions(decl) + cdr_template.key_hash(decl)
     lines += json_template.functions(decl) + metadata_template.type_support(decl, parameters)
     if isinstance(decl, model.Exception_):
         lines += metadata_template.exception_info(decl)

@@ -133,7 +133,7 @@ def _fitted_number(tree, found, idl):
     except OverflowError:
         number = float("inf")
     try:
-        struct.pack("f" if idl == "float" else "d", number)  # rounds, as C++ does
+        struct.pack("<f" if idl == "float" else "<d", number)  # rounds, as C++ does
     except OverflowError:
         number = float("inf")
     if number in (float("inf"), float("-inf")):

@@ -11,17 +11,27 @@
 namespace skein::idl {
 
 /// Writes JSON text. Numbers read back unchanged; those that JSON lacks become "NaN", "Infinity"
-/// and "-Infinity". Invalid UTF-8 becomes replacement characters.
+/// and "-Infinity". Invalid UTF-8 becomes replacement characters. With Style::Text it writes for
+/// people instead, and only the first elements of what is long:
+/// `Route{points=[Point{x=1, y=2}], name="north"}`.
 class JsonWriter {
  public:
-  void begin_object() { open('{'); }
+  enum class Style { Json, Text };
+  explicit JsonWriter(Style style = Style::Json) : style_(style) {}
+
+  /// `type` is for people.
+  void begin_object(std::string_view type = {});
   void end_object() { close('}'); }
-  void begin_array() { open('['); }
+  void begin_array();
   void end_array() { close(']'); }
+  /// Whether the rest of an array of that size is left out, of which so many elements are written.
+  bool omits(std::size_t written, std::size_t size);
   void key(std::string_view name);
   template <Primitive T>
   void write(T value);
   void write_string(std::string_view text);
+  /// Text that people read without quotes.
+  void write_name(std::string_view name);
   void write_null();
   /// A value that is JSON already.
   void write_raw(std::string_view json);
@@ -29,9 +39,9 @@ class JsonWriter {
 
  private:
   void separate();
-  void open(char bracket);
   void close(char bracket);
 
+  const Style style_;
   std::string text_;
   bool first_ = true;
 };

@@ -11,7 +11,8 @@
 #include "skein/detail/box.hpp"
 #include "skein/detail/json.hpp"
 
-/// JSON of all IDL types; of generated types by their own `skein_write_json` and `skein_read_json`.
+/// JSON of all IDL types, and text for people; of generated types by their own `skein_write_json`
+/// and `skein_read_json`.
 namespace skein::idl {
 
 template <class T>
@@ -47,8 +48,12 @@ void read_json(const JsonReader& reader, std::wstring& value);
 
 template <class Values>
 void write_json_elements(JsonWriter& writer, const Values& values) {
+  std::size_t written = 0;
   writer.begin_array();
-  for (const typename Values::value_type& value : values) write_json(writer, value);
+  for (const typename Values::value_type& value : values) {
+    if (writer.omits(written++, values.size())) break;
+    write_json(writer, value);
+  }
   writer.end_array();
 }
 
@@ -82,8 +87,10 @@ void read_json(const JsonReader& reader, std::vector<T>& values) {
 /// An array of `{"key": …, "value": …}`.
 template <class Key, class Value>
 void write_json(JsonWriter& writer, const std::map<Key, Value>& values) {
+  std::size_t written = 0;
   writer.begin_array();
   for (const auto& [key, value] : values) {
+    if (writer.omits(written++, values.size())) break;
     writer.begin_object();
     writer.key("key");
     write_json(writer, key);
@@ -130,6 +137,10 @@ void write_json_flags(JsonWriter& writer, std::uint64_t value, std::span<const F
 std::uint64_t read_json_flags(const JsonReader& reader, std::string_view type,
                               std::span<const Flag> flags);
 
+/// The name of an enumerator; of a value that is none, the type and its number.
+std::string enumerator_text(std::string_view type, std::span<const std::string_view> names,
+                            std::size_t index, std::int64_t value);
+
 /// The value of a bit field of so many bits.
 template <class T>
 T read_json_bits(const JsonReader& reader, unsigned bits) {
@@ -152,6 +163,14 @@ void write_json(JsonWriter& writer, const Box<T>& value) {
 template <class T>
 void read_json(const JsonReader& reader, Box<T>& value) {
   read_json(reader, *value);
+}
+
+/// A value for people.
+template <class T>
+std::string text_of(const T& value) {
+  JsonWriter writer(JsonWriter::Style::Text);
+  write_json(writer, value);
+  return writer.take();
 }
 
 template <class T>
