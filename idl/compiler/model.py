@@ -141,7 +141,6 @@ class Declaration:
         return "_".join(self.scope[len(self.modules) :])
 
     modules: tuple = ()  # the IDL modules around it
-    in_cycle: bool = None  # whether it reaches itself, once that was asked
     text: str = None  # its canonical text, once that was asked
 
 

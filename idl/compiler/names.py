@@ -1,7 +1,7 @@
 """IDL identifiers as C++ ones. A keyword gets the prefix `_cxx_`, as in the OMG's mappings (IDL to C++11, clause 6.1.2); whatever else
 the standard library or the generated code reserves, an underscore behind it."""
 
-from macros import MACROS
+from macros import FAMILIES, MACROS
 
 KEYWORDS = frozenset(
     """alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class
@@ -39,4 +39,4 @@ def plain(name, reserved=NAMESPACE):
 
 
 def _no_keyword(name):
-    return "_cxx_" + name if name in KEYWORDS else name
+    return "_cxx_" + name if name in KEYWORDS else name + "_" if FAMILIES.fullmatch(name) else name

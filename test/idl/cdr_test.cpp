@@ -3,10 +3,9 @@
 
 #include "allocation_meter.hpp"
 #include "beyond_idlc.idl.hpp"
+#include "codec_check.hpp"
 #include "planner.idl.hpp"
 #include "samples.hpp"
-#include "skein/detail/codec.hpp"
-#include "skein/detail/type_support.hpp"
 
 using skein::Bytes;
 using skein::TypeSupport;
@@ -38,16 +37,6 @@ std::string hex(std::span<const std::byte> bytes) {
   return text;
 }
 
-template <class T>
-std::string refusal(std::span<const std::byte> message) {
-  try {
-    decode_message<T>(message);
-  } catch (const MalformedSample& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 /// A message and what decodes it, for every kind of type.
 struct Specimen {
   Bytes message;
@@ -65,6 +54,10 @@ std::vector<Specimen> specimens() {
   made.push_back(specimen(samples::compound()));
   made.push_back(specimen(samples::choices()));
   made.push_back(specimen(samples::tree()));
+  made.push_back(specimen(samples::whole()));
+  made.push_back(specimen(samples::report()));
+  made.push_back(specimen(samples::part_later()));
+  made.push_back(specimen(samples::choice()));
   made.push_back(specimen(test_planner::Route{{{1, 2, 3}}, 4, "five"}));
   made.push_back(specimen(skein::ServiceReference{"A/I", {}, "x"}));
   return made;

@@ -1,10 +1,9 @@
 // Types that IDL 4 has beyond CORBA's.
 #include <catch2/catch.hpp>
 
+#include "codec_check.hpp"
 #include "modern.idl.hpp"
 #include "samples.hpp"
-#include "skein/detail/codec.hpp"
-#include "skein/detail/type_support.hpp"
 
 namespace modern {
 
@@ -13,28 +12,7 @@ using skein::InvalidArgument;
 using skein::idl::decode_message;
 using skein::idl::encode_message;
 using skein::idl::from_json;
-using skein::idl::MalformedSample;
 using skein::idl::to_json;
-
-namespace {
-
-template <class T>
-void check_round_trips(const T& value) {
-  CHECK(decode_message<T>(encode_message(value)) == value);
-  CHECK(from_json<T>(to_json(value)) == value);
-}
-
-template <class T>
-std::string refusal(const Bytes& message) {
-  try {
-    decode_message<T>(message);
-  } catch (const MalformedSample& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-}  // namespace
 
 TEST_CASE("each type comes back from CDR and from JSON as it went out") {
   check_round_trips(samples::leaf());

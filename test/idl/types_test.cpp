@@ -2,11 +2,10 @@
 #include <cmath>
 #include <limits>
 
+#include "codec_check.hpp"
 #include "names.idl.hpp"
 #include "planner.idl.hpp"
 #include "samples.hpp"
-#include "skein/detail/codec.hpp"
-#include "skein/detail/type_support.hpp"
 
 namespace everything {
 
@@ -16,18 +15,6 @@ using skein::idl::from_json;
 using skein::idl::to_json;
 
 namespace {
-
-template <class T>
-void check_round_trips(const T& value) {
-  CHECK(decode_message<T>(encode_message(value)) == value);
-  CHECK(from_json<T>(to_json(value)) == value);
-
-  const skein::TypeSupport& support = skein::idl::type_support<T>();
-  void* copy = support.make();
-  support.assign(copy, &value);
-  CHECK(*static_cast<T*>(copy) == value);
-  support.destroy(copy);
-}
 
 /// The text of the error that `action` throws.
 template <class Error, class Action>

@@ -12,7 +12,7 @@ _LONGEST_TEXT = 4096
 
 def analyse(builder, report):
     decls = [decl for decl in builder.items if not isinstance(decl, model.Forward)]
-    for decl in decls:
+    for decl in builder.declarations.values():
         if isinstance(decl, (model.Struct, model.Union)):
             decl.recursive = _reaches(decl, decl, set())
     _choose_initial_cases(builder.declarations.values())
@@ -227,7 +227,7 @@ def _declared_text(decl, around):
     if getattr(decl, "extensibility", "final") != "final":
         switch = f" by {_text(decl.discriminator, ())}" if isinstance(decl, model.Union) else ""
         return f"{decl.extensibility} {decl.idl_name}{switch}"
-    if isinstance(decl, (model.Struct, model.Union)) and not _is_recursive(decl):
+    if isinstance(decl, (model.Struct, model.Union)) and not decl.recursive:
         decl.text = decl.text or _shortened(_made_text(decl, ()))
         return decl.text
     return _made_text(decl, around)
@@ -236,12 +236,6 @@ def _declared_text(decl, around):
 def _shortened(text):
     """A long text stands within others as its digest, or texts would grow without bounds."""
     return text if len(text) <= _LONGEST_TEXT else f"#{hashes.signature(text):016x}"
-
-
-def _is_recursive(decl):
-    if decl.in_cycle is None:
-        decl.in_cycle = _reaches(decl, decl, set())
-    return decl.in_cycle
 
 
 def _made_text(decl, around):

@@ -58,13 +58,21 @@ def _checks(kind, access, place, depth):
 
 
 def functions(decl):
-    if isinstance(decl, model.Enum):
-        return _enum(decl)
-    if isinstance(decl, model.Bitmask):
-        return _bitmask(decl)
-    if isinstance(decl, model.Bitset):
-        return _bitset(decl)
-    bounded = bool(bounds_check(decl))
+    write, read = _BODIES.get(type(decl), _aggregate)(decl)
+    return [
+        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{value_if(write)}) {{",
+        *write,
+        "}",
+        "",
+        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{value_if(read)}) {{",
+        *read,
+        "}",
+        "",
+    ]
+
+
+def _aggregate(decl):
+    """A struct, an exception or a union."""
     if isinstance(decl, model.Union):
         body = _mutable_union if decl.extensibility == "mutable" else _union
     else:
@@ -75,21 +83,12 @@ def functions(decl):
     if decl.extensibility != "final":
         write = ["  const ::skein::idl::CdrWriter::Delimiter delimiter(writer);", *write]
         read = ["  const ::skein::idl::CdrReader::Delimited delimited(reader);", "  value = {};", *read]
-    nesting = decl.recursive
-    return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{value_if(write)}) {{",
-        *(["  const ::skein::idl::CdrWriter::Nesting nesting(writer);"] if nesting else []),
-        *(["  check_bounds(value, writer);"] if bounded else []),
-        *write,
-        "}",
-        "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{value_if(read)}) {{",
-        *(["  const ::skein::idl::CdrReader::Nesting nesting(reader);"] if nesting else []),
-        *read,
-        *(["  check_bounds(value, reader);"] if bounded else []),
-        "}",
-        "",
-    ]
+    if bounds_check(decl):
+        write, read = ["  check_bounds(value, writer);", *write], [*read, "  check_bounds(value, reader);"]
+    if decl.recursive:
+        write = ["  const ::skein::idl::CdrWriter::Nesting nesting(writer);", *write]
+        read = ["  const ::skein::idl::CdrReader::Nesting nesting(reader);", *read]
+    return write, read
 
 
 def value_if(lines):
@@ -98,17 +97,8 @@ def value_if(lines):
 
 
 def _bitmask(decl):
-    underlying = f"std::uint{decl.bits}_t"
-    return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}& value) {{",
-        f"  writer.write(static_cast<{underlying}>(value));",
-        "}",
-        "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}& value) {{",
-        f"  value = static_cast<{decl.cpp}>(reader.read<{underlying}>());",
-        "}",
-        "",
-    ]
+    kind = f"std::uint{decl.bits}_t"
+    return [f"  writer.write(static_cast<{kind}>(value));"], [f"  value = static_cast<{decl.cpp}>(reader.read<{kind}>());"]
 
 
 def _bitset(decl):
@@ -128,50 +118,21 @@ def _bitset(decl):
                 read.append(f"  value.{field.cpp_name} = static_cast<{kind}>(static_cast<std::int64_t>((({shifted}) ^ {sign}) - {sign}));")
             else:
                 read.append(f"  value.{field.cpp_name} = static_cast<{kind}>({shifted});")
-    return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}&{value_if(write)}) {{",
-        "  std::uint64_t bits = 0;",
-        *write,
-        f"  writer.write(static_cast<{underlying}>(bits));",
-        "}",
-        "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}&{value_if(read)}) {{",
-        f"  {'const auto bits = ' if read else ''}reader.read<{underlying}>();",
-        *read,
-        "}",
-        "",
-    ]
+    return (
+        ["  std::uint64_t bits = 0;", *write, f"  writer.write(static_cast<{underlying}>(bits));"],
+        [f"  {'const auto bits = ' if read else ''}reader.read<{underlying}>();", *read],
+    )
 
 
 def _enum(decl):
+    kind, known, explicit = "std::uint32_t", len(decl.enumerators), ""
     if not decl.counted:
-        return _valued_enum(decl)
-    count = len(decl.enumerators)
-    return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}& value) {{",
-        f'  writer.write_enum(static_cast<std::uint32_t>(value), {count}, "{decl.idl_name}");',
-        "}",
-        "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}& value) {{",
-        f"  value = static_cast<{decl.cpp}>(reader.read_enum({count}));",
-        "}",
-        "",
-    ]
-
-
-def _valued_enum(decl):
-    underlying = f"std::int{decl.bits}_t"
-    values = f"k{decl.cpp_name}Values"
-    return [
-        f"void skein_encode(::skein::idl::CdrWriter& writer, const {decl.cpp}& value) {{",
-        f'  writer.write_enum<{underlying}>(static_cast<{underlying}>(value), {values}, "{decl.idl_name}");',
-        "}",
-        "",
-        f"void skein_decode(::skein::idl::CdrReader& reader, {decl.cpp}& value) {{",
-        f"  value = static_cast<{decl.cpp}>(reader.read_enum<{underlying}>({values}));",
-        "}",
-        "",
-    ]
+        kind, known = f"std::int{decl.bits}_t", f"k{decl.cpp_name}Values"
+        explicit = f"<{kind}>"
+    return (
+        [f'  writer.write_enum{explicit}(static_cast<{kind}>(value), {known}, "{decl.idl_name}");'],
+        [f"  value = static_cast<{decl.cpp}>(reader.read_enum{explicit}({known}));"],
+    )
 
 
 def _struct(decl):
@@ -261,6 +222,9 @@ def _union(decl):
             "  }",
         ]
     return write, read
+
+
+_BODIES = {model.Enum: _enum, model.Bitmask: _bitmask, model.Bitset: _bitset}
 
 
 def key_hash(decl):
