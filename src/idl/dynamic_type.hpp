@@ -40,7 +40,7 @@ struct DynamicType {
   bool is_struct() const {
     return is(types::DeclarationKind::Struct) || is(types::DeclarationKind::Exception);
   }
-  /// The union's member that a discriminator selects; null where it selects none.
+  /// The union's member that a discriminator selects; null if it selects none.
   const Member* selected(std::int64_t label) const;
   /// The union's member that a new value holds.
   const Member& initial_member() const;
@@ -55,7 +55,7 @@ struct DynamicType {
 /// The types of a types::TypeSystem. Immutable once made; thread-safe then.
 class DynamicTypes {
  public:
-  /// Throws InvalidArgument where a description lacks what its kind has, or names what is not
+  /// Throws InvalidArgument if a description lacks what its kind has, or names what is not
   /// declared.
   explicit DynamicTypes(types::TypeSystem described);
   DynamicTypes(const DynamicTypes&) = delete;

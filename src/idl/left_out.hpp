@@ -24,7 +24,7 @@ class LeavingOut {
   /// The message is begun again.
   void forget() { memory_ = nullptr; }
 
-  /// Where it lies; null where nothing was left out.
+  /// Where it lies; null if nothing was left out.
   const std::shared_ptr<LoanMemory>& memory() const noexcept { return memory_; }
   std::size_t position() const noexcept { return position_; }
 
@@ -49,7 +49,7 @@ class PuttingIn {
   PuttingIn(const PuttingIn&) = delete;
   PuttingIn& operator=(const PuttingIn&) = delete;
 
-  /// Nothing where none is missing there.
+  /// Nothing if none is missing there.
   std::optional<std::span<const std::byte>> take(std::size_t position);
   /// Whether it has been taken.
   bool taken() const noexcept { return taken_; }

@@ -22,11 +22,11 @@ class ChunkQueue {
 
   explicit ChunkQueue(const Limits& limits) : limits_(limits) {}
 
-  /// False where there is no room, and after close(). A message that is larger than the whole queue
+  /// False if there is no room, and after close(). A message that is larger than the whole queue
   /// has room when nothing else waits.
   bool add(const Message& message);
 
-  /// The next chunk, for which it waits. Nothing where wake() was called, and after close(), when
+  /// The next chunk, for which it waits. Nothing if wake() was called, and after close(), when
   /// all are taken.
   std::optional<Chunk> take();
   /// Gives a chunk from take() back: its room and its memory.

@@ -17,7 +17,7 @@ struct ChunkHead {
   std::uint64_t compressed_size;
 };
 
-/// Their records, decompressed and checked. Throws MalformedRecord where they are damaged,
+/// Their records, decompressed and checked. Throws MalformedRecord if they are damaged,
 /// compressed in another way than by zstd, or need more than `memory`.
 Bytes read_chunk(const InputFile& file, const ChunkPlace& place, std::size_t memory);
 

@@ -25,7 +25,7 @@ class Compressor {
   std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;
 };
 
-/// Exactly `to.size()` bytes. False where it is no zstd, or of another size.
+/// Exactly `to.size()` bytes. False if it is no zstd, or of another size.
 bool decompress(std::span<const std::byte> from, std::span<std::byte> to);
 
 /// The checksum of MCAP, which is that of gzip.

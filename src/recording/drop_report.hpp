@@ -12,7 +12,7 @@ namespace skein::recording {
 /// so that a disk that is slow gets no more to do. Not thread-safe.
 class DropReport {
  public:
-  /// What is to be written now; nothing where nothing was dropped since the last one. `last`: at
+  /// What is to be written now; nothing if nothing was dropped since the last one. `last`: at
   /// the end of a file, when each drop is said.
   std::optional<Metadata> make(const std::vector<ChannelStatistics>& channels, bool last);
   /// The next file says all of them again.

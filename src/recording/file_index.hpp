@@ -52,8 +52,8 @@ struct FileIndex {
 /// So much of schemas, channels and metadata is kept.
 inline constexpr std::uint64_t kMostKept = std::uint64_t{64} << 20;
 
-/// By the summary at the end of the file; nothing where it has none, or a wrong one. Throws
-/// MalformedRecord where that becomes clear in its middle.
+/// By the summary at the end of the file; nothing if it has none, or a wrong one. Throws
+/// MalformedRecord if that becomes clear in its middle.
 std::optional<FileIndex> read_summary(const InputFile& file, std::size_t memory);
 
 /// By all records from the beginning, up to the last whole one.

@@ -13,14 +13,14 @@ namespace skein::recording {
 /// read is then an error, not a signal.
 class InputFile {
  public:
-  /// Throws InvalidArgument where it cannot be opened.
+  /// Throws InvalidArgument if it cannot be opened.
   explicit InputFile(std::string path);
 
   const std::string& path() const noexcept { return path_; }
   /// When it was opened.
   std::uint64_t size() const noexcept { return size_; }
 
-  /// Throws MalformedRecord where the file has no such bytes, or cannot be read.
+  /// Throws MalformedRecord if the file has no such bytes, or cannot be read.
   Bytes read(std::uint64_t offset, std::uint64_t length) const;
 
  private:

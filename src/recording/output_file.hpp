@@ -12,7 +12,7 @@ namespace skein::recording {
 /// could not write whole is taken away again.
 class OutputFile {
  public:
-  /// Throws WriteFailed where it cannot be made, or is there already.
+  /// Throws WriteFailed if it cannot be made, or is there already.
   explicit OutputFile(std::string path);
 
   /// Throws WriteFailed, with the reason and the remedy.

@@ -65,7 +65,7 @@ struct PerfettoExport {
 };
 
 /// Writes what a recording has on `skein/calls` and `skein/decisions`. Throws InvalidArgument where
-/// it has neither, and WriteFailed where the file cannot be made or written.
+/// it has neither, and WriteFailed if the file cannot be made or written.
 PerfettoExport export_to_perfetto(const Reader& recording, const std::string& path);
 
 }  // namespace skein::recording

@@ -39,7 +39,7 @@ bool is_topic(const Reader& recording, const Channel& channel) {
   return std::ranges::count(attachments, types_attachment(value_of(channel, "type"))) > 0;
 }
 
-/// Nothing where it says none, or no number.
+/// Nothing if it says none, or no number.
 std::optional<std::chrono::milliseconds> time_of(const Channel& channel, const std::string& name) {
   const std::string text = value_of(channel, name);
   std::int64_t milliseconds = 0;

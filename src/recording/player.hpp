@@ -26,7 +26,7 @@ struct PlayerOptions {
 class Player {
  public:
   /// `entity` and `recording` outlive it. Throws InvalidArgument for a topic that is not recorded,
-  /// with the most similar name, and where there is none that can be published.
+  /// with the most similar name, and if there is none that can be published.
   Player(Entity& entity, const Reader& recording, PlayerOptions options);
   ~Player();
   Player(const Player&) = delete;

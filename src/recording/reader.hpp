@@ -46,7 +46,7 @@ class Messages {
 /// has none, all that is whole. Trusts nothing in the file. Thread-safe.
 class Reader {
  public:
-  /// Throws InvalidArgument where there is no such file, and where it is no MCAP.
+  /// Throws InvalidArgument if there is no such file, and if it is no MCAP.
   explicit Reader(std::string path, const ReaderOptions& options = {});
   ~Reader();
 
@@ -67,7 +67,7 @@ class Reader {
 
   const std::vector<Metadata>& metadata() const;
   std::vector<std::string> attachments() const;
-  /// The first with this name. Throws InvalidArgument where it is not there, or damaged.
+  /// The first with this name. Throws InvalidArgument if it is not there, or damaged.
   Attachment attachment(const std::string& name) const;
 
   /// Throws InvalidArgument for a topic that is not there.

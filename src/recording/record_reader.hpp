@@ -17,7 +17,7 @@ struct MalformedRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads fields from bytes that anybody may have written. Throws MalformedRecord where they end too
+/// Reads fields from bytes that anybody may have written. Throws MalformedRecord if they end too
 /// early.
 class RecordReader {
  public:
@@ -57,7 +57,7 @@ struct Record {
   std::span<const std::byte> fields;
 };
 
-/// The next record of `bytes`; nothing where no whole one is left.
+/// The next record of `bytes`; nothing if no whole one is left.
 std::optional<Record> next_record(RecordReader& bytes);
 
 }  // namespace skein::recording

@@ -27,7 +27,7 @@ std::string part_of_result(const CallRecord& record) {
   return record.end == CallEnd::Raised ? "raised/" + record.text : kReply;
 }
 
-/// The operation, and the interface that declares it; nothing where they are not described.
+/// The operation, and the interface that declares it; nothing if they are not described.
 std::pair<const types::Interface*, const types::Operation*> find_operation(
     const types::TypeSystem& known, const std::string& name) {
   for (const types::Interface& interface : known.interfaces) {

@@ -69,7 +69,7 @@ class RecordedCalls {
   std::vector<Waiting> waiting_;
   std::size_t waiting_size_ = 0;
   std::map<Part, std::uint16_t> channels_;
-  /// By service and participant; null where it did not tell them.
+  /// By service and participant; null if it did not tell them.
   std::map<std::pair<std::string, Guid>, std::shared_ptr<const types::TypeSystem>> told_;
 };
 

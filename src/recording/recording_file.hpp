@@ -13,7 +13,7 @@
 namespace skein::recording {
 
 /// One MCAP file, from its beginning to its summary. Not thread-safe. All functions throw
-/// WriteFailed where the file cannot be written; what was written before can then be read.
+/// WriteFailed if the file cannot be written; what was written before can then be read.
 class RecordingFile {
  public:
   /// Without a level chunks are not compressed. Throws InvalidArgument, too.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kEnd = kRecordHeader + kFooterFields + kMagic.size();
 
-/// The summary's records; nothing where there is none.
+/// The summary's records; nothing if there is none.
 std::optional<Bytes> summary_of(const InputFile& file, std::size_t memory) {
   if (file.size() < kMagic.size() + kEnd) return std::nullopt;
   const std::uint64_t footer = file.size() - kEnd;

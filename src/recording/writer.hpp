@@ -53,20 +53,20 @@ class Writer {
  public:
   /// `path` is the file; with splitting `name.mcap` stands for `name_0.mcap`, `name_1.mcap`, …,
   /// each of which is complete. Throws InvalidArgument for options that make no sense, and
-  /// WriteFailed where the file is there already or cannot be made.
+  /// WriteFailed if the file is there already or cannot be made.
   Writer(const std::string& path, const WriterOptions& options);
   explicit Writer(const std::string& path) : Writer(path, WriterOptions()) {}
   /// Closes it; what close() would throw is logged.
   ~Writer();
 
-  /// Give the id for what follows. Throw InvalidArgument where there are 65535 already.
+  /// Give the id for what follows. Throw InvalidArgument if there are 65535 already.
   std::uint16_t add_schema(std::string name, std::string encoding, std::string data);
-  /// `schema` may be 0: none. Throws InvalidArgument where it is unknown.
+  /// `schema` may be 0: none. Throws InvalidArgument if it is unknown.
   std::uint16_t add_channel(std::string topic, std::uint16_t schema,
                             std::map<std::string, std::string> metadata = {},
                             std::string message_encoding = "cdr");
 
-  /// False where the message was dropped: the queue is full, the disk is, or it is closed. Does not
+  /// False if the message was dropped: the queue is full, the disk is, or it is closed. Does not
   /// wait, unless `wait_for_room` says so. Throws InvalidArgument for a channel that is unknown.
   bool write(const Message& message);
 
@@ -79,7 +79,7 @@ class Writer {
 
   WriterStatistics statistics() const;
 
-  /// Writes what waits, and the index. Throws WriteFailed where something could not be written.
+  /// Writes what waits, and the index. Throws WriteFailed if something could not be written.
   void close();
 
  private:

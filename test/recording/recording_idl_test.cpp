@@ -71,8 +71,7 @@ TEST_CASE("a type that contains itself by a sequence has no schema, and the reas
 }
 
 TEST_CASE("descriptions that make no sense are refused") {
-  CHECK_THROWS_WITH(to_recording_idl({}, "S"),
-                    Catch::Contains("no type 'S' is described"));
+  CHECK_THROWS_WITH(to_recording_idl({}, "S"), Catch::Contains("no type 'S' is described"));
   CHECK_THROWS_WITH(
       to_recording_idl({{structure("S", 0, {member("x", type(Kind::Sequence))})}, {}}, "S"),
       Catch::Contains("lacks what its kind has"));
