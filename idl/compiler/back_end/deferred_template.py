@@ -39,28 +39,11 @@ def definition(interface):
 def source(interface):
     name = interface.cpp_name + "Deferred"
     operations = interface.all_operations()
-    signature = "const ::skein::OperationInfo& operation, const void* in, void* out"
-    if not any(operation.in_struct.members for operation in operations):
-        signature = signature.replace(" in,", ",")
-    if not any(_is_deferred(operation) or operation.stream for operation in operations):
-        signature = signature.removesuffix(" out")
-    lines = [
-        f"const ::skein::InterfaceInfo& {name}::interface_info() const noexcept {{",
-        f"  return {interface.cpp}::interface_info();",
-        "}",
-        "",
+    cases = [line for each in operations for line in (_case(each) if _is_deferred(each) else skeleton_template.case(each, "this"))]
+    return [
         f"bool {name}::answers_later() const noexcept {{ return true; }}",
         "",
-        f"void {name}::dispatch({signature}) {{",
-        "  switch (operation.hash) {",
-    ]
-    for operation in operations:
-        lines += _case(operation) if _is_deferred(operation) else skeleton_template.case(operation, "this")
-    return lines + [
-        f"    default: ::skein::idl::throw_unknown_operation({interface.cpp}::interface_info(), operation);",
-        "  }",
-        "}",
-        "",
+        *skeleton_template.servant(interface, name, cases, any(_is_deferred(each) or each.stream for each in operations)),
     ]
 
 

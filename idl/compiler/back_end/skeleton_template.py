@@ -25,27 +25,28 @@ def definition(interface):
 def source(interface):
     name = interface.cpp_name + "Skeleton"
     operations = interface.all_operations()
-    signature = "const ::skein::OperationInfo& operation, const void* in, void* out"
-    if not any(operation.in_struct.members for operation in operations):
-        signature = signature.replace(" in,", ",")
-    if not any(operation.out_struct.members for operation in operations):
-        signature = signature.removesuffix(" out")
-    lines = [
+    cases = [line for operation in operations for line in case(operation, "implementation_")]
+    return [
         f"{name}::{name}(std::shared_ptr<{interface.cpp}> implementation)",
         "    : implementation_(std::move(implementation)) {",
         f"  if (!implementation_) ::skein::idl::throw_no_implementation({interface.cpp}::interface_info());",
         "}",
         "",
+        *servant(interface, name, cases, any(operation.out_struct.members for operation in operations)),
+    ]
+
+
+def servant(interface, name, cases, uses_out):
+    """What every kind of servant has."""
+    uses_in = any(operation.in_struct.members for operation in interface.all_operations())
+    return [
         f"const ::skein::InterfaceInfo& {name}::interface_info() const noexcept {{",
         f"  return {interface.cpp}::interface_info();",
         "}",
         "",
-        f"void {name}::dispatch({signature}) {{",
+        f"void {name}::dispatch(const ::skein::OperationInfo& operation, const void*{' in' if uses_in else ''}, void*{' out' if uses_out else ''}) {{",
         "  switch (operation.hash) {",
-    ]
-    for operation in operations:
-        lines += case(operation, "implementation_")
-    return lines + [
+        *cases,
         f"    default: ::skein::idl::throw_unknown_operation({interface.cpp}::interface_info(), operation);",
         "  }",
         "}",
@@ -68,27 +69,13 @@ def case(operation, implementation):
                 prepare.append(f"      {target} = {value};")
         else:
             arguments.append(value)
+    lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
+    if operation.in_struct.members:
+        lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
     if operation.stream:
-        return _stream_case(operation, arguments, implementation)
-    call = f"{implementation}->{operation.cpp_name}({', '.join(arguments)});"
-    lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
-    if operation.in_struct.members:
-        lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
-    if operation.out_struct.members:
+        arguments.append("results")
+        lines.append(f"      ::skein::WritingSink<{cpp.type_name(operation.result)}, {operation.out_struct.cpp}> results(out);")
+    elif operation.out_struct.members:
         lines.append(f"      auto& results = *static_cast<{operation.out_struct.cpp}*>(out);")
-    lines += prepare
-    lines.append(f"      {'results.return_ = ' if operation.result else ''}{call}")
-    return lines + ["      return;", "    }"]
-
-
-def _stream_case(operation, arguments, implementation):
-    lines = [f"    case 0x{operation.hash:08x}U: {{  // {operation.name}"]
-    if operation.in_struct.members:
-        lines.append(f"      const auto& arguments = *static_cast<const {operation.in_struct.cpp}*>(in);")
-    result = cpp.type_name(operation.result)
-    return lines + [
-        f"      ::skein::WritingSink<{result}, {operation.out_struct.cpp}> results(out);",
-        f"      {implementation}->{operation.cpp_name}({', '.join([*arguments, 'results'])});",
-        "      return;",
-        "    }",
-    ]
+    result = "results.return_ = " if operation.result and not operation.stream else ""
+    return [*lines, *prepare, f"      {result}{implementation}->{operation.cpp_name}({', '.join(arguments)});", "      return;", "    }"]
