@@ -31,7 +31,8 @@ std::vector<Shown> shown(const std::string& trace) {
   std::map<int, std::string> processes;  // by their numbers
   std::map<int, std::vector<Shown>> open;
   std::vector<Shown> slices;
-  for (const auto& event : nlohmann::json::parse(trace).at("traceEvents")) {
+  const auto parsed = nlohmann::json::parse(trace);
+  for (const auto& event : parsed.at("traceEvents")) {
     if (event.at("ph") == "M") {
       if (event.at("name") == "process_name") processes[event["pid"]] = event["args"]["name"];
       continue;

@@ -82,5 +82,6 @@ TEST_CASE("descriptions that make no sense are refused") {
   enumeration.name = "E";
   enumeration.kind = DeclarationKind::Enumeration;
   enumeration.bits = 32;
+  enumeration.values = {{"A", 0}};
   CHECK_THROWS_WITH(to_recording_idl({{enumeration}, {}}, "E"), Catch::Contains("is no message"));
 }
