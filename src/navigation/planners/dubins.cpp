@@ -145,18 +145,6 @@ double DubinsPath::length_m() const noexcept {
   return pieces_[0].length_m + pieces_[1].length_m + pieces_[2].length_m;
 }
 
-Pose DubinsPath::at(double distance_m) const noexcept {
-  if (distance_m >= length_m()) return goal_;
-  Pose pose = start_;
-  double left = std::max(0.0, distance_m);
-  for (const Piece& piece : pieces_) {
-    pose = after(pose, {piece.turn, std::min(left, piece.length_m)}, radius_m_);
-    left -= piece.length_m;
-    if (left <= 0) break;
-  }
-  return pose;
-}
-
 std::vector<GroundPoint> DubinsPath::waypoints() const {
   constexpr double kSharpest = 8 * std::numbers::pi / 180;
   std::vector<GroundPoint> points{start_.point};

@@ -57,9 +57,4 @@ double earth_drop_m(double distance_m) {
   return distance_m * distance_m / (2 * kEffectiveRadius_m);
 }
 
-double radar_horizon_m(double antenna_height_m, double target_height_m) {
-  return std::sqrt(2 * kEffectiveRadius_m * antenna_height_m) +
-         std::sqrt(2 * kEffectiveRadius_m * target_height_m);
-}
-
 }  // namespace skein::navigation

@@ -33,9 +33,4 @@ AE_navigator::Position mast_top(const Terrain& terrain, const AE_navigator::Grou
 /// over an earth of 4/3 its radius.
 double earth_drop_m(double distance_m);
 
-/// The distance at which a target at a height comes over the horizon of an antenna, both above a
-/// smooth earth of 4/3 its radius: about 4.12 km times the sum of the roots of the heights in
-/// metres.
-double radar_horizon_m(double antenna_height_m, double target_height_m);
-
 }  // namespace skein::navigation

@@ -36,30 +36,6 @@ Part within(const Position& middle, double radius_m, const Position& a, const Po
 
 }  // namespace
 
-double detection_probability(double signal_to_noise, double false_alarm_probability) {
-  if (!(signal_to_noise >= 0)) {
-    throw InvalidArgument(
-        fmt::format("the signal-to-noise ratio is {}; it must be 0 or more", signal_to_noise));
-  }
-  if (!(false_alarm_probability > 0 && false_alarm_probability < 1)) {
-    throw InvalidArgument(
-        fmt::format("the probability of a false alarm is {}; it must be between 0 and 1",
-                    false_alarm_probability));
-  }
-  return 0.5 * std::erfc(std::sqrt(-std::log(false_alarm_probability)) -
-                         std::sqrt(signal_to_noise + 0.5));
-}
-
-double signal_to_noise(double at_reference, double reference_m, double distance_m) {
-  return at_reference * std::pow(reference_m / distance_m, 4);
-}
-
-double cumulative_detection(std::span<const double> probabilities) {
-  double missed = 1;
-  for (const double probability : probabilities) missed *= 1 - probability;
-  return 1 - missed;
-}
-
 MissileThreat::MissileThreat(const Terrain& terrain,
                              std::span<const AE_navigator::MissileSite> sites)
     : mask_(terrain) {
@@ -71,16 +47,6 @@ MissileThreat::MissileThreat(const Terrain& terrain,
 
 bool MissileThreat::sees(const Launcher& launcher, const Position& point) const {
   return mask_.sees(launcher.position, point, launcher.range_m);
-}
-
-double MissileThreat::hazard(const Position& point) const {
-  double sum = 0;
-  for (const Launcher& launcher : launchers_) {
-    if (slant_range_m(launcher.position, point) < launcher.range_m && sees(launcher, point)) {
-      sum += launcher.kills_per_second;
-    }
-  }
-  return sum;
 }
 
 double MissileThreat::seconds_in_danger(const Launcher& launcher, const Position& a,
@@ -109,10 +75,6 @@ double MissileThreat::expected_kills(std::span<const Position> waypoints, double
     }
   }
   return sum;
-}
-
-double MissileThreat::survival(std::span<const Position> waypoints, double speed_m_s) const {
-  return std::exp(-expected_kills(waypoints, speed_m_s));
 }
 
 }  // namespace skein::navigation
