@@ -35,7 +35,6 @@ Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
     : entity_(entity),
       work_(std::move(work)),
       told_{entity.options().name, new_life(), period_of(rate_hz), -1, false},
-      participation_(told_.period_ticks),
       time_(entity.subscription<recon::MissionTime>(
           time_topic(told_.period_ticks), skein::TopicQos::state(),
           [this](const recon::MissionTime& time) { hear(time); })) {}
@@ -79,11 +78,7 @@ void Participant::take_part(const std::stop_token& stop) {
       continue;
     }
     acknowledge(lock);
-    skein::Instant until = tell_again_;
-    if (const auto next = participation_.next_change()) until = std::min(until, *next);
-    const std::uint64_t releases = releases_;
-    changed_.wait_until(lock, stop, until,
-                        [&] { return begun_ > present_ || releases_ != releases; });
+    changed_.wait_until(lock, stop, tell_again_, [&] { return begun_ > present_; });
   }
 }
 
@@ -93,7 +88,6 @@ void Participant::do_work(std::unique_lock<std::mutex>& lock) {
   std::string failure;
   lock.unlock();
   try {
-    clock_.begin(tick);
     work_(tick);
   } catch (const std::exception& error) {
     failure = error.what();
@@ -102,16 +96,14 @@ void Participant::do_work(std::unique_lock<std::mutex>& lock) {
   if (failure != failure_ && !failure.empty())
     fmt::print(stderr, "{}, tick {}: {}\n", told_.participant, tick, failure);
   failure_ = failure;
-  participation_.finish(tick);
   tell_again_ = {};
 }
 
 /// Tells what is new, and otherwise now and then what was told before.
 void Participant::acknowledge(std::unique_lock<std::mutex>& lock) {
   const skein::Instant now = entity_.clock().now();
-  const Tick tick = participation_.acknowledge(now);
-  if (tick == told_.tick && now < tell_again_) return;
-  told_.tick = tick;
+  if (present_ == told_.tick && now < tell_again_) return;
+  told_.tick = present_;
   tell_again_ = now + kTellAgain;
   const recon::Acknowledgment told = told_;
   lock.unlock();
@@ -123,30 +115,9 @@ void Participant::acknowledge(std::unique_lock<std::mutex>& lock) {
   lock.lock();
 }
 
-Tick Participant::tick() const {
-  std::lock_guard lock(mutex_);
-  return present_;
-}
-
 std::string Participant::failure() const {
   std::lock_guard lock(mutex_);
   return failure_;
-}
-
-Participant::Hold::Hold(Participant& participant, std::optional<skein::Duration> latency)
-    : participant_(participant) {
-  std::lock_guard lock(participant.mutex_);
-  hold_ = participant.participation_.hold(std::max<Tick>(participant.present_, 0),
-                                          participant.entity_.clock().now(), latency);
-}
-
-Participant::Hold::~Hold() {
-  {
-    std::lock_guard lock(participant_.mutex_);
-    participant_.participation_.release(hold_);
-    ++participant_.releases_;
-  }
-  participant_.changed_.notify_all();
 }
 
 }  // namespace reconnaissance

@@ -2,7 +2,6 @@
 
 #include <condition_variable>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -10,8 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "clock/mission_clock.hpp"
-#include "clock/participation.hpp"
+#include "clock/ticks.hpp"
 #include "skein/entity.hpp"
 #include "time.idl.hpp"
 
@@ -35,29 +33,8 @@ class Participant {
   /// Joins. Call it when all that the work uses is there.
   void start();
 
-  /// The mission's clock. Its timers run when their tick begins here, before the work.
-  MissionClock& clock() { return clock_; }
-
-  /// The present tick, the last that has begun here; -1 before the first.
-  Tick tick() const;
-
   /// Why the work of the last tick ended by an exception; empty if it did not.
   std::string failure() const;
-
-  /// While it lives, the mission's time may advance by as much as it has lived, or by the latency
-  /// that was given, and no more (see Participation): for work that takes time in the mission, too.
-  class Hold {
-   public:
-    explicit Hold(Participant& participant, std::optional<skein::Duration> latency);
-    ~Hold();
-    Hold(const Hold&) = delete;
-    Hold& operator=(const Hold&) = delete;
-
-   private:
-    Participant& participant_;
-    Participation::Hold hold_;
-  };
-  Hold hold(std::optional<skein::Duration> latency = std::nullopt) { return Hold(*this, latency); }
 
  private:
   void hear(const recon::MissionTime& time);
@@ -69,15 +46,12 @@ class Participant {
   Work work_;
   recon::Acknowledgment told_;
   std::optional<skein::Publisher<recon::Acknowledgment>> acknowledgments_;
-  MissionClock clock_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<std::uint64_t> run_;
   Tick begun_ = -1;    // by the time's keeper
-  Tick present_ = -1;  // here
-  Participation participation_;
-  std::uint64_t releases_ = 0;  // so that the thread looks again
+  Tick present_ = -1;  // that has begun here
   skein::Instant tell_again_{};
   std::string failure_;
 

@@ -3,9 +3,7 @@
 #include <vector>
 
 #include "clock/lock_step.hpp"
-#include "clock/mission_clock.hpp"
 #include "clock/pace.hpp"
-#include "clock/participation.hpp"
 
 namespace clock_test {
 
@@ -145,86 +143,6 @@ TEST_CASE("a speed limit spaces the ticks, and what is late is made up for in pa
   CHECK(*pace.next() >= first + 10s - 100ms);
   pace.limit(0);
   CHECK(*pace.next() <= first + 10s);
-}
-
-TEST_CASE("the mission's clock stands between ticks, and timers run when their tick begins") {
-  MissionClock clock;
-  CHECK(clock.now() == Instant{});
-  std::vector<Instant> ran;
-  clock.call_after(30ms, [&] { ran.push_back(clock.now()); });
-  clock.call_after(1s, [&] { ran.push_back(clock.now()); });
-  const auto cancelled = clock.call_after(50ms, [&] { ran.push_back(clock.now()); });
-  clock.begin(1);
-  CHECK(ran.empty());
-  CHECK(clock.now() == Instant{} + 20ms);
-  clock.cancel(cancelled);
-  clock.begin(2);
-  CHECK(ran == std::vector<Instant>{Instant{} + 30ms});
-  clock.begin(2);
-  CHECK(clock.now() == Instant{} + 40ms);
-  clock.begin(1);  // it does not go back
-  CHECK(clock.now() == Instant{} + 40ms);
-}
-
-TEST_CASE("without a hold a tick is acknowledged when its work is done") {
-  Participation part(5);
-  CHECK(part.acknowledge(Instant{}) == -1);
-  part.finish(0);
-  CHECK(part.acknowledge(Instant{}) == 0);
-  CHECK_FALSE(part.next_change());
-}
-
-TEST_CASE("while a hold lasts, time advances by as much as the work has taken") {
-  Participation part(5);
-  const Instant begin{};
-  part.finish(0);
-  part.acknowledge(begin);
-  part.finish(5);
-  const auto hold = part.hold(5, begin);
-  CHECK(part.acknowledge(begin) == 0);
-  CHECK(*part.next_change() == begin + 80ms);  // time would pass to the tick before the next, 10
-  CHECK(part.acknowledge(begin + 79ms) == 0);
-  CHECK(part.acknowledge(begin + 80ms) == 5);
-  part.finish(10);
-  CHECK(part.acknowledge(begin + 100ms) == 5);
-  CHECK(part.acknowledge(begin + 180ms) == 10);
-  part.finish(15);
-  CHECK(part.acknowledge(begin + 181ms) == 10);
-  part.release(hold);
-  CHECK(part.acknowledge(begin + 181ms) == 15);
-}
-
-TEST_CASE("with a latency that is known before, time advances by it at once and then waits") {
-  Participation part(1);
-  const Instant begin{};
-  part.finish(10);
-  const auto hold = part.hold(10, begin, 40ms);
-  CHECK(part.acknowledge(begin) == 10);
-  part.finish(11);
-  CHECK(part.acknowledge(begin) == 11);
-  part.finish(12);
-  CHECK(part.acknowledge(begin) == 12);
-  part.finish(13);
-  CHECK(part.acknowledge(begin + 1h) == 12);
-  CHECK_FALSE(part.next_change());  // it waits for the release alone
-  part.release(hold);
-  CHECK(part.acknowledge(begin) == 13);
-}
-
-TEST_CASE("of several holds each must allow it") {
-  Participation part(1);
-  const Instant begin{};
-  part.finish(0);
-  const auto long_one = part.hold(0, begin, 10s);
-  const auto measured = part.hold(0, begin);
-  part.finish(1);
-  CHECK(part.acknowledge(begin + 19ms) == -1);
-  CHECK(part.acknowledge(begin + 20ms) == 1);
-  part.release(long_one);
-  part.finish(2);
-  CHECK(part.acknowledge(begin + 20ms) == 1);
-  part.release(measured);
-  CHECK(part.acknowledge(begin + 20ms) == 2);
 }
 
 }  // namespace clock_test

@@ -244,7 +244,7 @@ TEST_CASE("those of several systems take part in one time, and hear nothing of o
   REQUIRE(notes.await("first", 50));
   REQUIRE(notes.await("second", 50));
   CHECK(time.participants() == 2);
-  CHECK(third.tick() == -1);
+  CHECK(notes.of("stranger").empty());
 }
 
 TEST_CASE("one that dies without a farewell is out, and time goes on") {
@@ -278,24 +278,6 @@ TEST_CASE("one that comes back joins at the present tick") {
   CHECK(ticks.front() >= left);
   const Tick back = simulator.time.tick();
   REQUIRE(notes.await("second", back + 50));
-}
-
-TEST_CASE("while a hold lasts time advances no further than it allows") {
-  Notes notes;
-  Simulator simulator(1, notes);
-  Member navigator("navigator", 50, [&](Tick tick) { notes.note("navigator", tick); });
-  REQUIRE(notes.await("navigator", 5));
-  const Tick before = navigator.participant->tick();
-  {
-    const auto hold = navigator.participant->hold(100ms);
-    const Tick after = navigator.participant->tick();
-    REQUIRE(notes.eventually([&] {
-      return simulator.time.tick() >= before + 5 &&
-             simulator.time.awaited() == std::vector<std::string>{"navigator"};
-    }));
-    CHECK(simulator.time.tick() <= after + 6);
-  }
-  CHECK(notes.await("navigator", before + 50));
 }
 
 TEST_CASE("work that fails is told, and does not hold time up") {
