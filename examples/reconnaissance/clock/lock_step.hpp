@@ -49,7 +49,6 @@ class LockStep {
   std::vector<std::string> awaited() const;
 
   std::size_t participants() const { return participants_.size(); }
-  std::size_t expected() const { return expected_; }
 
  private:
   struct Participant {

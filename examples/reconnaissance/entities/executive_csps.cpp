@@ -7,10 +7,6 @@ std::string words(const ModeDecision& decision) {
   switch (decision.cause) {
     case Cause::None:
       return "";
-    case Cause::LinkDegraded:
-      return "the link is bad";
-    case Cause::LinkLost:
-      return "the link is lost";
     case Cause::FuelLow:
       return "fuel suffices for the way home and no more";
     case Cause::FuelCritical:
@@ -28,7 +24,7 @@ std::string words(const ModeDecision& decision) {
     case Cause::Forecast:
       break;
   }
-  return "what is left to collect is not worth its risk";
+  return "the mission is not worth its risk";
 }
 
 static_assert(static_cast<int>(FlightMode::Abort) ==

@@ -63,7 +63,6 @@ FlightController::FlightController(skein::Entity& entity, const skein::Parameter
       advisories_(entity, topic::kAdvisory, skein::TopicQos::state()),
       command_(entity.publisher<recon::FlightCommand>(topic::kFlightCommand.name, stream_qos())),
       state_(entity.publisher<recon::FlightState>(topic::kFlightState.name, stream_qos())),
-      state_50hz_(entity.publisher<recon::FlightState>(topic::kFlightState50Hz.name, stream_qos())),
       member_(entity, values, [this](Tick tick) { fly(tick); }) {}
 
 void FlightController::start() {
@@ -189,8 +188,7 @@ double FlightController::ask_guidance(const Motion& motion, const Line& leg,
 void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sight& sight,
                                const recon::Sensors& sensors) {
   command_.publish({tick, demand.bank_rad, demand.climb_rad, demand.airspeed_m_s});
-  const bool often = state_50hz_.subscribers() > 0;
-  if (!often && !is_due(topic::kFlightState.period, tick)) return;
+  if (!is_due(topic::kFlightState.period, tick)) return;
   const Measurement& measured = sight.measured;
   recon::FlightState state;
   state.tick = tick;
@@ -210,8 +208,7 @@ void FlightController::publish(Tick tick, const Demand& demand, const Pilot::Sig
   state.avoiding = avoiding_;
   for (std::size_t i = 0; i < 3; ++i) state.sets_heard += voter_.out(i) ? 0 : 1;
   state.lost_samples = static_cast<std::uint32_t>(sensors_.lost());
-  if (often) state_50hz_.publish(state);
-  if (is_due(topic::kFlightState.period, tick)) state_.publish(state);
+  state_.publish(state);
 }
 
 }  // namespace reconnaissance

@@ -70,7 +70,6 @@ class FlightController : public recon::IFlightController {
   Stream<recon::ResolutionAdvisory> advisories_;
   skein::Publisher<recon::FlightCommand> command_;
   skein::Publisher<recon::FlightState> state_;
-  skein::Publisher<recon::FlightState> state_50hz_;
   Member member_;
 };
 

@@ -15,7 +15,6 @@ namespace topic {
 inline constexpr StreamTopic kSensors{"flight/sensors", 1};
 inline constexpr StreamTopic kFlightCommand{"flight/command", 1};
 inline constexpr StreamTopic kFlightState{"flight/state", 5};
-inline constexpr StreamTopic kFlightState50Hz{"flight/state_50hz", 1};
 inline constexpr StreamTopic kTruth{"simulation/truth", 5};
 inline constexpr StreamTopic kMode{"mission/mode", 25};
 inline constexpr StreamTopic kIntercepts{"threat/intercepts", 5};

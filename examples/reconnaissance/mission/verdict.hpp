@@ -78,7 +78,6 @@ class Judge {
   /// followed the aircraft.
   void suffer(double survival, double tracked_s);
 
-  bool airborne() const { return took_off_s_ && !touched_; }
   /// Whether it has landed, and stands.
   bool standing() const { return stood_s_.has_value(); }
   double duration_s() const { return last_.time_s - took_off_s_.value_or(last_.time_s); }

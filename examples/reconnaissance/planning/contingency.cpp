@@ -6,6 +6,15 @@
 namespace reconnaissance {
 namespace {
 
+// In missions: what the loss of the aircraft costs.
+constexpr double kAircraft = 5;
+// Of what a flight burns, relative to what was forecast.
+constexpr double kFuelDeviation = 0.1;
+// Until the plan's end, by the next failures.
+constexpr double kHazardOneChannelOut = 0.005, kHazardEntityMissing = 0.02;
+// A change of mode has to bring at least that much.
+constexpr double kAdvantage = 0.05;
+
 const MissingEntity* find(const MissionSituation& situation, auto&& wanted) {
   const auto found = std::find_if(situation.missing.begin(), situation.missing.end(), wanted);
   return found == situation.missing.end() ? nullptr : &*found;
@@ -13,20 +22,15 @@ const MissingEntity* find(const MissionSituation& situation, auto&& wanted) {
 
 bool is_final(FlightMode mode) { return mode >= FlightMode::ReturnHome; }
 
-/// Final modes stay; leaving the contingency route resumes the mission.
-ModeDecision continued(const ModeDecision& last, ModeDecision next) {
-  if (is_final(last.mode) && next.mode <= last.mode) {
-    next = last;
-  }
-  next.resumes =
-      last.mode == FlightMode::ContingencyRoute && next.mode < FlightMode::ContingencyRoute;
-  return next;
+/// Final modes stay.
+ModeDecision continued(const ModeDecision& last, const ModeDecision& next) {
+  return is_final(last.mode) && next.mode <= last.mode ? last : next;
 }
 
 /// That a flight burns more than there is.
-double probability_to_run_dry(double fuel_kg, double forecast_kg, double relative_deviation) {
+double probability_to_run_dry(double fuel_kg, double forecast_kg) {
   if (forecast_kg <= 0) return 0;
-  const double deviations = (fuel_kg - forecast_kg) / (relative_deviation * forecast_kg);
+  const double deviations = (fuel_kg - forecast_kg) / (kFuelDeviation * forecast_kg);
   return std::erfc(deviations / std::sqrt(2.0)) / 2;
 }
 
@@ -45,13 +49,11 @@ ModeDecision allowed_mode(const MissionSituation& s) {
   if (s.sensors > 1 && s.sensors_voted_in == 1) {
     return {FlightMode::ReturnHome, Cause::SensorsOut, {}};
   }
-  if (s.link == Link::Lost) return {FlightMode::ContingencyRoute, Cause::LinkLost, {}};
   if (const MissingEntity* missing = find(s, [](const MissingEntity&) { return true; })) {
     return {FlightMode::Degraded, missing->given_up ? Cause::EntityLost : Cause::EntityRestarts,
             missing->name};
   }
   if (s.sensors_voted_in < s.sensors) return {FlightMode::Degraded, Cause::SensorOut, {}};
-  if (s.link == Link::Degraded) return {FlightMode::Degraded, Cause::LinkDegraded, {}};
   return {};
 }
 
@@ -60,26 +62,22 @@ ModeDecision RuleTableExecutive::decide(const MissionSituation& situation) {
   return last_;
 }
 
-double UtilityExecutive::utility_of_mission(const MissionSituation& s) const {
-  double hazard = s.hazard_left;
-  hazard += weights_.hazard_one_channel_out * (s.sensors - s.sensors_voted_in);
-  hazard += weights_.hazard_entity_missing * static_cast<double>(s.missing.size());
-  const double dry =
-      probability_to_run_dry(s.fuel_kg, s.fuel_for_mission_kg, weights_.fuel_deviation);
+double UtilityExecutive::utility_of_mission(const MissionSituation& s) {
+  const double hazard = kHazardOneChannelOut * (s.sensors - s.sensors_voted_in) +
+                        kHazardEntityMissing * static_cast<double>(s.missing.size());
+  const double dry = probability_to_run_dry(s.fuel_kg, s.fuel_for_mission_kg);
   const double survives = std::exp(-hazard) * (1 - dry);
-  return survives * s.value_left - (1 - survives) * weights_.aircraft;
+  return survives - (1 - survives) * kAircraft;
 }
 
-double UtilityExecutive::utility_of_return(const MissionSituation& s) const {
-  return -weights_.aircraft *
-         probability_to_run_dry(s.fuel_kg, s.fuel_home_kg, weights_.fuel_deviation);
+double UtilityExecutive::utility_of_return(const MissionSituation& s) {
+  return -kAircraft * probability_to_run_dry(s.fuel_kg, s.fuel_home_kg);
 }
 
 ModeDecision UtilityExecutive::decide(const MissionSituation& situation) {
   ModeDecision next = allowed_mode(situation);
-  const bool flies_plan = next.mode < FlightMode::ContingencyRoute;
-  if (flies_plan &&
-      utility_of_return(situation) > utility_of_mission(situation) + weights_.advantage) {
+  if (!is_final(next.mode) &&
+      utility_of_return(situation) > utility_of_mission(situation) + kAdvantage) {
     next = {FlightMode::ReturnHome, Cause::Forecast, {}};
   }
   last_ = continued(last_, next);
