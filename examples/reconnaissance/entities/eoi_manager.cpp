@@ -97,7 +97,7 @@ void EoiManager::manage(Tick tick) {
   if (pictures_)
     if (const auto picture = pictures_->at(tick)) place(*picture);
   const auto state = flight_.at(tick);
-  lists_.publish({tick, elements_, state ? choose(tick, *state) : -1});
+  lists_.publish({tick, elements_, state ? choose(*state) : -1});
 }
 
 void EoiManager::see(const recon::Images& images) {
@@ -195,11 +195,11 @@ void EoiManager::place(recon::Element& element, const recon::Threat& threat) {
 
 /// A target that was found is not let out of sight. Else of those that are not collected and lie
 /// ahead.
-std::int32_t EoiManager::choose(Tick tick, const recon::FlightState& state) {
+std::int32_t EoiManager::choose(const recon::FlightState& state) {
   if (task_ == recon::ElementTask::LocateEmitter) return -1;
   const auto watched = std::ranges::find(elements_, true, &recon::Element::found);
   if (watched != elements_.end()) return static_cast<std::int32_t>(watched - elements_.begin());
-  recon::ElementChoice choice{{}, seconds_of(tick)};
+  recon::ElementChoice choice;
   const LocalFrame frame(geodetic(state.position));
   const double course_rad = std::atan2(state.east_m_s, state.north_m_s);
   const double speed_m_s = std::max(1.0, std::hypot(state.north_m_s, state.east_m_s));

@@ -29,7 +29,7 @@ class EoiManager {
   void follow(double now_s, const recon::ObjectTracks& tracks);
   void place(const recon::ThreatPicture& picture);
   static void place(recon::Element& element, const recon::Threat& threat);
-  std::int32_t choose(Tick tick, const recon::FlightState& state);
+  std::int32_t choose(const recon::FlightState& state);
   std::int32_t ask_policy(const recon::ElementChoice& choice);
 
   skein::Entity& entity_;

@@ -56,7 +56,6 @@ std::int32_t ElementPolicy::next(const recon::ElementChoice& choice) {
     element.size_m = each.size_m;
     element.wanted_gsd_m = each.wanted_ground_sample_m;
     element.deviation_m = each.deviation_m;
-    element.known_s = choice.now_s;
     if (each.achieved_ground_sample_m > 0) element.best_gsd_m = each.achieved_ground_sample_m;
     elements.push_back(element);
     looks.emplace_back();
@@ -64,7 +63,7 @@ std::int32_t ElementPolicy::next(const recon::ElementChoice& choice) {
       looks.back() =
           Look{each.seconds, each.wanted_ground_sample_m, kExpectedDeviation_m, kHalfView_m};
   }
-  const auto next = choose_(elements, looks, choice.now_s);
+  const auto next = choose_(elements, looks);
   return next ? static_cast<std::int32_t>(*next) : -1;
 }
 

@@ -14,11 +14,6 @@ double earth_drop_m(double distance_m, double earth_factor) {
   return distance_m * distance_m / (2 * earth_factor * kEarthRadius_m);
 }
 
-double horizon_m(double height_m, double other_height_m, double earth_factor) {
-  return std::sqrt(2 * earth_factor * kEarthRadius_m) *
-         (std::sqrt(height_m) + std::sqrt(other_height_m));
-}
-
 bool in_sight(const Local& a, const Local& b, const GroundHeight& ground, double earth_factor) {
   const double distance = std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
   const double whole_drop = earth_drop_m(distance, earth_factor);

@@ -19,11 +19,6 @@ inline constexpr double kOpticalEarth = 1 / (1 - 0.13);
 /// How far the ground of a smooth earth is below the horizontal ray that left it `distance_m` ago.
 double earth_drop_m(double distance_m, double earth_factor);
 
-/// The distance at which two antennas see each other over a smooth earth: the sum of the roots of
-/// 2 k R h. For radio 4.12 km times the sum of the roots of the heights in metres (Skolnik,
-/// "Introduction to Radar Systems", 2001, 8.2). Heights above the ground, not negative.
-double horizon_m(double height_m, double other_height_m, double earth_factor);
-
 /// Whether no ground stands between two places: it is looked up each 50 m, half a post of SRTM.
 /// The ends themselves are taken to be in the open.
 bool in_sight(const Local& a, const Local& b, const GroundHeight& ground, double earth_factor);

@@ -12,7 +12,6 @@ namespace reconnaissance {
 /// What an observer makes of an object, by the line pairs that he needs across it to do so in one
 /// case of two (Johnson, "Analysis of image forming systems", Image Intensifier Symposium, 1958).
 inline constexpr double kDetectionPairs = 1.0;
-inline constexpr double kRecognitionPairs = 4.0;
 inline constexpr double kIdentificationPairs = 6.4;
 
 /// How probable an observer succeeds with an object of that least dimension in an image of that

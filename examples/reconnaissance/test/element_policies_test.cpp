@@ -10,22 +10,6 @@ namespace element_policies_test {
 
 using namespace reconnaissance;
 
-TEST_CASE("the probability of identification is that of the published multipliers") {
-  // Cycles on target over those for one half, and the probability: the table of the target transfer
-  // probability function (Ratches 1976), which the closed form fits to 0.03.
-  struct Row {
-    double ratio, probability;
-  };
-  for (const auto& [ratio, probability] : {Row{3, 1}, Row{2, 0.95}, Row{1.5, 0.8}, Row{1, 0.5},
-                                           Row{0.75, 0.3}, Row{0.5, 0.1}, Row{0.25, 0.02}}) {
-    const double size_m = 5;
-    const double gsd_m = size_m / 2 / (6.4 * ratio);
-    CHECK(identification_probability(size_m, gsd_m) == Approx(probability).margin(0.03));
-  }
-  CHECK(identification_probability(5, 1e-6) == Approx(1));
-  CHECK(identification_probability(5, std::numeric_limits<double>::infinity()) == 0);
-}
-
 TEST_CASE("the probability to be inside a circle is what random places show") {
   Random random(60);
   int inside = 0;
@@ -38,28 +22,25 @@ TEST_CASE("the probability to be inside a circle is what random places show") {
   CHECK(inside_probability(0, 50) == 1);
 }
 
-TEST_CASE("what is unknown, moves, or was seen too coarsely is not fulfilled") {
+TEST_CASE("what is unknown, or was seen too coarsely, is not fulfilled") {
   Element element;
-  CHECK(!is_fulfilled(element, 0));
+  CHECK(!is_fulfilled(element));
   element.best_gsd_m = 0.3;
-  CHECK(is_fulfilled(element, 1e6));
+  CHECK(is_fulfilled(element));
+  element.deviation_m = 21;
+  CHECK(!is_fulfilled(element));
+  element.deviation_m = 0;
   element.best_gsd_m = 0.4;
-  CHECK(!is_fulfilled(element, 0));
-  element.best_gsd_m = 0.2;
-  element.drift_m_s = 2;
-  CHECK(is_fulfilled(element, 9));
-  CHECK(!is_fulfilled(element, 11));
+  CHECK(!is_fulfilled(element));
 }
 
 TEST_CASE("an element is known if it is identified and within twice the wanted deviation") {
   Element element;
   element.best_gsd_m = element.size_m / 2 / 6.4;
   element.deviation_m = element.wanted_deviation_m;
-  CHECK(known_probability(element, 0) == Approx(0.5 * (1 - std::exp(-2.0))));
-  element.drift_m_s = 1;
-  element.known_s = 100;
-  CHECK(known_probability(element, 100 + std::sqrt(3) * element.wanted_deviation_m) ==
-        Approx(0.5 * (1 - std::exp(-0.5))));
+  CHECK(known_probability(element) == Approx(0.5 * (1 - std::exp(-2.0))));
+  element.deviation_m = 2 * element.wanted_deviation_m;
+  CHECK(known_probability(element) == Approx(0.5 * (1 - std::exp(-0.5))));
 }
 
 TEST_CASE("the value of a look grows with what is not known, and never is negative") {
@@ -68,20 +49,19 @@ TEST_CASE("the value of a look grows with what is not known, and never is negati
     Element element;
     element.priority = 10 * random.uniform();
     element.deviation_m = 200 * random.uniform();
-    element.drift_m_s = random.happens(0.5) ? 0 : 3 * random.uniform();
     element.best_gsd_m =
         random.happens(0.3) ? std::numeric_limits<double>::infinity() : 0.1 + random.uniform();
     const Look look{600 * random.uniform(), 0.1 + random.uniform(), 20 * random.uniform(),
                     50 + 200 * random.uniform()};
-    const double value = value_of_look(element, look, 0);
+    const double value = value_of_look(element, look);
     REQUIRE(value >= 0);
     REQUIRE(value <= element.priority);
     Look finer = look;
     finer.gsd_m /= 2;
-    REQUIRE(value_of_look(element, finer, 0) >= value);
+    REQUIRE(value_of_look(element, finer) >= value);
     Element known_better = element;
     known_better.best_gsd_m = std::min(element.best_gsd_m, look.gsd_m);
-    REQUIRE(value_of_look(known_better, look, 0) <= value + 1e-12);
+    REQUIRE(value_of_look(known_better, look) <= value + 1e-12);
   }
 }
 
@@ -93,13 +73,13 @@ TEST_CASE("by priority the most important comes first, of equals the soonest, fu
   elements[3].priority = 9;
   elements[3].best_gsd_m = 0.1;
   std::vector<std::optional<Look>> looks{Look{10}, Look{300}, Look{200}, Look{10}};
-  CHECK(next_by_priority(elements, looks, 0) == 2);
+  CHECK(next_by_priority(elements, looks) == 2);
   looks[2].reset();
-  CHECK(next_by_priority(elements, looks, 0) == 1);
+  CHECK(next_by_priority(elements, looks) == 1);
   looks[1].reset();
   looks[0].reset();
-  CHECK(!next_by_priority(elements, looks, 0));
-  CHECK(!next_by_priority({}, {}, 0));
+  CHECK(!next_by_priority(elements, looks));
+  CHECK(!next_by_priority({}, {}));
 }
 
 TEST_CASE("by value the near one comes before the somewhat more important far one") {
@@ -107,36 +87,30 @@ TEST_CASE("by value the near one comes before the somewhat more important far on
   elements[0].priority = 4;
   elements[1].priority = 5;
   const std::vector<std::optional<Look>> looks{Look{60}, Look{600}};
-  CHECK(next_by_value(elements, looks, 0) == 0);
-  CHECK(next_by_priority(elements, looks, 0) == 1);
+  CHECK(next_by_value(elements, looks) == 0);
+  CHECK(next_by_priority(elements, looks) == 1);
 }
 
-TEST_CASE(
-    "by value a fulfilled element that drives away is looked at again, one that stands is not") {
-  std::vector<Element> elements(2);
-  for (Element& element : elements) {
-    element.best_gsd_m = 0.15;
-    element.deviation_m = 5;
-  }
-  elements[1].drift_m_s = 1;
-  const std::vector<std::optional<Look>> looks{Look{60, 0.15}, Look{60, 0.15}};
-  CHECK(!next_by_value({elements[0]}, {looks[0]}, 0));
-  CHECK(next_by_value(elements, looks, 60) == 1);
+TEST_CASE("by value a fulfilled element is not looked at again") {
+  Element element;
+  element.best_gsd_m = 0.15;
+  element.deviation_m = 5;
+  CHECK(!next_by_value({element}, {Look{60, 0.15}}));
 }
 
 TEST_CASE("by value no time goes to what a look would hardly find or hardly resolve") {
   std::vector<Element> elements(1);
   elements[0].deviation_m = 5000;
-  CHECK(!next_by_value(elements, {Look{60}}, 0));
-  CHECK(next_by_priority(elements, {Look{60}}, 0) == 0);
+  CHECK(!next_by_value(elements, {Look{60}}));
+  CHECK(next_by_priority(elements, {Look{60}}) == 0);
   elements[0].deviation_m = 5;
-  CHECK(!next_by_value(elements, {Look{60, 5.0}}, 0));
+  CHECK(!next_by_value(elements, {Look{60, 5.0}}));
 }
 
 namespace {
 
-using Policy = std::function<std::optional<std::size_t>(
-    const std::vector<Element>&, const std::vector<std::optional<Look>>&, double)>;
+using Policy = std::function<std::optional<std::size_t>(const std::vector<Element>&,
+                                                        const std::vector<std::optional<Look>>&)>;
 
 /// Priority · known, over all elements, after 20 minutes at 60 m/s.
 double flown(std::uint64_t seed, const Policy& policy) {
@@ -149,7 +123,6 @@ double flown(std::uint64_t seed, const Policy& policy) {
   for (Element& element : elements) {
     element.priority = 1 + std::floor(9 * random.uniform());
     element.deviation_m = 20 + 60 * random.uniform();
-    element.drift_m_s = random.happens(0.3) ? 0.2 : 0;
     const double north = 30'000 * random.uniform();
     places.push_back({north, 30'000 * random.uniform()});
   }
@@ -163,20 +136,18 @@ double flown(std::uint64_t seed, const Policy& policy) {
       looks.push_back(now_s + seconds <= 1200 ? std::optional(Look{seconds, 0.2, 5, 150})
                                               : std::nullopt);
     }
-    const auto next = policy(elements, looks, now_s);
+    const auto next = policy(elements, looks);
     if (!next) break;
     now_s += looks[*next]->seconds;
     at = places[*next];
     Element& element = elements[*next];
-    if (random.happens(inside_probability(deviation_m(element, now_s), 150))) {
+    if (random.happens(inside_probability(element.deviation_m, 150))) {
       element.best_gsd_m = 0.2;
       element.deviation_m = 5;
-      element.known_s = now_s;
     }
   }
   double sum = 0;
-  for (const Element& element : elements)
-    sum += element.priority * known_probability(element, 1200);
+  for (const Element& element : elements) sum += element.priority * known_probability(element);
   return sum;
 }
 

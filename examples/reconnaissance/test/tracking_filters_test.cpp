@@ -90,87 +90,16 @@ TEST_CASE("the Kalman filter is consistent: its NEES and NIS lie within the 95 %
   CHECK(Bounds(0.95, kRuns * kSteps, 2).contain(kalman.nis));
 }
 
-TEST_CASE("a Kalman filter that assumes detections twice as exact is seen to be overconfident") {
-  const TargetAssumptions assumptions;
-  Random random(100);
-  double sum = 0;
-  for (int run = 0; run < kRuns; ++run) {
-    SimulatedTarget target(random, assumptions);
-    const auto claimed = [&] {
-      GroundDetection detection = target.detection(detection_covariance());
-      detection.covariance_m2 /= 4;
-      return detection;
-    };
-    KalmanTrackFilter filter(claimed(), assumptions);
-    for (int step = 0; step < kSteps; ++step) {
-      target.move(kStep_s);
-      filter.predict(kStep_s);
-      filter.update(claimed());
-    }
-    sum += nees(filter.estimate(), target.state());
-  }
-  CHECK(sum / kRuns > Bounds(0.95, kRuns, 4).high);
-}
-
-TEST_CASE("a settled Kalman filter has the gains and the covariance of the α-β filter") {
-  for (const double deviation_m : {2.0, 8.0, 30.0}) {
-    for (const double step_s : {0.5, 1.0, 4.0}) {
-      const TargetAssumptions assumptions;
-      const double variance = deviation_m * deviation_m;
-      const GroundDetection at_origin{{0, 0}, variance * Eigen::Matrix2d::Identity()};
-      KalmanTrackFilter kalman(at_origin, assumptions);
-      AlphaBetaTrackFilter alpha_beta(at_origin, assumptions);
-      for (int step = 0; step < 2000; ++step) {
-        kalman.predict(step_s);
-        alpha_beta.predict(step_s);
-        // An update of a settled filter moves it by its gains times the residual.
-        const GroundDetection detection{{step == 1999 ? 1.0 : 0.0, 0}, at_origin.covariance_m2};
-        kalman.update(detection);
-        alpha_beta.update(detection);
-      }
-      const SteadyGains gains =
-          steady_gains(assumptions.acceleration_m_s2 * step_s * step_s / deviation_m);
-      CHECK(kalman.estimate().mean(0) == Approx(gains.alpha).epsilon(1e-6));
-      CHECK(kalman.estimate().mean(2) == Approx(gains.beta / step_s).epsilon(1e-6));
-      CHECK(alpha_beta.estimate().mean.isApprox(kalman.estimate().mean, 1e-6));
-      CHECK(alpha_beta.estimate().covariance.isApprox(kalman.estimate().covariance, 1e-6));
-    }
-  }
-  CHECK(steady_gains(1).alpha == Approx(0.75));
-  CHECK(steady_gains(1).beta == Approx(0.5));
-}
-
-TEST_CASE("the α-β filter is as exact as the Kalman filter once settled, and consistent there") {
-  const TargetAssumptions assumptions;
-  const Eigen::Matrix2d round = 49 * Eigen::Matrix2d::Identity();
-  const Errors kalman = errors<KalmanTrackFilter>(assumptions, assumptions, round, as_assumed);
-  const Errors fixed = errors<AlphaBetaTrackFilter>(assumptions, assumptions, round, as_assumed);
-  const Bounds bounds(0.95, kRuns, 4);
-  WARN("place error: Kalman " << kalman.place_m << " m, α-β " << fixed.place_m
-                              << " m; NEES of α-β at most "
-                              << *std::max_element(fixed.nees.begin(), fixed.nees.end())
-                              << ", Kalman "
-                              << *std::max_element(kalman.nees.begin(), kalman.nees.end())
-                              << "; within the bounds at " << inside(fixed, bounds) << " and "
-                              << inside(kalman, bounds) << " of 60 steps");
-  CHECK(fixed.place_m == Approx(kalman.place_m).epsilon(0.01));
-  CHECK(*std::max_element(fixed.nees.begin(), fixed.nees.end()) < 20);
-  CHECK(inside(fixed, bounds) >= 50);
-  CHECK(bounds.contain(fixed.nees.back()));
-}
-
 TEST_CASE("of a target that stops and goes, the filter that knows so is the most exact") {
   const TargetAssumptions assumptions;
   const Eigen::Matrix2d round = 49 * Eigen::Matrix2d::Identity();
   const Errors kalman = errors<KalmanTrackFilter>(assumptions, assumptions, round, stop_and_go);
-  const Errors fixed = errors<AlphaBetaTrackFilter>(assumptions, assumptions, round, stop_and_go);
   const Errors both = errors<StopMoveTrackFilter>(assumptions, assumptions, round, stop_and_go);
-  WARN("place and speed error: stop-move "
-       << both.place_m << " m, " << both.speed_m_s << " m/s; Kalman " << kalman.place_m << " m, "
-       << kalman.speed_m_s << " m/s; α-β " << fixed.place_m << " m, " << fixed.speed_m_s << " m/s");
+  WARN("place and speed error: stop-move " << both.place_m << " m, " << both.speed_m_s
+                                           << " m/s; Kalman " << kalman.place_m << " m, "
+                                           << kalman.speed_m_s << " m/s");
   CHECK(both.place_m < 0.9 * kalman.place_m);
   CHECK(both.speed_m_s < 0.9 * kalman.speed_m_s);
-  CHECK(kalman.place_m < 1.02 * fixed.place_m);
 }
 
 TEST_CASE("without changes of mode the stop-move filter weighs two Kalman filters by Bayes' rule") {

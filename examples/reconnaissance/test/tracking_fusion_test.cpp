@@ -84,7 +84,7 @@ Track track_at(std::uint32_t number, double north_m, double east_m) {
 TEST_CASE(
     "two trackers of one camera fused by intersection are consistent, naively overconfident") {
   // The same detections, other filters.
-  const Nees nees = fly<KalmanTrackFilter, AlphaBetaTrackFilter>(false, moves);
+  const Nees nees = fly<KalmanTrackFilter, StopMoveTrackFilter>(false, moves);
   CHECK(nees.naive > nees.bounds().high);
   CHECK(nees.intersected < nees.bounds().high);
 }

@@ -144,7 +144,6 @@ TEST_CASE("four targets among false detections give four tracks of their own, by
   };
   fly(Tracker<KalmanTrackFilter>());
   fly(Tracker<StopMoveTrackFilter>());
-  fly(Tracker<AlphaBetaTrackFilter>());
 }
 
 TEST_CASE("the same detections in another order give the same tracks") {

@@ -22,10 +22,7 @@ TrafficState anywhere(Random& random) {
           16 * (random.uniform() - 0.5)};
 }
 
-WellClearVolume some_volume(Random& random) {
-  const double choice = random.uniform();
-  return choice < 0.4 ? kEnRoute : choice < 0.6 ? kPreventive : kNonCooperative;
-}
+WellClearVolume some_volume(Random& random) { return random.happens(0.5) ? kEnRoute : kPreventive; }
 
 struct Stepped {
   int steps = 0;

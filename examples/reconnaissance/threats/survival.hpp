@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
 
-#include "random.hpp"
 #include "threats/radar.hpp"
 
 namespace reconnaissance {
@@ -29,26 +27,5 @@ class Survival {
  private:
   double expected_kills_ = 0;
 };
-
-/// A site of which it is not known whether and when it appears.
-struct PopUp {
-  double probability;
-  double earliest_s;
-  double latest_s;
-};
-
-/// When it appears in this run, uniformly between the earliest and the latest; nullopt: it does
-/// not. Takes two random numbers in either case, so that what follows does not depend on it.
-inline std::optional<double> draw_appearance_s(const PopUp& site, Random& random) {
-  const bool appears = random.happens(site.probability);
-  const double time_s = std::lerp(site.earliest_s, site.latest_s, random.uniform());
-  return appears ? std::optional(time_s) : std::nullopt;
-}
-
-/// The probability of surviving a site that is there with a probability, and costs so many expected
-/// kills if it is.
-inline double survival_if_it_appears(double appearance_probability, double expected_kills) {
-  return 1 - appearance_probability * (1 - std::exp(-expected_kills));
-}
 
 }  // namespace reconnaissance

@@ -11,8 +11,8 @@ constexpr double kPersistence_s = 4;
 }  // namespace
 
 AlertLevel alert_without_memory(const TrafficState& own, const TrafficState& other,
-                                const std::array<AlertRule, 3>& rules, AlertLevel present) {
-  for (const AlertRule& rule : rules) {
+                                AlertLevel present) {
+  for (const AlertRule& rule : kEnRouteAlerts) {
     const double within_s = rule.level == present ? rule.kept_s : rule.raised_s;
     if (violation(own, other, rule.volume, within_s)) return rule.level;
   }
@@ -23,11 +23,11 @@ AlertLevel Alert::assess(const TrafficState& own, const TrafficState& other, dou
   if (!assessed_s_ || now_s - *assessed_s_ > kHysteresis_s) {
     shown_ = AlertLevel::None;
     risen_s_.reset();
-    const AlertLevel first = alert_without_memory(own, other, rules_);
+    const AlertLevel first = alert_without_memory(own, other);
     last_ = {AlertLevel::None, AlertLevel::None, first, first};
   } else {
     std::rotate(last_.begin(), last_.begin() + 1, last_.end());
-    last_.back() = alert_without_memory(own, other, rules_, shown_);
+    last_.back() = alert_without_memory(own, other, shown_);
   }
   assessed_s_ = now_s;
   const AlertLevel level = seen_twice();

@@ -25,17 +25,9 @@ constexpr std::array<AlertRule, 3> kEnRouteAlerts{
     AlertRule{AlertLevel::Corrective, kEnRoute, 55, 75},
     AlertRule{AlertLevel::Preventive, kPreventive, 55, 75}};
 
-/// For an aircraft without transponder; both lower levels have one volume, so that Preventive does
-/// not occur.
-constexpr std::array<AlertRule, 3> kNonCooperativeAlerts{
-    AlertRule{AlertLevel::Warning, kNonCooperative, 25, 90},
-    AlertRule{AlertLevel::Corrective, kNonCooperative, 55, 110},
-    AlertRule{AlertLevel::Preventive, kNonCooperative, 55, 110}};
-
 /// The most severe level whose volume is violated in time if both fly straight on. `present` is the
 /// level that is shown.
 AlertLevel alert_without_memory(const TrafficState& own, const TrafficState& other,
-                                const std::array<AlertRule, 3>& rules = kEnRouteAlerts,
                                 AlertLevel present = AlertLevel::None);
 
 /// Alert about one intruder. What is shown is the most severe level that two of the last four
@@ -44,8 +36,6 @@ AlertLevel alert_without_memory(const TrafficState& own, const TrafficState& oth
 /// shown at once, as is the first. Numbers and meaning after DAIDALUS, DO_365B_no_SUM.conf.
 class Alert {
  public:
-  explicit Alert(const std::array<AlertRule, 3>& rules = kEnRouteAlerts) : rules_(rules) {}
-
   /// Times grow; call once a second.
   AlertLevel assess(const TrafficState& own, const TrafficState& other, double now_s);
 
@@ -54,7 +44,6 @@ class Alert {
  private:
   AlertLevel seen_twice() const;
 
-  std::array<AlertRule, 3> rules_;
   std::array<AlertLevel, 4> last_{};
   std::optional<double> assessed_s_;
   std::optional<double> risen_s_;

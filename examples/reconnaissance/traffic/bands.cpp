@@ -121,31 +121,4 @@ std::vector<Manoeuvre> climb_bands(const TrafficState& own, std::span<const Traf
   return tried;
 }
 
-std::vector<Manoeuvre> altitude_bands(const TrafficState& own, std::span<const TrafficState> others,
-                                      const WellClearVolume& volume,
-                                      const ManoeuvreLimits& limits) {
-  std::vector<Manoeuvre> tried;
-  const auto attempt = [&](double altitude_m) {
-    const double change = altitude_m - own.place.height_m;
-    const double seconds = std::abs(change) / limits.altitude_change_m_s;
-    TrafficState changing = own;
-    changing.up_m_s = std::copysign(limits.altitude_change_m_s, change);
-    TrafficState after = straight_on(changing, seconds);
-    after.up_m_s = 0;
-    Outcome flight(others, volume, limits.look_ahead_s);
-    if (seconds > 0) flight.fly(changing, 0, seconds);
-    flight.fly(after, seconds, limits.look_ahead_s);
-    tried.push_back(flight.outcome(altitude_m, change));
-  };
-  attempt(own.place.height_m);
-  const double reach_m = limits.altitude_change_m_s * limits.look_ahead_s;
-  const double lowest_m = std::max(limits.least_altitude_m, own.place.height_m - reach_m);
-  const double highest_m = std::min(limits.greatest_altitude_m, own.place.height_m + reach_m);
-  const int last = at_most(highest_m, kAltitudeStep_m);
-  for (int i = at_least(lowest_m, kAltitudeStep_m); i <= last; ++i) {
-    attempt(i * kAltitudeStep_m);
-  }
-  return tried;
-}
-
 }  // namespace reconnaissance

@@ -12,22 +12,18 @@ namespace reconnaissance {
 struct ManoeuvreLimits {
   double turn_rate_rad_s = 0.0523598775598;  ///< 3 °/s.
   double vertical_acceleration_m_s2 = 0.25 * 9.80665;
-  double altitude_change_m_s = 500 * kFoot_m / 60;
   double least_climb_m_s = -6.2;  ///< 6° at 60 m/s.
   double greatest_climb_m_s = 6.2;
-  double least_altitude_m = 100 * kFoot_m;
-  double greatest_altitude_m = 50'000 * kFoot_m;
   double look_ahead_s = 180;
 };
 
 constexpr double kCourseStep_rad = 0.0174532925199;  // 1°
 constexpr double kClimbStep_m_s = 100 * kFoot_m / 60;
-constexpr double kAltitudeStep_m = 100 * kFoot_m;
 
 /// One manoeuvre that was tried: a value, and what comes of it against all intruders flying
 /// straight on.
 struct Manoeuvre {
-  double value = 0;    ///< Course in radians from −π to π, climb rate in m/s, or altitude in m.
+  double value = 0;    ///< Course in radians from −π to π, or climb rate in m/s.
   double change = 0;   ///< From the present value; courses: right is positive, −π to π.
   bool free = false;   ///< The volume is at no time violated up to the look-ahead.
   double clear_s = 0;  ///< From then on it is not; infinite if not within the look-ahead.
@@ -49,10 +45,5 @@ std::vector<Manoeuvre> course_bands(const TrafficState& own, std::span<const Tra
 /// 100 ft/min within the limits.
 std::vector<Manoeuvre> climb_bands(const TrafficState& own, std::span<const TrafficState> others,
                                    const WellClearVolume& volume, const ManoeuvreLimits& limits);
-
-/// Altitudes, likewise: reached at the rate for changes of altitude, then kept. The present one,
-/// and multiples of 100 ft which the limits allow and which are reached within the look-ahead.
-std::vector<Manoeuvre> altitude_bands(const TrafficState& own, std::span<const TrafficState> others,
-                                      const WellClearVolume& volume, const ManoeuvreLimits& limits);
 
 }  // namespace reconnaissance

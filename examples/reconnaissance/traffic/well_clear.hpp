@@ -32,10 +32,9 @@ constexpr double kNauticalMile_m = 1852;
 constexpr double kFoot_m = 0.3048;
 
 /// RTCA DO-365B, as in NASA DAIDALUS's DO_365B_no_SUM.conf: en route (DTHR, ZTHR, TTHR), its
-/// preventive volume, the one for aircraft without transponder, and near mid-air collision.
+/// preventive volume, and near mid-air collision.
 constexpr WellClearVolume kEnRoute{0.66 * kNauticalMile_m, 450 * kFoot_m, 35};
 constexpr WellClearVolume kPreventive{0.66 * kNauticalMile_m, 700 * kFoot_m, 35};
-constexpr WellClearVolume kNonCooperative{2200 * kFoot_m, 450 * kFoot_m, 0};
 constexpr WellClearVolume kNearMidAirCollision{500 * kFoot_m, 100 * kFoot_m, 0};
 
 /// Is the volume violated now? WCV_TAUMOD after Muñoz, Narkawicz, Chamberlain, Consiglio and

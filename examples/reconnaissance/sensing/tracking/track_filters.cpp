@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace reconnaissance {
 namespace {
@@ -31,53 +30,6 @@ double KalmanTrackFilter::squared_distance(const GroundDetection& detection) con
 
 void KalmanTrackFilter::update(const GroundDetection& detection) {
   estimate_ = updated(estimate_, detection);
-}
-
-SteadyGains steady_gains(double tracking_index) {
-  const double lambda = tracking_index;
-  const double root = std::sqrt(lambda * lambda + 8 * lambda);
-  return {-(lambda * lambda + 8 * lambda - (lambda + 4) * root) / 8,
-          (lambda * lambda + 4 * lambda - lambda * root) / 4};
-}
-
-AlphaBetaTrackFilter::AlphaBetaTrackFilter(const GroundDetection& first,
-                                           const TargetAssumptions& assumptions)
-    : assumptions_(assumptions),
-      estimate_(first_estimate(first, assumptions.speed_deviation_m_s)) {}
-
-void AlphaBetaTrackFilter::predict(double seconds) {
-  estimate_ = predicted(estimate_, moving(seconds, assumptions_.acceleration_m_s2));
-  since_update_s_ += seconds;
-}
-
-double AlphaBetaTrackFilter::squared_distance(const GroundDetection& detection) const {
-  return innovation(estimate_, detection).squared_distance;
-}
-
-void AlphaBetaTrackFilter::update(const GroundDetection& detection) {
-  if (since_update_s_ <= 0) return;
-  const double step_s = std::exchange(since_update_s_, 0);
-  const double k = ++detections_;
-  const double variance = detection.covariance_m2.trace() / 2;
-  SteadyGains gains =
-      steady_gains(assumptions_.acceleration_m_s2 * step_s * step_s / std::sqrt(variance));
-  // 6.5.3 there: of a settled filter, after an update.
-  double squared_speed = gains.beta * (gains.alpha - gains.beta / 2) / (1 - gains.alpha);
-  if (const double alpha = 2 * (2 * k - 1) / (k * (k + 1)); alpha > gains.alpha) {
-    gains = {alpha, 6 / (k * (k + 1))};
-    squared_speed = 12 / (k * (k * k - 1));
-  }
-  const Eigen::Vector2d residual = detection.place_m - estimate_.place_m();
-  estimate_.mean.head<2>() += gains.alpha * residual;
-  estimate_.mean.tail<2>() += gains.beta / step_s * residual;
-  const double place = gains.alpha * variance;
-  const double both = gains.beta * variance / step_s;
-  const double speed = squared_speed * variance / (step_s * step_s);
-  estimate_.covariance.setZero();
-  estimate_.covariance.topLeftCorner<2, 2>().diagonal().fill(place);
-  estimate_.covariance.topRightCorner<2, 2>().diagonal().fill(both);
-  estimate_.covariance.bottomLeftCorner<2, 2>().diagonal().fill(both);
-  estimate_.covariance.bottomRightCorner<2, 2>().diagonal().fill(speed);
 }
 
 StopMoveTrackFilter::StopMoveTrackFilter(const GroundDetection& first,

@@ -30,8 +30,7 @@ struct Track {
 
 /// Follows ground targets from detections without identity: gates by chi-square (2 degrees of
 /// freedom, whose quantile is −2 ln(1 − p)), assigns the nearest pair first, each at most once, and
-/// begins and ends tracks by counting. The filter is KalmanTrackFilter, StopMoveTrackFilter or
-/// AlphaBetaTrackFilter.
+/// begins and ends tracks by counting. The filter is KalmanTrackFilter or StopMoveTrackFilter.
 template <class Filter>
 class Tracker {
  public:

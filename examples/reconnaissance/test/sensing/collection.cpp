@@ -5,7 +5,6 @@
 #include <functional>
 #include <numbers>
 
-#include "sensing/image_quality.hpp"
 #include "skein/synthesis.hpp"
 
 namespace collection_test {
@@ -242,7 +241,7 @@ TEST_CASE("The cheapest plan depends on what is to be seen, and on the camera") 
   mount.integration_s = 2e-4;
   const auto choose = [&](const Objective& objective, const Camera& camera) {
     const auto best = skein::best_by_cost<CollectionPlan>(
-        [](const CollectionPlan& plan) { return collection_cost(plan, kCollected_m); });
+        [](const CollectionPlan& plan) { return collection_cost(plan, 0.3); });
     std::vector<skein::Opinion<CollectionPlan>> plans;
     const std::pair<const char*, Planner> planners[]{
         {"spot", plan_spot}, {"step-stare", plan_step_stare}, {"line scan", plan_line_scan}};

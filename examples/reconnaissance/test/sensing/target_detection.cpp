@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace target_detection_test {
@@ -33,7 +34,7 @@ TEST_CASE("The more line pairs across an object, the more probable an observer s
   } table[]{{3, 1.0}, {2, 0.95}, {1.5, 0.80}, {1, 0.50}, {0.75, 0.30}, {0.5, 0.10}, {0.25, 0.02}};
   double worst = 0;
   for (const auto& [pairs, probability] : table) {
-    for (const double half : {kDetectionPairs, kRecognitionPairs, kIdentificationPairs}) {
+    for (const double half : {kDetectionPairs, kIdentificationPairs}) {
       const double pixels_across = 2 * pairs * half;
       worst = std::max(
           worst, std::abs(observer_probability(0.3 * pixels_across, 0.3, half) - probability));
@@ -42,6 +43,8 @@ TEST_CASE("The more line pairs across an object, the more probable an observer s
   INFO("worst difference " << worst);
   CHECK(worst < 0.021);
   CHECK(observer_probability(0, 0.3, kDetectionPairs) == 0);
+  CHECK(observer_probability(5, std::numeric_limits<double>::infinity(), kIdentificationPairs) ==
+        0);
   CHECK(observer_probability(1e6, 0.001, kDetectionPairs) == 1);
 }
 

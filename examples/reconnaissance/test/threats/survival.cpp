@@ -43,28 +43,4 @@ TEST_CASE("Only a site that guides a missile endangers, and only within its zone
   CHECK(hazard_per_s(kSite, RadarMode::Guidance, {5000, 0, 1000}) == 0);
 }
 
-TEST_CASE("A site appears as often as its probability says, within its time") {
-  Random random(8);
-  int appeared = 0;
-  double sum = 0;
-  constexpr int kRuns = 10000;
-  for (int run = 0; run < kRuns; ++run) {
-    if (const auto time = draw_appearance_s({0.7, 300, 500}, random)) {
-      ++appeared;
-      sum += *time;
-      REQUIRE(*time >= 300);
-      REQUIRE(*time < 500);
-    }
-  }
-  // Four standard errors.
-  CHECK(static_cast<double>(appeared) / kRuns == Approx(0.7).margin(0.019));
-  CHECK(sum / appeared == Approx(400).margin(2.8));
-}
-
-TEST_CASE("The survival of a possible site is that of both cases by their probability") {
-  CHECK(survival_if_it_appears(0, 3) == 1);
-  CHECK(survival_if_it_appears(1, 3) == Approx(std::exp(-3)));
-  CHECK(survival_if_it_appears(0.25, 3) == Approx(0.75 + 0.25 * std::exp(-3)));
-}
-
 }  // namespace survival_test
