@@ -54,8 +54,7 @@ Local aim_of(const recon::CameraPointing& pointing, double time_s) {
 /// Puts a road in the order in which it is passed; false if it crosses the track.
 bool put_along(std::vector<Local>& line, double course_rad) {
   if (line.size() < 2) return true;
-  const double along_rad = std::atan2(line.back().east_m - line.front().east_m,
-                                      line.back().north_m - line.front().north_m);
+  const double along_rad = course_between_rad(line.front(), line.back());
   const double difference = std::abs(std::remainder(along_rad - course_rad, 2 * std::numbers::pi));
   const bool against = difference > std::numbers::pi / 2;
   if (against) std::ranges::reverse(line);
@@ -123,7 +122,7 @@ void EoManager::watch(double now_s, double known_s, const recon::FlightState& st
   recon::CollectionTask task;
   task.line = {local_place(place)};
   task.height_m = aircraft.height_m - place.height_m;
-  task.offset_m = std::hypot(place.north_m - aircraft.north_m, place.east_m - aircraft.east_m);
+  task.offset_m = map_distance_m(place, aircraft);
   task.ground_speed_m_s = std::hypot(state.north_m_s, state.east_m_s);
   task.course_rad = std::atan2(state.east_m_s, state.north_m_s);
   task.watched = true;

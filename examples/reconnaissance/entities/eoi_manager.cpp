@@ -139,9 +139,7 @@ void EoiManager::follow(double now_s, const recon::ObjectTracks& told) {
       const std::vector<Local> line = locals(frame, element.line);
       const Local reported = middle_of(line);
       double half_m = 0;
-      for (const Local& each : line)
-        half_m = std::max(
-            half_m, std::hypot(each.north_m - reported.north_m, each.east_m - reported.east_m));
+      for (const Local& each : line) half_m = std::max(half_m, map_distance_m(each, reported));
       targets_.emplace_back(Eigen::Vector2d(reported.north_m, reported.east_m),
                             half_m + element.margin_m + kBelongs_m);
     }

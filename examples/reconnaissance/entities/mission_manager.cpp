@@ -244,9 +244,8 @@ std::optional<std::string> MissionManager::contradiction(const recon::FlightStat
   const Local own = local(*frame_, state.position);
   for (const recon::Element& each : elements.elements) {
     const Local place = middle_of(locals(*frame_, each.line));
-    const auto cause =
-        contradiction_in(each, std::hypot(place.north_m - own.north_m, place.east_m - own.east_m),
-                         cruise_, endurance_s_, kCollectionHeight_m);
+    const auto cause = contradiction_in(each, map_distance_m(place, own), cruise_, endurance_s_,
+                                        kCollectionHeight_m);
     if (cause) return cause;
   }
   return std::nullopt;
@@ -256,8 +255,7 @@ void MissionManager::loiter(const Circle& circle, Tick tick) {
   controller_->loiter(position(*frame_, circle.centre),
                       circle.clockwise ? circle.radius_m : -circle.radius_m, tick);
   if (!route_.points.empty() && route_.planner == kCircle &&
-      std::hypot(told_circle_.north_m - circle.centre.north_m,
-                 told_circle_.east_m - circle.centre.east_m) < kDrawn_m)
+      map_distance_m(told_circle_, circle.centre) < kDrawn_m)
     return;
   told_circle_ = circle.centre;
   route_ = drawn(circle, *frame_, route_.number + 1);

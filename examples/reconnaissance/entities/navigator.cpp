@@ -56,7 +56,7 @@ std::optional<std::string> climbs_too_steeply(const AE_navigator::Problem& probl
                                               const AE_navigator::Route& route) {
   for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
     const auto &from = route.waypoints[i - 1], &to = route.waypoints[i];
-    const double level = std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
+    const double level = map_distance_m(to, from);
     const double climb_deg = degrees(std::atan2(to.altitude_m - from.altitude_m, level));
     if (!(std::abs(climb_deg) <= problem.limits.maximum_climb_angle_deg + 0.1))
       return fmt::format("leg {} climbs {:.1f} degrees, more than the aircraft can", i, climb_deg);
@@ -92,10 +92,6 @@ std::string accepted(const skein::introspection::Decision& decision) {
   for (const auto& attempt : decision.attempts)
     if (attempt.outcome == skein::introspection::Outcome::Accepted) return attempt.csp;
   return "";
-}
-
-double course_rad(const Local& from, const Local& to) {
-  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
 }
 
 }  // namespace
@@ -139,7 +135,7 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
       way.push_back(local(frame_, next.position));
       if (i + 1 < request.through.size() && request.through[i + 1].straight) {
         const Local onto = local(frame_, request.through[i + 1].position);
-        way = onto_course(problem, way, course, course_rad(way.back(), onto),
+        way = onto_course(problem, way, course, course_between_rad(way.back(), onto),
                           request.limits.turn_radius_m);
       }
       for (std::size_t j = 1; j + 1 < way.size(); ++j)
@@ -148,15 +144,14 @@ recon::Route Navigator::plan(const recon::RouteRequest& request) {
     }
     route.points.push_back(next.position);
     const auto last = route.points.end();
-    course = course_rad(local(frame_, last[-2]), local(frame_, last[-1]));
+    course = course_between_rad(local(frame_, last[-2]), local(frame_, last[-1]));
   }
   const auto points = locals(frame_, route.points);
   const double survival = std::exp(-hazard_of(problem, way_in_tile(points)));
   if (survival < request.least_survival)
     throw recon::NoRoute(fmt::format("the whole way survives with {:.3f}", survival));
   for (std::size_t i = 1; i < points.size(); ++i)
-    route.length_m += std::hypot(points[i].north_m - points[i - 1].north_m,
-                                 points[i].east_m - points[i - 1].east_m);
+    route.length_m += map_distance_m(points[i], points[i - 1]);
   route.number = ++routes_;
   return route;
 }
@@ -176,7 +171,7 @@ std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
                                           double end_course_rad, double radius_m) const {
   const double least = hazard_of(problem, way_in_tile(way));
   const bool turns_back =
-      std::abs(wrapped(course_rad(way[0], way[1]) - begin_course_rad)) > kTurnsBack_rad;
+      std::abs(wrapped(course_between_rad(way[0], way[1]) - begin_course_rad)) > kTurnsBack_rad;
   std::vector<Local> best = way;
   double hazard = turns_back ? std::numeric_limits<double>::infinity() : least + kTurnHazard;
   for (const int quarters : {0, -1, 1, -2, 2}) {
@@ -207,7 +202,7 @@ double Navigator::clearance_m(const std::vector<Local>& way) const {
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Local &from = way[i - 1], &to = way[i];
-    const double length_m = std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
+    const double length_m = map_distance_m(to, from);
     const int steps = std::max(1, static_cast<int>(std::ceil(length_m / kStep_m)));
     for (int step = 0; step <= steps; ++step) {
       const double share = static_cast<double>(step) / steps;
@@ -228,8 +223,7 @@ void Navigator::pose(AE_navigator::Problem& problem, const recon::Position& from
   const Local at = local(frame_, from);
   problem.start.altitude_m =
       std::max(problem.start.altitude_m, ground_(at.north_m, at.east_m) + kLeastHeight_m + 1);
-  const double level_m = std::hypot(problem.goal.north_m - problem.start.north_m,
-                                    problem.goal.east_m - problem.start.east_m);
+  const double level_m = map_distance_m(problem.goal, problem.start);
   const double most_m =
       kShareOfClimb * level_m * std::tan(radians(problem.limits.maximum_climb_angle_deg));
   problem.goal.altitude_m = std::clamp(problem.goal.altitude_m, problem.start.altitude_m - most_m,
@@ -250,7 +244,7 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
     if (threat.lethal_range_m == 0) continue;
     // Planners know no site beyond their tile: in the tile, this disc covers what that one does.
     const Local there = tile_.to_tile(geodetic(threat.position)), site = tile_.nearest(there);
-    const double beyond_m = std::hypot(there.north_m - site.north_m, there.east_m - site.east_m);
+    const double beyond_m = map_distance_m(there, site);
     const double range_m = reach_m(threat.lethal_range_m, threat.deviation_m);
     if (range_m <= beyond_m) continue;
     problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
@@ -278,8 +272,7 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
   const auto failure = std::ranges::find(failures_, ++asked_, &PlannerFailureText::request);
   bool fails_now = failure != failures_.end();
   task.features = {{"threats", static_cast<double>(problem.missile_sites.size())},
-                   {"length_m", std::hypot(problem.goal.north_m - problem.start.north_m,
-                                           problem.goal.east_m - problem.start.east_m)}};
+                   {"length_m", map_distance_m(problem.goal, problem.start)}};
   task.run = [&](AE_navigator::IPlanner::Proxy& planner, skein::Duration) {
     if (std::exchange(fails_now, false)) signal_planner(failure->stopped ? SIGSTOP : SIGKILL);
     return planner.plan(problem);
@@ -329,8 +322,7 @@ AE_navigator::Route StraightAhead::plan(const AE_navigator::Problem& problem) {
   AE_navigator::Route route;
   route.planner = "StraightAhead";
   route.waypoints = {problem.start, problem.goal};
-  route.length_m = std::hypot(problem.goal.north_m - problem.start.north_m,
-                              problem.goal.east_m - problem.start.east_m);
+  route.length_m = map_distance_m(problem.goal, problem.start);
   return route;
 }
 

@@ -171,7 +171,7 @@ void Recorder::see(const recon::ThreatPicture& picture) {
 void Recorder::note_site(const recon::Threat& threat, double time_s) {
   const Local place = local(frame_, threat.position);
   const auto distance_m = [&](const Transmitter& each) {
-    return std::hypot(each.place.north_m - place.north_m, each.place.east_m - place.east_m);
+    return map_distance_m(each.place, place);
   };
   const auto nearest = std::ranges::min_element(sites_, {}, distance_m);
   if (nearest == sites_.end() || !nearest->since_s || *nearest->since_s == 0) return;

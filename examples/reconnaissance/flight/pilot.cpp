@@ -166,13 +166,12 @@ Demand Pilot::limited(double bank_rad, double climb_rad, double airspeed_m_s) co
 
 double Pilot::route_course_rad(const Local& from) const {
   if (route_.empty() && mode_ == Mode::Waiting) {
-    const double outward_rad =
-        std::atan2(from.east_m - circle_.centre.east_m, from.north_m - circle_.centre.north_m);
+    const double outward_rad = course_between_rad(circle_.centre, from);
     return outward_rad + (circle_.clockwise ? 1 : -1) * std::numbers::pi / 2;
   }
   if (route_.empty()) return strip_.course_rad;
   const Local& to = route_[std::min(leg_ + 1, route_.size() - 1)];
-  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
+  return course_between_rad(from, to);
 }
 
 Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,

@@ -15,7 +15,7 @@ double earth_drop_m(double distance_m, double earth_factor) {
 }
 
 bool in_sight(const Local& a, const Local& b, const GroundHeight& ground, double earth_factor) {
-  const double distance = std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
+  const double distance = map_distance_m(b, a);
   const double whole_drop = earth_drop_m(distance, earth_factor);
   const int steps = static_cast<int>(std::ceil(distance / kStep_m));
   for (int i = 1; i < steps; ++i) {

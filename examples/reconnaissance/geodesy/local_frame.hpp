@@ -1,6 +1,7 @@
 #pragma once
 
 #include <GeographicLib/AzimuthalEquidistant.hpp>
+#include <cmath>
 
 namespace reconnaissance {
 
@@ -17,6 +18,18 @@ struct Local {
   double east_m = 0;
   double height_m = 0;
 };
+
+/// Between whatever has a place on the map (`north_m`, `east_m`).
+template <class From, class To>
+double map_distance_m(const From& from, const To& to) {
+  return std::hypot(to.north_m - from.north_m, to.east_m - from.east_m);
+}
+
+/// That of a straight flight from one to the other, clockwise from north.
+template <class From, class To>
+double course_between_rad(const From& from, const To& to) {
+  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
+}
 
 /// Local coordinates about an origin: distances and bearings from it are exact, others within
 /// 3 parts in a million as far out as 28 km.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "flight/angles.hpp"
+#include "mission/places.hpp"
 #include "skein/error.hpp"
 
 namespace reconnaissance {
@@ -28,20 +29,8 @@ std::vector<double> numbers_of(std::istringstream& words, const std::string& par
   return numbers;
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream list(text);
-  for (std::string part; std::getline(list, part, ';');)
-    if (part.find_first_not_of(" \t\n") != std::string::npos) parts.push_back(part);
-  return parts;
-}
-
 // Further aside an element is too coarse in images from the heights that are flown.
 constexpr double kAside_m = 2500;
-
-double edge_m(const Local& a, const Local& b) {
-  return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
-}
 
 Local between(const Local& a, const Local& b, double share) {
   return {std::lerp(a.north_m, b.north_m, share), std::lerp(a.east_m, b.east_m, share),
@@ -52,7 +41,7 @@ Local between(const Local& a, const Local& b, double share) {
 
 std::vector<ElementText> parse_elements(const std::string& text) {
   std::vector<ElementText> elements;
-  for (const std::string& part : split(text)) {
+  for (const std::string& part : parts_of(text, ';')) {
     ElementText element;
     std::istringstream words(part);
     words >> element.name;
@@ -73,7 +62,7 @@ std::vector<ElementText> parse_elements(const std::string& text) {
 
 std::vector<ObjectText> parse_objects(const std::string& text) {
   std::vector<ObjectText> objects;
-  for (const std::string& part : split(text)) {
+  for (const std::string& part : parts_of(text, ';')) {
     std::istringstream words(part);
     const auto numbers = numbers_of(words, part, kObject);
     if (numbers.size() < 5 || (numbers.size() - 5) % 3 != 0 || numbers[2] <= 0)
@@ -112,9 +101,9 @@ bool is_ahead(const Passage& passage) {
 
 Local middle_of(const std::vector<Local>& line) {
   double left = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) left += edge_m(line[i - 1], line[i]) / 2;
+  for (std::size_t i = 1; i < line.size(); ++i) left += map_distance_m(line[i - 1], line[i]) / 2;
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const double length = edge_m(line[i - 1], line[i]);
+    const double length = map_distance_m(line[i - 1], line[i]);
     if (left <= length && length > 0) return between(line[i - 1], line[i], left / length);
     left -= length;
   }
@@ -124,7 +113,7 @@ Local middle_of(const std::vector<Local>& line) {
 std::vector<Local> parts_of_line(const std::vector<Local>& line, double spacing_m) {
   std::vector<Local> parts{line.front()};
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const double length = edge_m(line[i - 1], line[i]);
+    const double length = map_distance_m(line[i - 1], line[i]);
     const int steps = std::max(1, static_cast<int>(std::ceil(length / spacing_m)));
     for (int step = 1; step <= steps; ++step)
       parts.push_back(between(line[i - 1], line[i], static_cast<double>(step) / steps));

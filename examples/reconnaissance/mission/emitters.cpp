@@ -10,8 +10,7 @@ constexpr double kReachDeviations = 5;
 constexpr double kPlaced_m = 1000;
 
 double offset_m(const ReportedEmitter& report, const HeardEmitter& heard) {
-  return std::hypot(heard.place.north_m - report.place.north_m,
-                    heard.place.east_m - report.place.east_m);
+  return map_distance_m(heard.place, report.place);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ Geodetic read_place(const std::vector<double>& numbers, const std::string& text)
   return place;
 }
 
+}  // namespace
+
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream list(text);
@@ -38,8 +40,6 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   }
   return parts;
 }
-
-}  // namespace
 
 RunwayText parse_runway(const std::string& text) {
   const auto numbers =
@@ -129,7 +129,5 @@ std::vector<PlannerFailureText> parse_planner_failures(const std::string& text) 
   }
   return failures;
 }
-
-std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }
 
 }  // namespace reconnaissance

@@ -11,6 +11,9 @@
 
 namespace reconnaissance {
 
+/// What stands between separators, without the blanks around it; nothing of what is blank.
+std::vector<std::string> parts_of(const std::string& text, char separator);
+
 /// A runway as a profile names it: `latitude longitude height course length`, in degrees and
 /// metres. Throws skein::InvalidArgument with what is wrong.
 struct RunwayText {
@@ -67,6 +70,6 @@ struct PlannerFailureText {
 std::vector<PlannerFailureText> parse_planner_failures(const std::string& text);
 
 /// Names that are separated by commas.
-std::vector<std::string> parse_names(const std::string& text);
+inline std::vector<std::string> parse_names(const std::string& text) { return parts_of(text, ','); }
 
 }  // namespace reconnaissance

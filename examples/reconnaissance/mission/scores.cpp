@@ -13,10 +13,6 @@ namespace {
 // What is reported further from all sites is none of them.
 constexpr double kNoSite_m = 5000;
 
-double distance_m(const Local& a, const Local& b) {
-  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m);
-}
-
 /// The one that is nearest to a place, unless it is too far away.
 template <class Item, class SiteOf = std::identity>
 std::optional<std::size_t> nearest_to(const Local& place, const std::vector<Item>& sites,
@@ -24,7 +20,7 @@ std::optional<std::size_t> nearest_to(const Local& place, const std::vector<Item
   std::optional<std::size_t> nearest;
   double least_m = kNoSite_m;
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    const double distance = distance_m(std::invoke(site_of, sites[i]).place, place);
+    const double distance = map_distance_m(std::invoke(site_of, sites[i]).place, place);
     if (distance > least_m) continue;
     least_m = distance;
     nearest = i;
@@ -60,7 +56,7 @@ std::vector<Check> PursuitScore::checks() const {
     if (reported >= conditions_.ordered_s) continue;
     ++reported;
     if (moment.in_view) ++in_view;
-    squares_m2 += std::pow(distance_m(*moment.truth, *moment.reported), 2);
+    squares_m2 += std::pow(map_distance_m(*moment.truth, *moment.reported), 2);
   }
   if (!first) {
     const std::string never = "the target was never found";
@@ -91,7 +87,7 @@ std::vector<Check> site_checks(const std::vector<Site>& truth, const std::vector
     const Site* best = nullptr;
     double nearest_m = kNoSite_m;
     for (std::size_t j = 0; j < reported.size(); ++j) {
-      const double distance = distance_m(site.place, reported[j].place);
+      const double distance = map_distance_m(site.place, reported[j].place);
       if (belongs[j] != i || distance > nearest_m) continue;
       nearest_m = distance;
       best = &reported[j];

@@ -35,8 +35,7 @@ std::vector<std::size_t> share_out(const std::vector<Local>& places,
         Counts more = counts;
         ++more[i];
         Share longer = share;
-        longer.sum_m +=
-            std::hypot(place.north_m - starts[i].north_m, place.east_m - starts[i].east_m);
+        longer.sum_m += map_distance_m(place, starts[i]);
         longer.aircraft.push_back(i);
         const auto [found, is_new] = next.try_emplace(more, longer);
         const bool better =

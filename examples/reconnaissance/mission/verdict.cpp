@@ -13,10 +13,6 @@ namespace {
 constexpr double kAirfield_m = 5000;
 constexpr double kStood_m_s = 0.5;
 
-double level_m(const Local& one, const Local& other) {
-  return std::hypot(one.north_m - other.north_m, one.east_m - other.east_m);
-}
-
 std::string xml(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -46,7 +42,7 @@ void Judge::count(std::size_t collected, std::size_t wanted, const std::string& 
 
 void Judge::meet(const Local& other) {
   if (last_.on_ground) return;
-  const double level = level_m(other, last_.position);
+  const double level = map_distance_m(other, last_.position);
   const double height = other.height_m - last_.position.height_m;
   const double separation = std::max(level / conditions_.well_clear_m,
                                      std::abs(height) / conditions_.well_clear_height_m);
@@ -73,7 +69,7 @@ void Judge::see(const Sample& sample) {
 }
 
 void Judge::measure_clearance(const Sample& sample) {
-  if (level_m(sample.position, aim_) > kAirfield_m)
+  if (map_distance_m(sample.position, aim_) > kAirfield_m)
     clearance_m_ = std::min(clearance_m_, sample.height_above_ground_m);
 }
 
@@ -112,7 +108,7 @@ Verdict Judge::conclude(const std::string& ended, const std::vector<Check>& more
                           conditions_.well_clear_height_m));
   check("no stall", !stalled_, stalled_ ? "the aircraft has stalled" : "it never stalled");
   if (touched_) {
-    const double from_aim = level_m(*touched_, aim_);
+    const double from_aim = map_distance_m(*touched_, aim_);
     check("landing", from_aim <= conditions_.landed_within_m,
           fmt::format("touched down {:.0f} m from the aiming point, at most {:.0f}", from_aim,
                       conditions_.landed_within_m));

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geodesy/local_frame.hpp"
+
 namespace reconnaissance {
 namespace {
 
@@ -42,8 +44,7 @@ std::vector<CollectionPass> passes_over(double north_m, double east_m, int cours
 
 std::vector<CollectionPass> passes_along(const RoutePose& one_end, const RoutePose& other_end,
                                          const FlightCost& cost) {
-  const double course =
-      std::atan2(other_end.east_m - one_end.east_m, other_end.north_m - one_end.north_m);
+  const double course = course_between_rad(one_end, other_end);
   const double back = course + std::numbers::pi;
   return {
       {{one_end.north_m, one_end.east_m, course},

@@ -14,17 +14,12 @@ constexpr double kAhead_s = 5;
 constexpr double kRoom_m = 200;
 constexpr int kMoves = 20;
 
-double distance_to_m(const Local& a, double north_m, double east_m) {
-  return std::hypot(a.north_m - north_m, a.east_m - east_m);
-}
-
 bool is_clear(const Circle& circle, const ThreatDisc& weapon) {
-  return distance_to_m(circle.centre, weapon.north_m, weapon.east_m) >=
-         weapon.radius_m + circle.radius_m;
+  return map_distance_m(circle.centre, weapon) >= weapon.radius_m + circle.radius_m;
 }
 
 double furthest_m(const Circle& circle, const Motion& target) {
-  return distance_to_m(circle.centre, target.north_m, target.east_m) + circle.radius_m;
+  return map_distance_m(circle.centre, target) + circle.radius_m;
 }
 
 }  // namespace

@@ -29,8 +29,9 @@ Crossing crossing(const Local& from, const Local& to, const ThreatDisc& disc) {
   return {std::max(0.0, std::min(length, along + half) - std::max(0.0, along - half)), nearest};
 }
 
-bool contains(const ThreatDisc& disc, double north_m, double east_m) {
-  return std::hypot(disc.north_m - north_m, disc.east_m - east_m) < disc.radius_m;
+template <class Place>
+bool contains(const ThreatDisc& disc, const Place& place) {
+  return map_distance_m(disc, place) < disc.radius_m;
 }
 
 Local place(const RoutePose& pose) { return {pose.north_m, pose.east_m, 0}; }
@@ -83,7 +84,7 @@ FlightCost cost_of_leg(const RoutePose& from, const RoutePose& to,
   for (const ThreatDisc& disc : discs) {
     const Crossing found = crossing(place(from), place(to), disc);
     if (found.inside_m == 0) continue;
-    if (contains(disc, from.north_m, from.east_m) || contains(disc, to.north_m, to.east_m))
+    if (contains(disc, from) || contains(disc, to))
       cost.hazard += disc.kills_per_s * found.inside_m / cruise.speed_m_s;
     else
       length_m += 2 * (disc.radius_m - found.nearest_m);
@@ -94,8 +95,7 @@ FlightCost cost_of_leg(const RoutePose& from, const RoutePose& to,
 }
 
 bool is_within(const Local& place, std::span<const ThreatDisc> discs) {
-  return std::ranges::any_of(
-      discs, [&](const ThreatDisc& disc) { return contains(disc, place.north_m, place.east_m); });
+  return std::ranges::any_of(discs, [&](const ThreatDisc& disc) { return contains(disc, place); });
 }
 
 Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs) {
@@ -103,11 +103,11 @@ Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs) {
   constexpr double kBeside_m = 1;
   Local out = place;
   for (int step = 0; step < kSteps; ++step) {
-    const auto disc = std::ranges::find_if(
-        discs, [&](const ThreatDisc& each) { return contains(each, out.north_m, out.east_m); });
+    const auto disc =
+        std::ranges::find_if(discs, [&](const ThreatDisc& each) { return contains(each, out); });
     if (disc == discs.end()) break;
     // From its very middle all ways are as long.
-    const double away_rad = std::atan2(out.east_m - disc->east_m, out.north_m - disc->north_m);
+    const double away_rad = course_between_rad(*disc, out);
     out.north_m = disc->north_m + (disc->radius_m + kBeside_m) * std::cos(away_rad);
     out.east_m = disc->east_m + (disc->radius_m + kBeside_m) * std::sin(away_rad);
   }
@@ -119,8 +119,8 @@ double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDis
   constexpr double kBeside_m = 200;
   double aside = ordered_m;
   for (const ThreatDisc& disc : discs) {
-    if (!contains(disc, emitter.north_m, emitter.east_m)) continue;
-    const double off = std::hypot(disc.north_m - emitter.north_m, disc.east_m - emitter.east_m);
+    if (!contains(disc, emitter)) continue;
+    const double off = map_distance_m(disc, emitter);
     aside = std::max(aside, disc.radius_m + off + kBeside_m);
   }
   return aside;
@@ -139,8 +139,8 @@ std::vector<CollectionPass> passes_by(const std::vector<Local>& line,
   const Local& a = line.front();
   const Local& b = line.back();
   const Local middle{(a.north_m + b.north_m) / 2, (a.east_m + b.east_m) / 2, 0};
-  const double half_m = std::hypot(b.north_m - a.north_m, b.east_m - a.east_m) / 2;
-  const double along_rad = std::atan2(b.east_m - a.east_m, b.north_m - a.north_m);
+  const double half_m = map_distance_m(b, a) / 2;
+  const double along_rad = course_between_rad(a, b);
   for (const double course_rad : {along_rad, along_rad + std::numbers::pi})
     for (const double aside_m : {rules.aside_m, -rules.aside_m})
       passes.push_back(straight_past(middle, half_m, course_rad, aside_m, discs, cruise, rules));

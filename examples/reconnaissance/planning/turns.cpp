@@ -9,14 +9,6 @@
 namespace reconnaissance {
 namespace {
 
-double leg_m(const Local& a, const Local& b) {
-  return std::hypot(b.north_m - a.north_m, b.east_m - a.east_m);
-}
-
-double course_rad(const Local& from, const Local& to) {
-  return std::atan2(to.east_m - from.east_m, to.north_m - from.north_m);
-}
-
 Local ahead(const Local& from, double course_rad, double length_m) {
   return {from.north_m + length_m * std::cos(course_rad),
           from.east_m + length_m * std::sin(course_rad), from.height_m};
@@ -32,9 +24,9 @@ void turn_onto(const Local& to, double from_course_rad, double to_course_rad, do
     way.push_back({corner.north_m, corner.east_m, 0});
   way.push_back(to);
   double length_m = 0, done_m = 0;
-  for (std::size_t i = first; i < way.size(); ++i) length_m += leg_m(way[i - 1], way[i]);
+  for (std::size_t i = first; i < way.size(); ++i) length_m += map_distance_m(way[i - 1], way[i]);
   for (std::size_t i = first; i + 1 < way.size(); ++i) {
-    done_m += leg_m(way[i - 1], way[i]);
+    done_m += map_distance_m(way[i - 1], way[i]);
     way[i].height_m = std::lerp(from.height_m, to.height_m, done_m / length_m);
   }
 }
@@ -53,14 +45,15 @@ std::vector<Local> with_turns(const std::vector<Local>& way, double begin_course
   const double near_m = 4 * radius_m;
   std::vector<Local> kept{turned.back()};
   for (std::size_t i = 1; i + 1 < way.size(); ++i)
-    if (leg_m(way.front(), way[i]) >= near_m && leg_m(way[i], way.back()) >= near_m)
+    if (map_distance_m(way.front(), way[i]) >= near_m &&
+        map_distance_m(way[i], way.back()) >= near_m)
       kept.push_back(way[i]);
   kept.push_back(way.back());
 
   const std::size_t last = kept.size() - 1;
   const auto course = [&](std::size_t i) {
     if (i == 0) return begin_course_rad;
-    return i == last ? end_course_rad : course_rad(kept[i - 1], kept[i + 1]);
+    return i == last ? end_course_rad : course_between_rad(kept[i - 1], kept[i + 1]);
   };
   for (std::size_t i = 1; i <= last; ++i) {
     if (i == 1 || i == last)

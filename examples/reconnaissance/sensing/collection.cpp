@@ -56,8 +56,7 @@ double sample_distance_m(double height_m, double distance_m, const Camera& camer
 double strip_m(const Objective& objective) {
   double length = 0;
   for (std::size_t i = 1; i < objective.line.size(); ++i) {
-    length += std::hypot(objective.line[i].north_m - objective.line[i - 1].north_m,
-                         objective.line[i].east_m - objective.line[i - 1].east_m);
+    length += map_distance_m(objective.line[i], objective.line[i - 1]);
   }
   return length;
 }
@@ -71,8 +70,8 @@ Local place_beside(const Objective& objective, const Flyby& flyby, double along_
   for (std::size_t i = 1; i < objective.line.size(); ++i) {
     start = objective.line[i - 1];
     const Local& end = objective.line[i];
-    const double length = std::hypot(end.north_m - start.north_m, end.east_m - start.east_m);
-    course = std::atan2(end.east_m - start.east_m, end.north_m - start.north_m);
+    const double length = map_distance_m(end, start);
+    course = course_between_rad(start, end);
     rise = length > 0 ? (end.height_m - start.height_m) / length : 0;
     if (left <= length || i + 1 == objective.line.size()) break;
     left -= length;

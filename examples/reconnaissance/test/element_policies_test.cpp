@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "geodesy/local_frame.hpp"
 #include "random.hpp"
 
 namespace element_policies_test {
@@ -131,8 +132,7 @@ double flown(std::uint64_t seed, const Policy& policy) {
   while (true) {
     std::vector<std::optional<Look>> looks;
     for (const Place& place : places) {
-      const double seconds =
-          30 + std::hypot(place.north_m - at.north_m, place.east_m - at.east_m) / 60;
+      const double seconds = 30 + map_distance_m(place, at) / 60;
       looks.push_back(now_s + seconds <= 1200 ? std::optional(Look{seconds, 0.2, 5, 150})
                                               : std::nullopt);
     }

@@ -135,10 +135,7 @@ TEST_CASE("a pilot circles about a place that it is ordered, and anew when that 
   REQUIRE(flight.pilot.loiter({centre, 1200, false}).empty());
   CHECK(flight.pilot.mode() == Pilot::Mode::Waiting);
   CHECK(flight.pilot.legs() == 0);
-  const auto away_m = [&] {
-    return std::hypot(flight.aircraft.position.north_m - centre.north_m,
-                      flight.aircraft.position.east_m - centre.east_m);
-  };
+  const auto away_m = [&] { return map_distance_m(flight.aircraft.position, centre); };
   REQUIRE(flight.fly_until([&] { return std::abs(away_m() - 1200) < 30; }));
   flight.fly_until([] { return false; }, 60);
   for (int i = 0; i < 200; ++i) {

@@ -19,8 +19,7 @@ double sum_m(const std::vector<Local>& places, const std::vector<Local>& starts,
              const Shares& shares) {
   double sum = 0;
   for (std::size_t i = 0; i < places.size(); ++i)
-    sum += std::hypot(places[i].north_m - starts[shares[i]].north_m,
-                      places[i].east_m - starts[shares[i]].east_m);
+    sum += map_distance_m(places[i], starts[shares[i]]);
   return sum;
 }
 

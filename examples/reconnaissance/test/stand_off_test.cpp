@@ -105,8 +105,7 @@ TEST_CASE("who circles about a target that drives and stops keeps it at a distan
     own.north_m += kStep_s * own.north_m_s;
     own.east_m += kStep_s * own.east_m_s;
     if (now_s < 60) continue;
-    const double away =
-        std::hypot(own.north_m - follow.target.north_m, own.east_m - follow.target.east_m);
+    const double away = map_distance_m(own, follow.target);
     nearest_m = std::min(nearest_m, away);
     furthest_m = std::max(furthest_m, away);
   }

@@ -135,9 +135,7 @@ TEST_CASE("the least separation in closed form agrees with stepping") {
     for (double t = 0; t <= kLookAhead_s; t += 0.02) {
       const TrafficState a = straight_on(own, t);
       const TrafficState b = straight_on(other, t);
-      stepped = std::min(stepped, std::max(std::hypot(a.place.north_m - b.place.north_m,
-                                                      a.place.east_m - b.place.east_m) /
-                                               152.4,
+      stepped = std::min(stepped, std::max(map_distance_m(a.place, b.place) / 152.4,
                                            std::abs(a.place.height_m - b.place.height_m) / 30.48));
     }
     const double closed = least_separation(own, other, 152.4, 30.48, kLookAhead_s);

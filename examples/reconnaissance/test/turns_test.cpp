@@ -26,8 +26,7 @@ Local place(const RoutePose& pose, double height_m) {
 
 double way_m(const std::vector<Local>& way) {
   double sum = 0;
-  for (std::size_t i = 1; i < way.size(); ++i)
-    sum += std::hypot(way[i].north_m - way[i - 1].north_m, way[i].east_m - way[i - 1].east_m);
+  for (std::size_t i = 1; i < way.size(); ++i) sum += map_distance_m(way[i], way[i - 1]);
   return sum;
 }
 
@@ -107,7 +106,7 @@ TEST_CASE("corners of the shortest way are joined by its straight parts and its 
       here = next;
     };
     for (const RoutePose& corner : corners) lead_to(corner);
-    const double last_m = std::hypot(to.north_m - here.north_m, to.east_m - here.east_m);
+    const double last_m = map_distance_m(to, here);
     CHECK(std::abs(wrapped(to.course_rad - here.course_rad)) < 0.02);
     CHECK(length_m + last_m == Approx(dubins_length_m(from, to, radius_m)).epsilon(0.002));
   }
@@ -127,9 +126,7 @@ TEST_CASE("from wherever an aircraft comes, in any wind, it flies level past an 
     const double course_rad = 6.2831853 * random.uniform();
     auto route =
         with_turns({start, place(pass.begin, 930)}, course_rad, pass.begin.course_rad, kRadius_m);
-    CHECK(way_m(route) <
-          std::hypot(start.north_m - pass.begin.north_m, start.east_m - pass.begin.east_m) +
-              20 * kRadius_m);
+    CHECK(way_m(route) < map_distance_m(start, pass.begin) + 20 * kRadius_m);
     route.push_back(place(pass.end, 930));
     const Passing passing = fly(route, course_rad, wind, element);
     INFO("flight " << i << " from " << north_m << ' ' << east_m);

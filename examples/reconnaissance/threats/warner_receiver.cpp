@@ -32,8 +32,7 @@ std::optional<Intercept> receive(const Emission& emission, const Local& aircraft
                        slant_range_m(aircraft, emission.antenna));
   if (power_w < receiver.sensitivity_w) return std::nullopt;
   if (!in_sight(aircraft, emission.antenna, ground, kRadioEarth)) return std::nullopt;
-  const double bearing = std::atan2(emission.antenna.east_m - aircraft.east_m,
-                                    emission.antenna.north_m - aircraft.north_m);
+  const double bearing = course_between_rad(aircraft, emission.antenna);
   const auto noisy = [&](double value, double sigma) { return value + sigma * random.normal(); };
   const Waveform& sent = emission.waveform;
   const double measured_bearing = std::remainder(

@@ -54,13 +54,6 @@ const Manoeuvre& best_recovery(const std::vector<Manoeuvre>& tried) {
   return *std::min_element(tried.begin(), tried.end(), recovers_better);
 }
 
-TrafficState with_course(TrafficState state, double course_rad) {
-  const double speed_m_s = state.ground_speed_m_s();
-  state.north_m_s = speed_m_s * std::cos(course_rad);
-  state.east_m_s = speed_m_s * std::sin(course_rad);
-  return state;
-}
-
 }  // namespace
 
 ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
@@ -69,10 +62,10 @@ ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
   if (!avoiding_) {
     // An alert outlives its cause: where the route leads clear, it is flown.
     const bool route_conflicts =
-        conflict(with_course(own, route_course_rad), others, volume_, limits_.look_ahead_s);
+        conflict(on_course(own, route_course_rad), others, volume_, limits_.look_ahead_s);
     avoiding_ =
         alert >= AlertLevel::Warning || (alert >= AlertLevel::Corrective && route_conflicts);
-  } else if (!conflict(with_course(own, route_course_rad), others, widened(volume_),
+  } else if (!conflict(on_course(own, route_course_rad), others, widened(volume_),
                        limits_.look_ahead_s)) {
     avoiding_ = false;
   }
@@ -107,7 +100,7 @@ ResolutionAdvisory BandsAvoider::resolve(const TrafficState& own,
 ResolutionAdvisory PotentialFieldAvoider::advise(const TrafficState& own,
                                                  std::span<const TrafficState> others,
                                                  double route_course_rad) const {
-  if (!conflict(with_course(own, route_course_rad), others, volume_, limits_.look_ahead_s) &&
+  if (!conflict(on_course(own, route_course_rad), others, volume_, limits_.look_ahead_s) &&
       !conflict(own, others, volume_, limits_.look_ahead_s)) {
     return {};
   }

@@ -54,13 +54,6 @@ class Outcome {
 
 double on_circle(double angle_rad) { return std::remainder(angle_rad, 2 * std::numbers::pi); }
 
-TrafficState on_course(TrafficState state, double course_rad) {
-  const double speed_m_s = state.ground_speed_m_s();
-  state.north_m_s = speed_m_s * std::cos(course_rad);
-  state.east_m_s = speed_m_s * std::sin(course_rad);
-  return state;
-}
-
 /// Turns to one side step by step; what was flown so far is common to all courses that follow.
 void add_courses(std::vector<Manoeuvre>& tried, const TrafficState& own, double side, int steps,
                  const Outcome& at_start, const ManoeuvreLimits& limits) {

@@ -79,6 +79,13 @@ TrafficState straight_on(const TrafficState& state, double seconds) {
   return later;
 }
 
+TrafficState on_course(TrafficState state, double course_rad) {
+  const double speed_m_s = state.ground_speed_m_s();
+  state.north_m_s = speed_m_s * std::cos(course_rad);
+  state.east_m_s = speed_m_s * std::sin(course_rad);
+  return state;
+}
+
 bool violates(const TrafficState& own, const TrafficState& other, const WellClearVolume& volume) {
   const Relative r(own, other);
   if (std::abs(r.up_m) > volume.height_m) return false;

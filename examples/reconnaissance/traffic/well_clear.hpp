@@ -20,6 +20,9 @@ struct TrafficState {
 /// The state after a time of straight flight at constant speed and climb rate.
 TrafficState straight_on(const TrafficState& state, double seconds);
 
+/// At the same speed over ground.
+TrafficState on_course(TrafficState state, double course_rad);
+
 /// What two aircraft shall keep free of each other: horizontally a distance and a time (modified
 /// tau), vertically a height. Both must be violated at once.
 struct WellClearVolume {

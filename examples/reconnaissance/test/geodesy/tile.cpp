@@ -19,7 +19,7 @@ TEST_CASE("a tile's places are those of WGS-84, and its distances nearly") {
   CHECK(back.height_m == 400);
   const Local true_way = LocalFrame(home).to_local(other);
   const Local a = tile.to_tile(home), b = tile.to_tile(other);
-  CHECK(std::hypot(b.north_m - a.north_m, b.east_m - a.east_m) ==
+  CHECK(map_distance_m(b, a) ==
         Approx(std::hypot(true_way.north_m, true_way.east_m)).epsilon(2e-5));
 }
 

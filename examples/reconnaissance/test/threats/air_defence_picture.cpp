@@ -50,8 +50,7 @@ Estimate from_elsewhere(const Site& site, Random& random) {
   std::vector<Bearing> bearings;
   for (int i = 0; i < 40; ++i) {
     const Local from{400.0 * i, 25000, 1000};
-    const double bearing =
-        std::atan2(site.antenna.east_m - from.east_m, site.antenna.north_m - from.north_m);
+    const double bearing = course_between_rad(from, site.antenna);
     bearings.push_back({from, bearing + 0.035 * random.normal(), 0.035});
   }
   const auto found = triangulate(bearings);

@@ -21,9 +21,7 @@ constexpr double kSigma_rad = 0.035;
 constexpr int kRuns = 100;
 
 Bearing bearing(const Local& from, const Local& emitter, double error_rad = 0) {
-  return {from,
-          std::atan2(emitter.east_m - from.east_m, emitter.north_m - from.north_m) + error_rad,
-          kSigma_rad};
+  return {from, course_between_rad(from, emitter) + error_rad, kSigma_rad};
 }
 
 /// Two bearings a second from an aircraft that flies north at 60 m/s from the origin.
