@@ -53,43 +53,28 @@ std::string track_line(Tick tick, std::uint32_t aircraft, const recon::Position&
 
 }  // namespace
 
-GroundStation::GroundStation(const InSystem& entity, const skein::ParameterValues& values,
+GroundStation::GroundStation(const InSystem& system, const skein::ParameterValues& values,
                              const RunwayText& own)
-    : system_(entity),
+    : system_(system),
       order_{runway(own)},
       frame_(parse_runway(values.get<std::string>("Runway")).threshold),
       patience_(values.find<skein::Duration>("Patience").value_or(2min)),
       ground_(ground_of(values)),
       judge_(judge_of(frame_, order_.runway, values)),
-      truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
-                                                [this](const recon::Truth& truth) { see(truth); })),
-      statuses_(entity.subscription<recon::MissionStatus>(
-          topic::kStatus, skein::TopicQos::state(),
-          [this](const recon::MissionStatus& status) { show(status); })),
-      modes_(entity.subscription<recon::MissionMode>(
-          topic::kMode.name, skein::TopicQos::state(),
-          [this](const recon::MissionMode& mode) { show(mode); })),
-      pictures_(entity.subscription<recon::ThreatPicture>(
-          topic::kThreats.name, skein::TopicQos::state(),
-          [this](const recon::ThreatPicture& picture) { show(picture); })),
-      elements_(entity.subscription<recon::ElementList>(
-          topic::kElements.name, skein::TopicQos::state(),
-          [this](const recon::ElementList& list) { show(list); })),
-      threat_truths_(entity.subscription<recon::ThreatTruth>(
-          topic::kThreatTruth.name, {}, [this](const recon::ThreatTruth& truth) { see(truth); })),
-      traffic_truths_(entity.subscription<recon::Traffic>(
-          topic::kTrafficTruth.name, {}, [this](const recon::Traffic& traffic) { see(traffic); })),
-      advisories_(entity.subscription<recon::ResolutionAdvisory>(
-          topic::kAdvisory.name, skein::TopicQos::state(),
-          [this](const recon::ResolutionAdvisory& advisory) { see(advisory); })),
-      states_(entity.subscription<recon::FlightState>(
-          topic::kFlightState.name, stream_qos(),
-          [this](const recon::FlightState& state) { show(state); })),
-      decisions_(entity.subscription<skein::introspection::Decision>(
-          topic::kDecisions, decisions_qos(),
-          [this](const skein::introspection::Decision& decision) { show(decision); })),
-      recorder_(entity, frame_),
-      scoring_(entity, frame_, values) {}
+      recorder_(system, frame_),
+      scoring_(system, frame_, values) {
+  const auto state = skein::TopicQos::state();
+  hear<recon::Truth>(topic::kTruth.name);
+  hear<recon::MissionStatus>(topic::kStatus, state);
+  hear<recon::MissionMode>(topic::kMode.name, state);
+  hear<recon::ThreatPicture>(topic::kThreats.name, state);
+  hear<recon::ElementList>(topic::kElements.name, state);
+  hear<recon::ThreatTruth>(topic::kThreatTruth.name);
+  hear<recon::Traffic>(topic::kTrafficTruth.name);
+  hear<recon::ResolutionAdvisory>(topic::kAdvisory.name, state);
+  hear<recon::FlightState>(topic::kFlightState.name, stream_qos());
+  hear<skein::introspection::Decision>(topic::kDecisions, decisions_qos());
+}
 
 void GroundStation::begin() {
   simulator_ = system_.connect<recon::IFlightSimulator>(kPatience);
@@ -209,7 +194,7 @@ void GroundStation::judge_what_is_whole() {
   }
 }
 
-void GroundStation::show(const recon::MissionStatus& status) {
+void GroundStation::see(const recon::MissionStatus& status) {
   {
     std::lock_guard lock(mutex_);
     if (phase_ == status.phase && reason_ == status.reason) return;
@@ -221,7 +206,7 @@ void GroundStation::show(const recon::MissionStatus& status) {
   std::fflush(stdout);
 }
 
-void GroundStation::show(const recon::MissionMode& mode) {
+void GroundStation::see(const recon::MissionMode& mode) {
   {
     std::lock_guard lock(mutex_);
     if (mode_ == mode.mode && flight_order_ == mode.flight) return;
@@ -235,7 +220,7 @@ void GroundStation::show(const recon::MissionMode& mode) {
   std::fflush(stdout);
 }
 
-void GroundStation::show(const recon::ThreatPicture& picture) {
+void GroundStation::see(const recon::ThreatPicture& picture) {
   for (const recon::Threat& threat : picture.threats) {
     {
       std::lock_guard lock(mutex_);
@@ -258,7 +243,7 @@ void GroundStation::see(const recon::ResolutionAdvisory& advisory) {
   alert_ = advisory.alert;
 }
 
-void GroundStation::show(const recon::FlightState& state) {
+void GroundStation::see(const recon::FlightState& state) {
   bool avoiding_changed = false, sets_changed = false;
   recon::TrafficAlert alert{};
   {
@@ -276,7 +261,7 @@ void GroundStation::show(const recon::FlightState& state) {
   std::fflush(stdout);
 }
 
-void GroundStation::show(const skein::introspection::Decision& decision) {
+void GroundStation::see(const skein::introspection::Decision& decision) {
   using skein::introspection::Outcome;
   if (!system_.has(decision.entity)) return;
   std::string lost, instead;
@@ -292,7 +277,7 @@ void GroundStation::show(const skein::introspection::Decision& decision) {
   std::fflush(stdout);
 }
 
-void GroundStation::show(const recon::ElementList& list) {
+void GroundStation::see(const recon::ElementList& list) {
   {
     std::lock_guard lock(mutex_);
     const auto collected = std::ranges::count_if(list.elements, &recon::Element::collected);

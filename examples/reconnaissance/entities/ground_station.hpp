@@ -48,18 +48,22 @@ class GroundStation {
   const std::string& system() const { return system_.name(); }
 
  private:
+  template <class T>
+  void hear(const std::string& topic, const skein::TopicQos& qos = {}) {
+    subscriptions_.add<T>(system_, topic, qos, [this](const T& sample) { see(sample); });
+  }
   std::string clock_of(Tick tick) const;
   void see(const recon::Truth& truth);
   void judge_what_is_whole();
-  void show(const recon::MissionStatus& status);
-  void show(const recon::MissionMode& mode);
-  void show(const recon::ThreatPicture& picture);
-  void show(const recon::ElementList& list);
+  void see(const recon::MissionStatus& status);
+  void see(const recon::MissionMode& mode);
+  void see(const recon::ThreatPicture& picture);
+  void see(const recon::ElementList& list);
   void see(const recon::ThreatTruth& truth);
   void see(const recon::Traffic& traffic);
   void see(const recon::ResolutionAdvisory& advisory);
-  void show(const recon::FlightState& state);
-  void show(const skein::introspection::Decision& decision);
+  void see(const recon::FlightState& state);
+  void see(const skein::introspection::Decision& decision);
   bool is_complete() const;
   bool never_begins() const;
   std::string why_time_stands();
@@ -95,18 +99,9 @@ class GroundStation {
   Tick last_tick_ = -1;
   Tick last_moving_tick_ = -1;
 
-  skein::Subscription<recon::Truth> truths_;
-  skein::Subscription<recon::MissionStatus> statuses_;
-  skein::Subscription<recon::MissionMode> modes_;
-  skein::Subscription<recon::ThreatPicture> pictures_;
-  skein::Subscription<recon::ElementList> elements_;
-  skein::Subscription<recon::ThreatTruth> threat_truths_;
-  skein::Subscription<recon::Traffic> traffic_truths_;
-  skein::Subscription<recon::ResolutionAdvisory> advisories_;
-  skein::Subscription<recon::FlightState> states_;
-  skein::Subscription<skein::introspection::Decision> decisions_;
   Recorder recorder_;
   Scoring scoring_;
+  Subscriptions subscriptions_;
 };
 
 }  // namespace reconnaissance

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +58,20 @@ class InSystem {
  private:
   skein::Entity& entity_;
   std::string system_;
+};
+
+/// Subscriptions that live as long as their owner, of which they are the last member.
+class Subscriptions {
+ public:
+  template <class T>
+  void add(const InSystem& system, const std::string& topic, const skein::TopicQos& qos,
+           typename skein::Subscription<T>::Callback callback) {
+    all_.push_back(std::make_shared<skein::Subscription<T>>(
+        system.subscription<T>(topic, qos, std::move(callback))));
+  }
+
+ private:
+  std::vector<std::shared_ptr<void>> all_;
 };
 
 }  // namespace reconnaissance

@@ -29,38 +29,23 @@ double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanosecond
 
 }  // namespace
 
-Recorder::Recorder(const InSystem& entity, const LocalFrame& frame)
-    : system_(entity),
-      frame_(frame),
-      truths_(entity.subscription<recon::Truth>(topic::kTruth.name, {},
-                                                [this](const auto& truth) { see(truth); })),
-      states_(entity.subscription<recon::FlightState>(topic::kFlightState.name, stream_qos(),
-                                                      [this](const auto& state) { see(state); })),
-      statuses_(entity.subscription<recon::MissionStatus>(
-          topic::kStatus, skein::TopicQos::state(), [this](const auto& status) { see(status); })),
-      routes_(entity.subscription<recon::RouteTaken>(topic::kRoute, skein::TopicQos::state(),
-                                                     [this](const auto& taken) { see(taken); })),
-      modes_(entity.subscription<recon::MissionMode>(topic::kMode.name, skein::TopicQos::state(),
-                                                     [this](const auto& mode) { see(mode); })),
-      pictures_(
-          entity.subscription<recon::ThreatPicture>(topic::kThreats.name, skein::TopicQos::state(),
-                                                    [this](const auto& picture) { see(picture); })),
-      elements_(entity.subscription<recon::ElementList>(topic::kElements.name,
-                                                        skein::TopicQos::state(),
-                                                        [this](const auto& list) { see(list); })),
-      images_(entity.subscription<recon::Images>(topic::kImages.name, {},
-                                                 [this](const auto& images) { see(images); })),
-      objects_(entity.subscription<recon::ObjectTruths>(
-          topic::kObjects.name, {}, [this](const auto& truths) { see(truths); })),
-      threat_truths_(entity.subscription<recon::ThreatTruth>(
-          topic::kThreatTruth.name, {}, [this](const auto& truth) { see(truth); })),
-      traffic_(entity.subscription<recon::Traffic>(topic::kTrafficTruth.name, {},
-                                                   [this](const auto& traffic) { see(traffic); })),
-      advisories_(entity.subscription<recon::ResolutionAdvisory>(
-          topic::kAdvisory.name, skein::TopicQos::state(),
-          [this](const auto& advisory) { see(advisory); })),
-      decisions_(entity.subscription<skein::introspection::Decision>(
-          topic::kDecisions, decisions_qos(), [this](const auto& decision) { see(decision); })) {}
+Recorder::Recorder(const InSystem& system, const LocalFrame& frame)
+    : system_(system), frame_(frame) {
+  const auto state = skein::TopicQos::state();
+  hear<recon::Truth>(topic::kTruth.name);
+  hear<recon::FlightState>(topic::kFlightState.name, stream_qos());
+  hear<recon::MissionStatus>(topic::kStatus, state);
+  hear<recon::RouteTaken>(topic::kRoute, state);
+  hear<recon::MissionMode>(topic::kMode.name, state);
+  hear<recon::ThreatPicture>(topic::kThreats.name, state);
+  hear<recon::ElementList>(topic::kElements.name, state);
+  hear<recon::Images>(topic::kImages.name);
+  hear<recon::ObjectTruths>(topic::kObjects.name);
+  hear<recon::ThreatTruth>(topic::kThreatTruth.name);
+  hear<recon::Traffic>(topic::kTrafficTruth.name);
+  hear<recon::ResolutionAdvisory>(topic::kAdvisory.name, state);
+  hear<skein::introspection::Decision>(topic::kDecisions, decisions_qos());
+}
 
 MissionRecord Recorder::record() const {
   std::lock_guard lock(mutex_);

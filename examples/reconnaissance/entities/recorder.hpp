@@ -22,12 +22,16 @@ namespace reconnaissance {
 /// Records for the report what the thirteen of a system publish. Thread-safe.
 class Recorder {
  public:
-  Recorder(const InSystem& entity, const LocalFrame& frame);
+  Recorder(const InSystem& system, const LocalFrame& frame);
 
   /// All until now.
   MissionRecord record() const;
 
  private:
+  template <class T>
+  void hear(const std::string& topic, const skein::TopicQos& qos = {}) {
+    subscriptions_.add<T>(system_, topic, qos, [this](const T& sample) { see(sample); });
+  }
   void see(const recon::Truth& truth);
   void see(const recon::FlightState& state);
   void see(const recon::MissionStatus& status);
@@ -68,19 +72,7 @@ class Recorder {
   std::map<std::string, std::vector<double>> latencies_;  // by entity and CSP
   std::map<std::string, LastTold> last_told_;             // by entity and question
 
-  skein::Subscription<recon::Truth> truths_;
-  skein::Subscription<recon::FlightState> states_;
-  skein::Subscription<recon::MissionStatus> statuses_;
-  skein::Subscription<recon::RouteTaken> routes_;
-  skein::Subscription<recon::MissionMode> modes_;
-  skein::Subscription<recon::ThreatPicture> pictures_;
-  skein::Subscription<recon::ElementList> elements_;
-  skein::Subscription<recon::Images> images_;
-  skein::Subscription<recon::ObjectTruths> objects_;
-  skein::Subscription<recon::ThreatTruth> threat_truths_;
-  skein::Subscription<recon::Traffic> traffic_;
-  skein::Subscription<recon::ResolutionAdvisory> advisories_;
-  skein::Subscription<skein::introspection::Decision> decisions_;
+  Subscriptions subscriptions_;
 };
 
 }  // namespace reconnaissance

@@ -9,9 +9,10 @@
 
 namespace reconnaissance {
 
-Scoring::Scoring(const InSystem& entity, const LocalFrame& frame,
+Scoring::Scoring(const InSystem& system, const LocalFrame& frame,
                  const skein::ParameterValues& values)
-    : frame_(frame),
+    : system_(system),
+      frame_(frame),
       within_m_(values.find<double>("Located within").value_or(500)),
       within_s_(values.find<std::chrono::duration<double>>("Reported within")
                     .value_or(std::chrono::duration<double>(120))
@@ -21,17 +22,12 @@ Scoring::Scoring(const InSystem& entity, const LocalFrame& frame,
                   .count(),
               values.find<double>("Least in view").value_or(PursuitConditions{}.least_in_view),
               values.find<double>("Greatest track error")
-                  .value_or(PursuitConditions{}.greatest_error_m)}),
-      lists_(entity.subscription<recon::ElementList>(topic::kElements.name,
-                                                     skein::TopicQos::state(),
-                                                     [this](const auto& list) { see(list); })),
-      objects_(entity.subscription<recon::ObjectTruths>(
-          topic::kObjects.name, {}, [this](const auto& truths) { see(truths); })),
-      threats_(entity.subscription<recon::ThreatTruth>(topic::kThreatTruth.name, {},
-                                                       [this](const auto& truth) { see(truth); })),
-      pictures_(entity.subscription<recon::ThreatPicture>(
-          topic::kThreats.name, skein::TopicQos::state(),
-          [this](const auto& picture) { see(picture); })) {}
+                  .value_or(PursuitConditions{}.greatest_error_m)}) {
+  hear<recon::ElementList>(topic::kElements.name, skein::TopicQos::state());
+  hear<recon::ObjectTruths>(topic::kObjects.name);
+  hear<recon::ThreatTruth>(topic::kThreatTruth.name);
+  hear<recon::ThreatPicture>(topic::kThreats.name, skein::TopicQos::state());
+}
 
 std::vector<Check> Scoring::checks() const {
   std::lock_guard lock(mutex_);

@@ -19,17 +19,22 @@ namespace reconnaissance {
 /// its order is to follow or to place them. Thread-safe.
 class Scoring {
  public:
-  Scoring(const InSystem& entity, const LocalFrame& frame, const skein::ParameterValues& values);
+  Scoring(const InSystem& system, const LocalFrame& frame, const skein::ParameterValues& values);
 
   /// Beside those of the flight.
   std::vector<Check> checks() const;
 
  private:
+  template <class T>
+  void hear(const std::string& topic, const skein::TopicQos& qos = {}) {
+    subscriptions_.add<T>(system_, topic, qos, [this](const T& sample) { see(sample); });
+  }
   void see(const recon::ElementList& list);
   void see(const recon::ObjectTruths& truths);
   void see(const recon::ThreatTruth& truth);
   void see(const recon::ThreatPicture& picture);
 
+  InSystem system_;
   LocalFrame frame_;
   double within_m_;
   double within_s_;
@@ -41,10 +46,7 @@ class Scoring {
   std::vector<Site> reported_;  // and as they are reported
   ReportDelays delays_;
 
-  skein::Subscription<recon::ElementList> lists_;
-  skein::Subscription<recon::ObjectTruths> objects_;
-  skein::Subscription<recon::ThreatTruth> threats_;
-  skein::Subscription<recon::ThreatPicture> pictures_;
+  Subscriptions subscriptions_;
 };
 
 /// What is wanted of elements, as it stands in the verdict: `followed as long as was ordered`.
