@@ -1,6 +1,5 @@
 #include "threats/emitter_location.hpp"
 
-#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
@@ -160,40 +159,6 @@ TEST_CASE("An emitter that is flown towards is not placed where the aircraft is"
     }
   }
   CHECK(placed > 200);
-}
-
-TEST_CASE("A filter in Cartesian coordinates would be overconfident on the same bearings") {
-  Random random(22 + 60);
-  double sum = 0;
-  for (int run = 0; run < kRuns; ++run) {
-    const auto [bearing_rad, range_m] = anywhere(random);
-    const Local emitter = at(bearing_rad, range_m);
-    const auto bearings = fly(60, emitter, random);
-    // It begins with mean and variance of the same distances.
-    const Eigen::Vector2d along(std::cos(bearings[0].bearing_rad),
-                                std::sin(bearings[0].bearing_rad));
-    const Eigen::Vector2d across(-along.y(), along.x());
-    const double octaves = std::log(20);
-    const double mean_m = 57000 / octaves;
-    const double variance_m2 = (6e4 * 6e4 - 3e3 * 3e3) / (2 * octaves) - mean_m * mean_m;
-    Eigen::Vector2d state = mean_m * along;
-    Eigen::Matrix2d covariance = variance_m2 * along * along.transpose() +
-                                 std::pow(mean_m * kSigma_rad, 2) * across * across.transpose();
-    for (std::size_t i = 1; i < bearings.size(); ++i) {
-      const Eigen::Vector2d way = state - Eigen::Vector2d(bearings[i].from.north_m, 0);
-      const Eigen::RowVector2d slope = Eigen::RowVector2d(-way.y(), way.x()) / way.squaredNorm();
-      const double variance = slope * covariance * slope.transpose() + kSigma_rad * kSigma_rad;
-      const Eigen::Vector2d gain = covariance * slope.transpose() / variance;
-      const double expected = std::atan2(way.y(), way.x());
-      state += gain * std::remainder(bearings[i].bearing_rad - expected, 2 * M_PI);
-      covariance -= variance * gain * gain.transpose();
-    }
-    sum += nees({{state.x(), state.y()},
-                 {covariance(0, 0), covariance(0, 1), covariance(0, 1), covariance(1, 1)}},
-                truth(emitter));
-  }
-  INFO("NEES " << sum / kRuns);
-  CHECK(sum / kRuns > bound(0.975));
 }
 
 TEST_CASE("The filter is as sharp as all bearings together allow") {
