@@ -73,7 +73,6 @@ struct Flown {
   double nmac_multiple = 1e9;
   double violated_s = 0;
   bool well_clear_at_end = false;
-  double aside_m = 0;  ///< Farthest from the route.
   bool on_course_at_end = false;
 };
 
@@ -82,7 +81,6 @@ Flown fly(TrafficState own, TrafficState other, double seconds,
           const std::function<TrafficState(const TrafficState&, const TrafficState&)>& other_flies,
           const SurveillanceErrors& errors = {}) {
   const double route_rad = own.course_rad();
-  const Local start = own.place;
   Flown flown;
   Equipment<Avoider> equipment(errors);
   ResolutionAdvisory advisory;
@@ -99,10 +97,6 @@ Flown fly(TrafficState own, TrafficState other, double seconds,
     flown.well_clear_at_end = !violated;
     const double turned = std::remainder(own.course_rad() - route_rad, 2 * std::numbers::pi);
     flown.on_course_at_end = std::abs(turned) < 0.02;
-    const double north = own.place.north_m - start.north_m;
-    const double east = own.place.east_m - start.east_m;
-    flown.aside_m =
-        std::max(flown.aside_m, std::abs(east * std::cos(route_rad) - north * std::sin(route_rad)));
   }
   return flown;
 }
@@ -132,7 +126,7 @@ inline Pair colliding(Random& random) {
 
 struct Summary {
   int collisions = 0, violations = 0, recovered = 0, back = 0;
-  double worst_multiple = 1e9, longest_violation_s = 0, mean_aside_m = 0;
+  double longest_violation_s = 0;
 };
 
 template <class Avoider>
@@ -147,15 +141,8 @@ Summary summary(int encounters, const SurveillanceErrors& errors = {}) {
     all.violations += flown.violated_s > 0;
     all.recovered += flown.well_clear_at_end;
     all.back += flown.on_course_at_end;
-    all.worst_multiple = std::min(all.worst_multiple, flown.nmac_multiple);
     all.longest_violation_s = std::max(all.longest_violation_s, flown.violated_s);
-    all.mean_aside_m += flown.aside_m / encounters;
   }
-  WARN(encounters << " encounters: " << all.collisions << " near mid-air collisions (least "
-                  << all.worst_multiple << " of their size), " << all.violations
-                  << " lost well clear (longest " << all.longest_violation_s << " s), "
-                  << all.mean_aside_m << " m beside the route on average, back on course "
-                  << all.back);
   return all;
 }
 

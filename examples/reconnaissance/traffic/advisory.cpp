@@ -20,10 +20,7 @@ bool conflict(const TrafficState& own, std::span<const TrafficState> others,
 }
 
 /// The other may turn back at the same time.
-WellClearVolume widened(WellClearVolume volume) {
-  volume.distance_m *= 1.5;
-  return volume;
-}
+constexpr WellClearVolume kWidened{1.5 * kEnRoute.distance_m, kEnRoute.height_m, kEnRoute.tau_s};
 
 const Manoeuvre* least_change(const std::vector<Manoeuvre>& tried, auto&& allowed) {
   const Manoeuvre* best = nullptr;
@@ -62,11 +59,10 @@ ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
   if (!avoiding_) {
     // An alert outlives its cause: where the route leads clear, it is flown.
     const bool route_conflicts =
-        conflict(on_course(own, route_course_rad), others, volume_, limits_.look_ahead_s);
+        conflict(on_course(own, route_course_rad), others, kEnRoute, limits_.look_ahead_s);
     avoiding_ =
         alert >= AlertLevel::Warning || (alert >= AlertLevel::Corrective && route_conflicts);
-  } else if (!conflict(on_course(own, route_course_rad), others, widened(volume_),
-                       limits_.look_ahead_s)) {
+  } else if (!conflict(on_course(own, route_course_rad), others, kWidened, limits_.look_ahead_s)) {
     avoiding_ = false;
   }
   if (avoiding_) return resolve(own, others);
@@ -76,7 +72,7 @@ ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
 
 ResolutionAdvisory BandsAvoider::resolve(const TrafficState& own,
                                          std::span<const TrafficState> others) {
-  const auto courses = course_bands(own, others, volume_, limits_);
+  const auto courses = course_bands(own, others, kEnRoute, limits_);
   const auto* right = least_change(courses, [](const auto& one) { return one.change >= 0; });
   const auto* left = least_change(courses, [](const auto& one) { return one.change <= 0; });
   if (right || left) {
@@ -87,7 +83,7 @@ ResolutionAdvisory BandsAvoider::resolve(const TrafficState& own,
     side_ = turn_right ? Side::Right : Side::Left;
     return {(turn_right ? right : left)->value, {}, false};
   }
-  const auto climbs = climb_bands(own, others, volume_, limits_);
+  const auto climbs = climb_bands(own, others, kEnRoute, limits_);
   if (const auto* climb = least_change(climbs, [](const auto&) { return true; })) {
     return {{}, climb->value, false};
   }
@@ -100,8 +96,9 @@ ResolutionAdvisory BandsAvoider::resolve(const TrafficState& own,
 ResolutionAdvisory PotentialFieldAvoider::advise(const TrafficState& own,
                                                  std::span<const TrafficState> others,
                                                  double route_course_rad) const {
-  if (!conflict(on_course(own, route_course_rad), others, volume_, limits_.look_ahead_s) &&
-      !conflict(own, others, volume_, limits_.look_ahead_s)) {
+  constexpr ManoeuvreLimits kLimits;
+  if (!conflict(on_course(own, route_course_rad), others, kEnRoute, kLimits.look_ahead_s) &&
+      !conflict(own, others, kEnRoute, kLimits.look_ahead_s)) {
     return {};
   }
   double north = std::cos(route_course_rad);
@@ -115,7 +112,7 @@ ResolutionAdvisory PotentialFieldAvoider::advise(const TrafficState& own,
     const double squared_speed = v_north * v_north + v_east * v_east;
     const double closing = s_north * v_north + s_east * v_east;
     const double closest_s =
-        squared_speed > 0 ? std::clamp(-closing / squared_speed, 0.0, limits_.look_ahead_s) : 0;
+        squared_speed > 0 ? std::clamp(-closing / squared_speed, 0.0, kLimits.look_ahead_s) : 0;
     double away_north = s_north + closest_s * v_north;
     double away_east = s_east + closest_s * v_east;
     const double closest_m = std::hypot(away_north, away_east);
@@ -127,20 +124,20 @@ ResolutionAdvisory PotentialFieldAvoider::advise(const TrafficState& own,
     const double length = std::hypot(away_north, away_east);
     if (length == 0) continue;
     // 2 at the edge of the volume half a look-ahead away.
-    const double nearness = volume_.distance_m / std::max(closest_m, volume_.distance_m / 10);
-    const double soon = limits_.look_ahead_s / 2 / std::max(closest_s, 1.0);
+    const double nearness = kEnRoute.distance_m / std::max(closest_m, kEnRoute.distance_m / 10);
+    const double soon = kLimits.look_ahead_s / 2 / std::max(closest_s, 1.0);
     const double strength = 2 * nearness * nearness * soon;
     const double range_m = std::max(std::hypot(s_north, s_east), 1.0);
     north += strength * (away_north / length + s_east / range_m);
     east += strength * (away_east / length - s_north / range_m);
-    if (violation(own, other, volume_, kEnRouteAlerts[0].raised_s)) {
+    if (violation(own, other, kEnRoute, kEnRouteAlerts[0].raised_s)) {
       const double above_m =
           own.place.height_m - other.place.height_m + closest_s * (own.up_m_s - other.up_m_s);
       up += (above_m >= 0 ? 1 : -1) * strength;
     }
   }
   ResolutionAdvisory advisory{std::atan2(east, north), {}, false};
-  if (up != 0) advisory.climb_m_s = up > 0 ? limits_.greatest_climb_m_s : limits_.least_climb_m_s;
+  if (up != 0) advisory.climb_m_s = up > 0 ? kLimits.greatest_climb_m_s : kLimits.least_climb_m_s;
   return advisory;
 }
 

@@ -30,9 +30,7 @@ struct ResolutionAdvisory {
 /// volume, or with a warning, and last until that course is free of a volume half as wide again.
 class BandsAvoider {
  public:
-  explicit BandsAvoider(const ManoeuvreLimits& limits = {},
-                        const WellClearVolume& volume = kEnRoute)
-      : limits_(limits), volume_(volume) {}
+  explicit BandsAvoider(const ManoeuvreLimits& limits = {}) : limits_(limits) {}
 
   /// Call about once a second with all traffic, and the highest alert about any of it.
   ResolutionAdvisory advise(const TrafficState& own, std::span<const TrafficState> others,
@@ -44,7 +42,6 @@ class BandsAvoider {
   ResolutionAdvisory resolve(const TrafficState& own, std::span<const TrafficState> others);
 
   ManoeuvreLimits limits_;
-  WellClearVolume volume_;
   Side side_ = Side::None;
   bool avoiding_ = false;
 };
@@ -57,16 +54,8 @@ class BandsAvoider {
 /// Simple and smooth, and without any guarantee to keep well clear.
 class PotentialFieldAvoider {
  public:
-  explicit PotentialFieldAvoider(const ManoeuvreLimits& limits = {},
-                                 const WellClearVolume& volume = kEnRoute)
-      : limits_(limits), volume_(volume) {}
-
   ResolutionAdvisory advise(const TrafficState& own, std::span<const TrafficState> others,
                             double route_course_rad) const;
-
- private:
-  ManoeuvreLimits limits_;
-  WellClearVolume volume_;
 };
 
 }  // namespace reconnaissance

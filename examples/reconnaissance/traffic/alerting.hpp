@@ -39,8 +39,6 @@ class Alert {
   /// Times grow; call once a second.
   AlertLevel assess(const TrafficState& own, const TrafficState& other, double now_s);
 
-  AlertLevel level() const { return shown_; }
-
  private:
   AlertLevel seen_twice() const;
 
