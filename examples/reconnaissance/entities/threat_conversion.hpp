@@ -44,7 +44,7 @@ inline recon::Identification identification(const Identification& found) {
 }
 
 inline Identification identification(const recon::Identification& found) {
-  return {found.emitter, radar_mode(found.mode), found.confidence, {}};
+  return {found.emitter, radar_mode(found.mode), found.confidence};
 }
 
 inline recon::BearingTrack bearing_track(std::span<const Bearing> bearings,

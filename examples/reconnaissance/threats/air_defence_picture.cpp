@@ -120,7 +120,6 @@ std::vector<Threat> AirDefencePicture::threats(const Locate& locate) const {
                   *position,
                   true,
                   false,
-                  track.last_heard_s,
                   *position};
     const LinkTrack* nearest = nullptr;
     double least = gate;
@@ -141,15 +140,8 @@ std::vector<Threat> AirDefencePicture::threats(const Locate& locate) const {
   }
   for (const auto& [id, link] : links_) {
     if (fused.contains(id)) continue;
-    threats.push_back({kFirstLinkNumber + id,
-                       link.emitter,
-                       RadarMode::Off,
-                       1,
-                       link.position,
-                       false,
-                       true,
-                       0,
-                       {}});
+    threats.push_back(
+        {kFirstLinkNumber + id, link.emitter, RadarMode::Off, 1, link.position, false, true, {}});
   }
   return threats;
 }

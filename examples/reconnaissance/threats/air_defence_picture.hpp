@@ -29,7 +29,6 @@ struct Threat {
   skein::fusion::Estimate position;  ///< North and east.
   bool heard;                        ///< By our own warner,
   bool linked;                       ///< over the link.
-  double last_heard_s;               ///< 0 if only linked.
   /// As our own warner alone has it, which is what others may be told; none if only linked.
   std::optional<skein::fusion::Estimate> own = std::nullopt;
 };

@@ -45,28 +45,24 @@ double likelihood(const Measured& m, const EmitterClass& emitter) {
          density(m.values.scan_s, m.sigmas.scan_s, emitter.scan_s);
 }
 
-Identification identify(std::vector<double> posterior, std::span<const EmitterClass> library) {
-  const auto best = std::max_element(posterior.begin(), posterior.end());
-  const auto index = static_cast<std::size_t>(best - posterior.begin());
-  const double confidence = *best;
-  const EmitterClass& found = index < library.size() ? library[index] : kUnknown;
-  return {found.type, found.mode, confidence, std::move(posterior)};
-}
-
 Identification by_bayes(const Measured& m, std::span<const EmitterClass> library) {
   const double priors =
       std::accumulate(library.begin(), library.end(), 0.0,
                       [](double sum, const EmitterClass& emitter) { return sum + emitter.prior; });
-  std::vector<double> posterior;
-  for (const EmitterClass& emitter : library) {
-    posterior.push_back((1 - kUnknownPrior) * emitter.prior / priors * likelihood(m, emitter));
-  }
-  posterior.push_back(kUnknownPrior * likelihood(m, kUnknown));
-  const double sum = std::accumulate(posterior.begin(), posterior.end(), 0.0);
+  Identification best;
+  double sum = 0;
+  const auto consider = [&](const EmitterClass& emitter, double prior) {
+    const double probability = prior * likelihood(m, emitter);
+    sum += probability;
+    if (probability > best.confidence) best = {emitter.type, emitter.mode, probability};
+  };
+  for (const EmitterClass& emitter : library)
+    consider(emitter, (1 - kUnknownPrior) * emitter.prior / priors);
+  consider(kUnknown, kUnknownPrior);
   // So far from everything that no density is left.
-  if (!(sum > 0)) posterior.back() = 1;
-  for (double& probability : posterior) probability /= sum > 0 ? sum : 1;
-  return identify(std::move(posterior), library);
+  if (!(sum > 0)) return {"", RadarMode::Off, 1};
+  best.confidence /= sum;
+  return best;
 }
 
 bool fits(const Measured& m, const EmitterClass& emitter) {
@@ -122,21 +118,15 @@ std::span<const EmitterClass> emitter_library() {
 Identification match_table(const Intercept& intercept, const WarnerReceiver& receiver,
                            std::span<const EmitterClass> library) {
   const Measured m = measured(intercept.waveform, receiver, 1);
-  std::vector<double> shares(library.size() + 1, 0);
   const EmitterClass* first = nullptr;
   double matches = 0;
-  for (std::size_t i = 0; i < library.size(); ++i) {
-    if (!fits(m, library[i])) continue;
-    shares[i] = 1;
+  for (const EmitterClass& emitter : library) {
+    if (!fits(m, emitter)) continue;
     matches += 1;
-    if (!first || library[i].prior > first->prior) first = &library[i];
+    if (!first || emitter.prior > first->prior) first = &emitter;
   }
-  if (!first) {
-    shares.back() = 1;
-    return {"", RadarMode::Off, 1, std::move(shares)};
-  }
-  for (double& share : shares) share /= matches;
-  return {first->type, first->mode, 1 / matches, std::move(shares)};
+  if (!first) return {"", RadarMode::Off, 1};
+  return {first->type, first->mode, 1 / matches};
 }
 
 Identification classify_bayesian(const Intercept& intercept, const WarnerReceiver& receiver,

@@ -3,7 +3,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "skein/synthesis.hpp"
 #include "threats/warner_receiver.hpp"
@@ -41,8 +40,7 @@ std::span<const EmitterClass> emitter_library();
 struct Identification {
   std::string emitter;  ///< The type; empty: none of the library.
   RadarMode mode = RadarMode::Off;
-  double confidence = 0;          ///< The probability that type and mode are right.
-  std::vector<double> posterior;  ///< By class of the library; the last is "none of them".
+  double confidence = 0;  ///< The probability that type and mode are right.
 };
 
 /// The first look of most warners: the classes of which no measured value is further than three
