@@ -151,7 +151,7 @@ TEST_CASE("Wrong identifications now and then make no threats") {
     for (const Threat& threat : picture.threats()) CHECK(threat.emitter == kShort.type);
   }
   // Nor do emitters that no library has.
-  hear(picture, kMedium, 301, random, {"", RadarMode::Off, 1, {}});
+  hear(picture, kMedium, 301, random, {"", RadarMode::Off, 1});
   CHECK(picture.threats().size() == 1);
 }
 
