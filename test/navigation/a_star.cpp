@@ -49,7 +49,7 @@ TEST_CASE("A route along the terrain's edge stays on the terrain, whatever the g
   problem.limits = {30, 10, 0, 900};
   PlannerOptions options;
   options.grid_spacing_m = 300;
-  const Route route = make_a_star(terrains, options)->plan(problem);
+  const Route route = make_planner("AStar", terrains, options)->plan(problem);
   const HeightGrid ground{65, 65, 100, 100, terrain->heights_m()};
   CHECK(violations(problem, route, ground) == "");
 }
@@ -99,10 +99,12 @@ TEST_CASE("A grid twice as fine finds hardly anything better, and anything else 
   const Demo demo;
   PlannerOptions fine;
   fine.grid_spacing_m = 100;
-  const double cost = cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem));
-  const double best = cost_m(demo.problem, make_a_star(demo.terrains, fine)->plan(demo.problem));
+  const double cost =
+      cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem));
+  const double best =
+      cost_m(demo.problem, make_planner("AStar", demo.terrains, fine)->plan(demo.problem));
   CHECK(cost < 1.03 * best);
-  const Route quick = make_rrt_connect(demo.terrains)->plan(demo.problem);
+  const Route quick = make_planner("RRTConnect", demo.terrains)->plan(demo.problem);
   CHECK(cost < cost_m(demo.problem, quick));
 }
 

@@ -127,7 +127,7 @@ Route plan(const FlatCrossing& crossing, double cap_m) {
   PlannerOptions options;
   options.exposure_cap_m = cap_m;
   options.grid_spacing_m = 2 * kFine_m;
-  return make_capped_a_star(crossing.terrains, options)->plan(crossing.problem);
+  return make_planner("CappedAStar", crossing.terrains, options)->plan(crossing.problem);
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ TEST_CASE("Without threats or without a cap the route under a cap is the shortes
   crossing.problem.exposure_weight = 0;
   PlannerOptions options;
   options.grid_spacing_m = 2 * kFine_m;
-  const Route shortest = make_a_star(crossing.terrains, options)->plan(crossing.problem);
+  const Route shortest = make_planner("AStar", crossing.terrains, options)->plan(crossing.problem);
   crossing.problem.exposure_weight = 1;
   CHECK(plan(crossing, INFINITY).waypoints == shortest.waypoints);
   crossing.problem.radar_sites.clear();

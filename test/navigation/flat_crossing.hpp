@@ -42,7 +42,7 @@ struct FlatCrossing {
     problem.exposure_weight = 1;
   }
 
-  AE_navigator::Route plan() const { return make_a_star(terrains)->plan(problem); }
+  AE_navigator::Route plan() const { return make_planner("AStar", terrains)->plan(problem); }
 
   const HeightGrid& ground() const { return FlatTile::shared().ground(); }
 

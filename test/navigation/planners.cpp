@@ -44,8 +44,8 @@ void check_every_planner(std::initializer_list<std::uint32_t> seeds) {
     }
     demo.problem.time_limit_ms = 0;
     INFO("RRTstar on " << demo.problem.terrain);
-    CHECK(violations(demo.problem, make_rrt_star(demo.terrains)->plan(demo.problem), demo.ground) ==
-          "");
+    CHECK(violations(demo.problem, make_planner("RRTstar", demo.terrains)->plan(demo.problem),
+                     demo.ground) == "");
   }
 }
 
@@ -57,7 +57,7 @@ void check_turns(std::initializer_list<std::uint32_t> seeds) {
         demo.problem.limits.speed_m_s = speed;
         demo.problem.minimum_height_above_ground_m = height;
         INFO("seed " << seed << ", " << speed << " m/s, " << height << " m above the ground");
-        const Route route = make_a_star(demo.terrains)->plan(demo.problem);
+        const Route route = make_planner("AStar", demo.terrains)->plan(demo.problem);
         CHECK(violations(demo.problem, route, demo.ground) == "");
       }
     }
@@ -88,7 +88,7 @@ TEST_CASE("Samplers give valid routes whatever their seed") {
     PlannerOptions options;
     options.seed = seed;
     INFO("seed " << seed);
-    const Route route = make_rrt_connect(demo.terrains, options)->plan(demo.problem);
+    const Route route = make_planner("RRTConnect", demo.terrains, options)->plan(demo.problem);
     CHECK(violations(demo.problem, route, demo.ground) == "");
   }
 }
@@ -98,7 +98,7 @@ TEST_CASE("The same seed gives the same route, another one another") {
   const auto plan = [&](std::uint32_t seed) {
     PlannerOptions options;
     options.seed = seed;
-    return make_rrt_connect(demo.terrains, options)->plan(demo.problem).waypoints;
+    return make_planner("RRTConnect", demo.terrains, options)->plan(demo.problem).waypoints;
   };
   CHECK(plan(5) == plan(5));
   CHECK(plan(5) != plan(6));
@@ -111,18 +111,21 @@ TEST_CASE("RRTstar makes good use of more steps") {
     PlannerOptions options;
     int left = looks;
     options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
-    return cost_m(demo.problem, make_rrt_star(demo.terrains, options)->plan(demo.problem));
+    return cost_m(demo.problem,
+                  make_planner("RRTstar", demo.terrains, options)->plan(demo.problem));
   };
   const double soon = cost_after(150);
   const double later = cost_after(3000);
   CHECK(later < soon);
-  CHECK(later < 1.05 * cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem)));
+  CHECK(later <
+        1.05 * cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem)));
 }
 
 TEST_CASE(
     "Whoever improves his route while there is time makes a valid one that is worth the time") {
   const Demo demo;
-  const double best = cost_m(demo.problem, make_a_star(demo.terrains)->plan(demo.problem));
+  const double best =
+      cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem));
   for (const std::string name : {"InformedRRTstar", "PRMstar"}) {
     INFO(name);
     PlannerOptions options;
@@ -199,7 +202,7 @@ TEST_CASE("Each planner brings its routes as it finds them, the last being the b
   int left = 3000;
   options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
   Routes routes;
-  make_rrt_star(demo.terrains, options)->improve(demo.problem, routes);
+  make_planner("RRTstar", demo.terrains, options)->improve(demo.problem, routes);
   REQUIRE(routes.found.size() > 1);
   for (const Route& route : routes.found) CHECK(violations(demo.problem, route, demo.ground) == "");
   CHECK(cost_m(demo.problem, routes.found.back()) < cost_m(demo.problem, routes.found.front()));
@@ -210,7 +213,7 @@ TEST_CASE(
   Demo demo;
   demo.problem.start.altitude_m -= 128;
   demo.problem.goal.altitude_m -= 128;
-  const Route route = make_a_star(demo.terrains)->plan(demo.problem);
+  const Route route = make_planner("AStar", demo.terrains)->plan(demo.problem);
   CHECK(route.waypoints.front() == demo.problem.start);
   CHECK(route.waypoints.back() == demo.problem.goal);
   CHECK(violations(demo.problem, route, demo.ground) == "");
@@ -219,11 +222,11 @@ TEST_CASE(
 TEST_CASE("An aircraft that turns on the spot needs no arcs, a faster one longer ones") {
   Demo demo;
   demo.problem.limits.maximum_bank_angle_deg = 0;
-  const Route nimble = make_a_star(demo.terrains)->plan(demo.problem);
+  const Route nimble = make_planner("AStar", demo.terrains)->plan(demo.problem);
   CHECK(violations(demo.problem, nimble, demo.ground) == "");
   demo.problem.limits.maximum_bank_angle_deg = 30;
   demo.problem.limits.speed_m_s = 100;
-  const Route fast = make_a_star(demo.terrains)->plan(demo.problem);
+  const Route fast = make_planner("AStar", demo.terrains)->plan(demo.problem);
   CHECK(violations(demo.problem, fast, demo.ground) == "");
   CHECK(cost_m(demo.problem, nimble) < 1.005 * cost_m(demo.problem, fast));
 }
@@ -252,7 +255,7 @@ TEST_CASE("By default a planner stops with the call that it works for") {
                                    &cancelled);
   const skein::CallContextScope scope(context);
   CHECK(current_call_cancelled());
-  CHECK_THROWS_AS(make_a_star(demo.terrains)->plan(demo.problem), NoRoute);
+  CHECK_THROWS_AS(make_planner("AStar", demo.terrains)->plan(demo.problem), NoRoute);
 }
 
 TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
@@ -342,7 +345,7 @@ TEST_CASE("A planner ends when its time is up, however hard the problem") {
 
 TEST_CASE("One planner serves several threads at once") {
   const Demo demo;
-  const auto planner = make_a_star(demo.terrains);
+  const auto planner = make_planner("AStar", demo.terrains);
   std::vector<Route> routes(3);
   std::vector<std::thread> threads;
   for (Route& route : routes) {

@@ -62,6 +62,6 @@ TEST_CASE("Over real ground every planner's route is valid, and an enclosed goal
     INFO(name);
     CHECK(violations(problem, make_planner(name, terrains)->plan(problem), ground) == "");
   }
-  CHECK_THROWS_AS(make_a_star(terrains)->plan(unreachable_demo_problem(*terrain)),
+  CHECK_THROWS_AS(make_planner("AStar", terrains)->plan(unreachable_demo_problem(*terrain)),
                   AE_navigator::NoRoute);
 }

@@ -25,7 +25,7 @@ const Demo& demo() {
 }
 
 const Route& good_route() {
-  static const Route route = make_a_star(demo().terrains)->plan(demo().problem);
+  static const Route route = make_planner("AStar", demo().terrains)->plan(demo().problem);
   return route;
 }
 

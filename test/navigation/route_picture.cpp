@@ -18,8 +18,8 @@ using Catch::Contains;
 namespace {
 
 std::vector<PicturedRoute> two_routes(const Demo& demo) {
-  return {{"A*, 2 s", make_a_star(demo.terrains)->plan(demo.problem)},
-          {"RRTConnect, 50 ms", make_rrt_connect(demo.terrains)->plan(demo.problem)}};
+  return {{"A*, 2 s", make_planner("AStar", demo.terrains)->plan(demo.problem)},
+          {"RRTConnect, 50 ms", make_planner("RRTConnect", demo.terrains)->plan(demo.problem)}};
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ TEST_CASE("A height profile has distances below it") {
 // The missiles are those that the example's ground station reports before its fifth question.
 TEST_CASE("The text of the route-planning example tells what A* plans today") {
   const Demo demo;
-  const auto planner = make_a_star(demo.terrains);
+  const auto planner = make_planner("AStar", demo.terrains);
   const auto before = planner->plan(demo.problem);
   auto problem = demo.problem;
   const auto& middle = before.waypoints[before.waypoints.size() / 2];

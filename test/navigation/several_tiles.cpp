@@ -90,7 +90,7 @@ TEST_CASE("A route leads across the edges of tiles, and the checker finds it val
   problem.no_fly_zones = {{"Where four tiles meet", {corner}, 4000, -1000, 20000}};
   problem.minimum_height_above_ground_m = 120;
   problem.limits = {60, 10, 30, 3000};
-  const AE_navigator::Route route = make_a_star(terrains)->plan(problem);
+  const AE_navigator::Route route = make_planner("AStar", terrains)->plan(problem);
   CHECK(violations(problem, route, read_height_grid(tiles.file())) == "");
   CHECK(route.length_m > 54000);
 }

@@ -31,7 +31,7 @@ std::string refusal(AE_navigator::IPlanner& planner, const Problem& problem) {
 TEST_CASE("AStar proves that an enclosed goal cannot be reached and names what encloses it") {
   const Demo demo;
   try {
-    make_a_star(demo.terrains)->plan(unreachable_demo_problem(*demo.terrain));
+    make_planner("AStar", demo.terrains)->plan(unreachable_demo_problem(*demo.terrain));
     FAIL("it found a route");
   } catch (const NoRoute& refusal) {
     CHECK(refusal.proven);
@@ -45,16 +45,17 @@ TEST_CASE("AStar names the start where that is what is enclosed") {
   const Demo demo;
   Problem problem = unreachable_demo_problem(*demo.terrain);
   std::swap(problem.start, problem.goal);
-  CHECK_THAT(refusal(*make_a_star(demo.terrains), problem), Contains("the start is enclosed"));
+  CHECK_THAT(refusal(*make_planner("AStar", demo.terrains), problem),
+             Contains("the start is enclosed"));
 }
 
 TEST_CASE("Samplers do not find what is not there, and claim no proof") {
   const Demo demo;
   Problem problem = unreachable_demo_problem(*demo.terrain);
   problem.time_limit_ms = 150;
-  for (const auto make : {make_rrt_connect, make_rrt_star, make_informed_rrt_star, make_prm_star}) {
+  for (const char* name : {"RRTConnect", "RRTstar", "InformedRRTstar", "PRMstar"}) {
     try {
-      make(demo.terrains, {})->plan(problem);
+      make_planner(name, demo.terrains)->plan(problem);
       FAIL("it found a route");
     } catch (const NoRoute& refusal) {
       CHECK_FALSE(refusal.proven);
@@ -67,7 +68,7 @@ TEST_CASE("A ring with a gap lets the route in") {
   const Demo demo;
   Problem problem = unreachable_demo_problem(*demo.terrain);
   problem.no_fly_zones.pop_back();
-  const auto route = make_a_star(demo.terrains)->plan(problem);
+  const auto route = make_planner("AStar", demo.terrains)->plan(problem);
   CHECK(violations(problem, route, demo.ground) == "");
 }
 
@@ -81,7 +82,8 @@ TEST_CASE("A wall of mountains as high as the maximum altitude is proved to be o
   problem.goal = {50000, 80000, 400};
   problem.minimum_height_above_ground_m = 100;
   problem.limits = {60, 10, 30, 1500};
-  const auto planner = make_a_star(std::make_shared<TerrainProvider>(std::vector{folder.path()}));
+  const auto planner =
+      make_planner("AStar", std::make_shared<TerrainProvider>(std::vector{folder.path()}));
   CHECK_THAT(refusal(*planner, problem), Contains("ground too high"));
   problem.limits.maximum_altitude_m = 2500;
   CHECK(refusal(*planner, problem) == "a route");

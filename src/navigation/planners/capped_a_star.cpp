@@ -3,9 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "navigation/planners/planners.hpp"
 #include "navigation/planners/planning_scene.hpp"
-#include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {
@@ -19,16 +17,12 @@ using AE_navigator::Route;
 /// by halving between one that does and one that does not.
 class CappedSearch {
  public:
-  using Report = std::function<void(const Route&)>;
-
-  CappedSearch(std::shared_ptr<TerrainProvider> terrains, const PlannerOptions& options,
-               const Problem& problem, Report report)
-      : planner_(make_a_star(std::move(terrains), options)),
-        cap_m_(cap_of(options, problem)),
-        report_(std::move(report)),
-        problem_(problem),
-        budget_(options, problem.time_limit_ms),
-        begin_(options.now()) {}
+  explicit CappedSearch(const Search& search)
+      : search_(search),
+        cap_m_(cap_of(search)),
+        problem_(search.problem),
+        budget_(search.options, problem_.time_limit_ms),
+        begin_(search.options.now()) {}
 
   Route find() {
     if (plan_with(0)) return finish();
@@ -74,7 +68,7 @@ class CappedSearch {
     }
     if (!best_ || route.length_m < best_->length_m) {
       best_ = std::move(route);
-      if (report_) report_(*best_);
+      search_.report(*best_);
     }
     return true;
   }
@@ -82,7 +76,7 @@ class CappedSearch {
   Route timed_plan(const Problem& problem) {
     const Duration before = spent();
     try {
-      Route route = planner_->plan(problem);
+      Route route = search_a_star({search_.terrains, search_.options, problem, {}});
       last_took_ = spent() - before;
       return route;
     } catch (const NoRoute& refusal) {
@@ -109,14 +103,13 @@ class CappedSearch {
                   false);
   }
 
-  static double cap_of(const PlannerOptions& options, const Problem& problem) {
-    return problem.exposure_cap_m > 0 ? std::min(problem.exposure_cap_m, options.exposure_cap_m)
-                                      : options.exposure_cap_m;
+  static double cap_of(const Search& search) {
+    const double cap_m = search.options.exposure_cap_m, asked_m = search.problem.exposure_cap_m;
+    return asked_m > 0 ? std::min(asked_m, cap_m) : cap_m;
   }
 
-  std::unique_ptr<AE_navigator::IPlanner> planner_;
+  const Search& search_;
   const double cap_m_;
-  Report report_;
   const Problem& problem_;
   PlanningBudget budget_;
   Instant begin_;
@@ -125,38 +118,11 @@ class CappedSearch {
   double least_exposure_m_ = std::numeric_limits<double>::infinity();
 };
 
-class CappedAStarPlanner final : public AE_navigator::IPlanner {
- public:
-  CappedAStarPlanner(std::shared_ptr<TerrainProvider> terrains, PlannerOptions options)
-      : terrains_(std::move(terrains)), options_(std::move(options)) {
-    if (options_.exposure_cap_m >= 0) return;
-    throw InvalidArgument(
-        fmt::format("the exposure cap is {} m; it must be 0 or more", options_.exposure_cap_m));
-  }
-
-  Route plan(const Problem& problem) override { return search(problem, {}); }
-
-  void improve(const Problem& problem, StreamSink<Route>& sink) override {
-    // A route that the caller has no room for is overtaken by the next.
-    const CappedSearch::Report report = [&](const Route& route) { sink.try_push(route); };
-    sink.push(search(problem, report));
-  }
-
- private:
-  Route search(const Problem& problem, const CappedSearch::Report& report) const {
-    load_valid(*terrains_, problem);  // With its own weight, too, which the search replaces.
-    return CappedSearch(terrains_, options_, problem, report).find();
-  }
-
-  std::shared_ptr<TerrainProvider> terrains_;
-  PlannerOptions options_;
-};
-
 }  // namespace
 
-std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
-    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options) {
-  return std::make_unique<CappedAStarPlanner>(std::move(terrains), std::move(options));
+AE_navigator::Route search_capped_a_star(const Search& search) {
+  load_valid(search.terrains, search.problem);  // With its own weight, too, which is replaced.
+  return CappedSearch(search).find();
 }
 
 }  // namespace skein::navigation

@@ -48,9 +48,9 @@ struct Candidate {
   double length_m = std::numeric_limits<double>::infinity();
 };
 
-class Search {
+class ShortestWord {
  public:
-  Search(const Pose& start, const Pose& goal, double radius_m)
+  ShortestWord(const Pose& start, const Pose& goal, double radius_m)
       : start_(start), goal_(goal), radius_m_(radius_m) {}
 
   Candidate shortest() {
@@ -138,7 +138,7 @@ void require_flyable(const Pose& start, const Pose& goal, double radius_m) {
 DubinsPath::DubinsPath(const Pose& start, const Pose& goal, double radius_m)
     : start_(start), goal_(goal), radius_m_(radius_m) {
   require_flyable(start, goal, radius_m);
-  pieces_ = Search(start, goal, radius_m).shortest().pieces;
+  pieces_ = ShortestWord(start, goal, radius_m).shortest().pieces;
 }
 
 double DubinsPath::length_m() const noexcept {

@@ -1,25 +1,53 @@
 #include <fmt/core.h>
 
 #include "core/suggestion.hpp"
-#include "navigation/planners/planners.hpp"
+#include "navigation/planners/search.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation {
 
 namespace {
 
-struct Maker {
+struct Planner {
   const char* name;
-  std::unique_ptr<AE_navigator::IPlanner> (*make)(std::shared_ptr<TerrainProvider>, PlannerOptions);
+  AE_navigator::Route (*search)(const Search&);
 };
 
-constexpr Maker kMakers[] = {
-    {"AStar", make_a_star},
-    {"CappedAStar", make_capped_a_star},
-    {"RRTConnect", make_rrt_connect},
-    {"RRTstar", make_rrt_star},
-    {"InformedRRTstar", make_informed_rrt_star},
-    {"PRMstar", make_prm_star},
+constexpr Planner kPlanners[] = {
+    {"AStar", search_a_star},
+    {"CappedAStar", search_capped_a_star},
+    {"RRTConnect", search_rrt_connect},
+    {"RRTstar", search_rrt_star},
+    {"InformedRRTstar", search_informed_rrt_star},
+    {"PRMstar", search_prm_star},
+};
+constexpr Planner kLegacyDubins{"LegacyDubins", search_legacy_dubins};
+
+class SearchingPlanner final : public AE_navigator::IPlanner {
+ public:
+  SearchingPlanner(const Planner& planner, std::shared_ptr<TerrainProvider> terrains,
+                   PlannerOptions options)
+      : planner_(planner), terrains_(std::move(terrains)), options_(std::move(options)) {
+    if (options_.exposure_cap_m >= 0) return;
+    throw InvalidArgument(
+        fmt::format("the exposure cap is {} m; it must be 0 or more", options_.exposure_cap_m));
+  }
+
+  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
+    return planner_.search({*terrains_, options_, problem, [](const AE_navigator::Route&) {}});
+  }
+
+  void improve(const AE_navigator::Problem& problem,
+               StreamSink<AE_navigator::Route>& sink) override {
+    // A route that the caller has no room for is overtaken by the next.
+    const auto report = [&](const AE_navigator::Route& route) { sink.try_push(route); };
+    sink.push(planner_.search({*terrains_, options_, problem, report}));
+  }
+
+ private:
+  const Planner& planner_;
+  std::shared_ptr<TerrainProvider> terrains_;
+  PlannerOptions options_;
 };
 
 }  // namespace
@@ -27,7 +55,7 @@ constexpr Maker kMakers[] = {
 const std::vector<std::string>& planner_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const Maker& maker : kMakers) names.emplace_back(maker.name);
+    for (const Planner& planner : kPlanners) names.emplace_back(planner.name);
     return names;
   }();
   return kNames;
@@ -36,10 +64,13 @@ const std::vector<std::string>& planner_names() {
 std::unique_ptr<AE_navigator::IPlanner> make_planner(const std::string& name,
                                                      std::shared_ptr<TerrainProvider> terrains,
                                                      PlannerOptions options) {
-  for (const Maker& maker : kMakers) {
-    if (name == maker.name) return maker.make(std::move(terrains), std::move(options));
+  const auto make = [&](const Planner& planner) {
+    return std::make_unique<SearchingPlanner>(planner, std::move(terrains), std::move(options));
+  };
+  for (const Planner& planner : kPlanners) {
+    if (name == planner.name) return make(planner);
   }
-  if (name == "LegacyDubins") return make_legacy_dubins(std::move(terrains), std::move(options));
+  if (name == kLegacyDubins.name) return make(kLegacyDubins);
   throw InvalidArgument(
       fmt::format("there is no planner '{}'{}", name, suggestion(name, planner_names())));
 }

@@ -42,51 +42,32 @@ struct PlannerOptions {
 // stopped. It never returns a route that is only nearly right. Routes stay near the lowest altitude
 // that ground, climb limit, start and goal allow. One planner may serve several threads at once.
 
-/// Cheapest path by A* on a grid, what threats cost included, drawn taut. The slowest to a first
-/// answer, near the optimum, and the only one that proves that there is none: an unreachable
-/// goal is refused with the zones or mountains that enclose it.
-std::unique_ptr<AE_navigator::IPlanner> make_a_star(std::shared_ptr<TerrainProvider> terrains,
-                                                    PlannerOptions options = {});
-
-/// The shortest route whose exposure is no more than `exposure_cap_m`, the Problem's and the
-/// option's, whatever the Problem's weight, as far as A* with some weight finds it (Lagrangian
-/// relaxation): shorter ones between two weights are missed. Without a cap or without radars it is
-/// the shortest route. Several times as slow as A*; brings each shorter route that it finds.
-/// Refuses, without a proof, where no route keeps the cap.
-std::unique_ptr<AE_navigator::IPlanner> make_capped_a_star(
-    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
-
-/// Two trees grown towards each other: an answer within milliseconds, often long and careless of
-/// radars. Searches on until its time is up where there is no route.
-std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
-                                                         PlannerOptions options = {});
-
-/// A tree that is improved for as long as there is time: the more time, the cheaper the route. When
-/// its time is up the best route so far is the answer; so it is with InformedRRTstar.
-std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options = {});
-
-/// As RRTstar, but as soon as there is a route it samples only where a cheaper one may lead.
-std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
-    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
-
-/// A map of roads that grows denser for as long as there is time. Brings only its last route.
-std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options = {});
-
-/// A tree of the Dubins paths of OMPL 1.5.2: an old library behind the interface of today, and a
-/// real danger. Sooner or later an assertion in it aborts the process, so it is for processes of
-/// their own alone: its component says `isolated`, and a profile that has it work in its entity's
-/// process is refused. make_planner knows it as LegacyDubins; planner_names() leaves it out.
-std::unique_ptr<AE_navigator::IPlanner> make_legacy_dubins(
-    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options = {});
-
 /// The planners that may share a process with others (of OMPL 1.5.2, BITstar and AITstar may not:
 /// they do not return in their time, and BITstar crashes), by the names that make_planner knows and
-/// that the routes carry: AStar, CappedAStar, RRTConnect, RRTstar, InformedRRTstar, PRMstar.
+/// that the routes carry:
+/// - AStar: cheapest path by A* on a grid, what threats cost included, drawn taut. The slowest to a
+///   first answer, near the optimum, and the only one that proves that there is none: an
+///   unreachable goal is refused with the zones or mountains that enclose it.
+/// - CappedAStar: the shortest route whose exposure is no more than `exposure_cap_m`, the Problem's
+///   and the option's, whatever the Problem's weight, as far as A* with some weight finds it
+///   (Lagrangian relaxation): shorter ones between two weights are missed. Without a cap or without
+///   radars it is the shortest route. Several times as slow as A*; brings each shorter route that
+///   it finds. Refuses, without a proof, where no route keeps the cap.
+/// - RRTConnect: two trees grown towards each other: an answer within milliseconds, often long and
+///   careless of radars. Searches on until its time is up where there is no route.
+/// - RRTstar: a tree that is improved for as long as there is time: the more time, the cheaper the
+///   route. When its time is up the best route so far is the answer; so it is with InformedRRTstar.
+/// - InformedRRTstar: as RRTstar, but as soon as there is a route it samples only where a cheaper
+///   one may lead.
+/// - PRMstar: a map of roads that grows denser for as long as there is time. Brings only its last
+///   route.
 const std::vector<std::string>& planner_names();
 
-/// Makes one by its name. Throws InvalidArgument for an unknown one, with the nearest known.
+/// Makes one by its name, or LegacyDubins, which planner_names() leaves out: a tree of the Dubins
+/// paths of OMPL 1.5.2, an old library behind the interface of today, and a real danger. Sooner or
+/// later an assertion in it aborts the process, so it is for processes of their own alone: its
+/// component says `isolated`, and a profile that has it work in its entity's process is refused.
+/// Throws InvalidArgument for an unknown name, with the nearest known, and for a cap below 0.
 std::unique_ptr<AE_navigator::IPlanner> make_planner(const std::string& name,
                                                      std::shared_ptr<TerrainProvider> terrains,
                                                      PlannerOptions options = {});

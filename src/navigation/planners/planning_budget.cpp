@@ -29,12 +29,14 @@ AE_navigator::NoRoute PlanningBudget::nothing_found() const {
   return {fmt::format("no route was found within the time limit of {} ms", time_limit_ms_), false};
 }
 
-Instant PlanningBudget::search_end(double share) const {
-  if (!end_) return begin_ + options_.default_time_limit;
-  const Duration used = options_.now() - begin_;
-  const Duration limit = *end_ - begin_;
-  const auto wanted = std::chrono::duration_cast<Duration>(used * share);
-  return *end_ - std::min(wanted, limit / 2);
+std::function<bool()> PlanningBudget::search_over(double share) const {
+  Instant end = begin_ + options_.default_time_limit;
+  if (end_) {
+    const Duration used = options_.now() - begin_;
+    const Duration limit = *end_ - begin_;
+    end = *end_ - std::min(std::chrono::duration_cast<Duration>(used * share), limit / 2);
+  }
+  return [this, end] { return stopped() || now() >= end; };
 }
 
 }  // namespace skein::navigation

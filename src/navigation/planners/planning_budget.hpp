@@ -22,10 +22,10 @@ class PlanningBudget {
   /// The refusal of a search that has used all of its time.
   AE_navigator::NoRoute nothing_found() const;
 
-  /// When a search must end that uses all of its time, so that enough is left to finish its route:
-  /// as the time so far shows how fast this machine and this terrain are, `share` of that, and
-  /// never more than half of the limit.
-  Instant search_end(double share) const;
+  /// Whether a search is over that uses all of its time, so that enough is left to finish its
+  /// route: as the time so far shows how fast this machine and this terrain are, `share` of that,
+  /// and never more than half of the limit.
+  std::function<bool()> search_over(double share) const;
 
   Instant now() const { return options_.now(); }
 

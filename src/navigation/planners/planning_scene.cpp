@@ -37,18 +37,17 @@ std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
   }
 }
 
-PlanningScene::PlanningScene(TerrainProvider& terrains, const AE_navigator::Problem& problem,
-                             const PlannerOptions& options)
-    : terrain_(load_valid(terrains, problem)),
-      problem_(problem),
-      budget_(options, problem.time_limit_ms),
-      surface_(*terrain_, problem, PlanningGrid(*terrain_, options.grid_spacing_m)) {
-  for (const auto& zone : problem.no_fly_zones) {
+PlanningScene::PlanningScene(const Search& search)
+    : terrain_(load_valid(search.terrains, search.problem)),
+      problem_(search.problem),
+      budget_(search.options, problem_.time_limit_ms),
+      surface_(*terrain_, problem_, PlanningGrid(*terrain_, search.options.grid_spacing_m)) {
+  for (const auto& zone : problem_.no_fly_zones) {
     for (const Berth berth : {Berth::Least, Berth::ForTurns}) {
       const double turns =
-          berth == Berth::ForTurns ? kOfTurnRadius * turn_radius_m(problem.limits) : 0;
+          berth == Berth::ForTurns ? kOfTurnRadius * turn_radius_m(problem_.limits) : 0;
       keep_outs_[berth == Berth::ForTurns].emplace_back(
-          zone, buffer_for(zone, problem, kBuffer_m + turns));
+          zone, buffer_for(zone, problem_, kBuffer_m + turns));
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "navigation/planners/flight_surface.hpp"
 #include "navigation/planners/planning_budget.hpp"
+#include "navigation/planners/search.hpp"
 #include "navigation/terrain/terrain_provider.hpp"
 #include "navigation/threats/keep_out.hpp"
 #include "navigation/threats/risk_map.hpp"
@@ -23,8 +24,7 @@ std::shared_ptr<const Terrain> load_valid(TerrainProvider& terrains,
 class PlanningScene {
  public:
   /// Throws InvalidProblem, also for a terrain that is not to be had.
-  PlanningScene(TerrainProvider& terrains, const AE_navigator::Problem& problem,
-                const PlannerOptions& options);
+  explicit PlanningScene(const Search& search);
 
   const AE_navigator::Problem& problem() const { return problem_; }
   const Terrain& terrain() const { return *terrain_; }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "navigation/planners/planners.hpp"
 #include "navigation/planners/route_making.hpp"
 #include "navigation/planners/sampling.hpp"
 
@@ -15,53 +14,6 @@ namespace {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
-
-class RrtConnectPlanner final : public AE_navigator::IPlanner {
- public:
-  RrtConnectPlanner(std::shared_ptr<TerrainProvider> terrains, PlannerOptions options)
-      : terrains_(std::move(terrains)), options_(std::move(options)) {}
-
-  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    constexpr int kMaxPoints = 45;
-    const PlanningScene scene(*terrains_, problem, options_);
-    const LegCost length = [](const GroundPoint& a, const GroundPoint& b) {
-      return distance_m(a, b);
-    };
-    const Instant end = scene.budget().search_end(0);
-    std::string unflyable;
-    // A path that cannot be flown is no answer; with other samples there may be one.
-    for (std::uint32_t attempt = 0; scene.budget().now() < end; ++attempt) {
-      // Every other time as close to the zones as is allowed: a gap may be that narrow.
-      const Berth berth = attempt % 2 == 0 ? Berth::ForTurns : Berth::Least;
-      const Sampling sampling(scene, options_.seed + 2 * attempt, berth);
-      Seeded<og::RRTConnect> planner(sampling.space(), options_.seed + 2 * attempt);
-      planner.setRange(sampling.range_m());
-      planner.setProblemDefinition(sampling.problem());
-      const auto path = sampling.solve(
-          planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
-      scene.budget().require_time();
-      if (!path) break;
-      try {
-        return make_route(scene, *path, length, kMaxPoints, "RRTConnect");
-      } catch (const Unflyable& reason) {
-        unflyable = reason.what();
-      }
-    }
-    scene.budget().require_time();
-    if (unflyable.empty()) throw scene.budget().nothing_found();
-    throw AE_navigator::NoRoute("no path that was found can be flown: " + unflyable, false);
-  }
-
- private:
-  std::shared_ptr<TerrainProvider> terrains_;
-  PlannerOptions options_;
-};
-
-/// How OMPL's planners that improve their path differ for us.
-struct Improver {
-  const char* name;
-  ob::PlannerPtr (*make)(const Sampling& sampling, std::uint32_t seed);
-};
 
 template <class Planner>
 ob::PlannerPtr make_tree(const Sampling& sampling, std::uint32_t seed) {
@@ -118,95 +70,86 @@ ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
   return std::make_shared<Roadmap>(sampling.space(), seed);
 }
 
-class ImprovingPlanner final : public AE_navigator::IPlanner {
- public:
-  ImprovingPlanner(const Improver& improver, std::shared_ptr<TerrainProvider> terrains,
-                   PlannerOptions options)
-      : improver_(improver), terrains_(std::move(terrains)), options_(std::move(options)) {}
+using MakePlanner = ob::PlannerPtr (*)(const Sampling& sampling, std::uint32_t seed);
 
-  AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    return search(problem, [](const AE_navigator::Route&) {});
-  }
-
-  void improve(const AE_navigator::Problem& problem,
-               StreamSink<AE_navigator::Route>& sink) override {
-    // A route that the caller has no room for is overtaken by the next.
-    sink.push(search(problem, [&](const AE_navigator::Route& route) { sink.try_push(route); }));
-  }
-
- private:
-  static constexpr int kMaxPoints = 100;
+/// By one of OMPL's planners that improve their path. Where the last path comes to no route, in
+/// time or at all, the best before it is the answer.
+AE_navigator::Route improve(const Search& search, const char* name, MakePlanner make) {
+  constexpr int kMaxPoints = 100;
   // What a path must save to be worth a route of its own.
-  static constexpr double kWorthwhile = 0.98;
-
-  using Report = std::function<void(const AE_navigator::Route&)>;
-
-  /// Where the last path comes to no route, in time or at all, the best before it is the answer.
-  AE_navigator::Route search(const AE_navigator::Problem& problem, const Report& report) {
-    const PlanningScene scene(*terrains_, problem, options_);
-    const Sampling sampling(scene, options_.seed, Berth::ForTurns);
-    sampling.count_exposure();
-    const ob::PlannerPtr planner = improver_.make(sampling, options_.seed);
-    planner->setProblemDefinition(sampling.problem());
-    double tried = std::numeric_limits<double>::infinity();
-    std::optional<AE_navigator::Route> best;
-    sampling.on_better_path([&](const GroundPath& path, double cost) {
-      if (cost > kWorthwhile * tried) return;
-      tried = cost;
-      best = route_of(scene, path);
-      report(*best);
-    });
-    const Instant end = scene.budget().search_end(10);
-    const auto path = sampling.solve(
-        *planner, [&] { return scene.budget().stopped() || scene.budget().now() >= end; });
-    try {
-      scene.budget().require_time();
-      if (!path) throw scene.budget().nothing_found();
-      return route_of(scene, *path);
-    } catch (const Unflyable& reason) {
-      if (best) return std::move(*best);
-      throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
-                                  false);
-    } catch (const AE_navigator::NoRoute&) {
-      if (best) return std::move(*best);
-      throw;
-    }
-  }
-
-  AE_navigator::Route route_of(const PlanningScene& scene, const GroundPath& path) const {
+  constexpr double kWorthwhile = 0.98;
+  const PlanningScene scene(search);
+  const auto route_of = [&](const GroundPath& path) {
     const auto cost = [&](const GroundPoint& a, const GroundPoint& b) { return scene.cost(a, b); };
-    return make_route(scene, path, cost, kMaxPoints, improver_.name);
+    return make_route(scene, path, cost, kMaxPoints, name);
+  };
+  const Sampling sampling(scene, search.options.seed, Berth::ForTurns);
+  sampling.count_exposure();
+  const ob::PlannerPtr planner = make(sampling, search.options.seed);
+  planner->setProblemDefinition(sampling.problem());
+  double tried = std::numeric_limits<double>::infinity();
+  std::optional<AE_navigator::Route> best;
+  sampling.on_better_path([&](const GroundPath& path, double cost) {
+    if (cost > kWorthwhile * tried) return;
+    tried = cost;
+    best = route_of(path);
+    search.report(*best);
+  });
+  const auto path = sampling.solve(*planner, scene.budget().search_over(10));
+  try {
+    scene.budget().require_time();
+    if (!path) throw scene.budget().nothing_found();
+    return route_of(*path);
+  } catch (const Unflyable& reason) {
+    if (best) return std::move(*best);
+    throw AE_navigator::NoRoute(std::string("the best path cannot be flown: ") + reason.what(),
+                                false);
+  } catch (const AE_navigator::NoRoute&) {
+    if (best) return std::move(*best);
+    throw;
   }
-
-  Improver improver_;
-  std::shared_ptr<TerrainProvider> terrains_;
-  PlannerOptions options_;
-};
+}
 
 }  // namespace
 
-std::unique_ptr<AE_navigator::IPlanner> make_rrt_connect(std::shared_ptr<TerrainProvider> terrains,
-                                                         PlannerOptions options) {
-  return std::make_unique<RrtConnectPlanner>(std::move(terrains), std::move(options));
+AE_navigator::Route search_rrt_connect(const Search& search) {
+  constexpr int kMaxPoints = 45;
+  const PlanningScene scene(search);
+  const auto over = scene.budget().search_over(0);
+  std::string unflyable;
+  // A path that cannot be flown is no answer; with other samples there may be one.
+  for (std::uint32_t attempt = 0; !over(); ++attempt) {
+    // Every other time as close to the zones as is allowed: a gap may be that narrow.
+    const Berth berth = attempt % 2 == 0 ? Berth::ForTurns : Berth::Least;
+    const std::uint32_t seed = search.options.seed + 2 * attempt;
+    const Sampling sampling(scene, seed, berth);
+    Seeded<og::RRTConnect> planner(sampling.space(), seed);
+    planner.setRange(sampling.range_m());
+    planner.setProblemDefinition(sampling.problem());
+    const auto path = sampling.solve(planner, over);
+    scene.budget().require_time();
+    if (!path) break;
+    try {
+      return make_route(scene, *path, length_of_leg, kMaxPoints, "RRTConnect");
+    } catch (const Unflyable& reason) {
+      unflyable = reason.what();
+    }
+  }
+  scene.budget().require_time();
+  if (unflyable.empty()) throw scene.budget().nothing_found();
+  throw AE_navigator::NoRoute("no path that was found can be flown: " + unflyable, false);
 }
 
-std::unique_ptr<AE_navigator::IPlanner> make_rrt_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"RRTstar", make_tree<og::RRTstar>},
-                                            std::move(terrains), std::move(options));
+AE_navigator::Route search_rrt_star(const Search& search) {
+  return improve(search, "RRTstar", make_tree<og::RRTstar>);
 }
 
-std::unique_ptr<AE_navigator::IPlanner> make_informed_rrt_star(
-    std::shared_ptr<TerrainProvider> terrains, PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(
-      Improver{"InformedRRTstar", make_tree<og::InformedRRTstar>}, std::move(terrains),
-      std::move(options));
+AE_navigator::Route search_informed_rrt_star(const Search& search) {
+  return improve(search, "InformedRRTstar", make_tree<og::InformedRRTstar>);
 }
 
-std::unique_ptr<AE_navigator::IPlanner> make_prm_star(std::shared_ptr<TerrainProvider> terrains,
-                                                      PlannerOptions options) {
-  return std::make_unique<ImprovingPlanner>(Improver{"PRMstar", make_roadmap}, std::move(terrains),
-                                            std::move(options));
+AE_navigator::Route search_prm_star(const Search& search) {
+  return improve(search, "PRMstar", make_roadmap);
 }
 
 }  // namespace skein::navigation

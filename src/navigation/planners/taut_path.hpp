@@ -12,6 +12,8 @@ namespace skein::navigation {
 using GroundPath = std::vector<GroundPoint>;
 using LegCost = std::function<double(const GroundPoint&, const GroundPoint&)>;
 
+inline double length_of_leg(const GroundPoint& a, const GroundPoint& b) { return distance_m(a, b); }
+
 /// Inserts points into long legs, so that none is longer than `longest_m`.
 GroundPath divide(const GroundPath& path, double longest_m);
 
