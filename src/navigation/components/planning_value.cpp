@@ -2,20 +2,13 @@
 
 #include <cmath>
 
+#include "navigation/terrain/plane_geometry.hpp"
+
 namespace skein::navigation {
-namespace {
-
-double straight_m(const AE_navigator::Problem& problem) {
-  return std::hypot(problem.goal.north_m - problem.start.north_m,
-                    problem.goal.east_m - problem.start.east_m,
-                    problem.goal.altitude_m - problem.start.altitude_m);
-}
-
-}  // namespace
 
 Features features_of(const AE_navigator::Problem& problem, Duration time) {
   const auto number = [](const auto& items) { return static_cast<double>(items.size()); };
-  Features features{{"distance_m", straight_m(problem)},
+  Features features{{"distance_m", slant_range_m(problem.start, problem.goal)},
                     {"zones", number(problem.no_fly_zones)},
                     {"threats", number(problem.radar_sites) + number(problem.missile_sites)},
                     {"exposure_weight", problem.exposure_weight},
@@ -29,7 +22,7 @@ Features features_of(const AE_navigator::Problem& problem, Duration time) {
 double quality_of(const AE_navigator::Problem& problem, const AE_navigator::Route& route) {
   const double cost_m = route.length_m + problem.exposure_weight * route.radar_exposure +
                         problem.kill_weight_m * route.expected_kills;
-  return cost_m > 0 ? straight_m(problem) / cost_m : 1;
+  return cost_m > 0 ? slant_range_m(problem.start, problem.goal) / cost_m : 1;
 }
 
 }  // namespace skein::navigation

@@ -31,12 +31,8 @@ bool finite(const Position& p) {
   return std::isfinite(p.north_m) && std::isfinite(p.east_m) && std::isfinite(p.altitude_m);
 }
 
-double distance_m(const Position& a, const Position& b) {
-  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m, a.altitude_m - b.altitude_m);
-}
-
 double map_distance_m(const Position& a, const Position& b) {
-  return std::hypot(a.north_m - b.north_m, a.east_m - b.east_m);
+  return distance_m(on_map(a), on_map(b));
 }
 
 Flaw judge_numbers(const Route& route) {
@@ -49,9 +45,9 @@ Flaw judge_numbers(const Route& route) {
 
 Flaw judge_ends(const Problem& problem, const Route& route) {
   if (route.waypoints.size() < 2) return "it has fewer than two waypoints";
-  const double from_m = distance_m(route.waypoints.front(), problem.start);
+  const double from_m = slant_range_m(route.waypoints.front(), problem.start);
   if (from_m > kPosition_m) return fmt::format("it begins {:.1f} m from the start", from_m);
-  const double to_m = distance_m(route.waypoints.back(), problem.goal);
+  const double to_m = slant_range_m(route.waypoints.back(), problem.goal);
   if (to_m > kPosition_m) return fmt::format("it ends {:.1f} m from the goal", to_m);
   return std::nullopt;
 }
