@@ -99,13 +99,11 @@ TEST_CASE("A grid twice as fine finds hardly anything better, and anything else 
   const Demo demo;
   PlannerOptions fine;
   fine.grid_spacing_m = 100;
-  const double cost =
-      cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem));
-  const double best =
-      cost_m(demo.problem, make_planner("AStar", demo.terrains, fine)->plan(demo.problem));
+  const double cost = demo.cost_m(demo.plan("AStar"));
+  const double best = demo.cost_m(demo.plan("AStar", fine));
   CHECK(cost < 1.03 * best);
-  const Route quick = make_planner("RRTConnect", demo.terrains)->plan(demo.problem);
-  CHECK(cost < cost_m(demo.problem, quick));
+  const Route quick = demo.plan("RRTConnect");
+  CHECK(cost < demo.cost_m(quick));
 }
 
 TEST_CASE("A zone is passed by the aircraft's turn, not only by the corner of its path") {

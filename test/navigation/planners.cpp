@@ -38,14 +38,13 @@ void check_every_planner(std::initializer_list<std::uint32_t> seeds) {
     demo.problem.time_limit_ms = 20000;
     for (const std::string name : {"AStar", "RRTConnect"}) {
       INFO(name << " on " << demo.problem.terrain);
-      const Route route = make_planner(name, demo.terrains)->plan(demo.problem);
-      CHECK(violations(demo.problem, route, demo.ground) == "");
+      const Route route = demo.plan(name);
+      CHECK(demo.violations(route) == "");
       CHECK(route.planner == name);
     }
     demo.problem.time_limit_ms = 0;
     INFO("RRTstar on " << demo.problem.terrain);
-    CHECK(violations(demo.problem, make_planner("RRTstar", demo.terrains)->plan(demo.problem),
-                     demo.ground) == "");
+    CHECK(demo.violations(demo.plan("RRTstar")) == "");
   }
 }
 
@@ -57,8 +56,8 @@ void check_turns(std::initializer_list<std::uint32_t> seeds) {
         demo.problem.limits.speed_m_s = speed;
         demo.problem.minimum_height_above_ground_m = height;
         INFO("seed " << seed << ", " << speed << " m/s, " << height << " m above the ground");
-        const Route route = make_planner("AStar", demo.terrains)->plan(demo.problem);
-        CHECK(violations(demo.problem, route, demo.ground) == "");
+        const Route route = demo.plan("AStar");
+        CHECK(demo.violations(route) == "");
       }
     }
   }
@@ -88,8 +87,8 @@ TEST_CASE("Samplers give valid routes whatever their seed") {
     PlannerOptions options;
     options.seed = seed;
     INFO("seed " << seed);
-    const Route route = make_planner("RRTConnect", demo.terrains, options)->plan(demo.problem);
-    CHECK(violations(demo.problem, route, demo.ground) == "");
+    const Route route = demo.plan("RRTConnect", options);
+    CHECK(demo.violations(route) == "");
   }
 }
 
@@ -98,7 +97,7 @@ TEST_CASE("The same seed gives the same route, another one another") {
   const auto plan = [&](std::uint32_t seed) {
     PlannerOptions options;
     options.seed = seed;
-    return make_planner("RRTConnect", demo.terrains, options)->plan(demo.problem).waypoints;
+    return demo.plan("RRTConnect", options).waypoints;
   };
   CHECK(plan(5) == plan(5));
   CHECK(plan(5) != plan(6));
@@ -106,35 +105,25 @@ TEST_CASE("The same seed gives the same route, another one another") {
 
 TEST_CASE("RRTstar makes good use of more steps") {
   const Demo demo;
-  // Time is counted in looks at the clock here, so that a loaded machine changes nothing.
   const auto cost_after = [&](int looks) {
-    PlannerOptions options;
-    int left = looks;
-    options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
-    return cost_m(demo.problem,
-                  make_planner("RRTstar", demo.terrains, options)->plan(demo.problem));
+    return demo.cost_m(demo.plan("RRTstar", with_looks(looks)));
   };
   const double soon = cost_after(150);
   const double later = cost_after(3000);
   CHECK(later < soon);
-  CHECK(later <
-        1.05 * cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem)));
+  CHECK(later < 1.05 * demo.cost_m(demo.plan("AStar")));
 }
 
 TEST_CASE(
     "Whoever improves his route while there is time makes a valid one that is worth the time") {
   const Demo demo;
-  const double best =
-      cost_m(demo.problem, make_planner("AStar", demo.terrains)->plan(demo.problem));
+  const double best = demo.cost_m(demo.plan("AStar"));
   for (const std::string name : {"InformedRRTstar", "PRMstar"}) {
     INFO(name);
-    PlannerOptions options;
-    int left = 4000;
-    options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
-    const Route route = make_planner(name, demo.terrains, options)->plan(demo.problem);
-    CHECK(violations(demo.problem, route, demo.ground) == "");
+    const Route route = demo.plan(name, with_looks(4000));
+    CHECK(demo.violations(route) == "");
     CHECK(route.planner == name);
-    CHECK(cost_m(demo.problem, route) < 1.2 * best);
+    CHECK(demo.cost_m(route) < 1.2 * best);
   }
 }
 
@@ -155,7 +144,7 @@ TEST_CASE("No planner has a thread of its library's, on which an exception would
       return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1));
     };
     try {
-      make_planner(name, demo.terrains, options)->plan(demo.problem);
+      demo.plan(name, options);
     } catch (const NoRoute&) {  // in so few looks at the clock
     }
     CHECK(most == before);
@@ -169,8 +158,8 @@ TEST_CASE("LegacyDubins makes a valid route or none, or takes its process with i
     demo.problem.time_limit_ms = 1500;
     int result = 0;
     try {
-      const Route route = make_planner("LegacyDubins", demo.terrains)->plan(demo.problem);
-      result = violations(demo.problem, route, demo.ground).empty() ? 0 : 1;
+      const Route route = demo.plan("LegacyDubins");
+      result = demo.violations(route).empty() ? 0 : 1;
     } catch (const NoRoute& refusal) {
       result = refusal.proven ? 2 : 0;
     }
@@ -198,14 +187,11 @@ TEST_CASE("Each planner brings its routes as it finds them, the last being the b
     CHECK(routes.found.size() == 1);
   }
   demo.problem.time_limit_ms = 0;
-  PlannerOptions options;
-  int left = 3000;
-  options.now = [&] { return skein::Instant(std::chrono::hours(--left > 0 ? 0 : 1)); };
   Routes routes;
-  make_planner("RRTstar", demo.terrains, options)->improve(demo.problem, routes);
+  make_planner("RRTstar", demo.terrains, with_looks(3000))->improve(demo.problem, routes);
   REQUIRE(routes.found.size() > 1);
-  for (const Route& route : routes.found) CHECK(violations(demo.problem, route, demo.ground) == "");
-  CHECK(cost_m(demo.problem, routes.found.back()) < cost_m(demo.problem, routes.found.front()));
+  for (const Route& route : routes.found) CHECK(demo.violations(route) == "");
+  CHECK(demo.cost_m(routes.found.back()) < demo.cost_m(routes.found.front()));
 }
 
 TEST_CASE(
@@ -213,22 +199,22 @@ TEST_CASE(
   Demo demo;
   demo.problem.start.altitude_m -= 128;
   demo.problem.goal.altitude_m -= 128;
-  const Route route = make_planner("AStar", demo.terrains)->plan(demo.problem);
+  const Route route = demo.plan("AStar");
   CHECK(route.waypoints.front() == demo.problem.start);
   CHECK(route.waypoints.back() == demo.problem.goal);
-  CHECK(violations(demo.problem, route, demo.ground) == "");
+  CHECK(demo.violations(route) == "");
 }
 
 TEST_CASE("An aircraft that turns on the spot needs no arcs, a faster one longer ones") {
   Demo demo;
   demo.problem.limits.maximum_bank_angle_deg = 0;
-  const Route nimble = make_planner("AStar", demo.terrains)->plan(demo.problem);
-  CHECK(violations(demo.problem, nimble, demo.ground) == "");
+  const Route nimble = demo.plan("AStar");
+  CHECK(demo.violations(nimble) == "");
   demo.problem.limits.maximum_bank_angle_deg = 30;
   demo.problem.limits.speed_m_s = 100;
-  const Route fast = make_planner("AStar", demo.terrains)->plan(demo.problem);
-  CHECK(violations(demo.problem, fast, demo.ground) == "");
-  CHECK(cost_m(demo.problem, nimble) < 1.005 * cost_m(demo.problem, fast));
+  const Route fast = demo.plan("AStar");
+  CHECK(demo.violations(fast) == "");
+  CHECK(demo.cost_m(nimble) < 1.005 * demo.cost_m(fast));
 }
 
 TEST_CASE("A planner that is told to stop ends with NoRoute and says so") {
@@ -237,13 +223,9 @@ TEST_CASE("A planner that is told to stop ends with NoRoute and says so") {
     PlannerOptions options;
     options.stop = [] { return true; };
     INFO(name);
-    try {
-      make_planner(name, demo.terrains, options)->plan(demo.problem);
-      FAIL("it found a route");
-    } catch (const NoRoute& refusal) {
-      CHECK_THAT(refusal.reason, Catch::Contains("stopped"));
-      CHECK_FALSE(refusal.proven);
-    }
+    const NoRoute refusal = refusal_of([&] { demo.plan(name, options); });
+    CHECK_THAT(refusal.reason, Catch::Contains("stopped"));
+    CHECK_FALSE(refusal.proven);
   }
 }
 
@@ -255,7 +237,7 @@ TEST_CASE("By default a planner stops with the call that it works for") {
                                    &cancelled);
   const skein::CallContextScope scope(context);
   CHECK(current_call_cancelled());
-  CHECK_THROWS_AS(make_planner("AStar", demo.terrains)->plan(demo.problem), NoRoute);
+  CHECK_THROWS_AS(demo.plan("AStar"), NoRoute);
 }
 
 TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
@@ -266,13 +248,9 @@ TEST_CASE("A planner whose time is up ends with NoRoute and names the limit") {
     int looks = 0;
     options.now = [&] { return skein::Instant(std::chrono::milliseconds(++looks * 10)); };
     INFO(name);
-    try {
-      make_planner(name, demo.terrains, options)->plan(demo.problem);
-      FAIL("it found a route");
-    } catch (const NoRoute& refusal) {
-      CHECK_THAT(refusal.reason, Catch::Contains("40 ms"));
-      CHECK_FALSE(refusal.proven);
-    }
+    const NoRoute refusal = refusal_of([&] { demo.plan(name, options); });
+    CHECK_THAT(refusal.reason, Catch::Contains("40 ms"));
+    CHECK_FALSE(refusal.proven);
   }
 }
 
@@ -286,8 +264,8 @@ TEST_CASE("A planner that improves its route answers with the best so far when i
     PlannerOptions options;
     int looks = 0;
     options.now = [&] { return skein::Instant(std::chrono::milliseconds(++looks * 20)); };
-    const Route route = make_planner(name, demo.terrains, options)->plan(demo.problem);
-    CHECK(violations(demo.problem, route, demo.ground) == "");
+    const Route route = demo.plan(name, options);
+    CHECK(demo.violations(route) == "");
   }
 }
 

@@ -18,8 +18,7 @@ using Catch::Contains;
 namespace {
 
 std::vector<PicturedRoute> two_routes(const Demo& demo) {
-  return {{"A*, 2 s", make_planner("AStar", demo.terrains)->plan(demo.problem)},
-          {"RRTConnect, 50 ms", make_planner("RRTConnect", demo.terrains)->plan(demo.problem)}};
+  return {{"A*, 2 s", demo.plan("AStar")}, {"RRTConnect, 50 ms", demo.plan("RRTConnect")}};
 }
 
 }  // namespace
