@@ -34,17 +34,24 @@ class SearchingPlanner final : public AE_navigator::IPlanner {
   }
 
   AE_navigator::Route plan(const AE_navigator::Problem& problem) override {
-    return planner_.search({*terrains_, options_, problem, [](const AE_navigator::Route&) {}});
+    return search(problem, [](const AE_navigator::Route&) {});
   }
 
   void improve(const AE_navigator::Problem& problem,
                StreamSink<AE_navigator::Route>& sink) override {
     // A route that the caller has no room for is overtaken by the next.
-    const auto report = [&](const AE_navigator::Route& route) { sink.try_push(route); };
-    sink.push(planner_.search({*terrains_, options_, problem, report}));
+    sink.push(search(problem, [&](const AE_navigator::Route& route) { sink.try_push(route); }));
   }
 
  private:
+  AE_navigator::Route search(AE_navigator::Problem problem,
+                             const std::function<void(const AE_navigator::Route&)>& report) const {
+    const std::uint32_t most_ms = options_.time_limit_ms;
+    if (most_ms > 0 && (problem.time_limit_ms == 0 || problem.time_limit_ms > most_ms))
+      problem.time_limit_ms = most_ms;
+    return planner_.search({*terrains_, options_, problem, report});
+  }
+
   const Planner& planner_;
   std::shared_ptr<TerrainProvider> terrains_;
   PlannerOptions options_;

@@ -26,8 +26,8 @@ struct PlannerOptions {
   std::function<Instant()> now = std::chrono::steady_clock::now;
   /// Of the samplers: the same seed gives the same samples.
   std::uint32_t seed = 1;
-  /// How long a planner that uses all of its time searches where the Problem sets no limit.
-  std::chrono::milliseconds default_time_limit{1000};
+  /// The most time for a route, whatever the Problem allows; 0 where only that counts.
+  std::uint32_t time_limit_ms = 0;
   /// Distance between the points of the planning grid; 0 takes 1/256 of the terrain's longer side,
   /// but never less than the distance between its posts.
   double grid_spacing_m = 0;

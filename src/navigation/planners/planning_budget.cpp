@@ -7,6 +7,12 @@
 #include "skein/call_context.hpp"
 
 namespace skein::navigation {
+namespace {
+
+/// How long a planner that uses all of its time searches where the Problem sets no limit.
+constexpr std::chrono::seconds kOwnLimit{1};
+
+}  // namespace
 
 bool current_call_cancelled() {
   const CallContext* context = CallContext::current();
@@ -30,7 +36,7 @@ AE_navigator::NoRoute PlanningBudget::nothing_found() const {
 }
 
 std::function<bool()> PlanningBudget::search_over(double share) const {
-  Instant end = begin_ + options_.default_time_limit;
+  Instant end = begin_ + kOwnLimit;
   if (end_) {
     const Duration used = options_.now() - begin_;
     const Duration limit = *end_ - begin_;
