@@ -165,9 +165,6 @@ TEST_CASE("over many missions the policy by value knows more in the end than tha
     by_value += two / kMissions;
     better += two > one;
   }
-  WARN("priority times known: " << by_priority << " by priority, " << by_value
-                                << " by value, which is better in " << better << " of "
-                                << kMissions);
   CHECK(by_value > 1.1 * by_priority);
   CHECK(better > 0.7 * kMissions);
 }

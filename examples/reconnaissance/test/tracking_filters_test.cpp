@@ -82,8 +82,6 @@ TEST_CASE("the Kalman filter is consistent: its NEES and NIS lie within the 95 %
   const Errors kalman =
       errors<KalmanTrackFilter>(assumptions, assumptions, detection_covariance(), as_assumed);
   const Bounds bounds(0.95, kRuns, 4);
-  WARN("NEES within " << bounds.low << " to " << bounds.high << " at " << inside(kalman, bounds)
-                      << " of " << kSteps << " steps; NIS " << kalman.nis);
   // Of 60 steps 57 are expected within; fewer than 51 has a probability below 1 %, were the steps
   // independent.
   CHECK(inside(kalman, bounds) >= 51);
@@ -95,9 +93,6 @@ TEST_CASE("of a target that stops and goes, the filter that knows so is the most
   const Eigen::Matrix2d round = 49 * Eigen::Matrix2d::Identity();
   const Errors kalman = errors<KalmanTrackFilter>(assumptions, assumptions, round, stop_and_go);
   const Errors both = errors<StopMoveTrackFilter>(assumptions, assumptions, round, stop_and_go);
-  WARN("place and speed error: stop-move " << both.place_m << " m, " << both.speed_m_s
-                                           << " m/s; Kalman " << kalman.place_m << " m, "
-                                           << kalman.speed_m_s << " m/s");
   CHECK(both.place_m < 0.9 * kalman.place_m);
   CHECK(both.speed_m_s < 0.9 * kalman.speed_m_s);
 }
@@ -169,7 +164,6 @@ TEST_CASE(
       errors<StopMoveTrackFilter>(assumptions, assumptions, detection_covariance(), by_chance);
   double mean = 0;
   for (const double one : both.nees) mean += one / kSteps;
-  WARN("mean NEES " << mean << " of 4; NIS " << both.nis << " of 2");
   CHECK(mean < 4.4);
   CHECK(both.nis == Approx(2).epsilon(0.1));
 }

@@ -137,8 +137,6 @@ TEST_CASE("four targets among false detections give four tracks of their own, by
         });
       }
     }
-    WARN(followed << " of " << 4 * looks << " target looks followed, " << false_tracks
-                  << " looks with a false track");
     CHECK(followed > 0.95 * 4 * looks);
     CHECK(false_tracks < 0.05 * 4 * looks);
   };
