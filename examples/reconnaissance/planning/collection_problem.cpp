@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
-
-#include "geodesy/local_frame.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -31,26 +28,6 @@ bool covers(const FlightCost& a, const FlightCost& b) {
 FlightCost FlightLimits::most() const {
   return {endurance_s, fuel_kg,
           least_survival > 0 ? -std::log(least_survival) : std::numeric_limits<double>::infinity()};
-}
-
-std::vector<CollectionPass> passes_over(double north_m, double east_m, int courses) {
-  std::vector<CollectionPass> passes;
-  for (int i = 0; i < courses; ++i) {
-    const RoutePose pose{north_m, east_m, 2 * std::numbers::pi * i / courses};
-    passes.push_back({pose, pose, {}});
-  }
-  return passes;
-}
-
-std::vector<CollectionPass> passes_along(const RoutePose& one_end, const RoutePose& other_end,
-                                         const FlightCost& cost) {
-  const double course = course_between_rad(one_end, other_end);
-  const double back = course + std::numbers::pi;
-  return {
-      {{one_end.north_m, one_end.east_m, course},
-       {other_end.north_m, other_end.east_m, course},
-       cost},
-      {{other_end.north_m, other_end.east_m, back}, {one_end.north_m, one_end.east_m, back}, cost}};
 }
 
 CollectionProblem::CollectionProblem(const RoutePose& start, const RoutePose& landing,

@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "planning/dubins_length.hpp"
@@ -43,13 +42,6 @@ struct CollectionTask {
   double value = 0;  ///< Of having it; positive.
   std::vector<CollectionPass> passes;
 };
-
-/// Over a point, on courses that divide the circle evenly.
-std::vector<CollectionPass> passes_over(double north_m, double east_m, int courses);
-
-/// Along a line, from either end.
-std::vector<CollectionPass> passes_along(const RoutePose& one_end, const RoutePose& other_end,
-                                         const FlightCost& cost);
 
 /// Which elements of interest to collect, in which order and by which passes, between a start and a
 /// landing: those that are worth most together, of these the ones that take the least time, within
@@ -129,15 +121,5 @@ struct SearchedPlan {
 /// was seen that has collected the same at no greater cost. Asks `may_go_on` before each step.
 SearchedPlan branch_and_bound_plan(const CollectionProblem& problem,
                                    const std::function<bool()>& may_go_on);
-
-/// Which limits a task would break if it were put into the plan where it breaks them least; all
-/// false if it would fit.
-struct Shortage {
-  bool endurance = false;
-  bool fuel = false;
-  bool survival = false;
-  bool operator==(const Shortage&) const = default;
-};
-Shortage shortage(const CollectionProblem& problem, const CollectionTour& plan, std::size_t task);
 
 }  // namespace reconnaissance

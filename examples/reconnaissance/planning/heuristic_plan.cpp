@@ -207,13 +207,4 @@ CollectionTour heuristic_plan(const CollectionProblem& problem) {
   return best;
 }
 
-Shortage shortage(const CollectionProblem& problem, const CollectionTour& plan, std::size_t task) {
-  Order order;
-  for (const Collection& one : plan.collections) order.push_back(one.task);
-  const Strain strain(problem, {1, 1, 1});
-  const FlightCost cost = with_best_passes(strain, with(strain, order, task)).cost;
-  const FlightCost& most = problem.limits();
-  return {cost.seconds > most.seconds, cost.fuel_kg > most.fuel_kg, cost.hazard > most.hazard};
-}
-
 }  // namespace reconnaissance

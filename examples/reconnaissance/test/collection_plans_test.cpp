@@ -144,7 +144,7 @@ TEST_CASE("twenty tasks are planned, too") {
   CHECK_THROWS_AS(exact_plan(problem), std::invalid_argument);
 }
 
-TEST_CASE("when fuel is short, what is worth least for its way is dropped, and why is said") {
+TEST_CASE("when fuel is short, what is worth least for its way is dropped") {
   // Far away and worth little, near and worth little, far and worth much.
   Scene scene;
   scene.tasks = {{1, passes_over(0, 15'000, 8)},
@@ -159,11 +159,10 @@ TEST_CASE("when fuel is short, what is worth least for its way is dropped, and w
                                      branch_and_bound_plan(problem, always).plan}) {
     REQUIRE(plan.collections.size() == 2);
     CHECK(plan.value == 6);
-    CHECK(shortage(problem, plan, 0) == Shortage{false, true, false});
   }
 }
 
-TEST_CASE("when survival is short, what lies beside the radar is dropped, and why is said") {
+TEST_CASE("when survival is short, what lies beside the radar is dropped") {
   Scene scene;
   scene.tasks = {{5, passes_over(0, 15'000, 8)}, {1, passes_over(3000, 0, 8)}};
   scene.sites = {{0, 15'000, 0}};
@@ -173,7 +172,6 @@ TEST_CASE("when survival is short, what lies beside the radar is dropped, and wh
   REQUIRE(plan.collections.size() == 1);
   CHECK(plan.collections[0].task == 1);
   CHECK(std::exp(-plan.cost.hazard) >= 0.95);
-  CHECK(shortage(problem, plan, 0) == Shortage{false, false, true});
 }
 
 TEST_CASE("who cannot even reach the landing is told so") {

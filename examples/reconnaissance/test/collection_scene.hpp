@@ -11,6 +11,16 @@
 // Seeded problems of collection: 40 × 40 km, 60 m/s, turns of 636 m, two radar sites.
 namespace reconnaissance {
 
+/// On courses that divide the circle evenly.
+inline std::vector<CollectionPass> passes_over(double north_m, double east_m, int courses) {
+  std::vector<CollectionPass> passes;
+  for (int i = 0; i < courses; ++i) {
+    const RoutePose pose{north_m, east_m, 2 * std::numbers::pi * i / courses};
+    passes.push_back({pose, pose, {}});
+  }
+  return passes;
+}
+
 struct Scene {
   std::vector<CollectionTask> tasks;
   std::vector<RoutePose> sites;
@@ -67,14 +77,16 @@ inline Scene random_scene(std::uint64_t seed, int tasks, int courses) {
   for (int i = 0; i < tasks; ++i) {
     CollectionTask task;
     task.value = 1 + std::floor(10 * random.uniform());
-    RoutePose one = place();
+    const RoutePose at = place();
     if (i % 3 == 2) {
       const double course = 2 * std::numbers::pi * random.uniform();
-      const RoutePose other{one.north_m + 3000 * std::cos(course),
-                            one.east_m + 3000 * std::sin(course), 0};
-      task.passes = passes_along(one, other, {50, 0.6, 0});
+      const double back = course + std::numbers::pi;
+      const double north = at.north_m + 3000 * std::cos(course);
+      const double east = at.east_m + 3000 * std::sin(course);
+      task.passes = {{{at.north_m, at.east_m, course}, {north, east, course}, {50, 0.6, 0}},
+                     {{north, east, back}, {at.north_m, at.east_m, back}, {50, 0.6, 0}}};
     } else {
-      task.passes = passes_over(one.north_m, one.east_m, courses);
+      task.passes = passes_over(at.north_m, at.east_m, courses);
     }
     scene.tasks.push_back(task);
   }

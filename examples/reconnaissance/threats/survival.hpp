@@ -21,7 +21,6 @@ class Survival {
   /// A time under a hazard, which is the sum of those of all sites.
   void pass(double hazard_per_s, double seconds) { expected_kills_ += hazard_per_s * seconds; }
 
-  double expected_kills() const { return expected_kills_; }
   double probability() const { return std::exp(-expected_kills_); }
 
  private:
