@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "skein/error.hpp"
 
@@ -110,6 +111,7 @@ TEST_CASE("A Dubins path's waypoints lead from pose to pose, turn gently and kee
     double length = 0;
     double heading = task.start.heading_rad;
     double sharpest = 0;
+    bool begins = true;
     CAPTURE(round, task.radius_m);
     for (std::size_t i = 1; i < points.size(); ++i) {
       const double leg = apart(points[i - 1], points[i]);
@@ -117,7 +119,7 @@ TEST_CASE("A Dubins path's waypoints lead from pose to pose, turn gently and kee
       if (leg < shortest) continue;
       const double next = std::atan2(points[i].east_m - points[i - 1].east_m,
                                      points[i].north_m - points[i - 1].north_m);
-      if (heading == task.start.heading_rad) REQUIRE(turned(heading, next) < 1e-3);
+      if (std::exchange(begins, false)) REQUIRE(turned(heading, next) < 1e-3);
       sharpest = std::max(sharpest, turned(heading, next));
       heading = next;
     }
