@@ -24,7 +24,7 @@ void add_body(ComponentRegistry& registry, const char* name, std::size_t threads
       });
 }
 
-/// `Time limit` is the most time that a planner takes for a route whatever the Problem allows,
+/// `Time limit` is the most time that a planner takes for a route,
 /// `Seed` the start of its random numbers, `Exposure cap` the most exposure of CappedAStar's
 /// routes. It stops as soon as nobody waits for its answer any more.
 PlannerOptions planner_options(const ParameterValues& values) {

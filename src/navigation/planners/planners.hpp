@@ -26,7 +26,7 @@ struct PlannerOptions {
   std::function<Instant()> now = std::chrono::steady_clock::now;
   /// Of the samplers: the same seed gives the same samples.
   std::uint32_t seed = 1;
-  /// The most time for a route, whatever the Problem allows; 0 where only that counts.
+  /// The most time for a route, even if the Problem allows more; 0: only the Problem counts.
   std::uint32_t time_limit_ms = 0;
   /// Distance between the points of the planning grid; 0 takes 1/256 of the terrain's longer side,
   /// but never less than the distance between its posts.
@@ -52,13 +52,13 @@ struct PlannerOptions {
 ///   and the option's, whatever the Problem's weight, as far as A* with some weight finds it
 ///   (Lagrangian relaxation): shorter ones between two weights are missed. Without a cap or without
 ///   radars it is the shortest route. Several times as slow as A*; brings each shorter route that
-///   it finds. Refuses, without a proof, where no route keeps the cap.
+///   it finds. Refuses, without a proof, if no route keeps the cap.
 /// - RRTConnect: two trees grown towards each other: an answer within milliseconds, often long and
-///   careless of radars. Searches on until its time is up where there is no route.
+///   careless of radars. Searches on until its time is up if there is no route.
 /// - RRTstar: a tree that is improved for as long as there is time: the more time, the cheaper the
 ///   route. When its time is up the best route so far is the answer; so it is with InformedRRTstar.
-/// - InformedRRTstar: as RRTstar, but as soon as there is a route it samples only where a cheaper
-///   one may lead.
+/// - InformedRRTstar: as RRTstar, but as soon as there is a route it samples only places that a
+///   cheaper one may lead through.
 /// - PRMstar: a map of roads that grows denser for as long as there is time. Brings only its last
 ///   route.
 const std::vector<std::string>& planner_names();

@@ -9,7 +9,7 @@
 namespace skein::navigation {
 namespace {
 
-/// How long a planner that uses all of its time searches where the Problem sets no limit.
+/// How long a planner that uses all of its time searches if the Problem sets no limit.
 constexpr std::chrono::seconds kOwnLimit{1};
 
 }  // namespace

@@ -72,11 +72,11 @@ ob::PlannerPtr make_roadmap(const Sampling& sampling, std::uint32_t seed) {
 
 using MakePlanner = ob::PlannerPtr (*)(const Sampling& sampling, std::uint32_t seed);
 
-/// By one of OMPL's planners that improve their path. Where the last path comes to no route, in
+/// By one of OMPL's planners that improve their path. If the last path comes to no route, in
 /// time or at all, the best before it is the answer.
 AE_navigator::Route improve(const Search& search, const char* name, MakePlanner make) {
   constexpr int kMaxPoints = 100;
-  // What a path must save to be worth a route of its own.
+  // A path that saves less is not worth a route of its own.
   constexpr double kWorthwhile = 0.98;
   const PlanningScene scene(search);
   const auto route_of = [&](const GroundPath& path) {

@@ -7,7 +7,7 @@
 // The planners' searches, of which make_planner() makes planners.
 namespace skein::navigation {
 
-/// What one search works with.
+/// The task of one search, and its means.
 struct Search {
   TerrainProvider& terrains;
   const PlannerOptions& options;
