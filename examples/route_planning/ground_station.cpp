@@ -93,7 +93,7 @@ std::string in_words(skein::Duration duration) { return fmt::format("{:g} s", se
 
 GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& values)
     : entity_(entity),
-      picture_(values.find<std::string>("Picture").value_or("route.svg")),
+      picture_(values.find<std::string>("Picture").value_or("route.html")),
       planners_(names_in(values.find<std::string>("Planners").value_or(""))),
       time_limit_(values.find<std::chrono::milliseconds>("Time limit").value_or(2s)),
       terrain_(skein::navigation::TerrainProvider().load(
@@ -103,7 +103,7 @@ GroundStation::GroundStation(skein::Entity& entity, const ParameterValues& value
       ground_(ground_of(*terrain_)),
       navigator_(entity),
       limits_(ask_flight_limits()) {
-  skein::navigation::try_route_picture(picture_);
+  skein::try_whole_file("the picture", picture_);
 }
 
 bool GroundStation::fly() {
@@ -274,8 +274,10 @@ void GroundStation::accept(const std::string& label, const Question& question,
 void GroundStation::draw() {
   Problem problem = flyable(skein::navigation::demo_problem(*terrain_));
   problem.missile_sites = missiles_;
-  skein::navigation::write_route_picture(picture_, *terrain_, problem, routes_,
-                                         "Route planning over " + terrain_title_);
+  skein::write_whole_file(
+      "the picture", picture_,
+      page_of(skein::navigation::route_picture(*terrain_, problem, routes_,
+                                               "Route planning over " + terrain_title_)));
   if (terrain_->frame() && !routes_.empty()) write_for_others(problem);
 }
 

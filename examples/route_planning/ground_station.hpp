@@ -20,7 +20,7 @@ namespace route_planning {
 /// Believes none of the answers before the route checker has seen them.
 ///
 /// Parameters: `Terrain` (as a Problem names it; synthetic:7 without it), `Zones` (a GeoJSON file
-/// of further no-fly zones), `Picture` (the SVG to write; route.svg. Over a terrain that lies on
+/// of further no-fly zones), `Picture` (the page to write; route.html. Over a terrain that lies on
 /// the earth, all routes are written as GeoJSON and the last one as a flight plan beside it),
 /// `Planners` (names, separated by commas, of the planners that must know the terrain before the
 /// first question), `Time limit` (the longest time that it waits for a route; 2 s).
@@ -68,5 +68,8 @@ class GroundStation {
   std::vector<std::string> not_in_fence_;
   std::vector<std::string> failures_;
 };
+
+/// A page that a script inside of it (page.js) draws from a route_picture().
+std::string page_of(const std::string& json);
 
 }  // namespace route_planning

@@ -1,7 +1,9 @@
+#include <fmt/core.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
-#include <pugixml.hpp>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "../tools/places.hpp"
@@ -25,37 +27,16 @@ const MissionRun& flown() {
   return run;
 }
 
-/// Where a picture refers to something outside of itself.
-std::vector<std::string> references_out_of(const pugi::xml_node& picture) {
-  struct Walker : pugi::xml_tree_walker {
-    bool for_each(pugi::xml_node& node) override {
-      for (const auto& attribute : node.attributes()) {
-        const std::string name = attribute.name(), value = attribute.value();
-        const bool refers = name == "href" || name == "xlink:href" || name == "src";
-        if (refers && !value.starts_with("#") && !value.starts_with("data:"))
-          found.push_back(value);
-        if (value.find("url(") != std::string::npos && value.find("url(#") == std::string::npos)
-          found.push_back(value);
-      }
-      return true;
-    }
-    std::vector<std::string> found;
-  } walker;
-  const_cast<pugi::xml_node&>(picture).traverse(walker);
-  return walker.found;
-}
-
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream text(file);
   return {std::istreambuf_iterator<char>(text), {}};
 }
 
-/// What a picture's legend says of a route.
-std::string figures_of(const std::filesystem::path& file, const std::string& route) {
-  pugi::xml_document picture;
-  REQUIRE(picture.load_file(file.c_str()));
-  const auto label = picture.select_node(("//text[.='" + route + "']").c_str()).node();
-  return label.next_sibling("text").text().get();
+/// What the page of the routes draws them from.
+nlohmann::json picture_in(const std::filesystem::path& page) {
+  const std::string text = text_of(page), begin = "type=\"application/json\">";
+  const auto from = text.find(begin) + begin.size();
+  return nlohmann::json::parse(text.substr(from, text.find("</script>", from) - from));
 }
 
 }  // namespace
@@ -101,27 +82,27 @@ TEST_CASE("the mission flies: every route is valid, and the unreachable goal is 
                                run.file("decisions.jsonl").string() + "' > /dev/null";
     CHECK(std::system(replay.c_str()) == 0);
   }
-  SECTION("the picture is well-formed and refers to nothing outside of itself") {
-    pugi::xml_document picture;
-    const auto parsed = picture.load_file(run.file("route.svg").c_str());
-    INFO(parsed.description());
-    REQUIRE(parsed);
-    CHECK(std::string(picture.document_element().name()) == "svg");
-    CHECK(references_out_of(picture) == std::vector<std::string>{});
-    const std::string content = text_of(run.file("route.svg"));
-    for (const char* label :
-         {"10 s, by declaration: RRTstar", "planner killed: AStar", "fresh picture: "}) {
-      CHECK_THAT(content, Contains(label));
-    }
-    CHECK(std::regex_search(content, std::regex(">[0-9]+ ms: ")));  // in a hurry
+  SECTION("the picture shows each route, and refers to nothing outside of itself") {
+    const std::string page = text_of(run.file("route.html"));
+    CHECK_FALSE(std::regex_search(page, std::regex("https?:(?!//www.w3.org/2000/svg\")|src=|<link|"
+                                                   "@import|url\\((?!#)")));
+    std::string labels;
+    const auto picture = picture_in(run.file("route.html"));
+    for (const auto& route : picture["routes"])
+      if (!route["points"].is_null()) labels += route["label"].get<std::string>() + "\n";
+    CHECK_THAT(labels, Matches("10 s, by declaration: RRTstar\n.*\n[0-9]+ ms: .*\n"  // in a hurry
+                               "planner killed: AStar\nfresh picture: .*\n"));
   }
 }
 
 // Of its routes, only this one depends neither on chance nor on how fast the machine is.
 TEST_CASE("the example's text tells of a flight like this one") {
-  const std::string flown_figures = figures_of(flown().file("route.svg"), "planner killed: AStar");
-  CHECK_THAT(flown_figures, Contains(" km, exposure "));
-  CHECK_THAT(text_of(project_file("examples/route_planning/README.md")), Contains(flown_figures));
+  const auto route = picture_in(flown().file("route.html"))["routes"][3];
+  CHECK(route["label"] == "planner killed: AStar");
+  const std::string figures =
+      fmt::format("{:.1f} km, exposure {:.1f} km", route["length_m"].get<double>() / 1000,
+                  route["exposure_m"].get<double>() / 1000);
+  CHECK_THAT(text_of(project_file("examples/route_planning/README.md")), Contains(figures));
 }
 
 TEST_CASE(

@@ -1,15 +1,13 @@
 #include "navigation/routes/route_picture.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
-#include <pugixml.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "../tools/places.hpp"
 #include "demo.hpp"
-#include "made_terrain.hpp"
-#include "skein/error.hpp"
 
 using namespace skein::navigation;
 using namespace skein::navigation::testing;
@@ -17,81 +15,78 @@ using Catch::Contains;
 
 namespace {
 
+using Json = nlohmann::json;
+
 std::vector<PicturedRoute> two_routes(const Demo& demo) {
   return {{"A*, 2 s", demo.plan("AStar")}, {"RRTConnect, 50 ms", demo.plan("RRTConnect")}};
 }
 
 }  // namespace
 
-TEST_CASE("A picture is well-formed, below 2 MB and refers to nothing outside of itself") {
+TEST_CASE("A picture has the ground and what radars see of it, and stays below 2 MB") {
   const Demo demo;
-  const std::string svg = route_picture(*demo.terrain, demo.problem, two_routes(demo), "Routes");
-  pugi::xml_document document;
-  REQUIRE(document.load_string(svg.c_str()));
-  CHECK(svg.size() < 2'000'000);
-  CHECK(document.select_nodes("//*[local-name()='image']").size() == 1);
-  for (const auto& match :
-       document.select_nodes("//@*[local-name()='href' or local-name()='src']")) {
-    CHECK_THAT(match.attribute().value(), Catch::StartsWith("data:image/png;base64,iVBORw0KGgo"));
-  }
-  for (const auto& match : document.select_nodes("//@*[contains(., 'url(')]")) {
-    CHECK_THAT(match.attribute().value(), Contains("url(#"));
-  }
+  const std::string text = route_picture(*demo.terrain, demo.problem, two_routes(demo), "Routes");
+  CHECK(text.size() < 2'000'000);
+  const auto ground = Json::parse(text)["ground"];
+  const std::size_t columns = ground["columns"];
+  REQUIRE(ground["heights_m"].size() == columns * columns);
+  REQUIRE(ground["seen"].size() == columns * columns);
+  const double spacing_m = ground["spacing_m"];
+  CHECK(spacing_m * static_cast<double>(columns - 1) == Approx(demo.terrain->east_extent_m()));
+  CHECK(ground["heights_m"][3 * columns + 5] ==
+        std::lround(demo.terrain->height_m(3 * spacing_m, 5 * spacing_m)));
+  const auto seen_at = [&](const AE_navigator::GroundPoint& point) {
+    return ground["seen"][static_cast<std::size_t>(point.north_m / spacing_m) * columns +
+                          static_cast<std::size_t>(point.east_m / spacing_m)]
+        .get<int>();
+  };
+  for (const auto& radar : demo.problem.radar_sites) CHECK(seen_at(radar.site) > 50);
+  CHECK(seen_at({500, 500}) == 0);
 }
 
 TEST_CASE("A picture names routes, zones, threats, both ends and the figures of each route") {
   Demo demo;
   demo.problem.missile_sites.push_back({"Sierra", {20'000, 15'000}, 20, 4000, 0.02});
   const auto routes = two_routes(demo);
-  const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
-  for (const char* name :
-       {"A*, 2 s", "RRTConnect, 50 ms", "City", "Reserve", "Corridor", "Alpha", "Delta", "Sierra",
-        "range of missiles", "Start", "Goal", "synthetic:7"}) {
-    CHECK_THAT(svg, Contains(name));
-  }
-  CHECK_THAT(svg,
-             Contains(fmt::format("{:.1f} km, exposure {:.1f} km", routes[0].route.length_m / 1000,
-                                  routes[0].route.radar_exposure / 1000)));
+  const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));
+  const auto names = [&](const char* list, const char* name) {
+    std::set<std::string> all;
+    for (const auto& each : json[list]) all.insert(each[name].get<std::string>());
+    return all;
+  };
+  CHECK(json["title"] == "Routes");
+  CHECK(json["facts"][1] == "terrain synthetic:7");
+  CHECK(names("routes", "label") == std::set<std::string>{"A*, 2 s", "RRTConnect, 50 ms"});
+  CHECK(names("zones", "name") == std::set<std::string>{"City", "Reserve", "Corridor"});
+  CHECK(names("radars", "name") == std::set<std::string>{"Alpha", "Bravo", "Charlie", "Delta"});
+  CHECK(json["missiles"] ==
+        Json::parse(R"([{"name": "Sierra", "place": [20000, 15000], "range_m": 4000}])"));
+  CHECK(json["goal"][0] == std::lround(demo.problem.goal.north_m));
+  CHECK(json["routes"][0]["length_m"] == routes[0].route.length_m);
+  CHECK(json["routes"][0]["exposure_m"] == routes[0].route.radar_exposure);
+  CHECK(json["routes"][0]["points"].size() == routes[0].route.waypoints.size());
 }
 
-TEST_CASE("Routes that run together take turns, so that each is seen; one alone is drawn whole") {
+TEST_CASE(
+    "A height profile leads over the ground to the end of the route, and tells what is seen") {
   const Demo demo;
-  const auto pieces_of_each_colour = [&](const std::vector<PicturedRoute>& routes) {
-    pugi::xml_document document;
-    const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
-    REQUIRE(document.load_string(svg.c_str()));
-    std::vector<std::size_t> pieces;
-    for (const auto& match :
-         document.select_nodes("/svg/g[@clip-path]/path[@stroke-width='3']/@d")) {
-      const std::string path = match.attribute().value();
-      pieces.push_back(static_cast<std::size_t>(std::count(path.begin(), path.end(), 'M')));
-    }
-    return pieces;
-  };
-  const PicturedRoute route = two_routes(demo)[0];
-  CHECK(pieces_of_each_colour({route}) == std::vector<std::size_t>{1});
-  for (const std::size_t count : {2u, 3u}) {
-    const auto pieces = pieces_of_each_colour(std::vector<PicturedRoute>(count, route));
-    REQUIRE(pieces.size() == count);
-    for (const std::size_t piece : pieces) CHECK(piece > 5);
-    CHECK(*std::max_element(pieces.begin(), pieces.end()) -
-              *std::min_element(pieces.begin(), pieces.end()) <=
-          1);
-  }
-}
-
-TEST_CASE("A height profile has distances below it") {
-  const Demo demo;
-  const auto distances = [&](const std::vector<PicturedRoute>& routes) {
-    pugi::xml_document document;
-    const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
-    REQUIRE(document.load_string(svg.c_str()));
-    return document.select_nodes("//text[@class='tick' and contains(., ' km')]").size();
-  };
-  const auto of_the_map = distances({});
   const auto routes = two_routes(demo);
-  CHECK(distances({routes[0]}) >= of_the_map + 4);
-  CHECK(distances(routes) >= of_the_map + 8);
+  const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));
+  for (std::size_t i = 0; i < routes.size(); ++i) {
+    const auto& profile = json["routes"][i]["profile"];
+    const auto& last = routes[i].route.waypoints.back();
+    REQUIRE(profile.size() > 100);
+    CHECK(profile.front()[0] == 0);
+    CHECK(profile.back()[0] == Approx(routes[i].route.length_m).epsilon(0.01));
+    CHECK(profile.back()[1] == std::lround(demo.terrain->height_m(last.north_m, last.east_m)));
+    CHECK(profile.back()[2] == std::lround(last.altitude_m));
+    long seen = 0;
+    for (const auto& sample : profile) {
+      CHECK(sample[2].get<long>() > sample[1].get<long>());
+      seen += sample[3].get<long>();
+    }
+    CHECK((seen > 0 && seen < 100 * static_cast<long>(profile.size())));
+  }
 }
 
 // The missiles are those that the example's ground station reports before its fifth question.
@@ -119,43 +114,13 @@ TEST_CASE("The text of the route-planning example tells what A* plans today") {
                                         after.radar_exposure / 1000, after.waypoints.size())));
 }
 
-TEST_CASE("Names that look like XML stay names") {
-  Demo demo;
-  demo.problem.no_fly_zones[0].name = "</text><script>alert(1)</script>&";
-  demo.problem.radar_sites[0].name = "a\x01\"b";
-  const std::string svg = route_picture(*demo.terrain, demo.problem, {}, "<Routes> & \"more\"");
-  pugi::xml_document document;
-  REQUIRE(document.load_string(svg.c_str()));
-  CHECK(document.select_nodes("//*[local-name()='script']").empty());
-  CHECK(std::string(document.child("svg").child("title").text().get()) == "<Routes> & \"more\"");
-}
-
 TEST_CASE("A route with a number that is not finite is listed, but not drawn") {
   const Demo demo;
   auto routes = two_routes(demo);
   routes[1].route.waypoints[3].north_m = std::nan("");
-  const std::string svg = route_picture(*demo.terrain, demo.problem, routes, "Routes");
-  CHECK_THAT(svg, Contains("not drawn: not a route"));
-  pugi::xml_document document;
-  REQUIRE(document.load_string(svg.c_str()));
-  for (const auto& path : document.select_nodes("//*[local-name()='path']/@d")) {
-    CHECK_THAT(path.attribute().value(), !Contains("nan"));
-  }
-}
-
-TEST_CASE("A picture that cannot be written is an error with its path") {
-  const Demo demo;
-  CHECK_THROWS_WITH(
-      write_route_picture("/nowhere/route.svg", *demo.terrain, demo.problem, {}, "Routes"),
-      Contains("/nowhere/route.svg"));
-}
-
-TEST_CASE("A written picture is the picture") {
-  const Demo demo;
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "route.svg";
-  write_route_picture(file, *demo.terrain, demo.problem, {}, "Routes");
-  std::ifstream in(file);
-  const std::string written((std::istreambuf_iterator<char>(in)), {});
-  CHECK(written == route_picture(*demo.terrain, demo.problem, {}, "Routes"));
+  routes[1].label = "a\xff";
+  const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));
+  CHECK(json["routes"][1]["label"] == "a\uFFFD");
+  CHECK(json["routes"][1]["points"].is_null());
+  CHECK_FALSE(json["routes"][1].contains("profile"));
 }

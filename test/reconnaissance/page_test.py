@@ -1,6 +1,6 @@
-"""The page that tells of a mission, as people use it, in headless Chromium.
+"""The pages that tell of a mission and of routes, as people use them, in headless Chromium.
 
-python3 page_test.py PROGRAM, which writes pages into a folder."""
+python3 page_test.py PROGRAM..., which write pages into a folder."""
 
 import base64
 import json
@@ -13,7 +13,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tools"))
 import headless_chromium  # noqa: E402
 
-PROGRAM = sys.argv[1]
+PROGRAMS = sys.argv[1:]
 
 # Relative luminance and contrast as WCAG 2.1 defines them.
 CONTRAST = """(pairs => {
@@ -32,13 +32,14 @@ CONTRAST = """(pairs => {
 PAIRS = [[text, ground] for text in ("ink", "soft", "good", "bad") for ground in ("card", "page")]
 
 
-class Report(unittest.TestCase):
+class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         place = tempfile.TemporaryDirectory()
         cls.addClassCleanup(place.cleanup)
         cls.folder = pathlib.Path(place.name)
-        subprocess.run([PROGRAM, cls.folder], check=True, timeout=60)
+        for program in PROGRAMS:
+            subprocess.run([program, cls.folder], check=True, timeout=60)
         cls.page = headless_chromium.Page()
         cls.addClassCleanup(cls.page.__exit__)
 
@@ -52,12 +53,14 @@ class Report(unittest.TestCase):
     def of(self, expression):
         return self.page.value(expression)
 
+
+class Report(Page):
     def places(self):
         """Of all that goes with the time."""
         return self.of("""["#map > .aircraft", "#profile .cursor_dot"].map(each => document.querySelector(each).getAttribute("transform"))
             .concat(["#map .flown", "#profile .cursor", "#lanes .cursor"].map(each => document.querySelector(each).getAttribute("d")))""")
 
-    def test_the_first_line_stands_without_the_script(self):
+    def test_the_first_line_is_the_verdict(self):
         self.open()
         self.assertRegex(self.of("document.querySelector('h1').textContent"), r"^Passed · \d+ min \d\d s · .* km · 3 of 3 targets · .* · 1 miss$")
 
@@ -173,6 +176,7 @@ class Report(unittest.TestCase):
         self.open("hostile.html")
         self.page.click("#lanes .decision")
         self.assertEqual(self.of("[document.scripts.length, document.images.length]"), [2, 0])
+        self.assertTrue(self.of("document.title").startswith("</script><script>alert(1)</script><img src=x onerror=alert(2)>"))
         for part in ("#targets", "#told", "#checks", "#command", "#map", "#lanes", "#faults", "#latencies"):
             with self.subTest(part):
                 self.assertIn("</script><script>alert(1)</script><img src=x onerror=alert(2)>", self.of(f"document.querySelector('{part}').textContent"))
@@ -182,6 +186,39 @@ class Report(unittest.TestCase):
         self.assertIn("Not flown to its end", self.of("document.body.innerText"))
         self.assertIn("the mission was aborted", self.of("document.getElementById('checks').innerText"))
         self.assertEqual(self.of("document.querySelector('.map').hidden"), True)
+
+
+class Routes(Page):
+    def test_routes_are_drawn_listed_and_told_apart(self):
+        self.open("routes.html")
+        labels = "[...document.querySelectorAll('#routes li')].map(each => each.innerText.split('\\n'))"
+        first, second, third = self.of(labels)
+        self.assertEqual([first[0], second[0], third], ["first", "second", ["third", third[1], "not drawn: not a route"]])
+        self.assertRegex(first[1], r"^\d+\.\d km, exposure \d+\.\d km$")
+        self.assertRegex(first[2], r"^at least \d+ m above ground$")
+        # Each whole, and then dashes that take turns; the third is not there.
+        dashed = self.of("""[...document.querySelectorAll('#map .way[stroke-dasharray]')].map(each => [each.getAttribute('d').length > 0, each.style.stroke,
+            each.getAttribute('stroke-dasharray'), each.getAttribute('stroke-dashoffset')])""")
+        self.assertEqual([each[0] for each in dashed], [True, True, False])
+        self.assertEqual(len({each[1] for each in dashed}), 3)
+        self.assertEqual([each[2:] for each in dashed], [["13 26", "0"], ["13 26", "-13"], ["13 26", "-26"]])
+
+    def test_each_route_that_is_drawn_has_a_profile_with_distances_and_what_radar_sees(self):
+        self.open("routes.html")
+        self.assertEqual(self.of("[...document.querySelectorAll('#profiles svg > text:first-child')].map(each => each.textContent)"), ["first", "second"])
+        for part, least in ((".tick", 6), (".seen", 10), (".ground", 1), (".way", 1)):
+            self.assertGreaterEqual(self.of(f"document.querySelector('#profiles svg').querySelectorAll('{part}').length"), least)
+
+    def test_the_map_names_all_that_is_on_it_and_names_stay_names(self):
+        self.open("routes.html")
+        self.assertEqual(self.of("document.scripts.length"), 2)
+        names = self.of("[...document.querySelectorAll('#map .halo')].map(each => each.textContent)")
+        for name in ("Start", "Goal", "Reserve", "Alpha", "Delta", "Sierra", "10 km", "</text><script>alert(1)</script>&"):
+            self.assertIn(name, names)
+
+    def test_a_phone_shows_all_of_it_without_scrolling_sideways(self):
+        self.open("routes.html", width=360, height=740)
+        self.assertLessEqual(self.of("document.documentElement.scrollWidth"), 360)
 
 
 if __name__ == "__main__":

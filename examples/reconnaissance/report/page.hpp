@@ -1,11 +1,10 @@
 #pragma once
 
-/// The parts of the page that are the same for each mission: page.css, page.html and page.js, which
-/// the build puts into the library.
-namespace reconnaissance::page {
+#include <string>
 
-extern const char* const kStyle;
-extern const char* const kBody;
-extern const char* const kScript;
+namespace reconnaissance {
 
-}  // namespace reconnaissance::page
+/// A page that a script inside of it (page.js) draws from a record in JSON.
+std::string page_of(const std::string& json);
+
+}  // namespace reconnaissance

@@ -1,30 +1,15 @@
-// Draws the record of a mission that stands in this page. All text of the record becomes text nodes: nothing of it is markup.
-"use strict";
-(() => {
-const record = JSON.parse(document.getElementById("record").textContent);
-const $ = id => document.getElementById(id);
-const {track, ground} = record;
+// Draws the record of a mission.
+const {track} = record;
 const begin = track.time_s[0] ?? 0, end = Math.max(track.time_s.at(-1) ?? 0, record.phases.at(-1)?.from_s ?? 0, begin + 1);
-const rows = ground.columns ? Math.floor(ground.heights_m.length / ground.columns) : 0;
 const kEarth_m = 6371000 * 4 / 3;  // as radar sees it
 const kLevels_m = [150, 600];
 let now = begin, chosen = -1;
 
 // ---- small tools
-function put(node, attributes, children) {
-  for (const [name, value] of Object.entries(attributes ?? {})) if (value !== undefined) node.setAttribute(name, value);
-  node.append(...children.filter(child => child !== undefined));
-  return node;
-}
-const html = (name, attributes, ...children) => put(document.createElement(name), attributes, children);
-const svg = (name, attributes, ...children) => put(document.createElementNS("http://www.w3.org/2000/svg", name), attributes, children);
 const two = number => String(number).padStart(2, "0");
 const clock = seconds => `${two(Math.floor(seconds / 60))}:${two(Math.floor(seconds % 60))}`;
-const fixed = (value, digits, unit) => value === null || value === undefined ? "–" : `${value.toFixed(digits)} ${unit}`.trim();
 const span = seconds => seconds < 0.001 ? `${(seconds * 1e6).toFixed(0)} µs` : seconds < 1 ? `${(seconds * 1000).toPrecision(3)} ms` : `${seconds.toFixed(1)} s`;
 const words = name => name.replace(/([a-z])([A-Z])/g, (_, a, b) => `${a} ${b.toLowerCase()}`).replaceAll("_", " ");
-const dark = () => document.documentElement.dataset.theme === "dark";
-const line = points => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 const last = (list, time) => { let found = -1; list.forEach((each, i) => { if (each.from_s <= time) found = i; }); return found; };
 
 /// The first sample that is later, by halving.
@@ -45,18 +30,10 @@ function at(time) {
   }
   return state;
 }
-function groundHeight(north, east) {
-  const u = (east - ground.west_m) / ground.spacing_m, v = (north - ground.south_m) / ground.spacing_m;
-  const column = Math.min(Math.max(Math.floor(u), 0), ground.columns - 2), row = Math.min(Math.max(Math.floor(v), 0), rows - 2);
-  const x = Math.min(Math.max(u - column, 0), 1), y = Math.min(Math.max(v - row, 0), 1), i = row * ground.columns + column, h = ground.heights_m;
-  return (1 - y) * ((1 - x) * h[i] + x * h[i + 1]) + y * ((1 - x) * h[i + ground.columns] + x * h[i + ground.columns + 1]);
-}
 
 // ---- the map
 const hasMap = rows > 1 && track.time_s.length > 0;
 const view = hasMap ? viewOf() : null;
-const width_m = hasMap ? view.east - view.west : 0, height_m = hasMap ? view.north - view.south : 0;
-const map = {};
 
 /// Where the mission is, and some land around it. The ground reaches further, to the sites.
 function viewOf() {
@@ -66,7 +43,6 @@ function viewOf() {
   record.zones.forEach(zone => zone.outline.forEach(show));
   record.others.filter(other => other.name).forEach(other => other.points.forEach(([, north, east]) => show([north, east])));
   record.truths.forEach(thing => thing.points.forEach(([, north, east]) => show([north, east])));
-  const least = values => values.reduce((a, b) => Math.min(a, b)), most = values => values.reduce((a, b) => Math.max(a, b));
   const box = {south: least(norths) - margin_m, north: most(norths) + margin_m, west: least(easts) - margin_m, east: most(easts) + margin_m};
   for (const {place: [north, east]} of record.threats)  // which are near enough to be on the map themselves
     if (north > box.south - 7000 && north < box.north + 7000 && east > box.west - 7000 && east < box.east + 7000) {
@@ -76,28 +52,6 @@ function viewOf() {
   const more = (box.east - box.west) * 0.6 - (box.north - box.south);  // no narrow strip
   if (more > 0) { box.south -= more / 2; box.north += more / 2; }
   return box;
-}
-
-/// Tinted by height, lit from the north-west, with contour lines.
-function relief() {
-  const width = 720, height = Math.max(Math.round(width * height_m / width_m), 1);
-  const canvas = html("canvas", {width, height}), context = canvas.getContext("2d"), image = context.createImageData(width, height);
-  const least = ground.heights_m.reduce((a, b) => Math.min(a, b)), most = Math.max(ground.heights_m.reduce((a, b) => Math.max(a, b)), least + 1);
-  const step = [10, 20, 25, 50, 100, 200, 500, 1000].find(each => (most - least) / each <= 12) ?? 2000;
-  const tints = dark() ? [[30, 38, 37], [44, 50, 43], [66, 64, 52], [92, 85, 72]] : [[229, 234, 221], [223, 224, 199], [214, 203, 170], [200, 182, 150]];
-  const cell = width_m / width, heights = new Float32Array(width * height);
-  for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x)
-    heights[y * width + x] = groundHeight(view.north - (y + 0.5) * height_m / height, view.west + (x + 0.5) * cell);
-  for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
-    const h = heights[y * width + x], right = heights[y * width + Math.min(x + 1, width - 1)], below = heights[Math.min(y + 1, height - 1) * width + x];
-    const tone = (h - least) / (most - least) * (tints.length - 1), k = Math.min(Math.floor(tone), tints.length - 2), share = tone - k;
-    let light = 1 + Math.min(Math.max(((right - h) + (below - h)) / cell * 1.6, -0.34), 0.22);
-    if (Math.floor(h / step) !== Math.floor(right / step) || Math.floor(h / step) !== Math.floor(below / step)) light *= dark() ? 1.22 : 0.9;
-    for (let c = 0; c < 3; ++c) image.data[4 * (y * width + x) + c] = light * (tints[k][c] + share * (tints[k + 1][c] - tints[k][c]));
-    image.data[4 * (y * width + x) + 3] = 255;
-  }
-  context.putImageData(image, 0, 0);
-  return canvas.toDataURL();
 }
 
 /// Up to where the site sees, in each direction, what flies so high above the ground.
@@ -127,22 +81,14 @@ function decisionMark(index, x, y, radius) {
 }
 
 function drawMap() {
-  const root = $("map"), width = Math.max(root.clientWidth, 280), scale = width / width_m, height = height_m * scale;
-  map.xy = ([north, east]) => [(east - view.west) * scale, (view.north - north) * scale];
-  root.setAttribute("viewBox", `0 0 ${width} ${height.toFixed(1)}`);
-  root.setAttribute("aria-label", `Map, ${(width_m / 1000).toFixed(0)} by ${(height_m / 1000).toFixed(0)} km, with the flight, threats and targets`);
-  const names = [];
-  const name = (x, y, text) => { names.push({x, y, node: svg("text", {class: "halo"}, text)}); return names.at(-1).node; };
-  const all = [
-    svg("defs", {}, svg("pattern", {id: "hatch", width: 8, height: 8, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"}, svg("path", {d: "M0 0v8", class: "hatch"}))),
-    svg("image", {id: "relief", href: relief(), width, height, preserveAspectRatio: "none"})];
+  const {scale, width, height, name, show} = beginMap(view, "the flight, threats and targets"), all = [];
   for (const zone of record.zones) all.push(svg("path", {class: "zone", d: line(zone.outline.map(map.xy)) + "Z"}, svg("title", {}, zone.name)));
   map.threats = record.threats.map(threat => {
     const [x, y] = map.xy(threat.place), parts = [];
     if (threat.detection_range_m > 0) kLevels_m.forEach((above, i) => parts.push(svg("path", {class: i ? "coverage high" : "coverage", d: coverage(threat, above)}, svg("title", {}, `${threat.kind} sees what flies ${above} m above the ground`))));
     if (threat.lethal_range_m > 0) parts.push(svg("circle", {class: "reach", cx: x, cy: y, r: threat.lethal_range_m * scale}));
     if (threat.deviation_m * scale > 5) parts.push(svg("circle", {class: "uncertain", cx: x, cy: y, r: threat.deviation_m * scale}));
-    parts.push(svg("path", {class: "site", d: `M${x} ${y - 7}l6.5 11h-13z`}), name(x, y, x > 0 && x < width && y > 0 && y < height ? threat.kind : `${threat.kind} beyond`));
+    parts.push(siteMark(x, y), name(x, y, x > 0 && x < width && y > 0 && y < height ? threat.kind : `${threat.kind} beyond`));
     return svg("g", {}, ...parts);
   });
   all.push(...map.threats);
@@ -166,45 +112,8 @@ function drawMap() {
   record.decisions.forEach((decision, i) => { const state = at(decision.time_s); all.push(decisionMark(i, ...map.xy([state.north_m, state.east_m]), 3.6)); });
   map.others = record.others.map(other => svg("g", {}, svg("path", {class: other.name ? "intruder companion" : "intruder"}), svg("title", {}, other.name || `aircraft ${other.number}`), svg("path", {class: "intruder_now", d: "M0 -8L5 7L0 4L-5 7Z"})));
   map.aircraft = svg("path", {class: "aircraft", d: "M0 -12L2.2 -4L12 2V4.5L2.2 2L1.6 8L5 10.5V12L0 11L-5 12V10.5L-1.6 8L-2.2 2L-12 4.5V2L-2.2 -4Z"});
-  all.push(...map.others, map.aircraft, ...scaleBar(scale, width, height));
-  root.replaceChildren(...all);
-  placeNames(names.reverse(), width, height);
+  show(...all, ...map.others, map.aircraft);
 }
-/// Beside what they name, inside the map, and not over each other where there is room; those first that come first.
-function placeNames(names, width, height) {
-  const taken = names.map(({x, y}) => ({x: x - 7, y: y - 7, width: 14, height: 14}));
-  taken.push({x: width - 40, y: 0, width: 40, height: 56});  // where north is
-  const apart = (one, other) => one.x + one.width <= other.x || other.x + other.width <= one.x || one.y + one.height <= other.y || other.y + other.height <= one.y;
-  for (const {x, y, node} of names) {
-    const at = {x: Math.min(Math.max(x, 0), width), y: Math.min(Math.max(y, 0), height)};
-    const places = [[10, 4, "start"], [-10, 4, "end"], [0, -11, "middle"], [0, 21, "middle"], [10, 21, "start"], [-10, 21, "end"], [10, 39, "start"], [-10, 39, "end"], [-10, -14, "end"], [10, -14, "start"], [-10, 74, "end"]];
-    const put = ([right, down, anchor]) => {
-      for (const [key, value] of Object.entries({x: at.x + right, y: at.y + down, "text-anchor": anchor})) node.setAttribute(key, value);
-      return node.getBBox();
-    };
-    const inside = places.filter(place => { const box = put(place); return box.x > 2 && box.y > 2 && box.x + box.width < width - 2 && box.y + box.height < height - 2; });
-    taken.push(put(inside.find(place => taken.every(each => apart(put(place), each))) ?? inside[0] ?? places[0]));
-  }
-}
-function scaleBar(scale, width, height) {
-  const metres = [1, 2, 5, 10, 20, 50, 100].map(km => km * 1000).filter(m => m * scale < width / 4).at(-1) ?? 500;
-  const y = height - 16;
-  return [svg("path", {d: `M16 ${y - 5}v5h${metres * scale}v-5`, fill: "none", stroke: "var(--ink)", "stroke-width": 1.6}),
-    svg("text", {class: "halo", x: 16 + metres * scale / 2, y: y - 8, "text-anchor": "middle"}, `${metres / 1000} km`),
-    svg("path", {d: `M${width - 22} 14l6 18l-6 -4l-6 4z`, fill: "var(--ink)", stroke: "var(--halo)"}),
-    svg("text", {class: "halo", x: width - 22, y: 46, "text-anchor": "middle"}, "N")];
-}
-function drawLegend() {
-  const entries = [["flown", "M0 6H20", "flown"], ["routes", "M0 6H20", "planned", "route"], ["coverage", "M0 6H20", `seen by radar ${kLevels_m.join(" and ")} m above the ground`, "coverage"],
-    ["images", "M2 1H18V11H2Z", "images", "image"], ["decisions", "", "decisions"]];
-  for (const [name, path, text, style] of entries) {
-    const sign = path ? svg("path", {d: path, class: style ?? name}) : svg("circle", {cx: 10, cy: 6, r: 4, fill: "var(--card)", stroke: "var(--ink)", "stroke-width": 1.6});
-    const box = name === "flown" ? undefined : html("input", {type: "checkbox", checked: ""});
-    box?.addEventListener("change", () => $("map").classList.toggle(`hide-${name}`, !box.checked));
-    $("legend").append(html(box ? "label" : "span", {}, box, svg("svg", {viewBox: "0 0 20 12"}, sign), html("span", {}, text)));
-  }
-}
-
 // ---- plots over time
 function timeAxis(root, left, height) {
   const width = Math.max(root.clientWidth, 280), right = 20;
@@ -227,8 +136,8 @@ function drawProfile() {
   const under = track.height_m.map((each, i) => each - track.above_ground_m[i]);
   const least = Math.floor(Math.min(...under, ...track.height_m) / 50) * 50, most = Math.max(...track.height_m, least + 100) * 1.02 + 20;
   const y = metres => bottom - (metres - least) / (most - least) * (bottom - 14);
-  const step = [20, 50, 100, 200, 500, 1000].find(each => (most - least) / each <= 5) ?? 2000, all = [];
-  for (let metres = Math.ceil(least / step) * step; metres < most; metres += step)
+  const all = [];
+  for (const metres of marks(least, most, 5))
     all.push(svg("path", {class: "grid", d: `M${left} ${y(metres).toFixed(1)}H${width - 20}`}), svg("text", {class: "tick", x: left - 8, y: y(metres) + 4, "text-anchor": "end"}, metres));
   all.push(svg("text", {class: "tick", x: 2, y: 10}, "metres above the geoid"));
   all.push(svg("path", {class: "ground", d: line([[x(begin), bottom], ...under.map((metres, i) => [x(track.time_s[i]), y(metres)]), [x(end), bottom]]) + "Z"}));
@@ -395,10 +304,6 @@ function drawAll() {
   document.querySelectorAll("#map .decision").forEach(mark => mark.classList.toggle("chosen", Number(mark.dataset.decision) === chosen));
   setTime(now);
 }
-function setTheme(name) {
-  document.documentElement.dataset.theme = name;
-  if (hasMap && map.xy) $("relief").setAttribute("href", relief());
-}
 let playing = 0;
 function play(stamp) {
   if (!playing) return;
@@ -411,10 +316,11 @@ function showPlaying() {
   $("play").textContent = playing ? "❚❚" : "▶";
   $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
 }
-const wantsDark = matchMedia("(prefers-color-scheme: dark)");
-setTheme(wantsDark.matches ? "dark" : "light");
+$("head").className = record.verdict;
+drawHead(record.mission, record.headline.split(" · "));
 drawReadout();
-drawLegend();
+drawLegend(["M0 6H20", "flown", "flown"], ["M0 6H20", "route", "planned", "hide-routes"], ["M0 6H20", "coverage", `seen by radar ${kLevels_m.join(" and ")} m above the ground`, "hide-coverage"],
+  ["M2 1H18V11H2Z", "image", "images", "hide-images"], ["", "", "decisions", "hide-decisions"]);
 drawLists();
 drawLatencies();
 $("slider").min = begin;
@@ -422,7 +328,7 @@ $("slider").max = end;
 if (!hasMap) document.querySelector(".map").hidden = true;
 $("profile").parentElement.hidden = !track.time_s.length;
 now = end;
-drawAll();
+start(drawAll);
 $("slider").addEventListener("input", () => setTime(Number($("slider").value)));
 $("play").addEventListener("click", () => {
   playing = playing ? 0 : performance.now();
@@ -431,9 +337,6 @@ $("play").addEventListener("click", () => {
   if (playing) requestAnimationFrame(play);
 });
 $("theme").addEventListener("click", () => setTheme(dark() ? "light" : "dark"));
-wantsDark.addEventListener("change", () => setTheme(wantsDark.matches ? "dark" : "light"));
-let width = innerWidth;
-addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; drawAll(); } });
 let before = null;
 addEventListener("beforeprint", () => {
   before = {theme: document.documentElement.dataset.theme, now, closed: [...document.querySelectorAll("details:not([open])")]};
@@ -446,4 +349,3 @@ addEventListener("afterprint", () => {
   setTheme(before.theme);
   setTime(before.now);
 });
-})();

@@ -138,7 +138,6 @@ TEST_CASE("no text of the record ends the page's script or becomes markup") {
   CHECK(count_of(page, "<script") == 2);
   CHECK(count_of(page, "</script") == 2);
   CHECK(count_of(page, "<b>") == 0);
-  CHECK_THAT(page, Contains("<title>&lt;/script&gt;"));
   CHECK(nlohmann::json::parse(record_in(page)) == nlohmann::json::parse(to_json(record)));
 }
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/routes/earth_lines.hpp"
-#include "navigation/routes/route_profiles.hpp"
+#include "navigation/routes/route_picture.hpp"
 #include "navigation/terrain/plane_geometry.hpp"
 #include "skein/error.hpp"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -14,21 +13,14 @@ struct PicturedRoute {
   AE_navigator::Route route;
 };
 
-/// Draws routes over the shaded terrain as one SVG that refers to nothing outside of itself, below
-/// 2 MB for any terrain: zones, radar and missile sites with the rings of their range, what radars
-/// see at the minimum height above ground, start and goal, scale, north arrow, a legend with
-/// length, exposure and lowest height, and one altitude profile per route. A route with a number
-/// that is not finite is listed in the legend, but not drawn.
+/// What a page needs to draw routes over a terrain, as JSON of at most 2 MB for any terrain, in
+/// metres: heights of the ground, how much radars see at the minimum height above it, zones, radar
+/// and missile sites, start and goal, and of each route its figures, `points` and `profile`. The
+/// points of a route with a number that is not finite are null.
 std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& problem,
                           std::span<const PicturedRoute> routes, const std::string& title);
 
-/// Writes such a picture. Throws InvalidArgument where the file cannot be made, Unavailable where
-/// it cannot be written.
-void write_route_picture(const std::filesystem::path& file, const Terrain& terrain,
-                         const AE_navigator::Problem& problem,
-                         std::span<const PicturedRoute> routes, const std::string& title);
-
-/// Throws InvalidArgument where such a file cannot be made; for those who will write it later.
-void try_route_picture(const std::filesystem::path& file);
+/// Whether all of its numbers can be drawn.
+bool drawable(const AE_navigator::Route& route);
 
 }  // namespace skein::navigation
