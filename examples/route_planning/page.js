@@ -44,7 +44,7 @@ function drawProfiles() {
   $("profiles").replaceChildren(...drawn.map(({label, profile}) => svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Height along ${label}`},
     svg("text", {x: left, y: 14}, label),
     ...marks(0, longest_m / 1000, width / 90).flatMap(km => [svg("path", {class: "grid", d: `M${x(1000 * km).toFixed(1)} 22V${bottom}`}), svg("text", {class: "tick", x: x(1000 * km), y: height - 6, "text-anchor": "middle"}, `${km} km`)]),
-    ...marks(low, high, 3).flatMap(metres => [svg("path", {class: "grid", d: `M${left} ${y(metres).toFixed(1)}H${width - 20}`}), svg("text", {class: "tick", x: left - 8, y: y(metres) + 4, "text-anchor": "end"}, metres)]),
+    ...marks(low, high, 4).flatMap(metres => [svg("path", {class: "grid", d: `M${left} ${y(metres).toFixed(1)}H${width - 20}`}), svg("text", {class: "tick", x: left - 8, y: y(metres) + 4, "text-anchor": "end"}, metres)]),
     svg("path", {class: "ground", d: line([[x(0), bottom], ...profile.map(each => [x(each[0]), y(each[1])]), [x(profile.at(-1)[0]), bottom]]) + "Z"}),
     ...profile.slice(1).flatMap(([metres, , , seen], i) => seen ? [svg("rect", {class: "seen", x: x(profile[i][0]), y: bottom + 3, width: x(metres) - x(profile[i][0]), height: 6, opacity: 0.25 + 0.0075 * seen})] : []),
     svg("path", {...way(routes.findIndex(each => each.profile === profile)), d: line(profile.map(each => [x(each[0]), y(each[2])]))}))));

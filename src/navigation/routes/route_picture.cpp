@@ -26,7 +26,7 @@ long tint(double exposure_rate) {
   return std::lround(100 * std::min(1.0, std::log(exposure_rate / kLeast) / std::log(60 / kLeast)));
 }
 
-Json place(const GroundPoint& point) {
+Json north_east(const GroundPoint& point) {
   return {std::lround(point.north_m), std::lround(point.east_m)};
 }
 
@@ -94,7 +94,7 @@ Json route_of(const Terrain& terrain, const RadarExposure& exposure,
             {"points", nullptr}};
   if (!drawable(route)) return json;
   json["points"] = Json::array();
-  for (const Position& point : route.waypoints) json["points"].push_back(place(on_map(point)));
+  for (const Position& point : route.waypoints) json["points"].push_back(north_east(on_map(point)));
   json["profile"] = profile(terrain, exposure, route.waypoints);
   return json;
 }
@@ -103,7 +103,8 @@ template <class Site>
 Json sites(const std::vector<Site>& all) {
   Json list = Json::array();
   for (const Site& each : all) {
-    list.push_back({{"name", each.name}, {"place", place(each.site)}, {"range_m", each.range_m}});
+    list.push_back(
+        {{"name", each.name}, {"place", north_east(each.site)}, {"range_m", each.range_m}});
   }
   return list;
 }
@@ -115,7 +116,7 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
   Json zones = Json::array(), drawn = Json::array();
   for (const auto& zone : problem.no_fly_zones) {
     Json outline = Json::array();
-    for (const GroundPoint& corner : zone.outline) outline.push_back(place(corner));
+    for (const GroundPoint& corner : zone.outline) outline.push_back(north_east(corner));
     zones.push_back({{"name", zone.name}, {"margin_m", zone.margin_m}, {"outline", outline}});
   }
   const RadarExposure exposure(terrain, problem.radar_sites);
@@ -127,8 +128,8 @@ std::string route_picture(const Terrain& terrain, const AE_navigator::Problem& p
                 fmt::format("{:.0f} km by {:.0f} km", terrain.north_extent_m() / 1000,
                             terrain.east_extent_m() / 1000),
                 fmt::format("{:.0f} m to {:.0f} m", terrain.lowest_m(), terrain.highest_m())}},
-              {"start", place(on_map(problem.start))},
-              {"goal", place(on_map(problem.goal))},
+              {"start", north_east(on_map(problem.start))},
+              {"goal", north_east(on_map(problem.goal))},
               {"above_m", problem.minimum_height_above_ground_m},
               {"zones", std::move(zones)},
               {"radars", sites(problem.radar_sites)},
