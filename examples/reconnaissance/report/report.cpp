@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "report/page.hpp"
-
 /// No value is written as null.
 template <>
 struct nlohmann::adl_serializer<std::optional<double>> {
@@ -23,6 +21,10 @@ struct nlohmann::adl_serializer<std::optional<double>> {
 };
 
 namespace reconnaissance {
+
+// A page that page.js draws from a record in JSON; the build makes it (../page/page.cmake).
+std::string page_of(const std::string& json);
+
 namespace {
 
 using Json = nlohmann::ordered_json;
