@@ -64,7 +64,7 @@ NumberWithUnit split(std::string_view text) {
   return {maybe_finite(whole.substr(0, number_end)), trimmed(whole.substr(number_end))};
 }
 
-/// Nothing for what is no length of time; may be longer than any clock counts.
+/// Nothing for a text that is no length of time; may be longer than any clock counts.
 std::optional<double> maybe_nanoseconds(std::string_view text, std::string_view default_unit) {
   const auto [number, unit_name] = split(text);
   const auto* unit = find_time_unit(unit_name.empty() ? default_unit : unit_name);
@@ -98,7 +98,7 @@ constexpr std::array<Unit, 17> kUnits{{
     {"GHz", Unit::Quantity::Frequency, 1e9},
 }};
 
-/// What a number in unit `from` is multiplied by to be one in unit `to`.
+/// The factor from a number in unit `from` to one in unit `to`.
 std::optional<double> conversion(std::string_view from, std::string_view to) {
   const auto* of = std::ranges::find(kUnits, from, &Unit::name);
   const auto* wanted = std::ranges::find(kUnits, to, &Unit::name);
@@ -163,7 +163,7 @@ std::string remedy_for_number(const DictionaryEntry& entry, std::string_view tex
   return number && !unit.empty() ? remedy_for_unit(entry) : "";
 }
 
-/// A value in a unit that is known, where the dictionary has one that nothing is converted into.
+/// A value in a unit that is known, if the dictionary has one that nothing is converted into.
 bool is_of_unknown_unit(const DictionaryEntry& entry, std::string_view text) {
   const auto known = [](std::string_view name) {
     return std::ranges::any_of(kUnits, [&](const Unit& unit) { return unit.name == name; });

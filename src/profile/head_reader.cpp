@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "notation.hpp"
 #include "value_readers.hpp"
 
 namespace skein::profile {
@@ -39,7 +40,7 @@ HeadOptions read_head_options(const XmlElement& element) {
 }
 
 void warn_of_head_without_csps(const XmlElement& element) {
-  for (const char* name : kHeadAttributes) {
+  for (const auto& name : attribute_group(kHeadAttributes)) {
     const auto attribute = element.maybe_attribute(name);
     if (!attribute || attribute->inherited) continue;
     element.findings().warning(

@@ -1,58 +1,71 @@
 #include "notation.hpp"
 
 #include <algorithm>
-#include <array>
+#include <map>
+#include <pugixml.hpp>
 #include <set>
 
-#include "head_reader.hpp"
-#include "rules_reader.hpp"
-#include "thread_rules_reader.hpp"
-#include "topic_rules_reader.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
+
+// The files of mission_profiles/schema; schemas.cpp.in.
+extern const char* const kMissionSchema;
+extern const char* const kComponentSchema;
+extern const char* const kDictionarySchema;
+
 namespace {
 
-using Names = std::vector<std::string_view>;
+/// As much of an XML schema as notations are made of.
+class Schema {
+ public:
+  explicit Schema(const char* text) { document_.load_string(text); }
 
-/// An element's attributes: its own, and those of the readers that it is handed to.
-template <class... Lists>
-Names joined(const Lists&... lists) {
-  Names names;
-  (names.insert(names.end(), lists.begin(), lists.end()), ...);
-  return names;
-}
+  /// Of an element at its top. Refers to this object.
+  Notation element(const char* name) const { return notation_of(named("xs:element", name)); }
 
-Notation leaf(std::string_view name, Names attributes) {
-  return {name, std::move(attributes), {}, false};
-}
+  Names group(const char* name) const { return attributes_of(named("xs:attributeGroup", name)); }
 
-Notation text(std::string_view name) { return {name, {}, {}, true}; }
+ private:
+  pugi::xml_node named(const char* kind, const char* name) const {
+    for (const auto& node : document_.document_element().children(kind))
+      if (node.attribute("name").value() == std::string_view(name)) return node;
+    return {};
+  }
 
-Notation variable() { return leaf("variable", {"name", "default"}); }
-Notation parameter() { return leaf("parameter", {"name", "value"}); }
-Notation environment() { return leaf("environment", {"name", "value"}); }
-Notation argument() { return leaf("argument", {"value"}); }
-Notation topic() { return leaf("topic", joined(Names{"name"}, kTopicAttributes)); }
+  Notation notation_of(const pugi::xml_node& element) const {
+    auto type = element.child("xs:complexType");
+    if (!type) type = named("xs:complexType", element.attribute("type").value());
+    const auto extension = type.child("xs:simpleContent").child("xs:extension");
+    Notation notation{element.attribute("name").value(),
+                      attributes_of(extension ? extension : type),
+                      {},
+                      !type || extension || type.attribute("mixed").as_bool()};
+    for (const char* group : {"xs:choice", "xs:all"}) {
+      for (const auto& child : type.child(group).children("xs:element"))
+        notation.children.push_back(notation_of(child));
+    }
+    return notation;
+  }
 
-Notation csp() {
-  return {"csp",
-          joined(Names{"name", "component", "process", "vendor", "shared_memory",
-                       "shared_memory_calls", "plugin", "process_cpus"},
-                 kProcessAttributes, kThreadAttributes),
-          {parameter(), environment(), argument()}};
-}
+  Names attributes_of(const pugi::xml_node& type) const {
+    Names names;
+    for (const auto& node : type.children()) {
+      if (node.name() == std::string_view("xs:attribute"))
+        names.push_back(node.attribute("name").value());
+      if (node.name() != std::string_view("xs:attributeGroup")) continue;
+      const Names group = attributes_of(named(node.name(), node.attribute("ref").value()));
+      names.insert(names.end(), group.begin(), group.end());
+    }
+    return names;
+  }
 
-Notation peer() {
-  return {"peer",
-          joined(Names{"name", "count", "role"}, group_defaults()),
-          {csp(), parameter(), environment(), argument(), topic(), include_notation()}};
-}
+  pugi::xml_document document_;
+};
 
-Notation group() {
-  return {"group",
-          joined(Names{"name"}, group_defaults()),
-          {peer(), environment(), topic(), include_notation()}};
+const Schema& mission_schema() {
+  static const Schema kSchema(kMissionSchema);
+  return kSchema;
 }
 
 void demand_attributes(const XmlNode& node, const Notation& notation, FindingList& findings) {
@@ -86,66 +99,37 @@ const Notation* Notation::find_child(std::string_view child_name) const {
   return found == children.end() ? nullptr : &*found;
 }
 
-const std::vector<std::string_view>& mission_defaults() {
-  static const Names kNames{"vendor", "system",    "host",   "interface",
-                            "peers",  "multicast", "plugin", "allowed_sources"};
-  return kNames;
-}
-
-const std::vector<std::string_view>& group_defaults() {
-  static const Names kNames =
-      joined(Names{"component", "program", "ready"}, mission_defaults(),
-             Names{"shared_memory", "shared_memory_calls", "process_cpus"}, kProcessAttributes,
-             kThreadCountAttributes, kThreadAttributes, kHeadAttributes);
-  return kNames;
-}
-
-const Notation& include_notation() {
-  static const Notation kInclude = leaf("include", {"file"});
-  return kInclude;
-}
-
 const Notation& mission_notation() {
-  static const Notation kMission{
-      "mission",
-      joined(Names{"name", "domain", "dictionary", "logs"}, mission_defaults()),
-      {peer(), group(), variable(), environment(), topic(), include_notation()}};
+  static const Notation kMission = mission_schema().element("mission");
   return kMission;
 }
 
 const Notation& part_notation() {
-  static const Notation kPart{"part",
-                              {},
-                              {peer(), group(), csp(), variable(), parameter(), environment(),
-                               argument(), topic(), include_notation()}};
+  static const Notation kPart = mission_schema().element("part");
   return kPart;
 }
 
 const Notation& component_notation() {
-  static const std::vector<Notation> kParameters{{"parameter", {"name"}, {text("type")}}};
-  static const Notation kComponent{"component",
-                                   {"name"},
-                                   {{"interfaces",
-                                     {},
-                                     {{"implements",
-                                       {},
-                                       {text("type"),
-                                        {"required", {}, kParameters},
-                                        {"optional", {}, kParameters},
-                                        leaf("attribute", {"name", "value"})},
-                                       true}}},
-                                    {"required", {}, kParameters},
-                                    {"optional", {}, kParameters},
-                                    {"dependencies", {}, {text("depends")}},
-                                    {"subcomponents", {}, {text("subcomponent")}}}};
+  static const Schema kSchema(kComponentSchema);
+  static const Notation kComponent = kSchema.element("component");
   return kComponent;
 }
 
 const Notation& dictionary_notation() {
-  static const Names kEntry{"name", "type", "unit", "min", "max", "interface"};
-  static const Notation kDictionary{
-      "dictionary", {}, {{"attribute", kEntry, {}, true}, {"parameter", kEntry, {}, true}}};
+  static const Schema kSchema(kDictionarySchema);
+  static const Notation kDictionary = kSchema.element("dictionary");
   return kDictionary;
+}
+
+const Names& attribute_group(const char* name) {
+  static const std::map<std::string_view, Names> kGroups = [] {
+    std::map<std::string_view, Names> groups;
+    for (const char* group :
+         {kMissionDefaults, kGroupDefaults, kProcessAttributes, kThreadAttributes, kHeadAttributes})
+      groups.emplace(group, mission_schema().group(group));
+    return groups;
+  }();
+  return kGroups.at(name);
 }
 
 void demand_notation(const XmlNode& node, const Notation& notation, FindingList& findings) {

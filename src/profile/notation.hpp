@@ -7,11 +7,13 @@
 
 namespace skein::profile {
 
-/// What may stand in an element. mission_profiles/schema says the same to editors; a test compares
-/// them.
+using Names = std::vector<std::string_view>;
+
+/// The attributes and elements that may stand in an element, from mission_profiles/schema, which
+/// is built in.
 struct Notation {
   std::string_view name;
-  std::vector<std::string_view> attributes;
+  Names attributes;
   std::vector<Notation> children;
   bool text = false;
 
@@ -24,12 +26,13 @@ const Notation& part_notation();
 const Notation& component_notation();
 const Notation& dictionary_notation();
 
-/// `<include>`, which is gone from a profile when mission_notation() is demanded of it.
-const Notation& include_notation();
-
-/// The attributes of the mission, and of a group, that each peer has unless it says otherwise.
-const std::vector<std::string_view>& mission_defaults();
-const std::vector<std::string_view>& group_defaults();
+/// Attributes that one reader reads, or that a peer has from elsewhere: groups of the schema.
+inline constexpr const char* kMissionDefaults = "DefaultsOfPeers";  ///< Unless it says otherwise.
+inline constexpr const char* kGroupDefaults = "GroupAttributes";    ///< The same, of its group.
+inline constexpr const char* kProcessAttributes = "ProcessAttributes";
+inline constexpr const char* kThreadAttributes = "ThreadAttributes";
+inline constexpr const char* kHeadAttributes = "HeadAttributes";
+const Names& attribute_group(const char* name);
 
 /// Findings for attributes and elements, at any depth, that the notation does not have there,
 /// attributes that are given twice, and text where only elements belong. The name of the outermost

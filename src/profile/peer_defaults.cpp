@@ -72,11 +72,11 @@ class Completion {
   void add(XmlNode peer, const XmlNode* group, const Instance& instance) {
     if (full_) return;
     if (instance) number_name(peer);
-    if (group != nullptr) inherit(peer, *group, group_defaults());
+    if (group != nullptr) inherit(peer, *group, attribute_group(kGroupDefaults));
     inherit_shared(peer, of_group_);
     inherit_shared(peer, of_mission_);
     expand(peer, instance);
-    inherit(peer, mission_, mission_defaults());
+    inherit(peer, mission_, attribute_group(kMissionDefaults));
     nodes_ += size_of(peer);
     if (mission_.children.size() == kMaxItems || nodes_ > kMaxNodes) {
       full_ = true;

@@ -5,9 +5,8 @@
 #include <filesystem>
 
 #include "cpu_list_reader.hpp"
-#include "head_reader.hpp"
+#include "notation.hpp"
 #include "repeated.hpp"
-#include "thread_rules_reader.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -103,16 +102,15 @@ void refuse_peer_options(const XmlElement& element) {
                              "remove it, or hand it over as an <argument> or <environment>");
   };
   const auto refuse_all = [&](const auto& names) {
-    for (const char* name : names) {
+    for (const std::string_view name : names) {
       const auto attribute = element.maybe_attribute(name);
-      if (attribute && !attribute->inherited) refuse(attribute->where, name);
+      if (attribute && !attribute->inherited) refuse(attribute->where, std::string(name));
     }
   };
   refuse_all(std::array{"plugin", "shared_memory", "shared_memory_calls", "vendor", "peers",
-                        "multicast", "interface", "allowed_sources"});
-  refuse_all(kThreadAttributes);
-  refuse_all(kThreadCountAttributes);
-  refuse_all(kHeadAttributes);
+                        "multicast", "interface", "allowed_sources", "threads"});
+  refuse_all(attribute_group(kThreadAttributes));
+  refuse_all(attribute_group(kHeadAttributes));
   for (const char* name : {"csp", "parameter", "topic"}) {
     for (const auto& child : element.children(name)) {
       refuse(child.where(), "<" + std::string(name) + ">");

@@ -54,7 +54,7 @@ class Parts {
 
  private:
   std::vector<XmlNode> content_of(XmlNode& include) {
-    demand_notation(include, include_notation(), findings_);
+    demand_notation(include, *mission_notation().find_child("include"), findings_);
     for (auto& attribute : include.attributes)
       variables_.expand(attribute, std::nullopt, findings_);
     const auto named = XmlElement(include, findings_).attribute("file");

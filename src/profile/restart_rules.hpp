@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <chrono>
-#include <optional>
 #include <string_view>
 
 namespace skein::profile {
@@ -12,10 +12,11 @@ enum class RestartPolicy {
   Always,     ///< Started again whatever it ended with.
 };
 
-/// `never`, `on-failure`, `always`: the words of the XML.
-std::string_view to_string(RestartPolicy policy) noexcept;
-/// The policy of that word, or nothing.
-std::optional<RestartPolicy> maybe_restart_policy(std::string_view word) noexcept;
+/// The words of the XML, in the order of the policies.
+inline constexpr std::array<std::string_view, 3> kRestartWords{"never", "on-failure", "always"};
+constexpr std::string_view to_string(RestartPolicy policy) noexcept {
+  return kRestartWords[static_cast<std::size_t>(policy)];
+}
 
 /// When a process is started again, and when no more.
 ///
@@ -38,10 +39,8 @@ enum class LossPolicy {
   Continue,  ///< The mission goes on as if nothing had happened.
 };
 
-/// `abort`, `degrade`, `continue`: the words of the XML.
-std::string_view to_string(LossPolicy policy) noexcept;
-/// The policy of that word, or nothing.
-std::optional<LossPolicy> maybe_loss_policy(std::string_view word) noexcept;
+/// The words of the XML, in the order of the policies.
+inline constexpr std::array<std::string_view, 3> kLossWords{"abort", "degrade", "continue"};
 
 /// What the launcher demands of one process.
 struct ProcessRules {

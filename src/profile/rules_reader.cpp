@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "notation.hpp"
 #include "thread_rules_reader.hpp"
 #include "value_readers.hpp"
 #include "words.hpp"
@@ -10,24 +11,6 @@ namespace skein::profile {
 namespace {
 
 using std::chrono::nanoseconds;
-
-RestartPolicy read_policy(const XmlElement& element) {
-  const auto word = element.maybe_attribute("restart");
-  if (!word) return RestartPolicy::Never;
-  if (const auto policy = maybe_restart_policy(word->value)) return *policy;
-  element.findings().error(word->where, in_quotes(word->value) + " is no restart policy",
-                           remedy_for(word->value, {"never", "on-failure", "always"}));
-  return RestartPolicy::Never;
-}
-
-LossPolicy read_loss_policy(const XmlElement& element, LossPolicy fallback) {
-  const auto word = element.maybe_attribute("on_loss");
-  if (!word) return fallback;
-  if (const auto policy = maybe_loss_policy(word->value)) return *policy;
-  element.findings().error(word->where, in_quotes(word->value) + " is no answer to a loss",
-                           remedy_for(word->value, {"abort", "degrade", "continue"}));
-  return fallback;
-}
 
 /// A window that is over before the restarts fit into it would never let the launcher give up.
 void demand_reachable_cap(const XmlElement& element, const RestartRules& rules) {
@@ -77,7 +60,7 @@ void demand_time_for_reports(const XmlElement& element, const ProcessRules& rule
 ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
   ProcessRules rules;
   auto& restart = rules.restart;
-  restart.policy = read_policy(element);
+  restart.policy = read_word(element, "restart", kRestartWords, restart.policy, "restart policy");
   restart.delay = read_time(element, "restart_delay", restart.delay);
   restart.max_delay = read_time(element, "max_restart_delay", restart.max_delay);
   restart.max_restarts = read_count(element, "max_restarts", restart.max_restarts);
@@ -85,7 +68,7 @@ ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
   rules.ready_timeout = read_time(element, "ready_timeout", rules.ready_timeout);
   rules.progress_timeout = read_time(element, "progress_timeout", rules.progress_timeout);
   rules.stop_timeout = read_time(element, "stop_timeout", rules.stop_timeout);
-  rules.on_loss = read_loss_policy(element, on_loss);
+  rules.on_loss = read_word(element, "on_loss", kLossWords, on_loss, "answer to a loss");
   demand_time_for_reports(element, rules);
   if (restart.policy != RestartPolicy::Never) demand_reachable_cap(element, restart);
   warn_of_rules_without_restart(element);
@@ -93,13 +76,14 @@ ProcessRules read_process_rules(const XmlElement& element, LossPolicy on_loss) {
 }
 
 void refuse_process_rules(const XmlElement& element) {
-  const auto refuse = [&](const std::string& name) {
+  const auto refuse = [&](std::string_view name) {
     if (const auto attribute = element.maybe_attribute(name)) {
-      element.findings().error(attribute->where, name + " is for processes, and this CSP has none",
+      element.findings().error(attribute->where,
+                               std::string(name) + " is for processes, and this CSP has none",
                                "write process=\"own\", or set it at the <peer>");
     }
   };
-  for (const char* name : kProcessAttributes) refuse(name);
+  for (const auto& name : attribute_group(kProcessAttributes)) refuse(name);
   refuse(kLockMemoryAttribute);
 }
 

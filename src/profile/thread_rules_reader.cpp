@@ -14,24 +14,14 @@ using Scheduling = ThreadSettings::Scheduling;
 
 constexpr std::chrono::milliseconds kLongestSpin{100};
 
-Scheduling read_scheduling(const XmlElement& element) {
-  const auto word = element.maybe_attribute("scheduling");
-  if (!word || word->value == "normal") return Scheduling::Normal;
-  if (word->value == "fifo") return Scheduling::Fifo;
-  if (word->value == "round-robin") return Scheduling::RoundRobin;
-  element.findings().error(word->where, in_quotes(word->value) + " is no scheduling",
-                           remedy_for(word->value, {"normal", "fifo", "round-robin"}));
-  return Scheduling::Normal;
-}
+// In the order of the enumerators.
+constexpr std::array<std::string_view, 3> kSchedulingWords{"normal", "fifo", "round-robin"};
+constexpr std::array<std::string_view, 2> kThreadWords{"own", "caller"};
 
 CallThread read_thread(const XmlElement& element) {
-  const auto word = element.maybe_attribute("thread");
-  if (!word || word->value == "own") return CallThread::Own;
-  if (word->value != "caller") {
-    element.findings().error(word->where, "thread is " + in_quotes(word->value),
-                             remedy_for(word->value, {"own", "caller"}));
-    return CallThread::Own;
-  }
+  const auto thread =
+      read_word(element, "thread", kThreadWords, CallThread::Own, "thread of calls");
+  if (thread == CallThread::Own) return thread;
   if (const auto threads = element.maybe_attribute("threads"); threads && threads->value != "1") {
     element.findings().error(threads->where, "with thread=\"caller\" calls run one at a time",
                              "leave threads out, or write thread=\"own\"");
@@ -94,7 +84,8 @@ ThreadRules read_thread_rules(const XmlElement& element) {
   rules.thread = read_thread(element);
   rules.count = static_cast<std::size_t>(read_in_range(element, "threads", 1, 256));
   ThreadSettings& settings = rules.settings;
-  settings.scheduling = read_scheduling(element);
+  settings.scheduling =
+      read_word(element, "scheduling", kSchedulingWords, Scheduling::Normal, "scheduling");
   settings.priority = read_in_range(element, "priority", 1, 99);
   settings.nice = read_in_range(element, "nice", -20, 19);
   settings.cpus = read_cpus(element, "cpus");

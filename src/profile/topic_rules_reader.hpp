@@ -1,16 +1,11 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "profile/topic_rules.hpp"
 #include "xml_element.hpp"
 
 namespace skein::profile {
-
-/// The XML attributes of a <topic>, besides its name.
-inline constexpr std::array kTopicAttributes{"reliability", "durability", "history",   "deadline",
-                                             "lifespan",    "lease",      "ownership", "strength"};
 
 /// Of the <topic>s in a <peer>, in their order. Which peers publish a topic, and so whether what is
 /// requested is offered, only the running mission knows.

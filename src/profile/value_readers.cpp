@@ -1,5 +1,7 @@
 #include "value_readers.hpp"
 
+#include <algorithm>
+
 #include "profile/dictionary.hpp"
 #include "words.hpp"
 
@@ -54,6 +56,18 @@ nanoseconds read_time(const XmlElement& element, const char* name, nanoseconds f
 int read_count(const XmlElement& element, const char* name, int fallback) {
   return static_cast<int>(read_number<std::int64_t>(element, name, ValueType::Integer, 1, 1000,
                                                     fallback, "write a number from 1 to 1000"));
+}
+
+std::size_t read_place(const XmlElement& element, const char* name,
+                       std::span<const std::string_view> words, std::size_t fallback,
+                       const char* what) {
+  const auto word = element.maybe_attribute(name);
+  if (!word) return fallback;
+  const auto found = std::ranges::find(words, word->value);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  element.findings().error(word->where, in_quotes(word->value) + " is no " + what,
+                           remedy_for(word->value, {words.begin(), words.end()}));
+  return fallback;
 }
 
 double read_share(const XmlElement& element, const char* name, double fallback) {

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <span>
+#include <string_view>
 
 #include "xml_element.hpp"
 
@@ -21,5 +24,18 @@ int read_count(const XmlElement& element, const char* name, int fallback);
 
 /// A number from 0 to 1.
 double read_share(const XmlElement& element, const char* name, double fallback);
+
+/// The place of one of `words`; `what` is the kind of word that another one is not.
+std::size_t read_place(const XmlElement& element, const char* name,
+                       std::span<const std::string_view> words, std::size_t fallback,
+                       const char* what);
+
+/// For an enumeration; the words stand in the order of its enumerators.
+template <class Value, class Words>
+Value read_word(const XmlElement& element, const char* name, const Words& words, Value fallback,
+                const char* what) {
+  return static_cast<Value>(
+      read_place(element, name, words, static_cast<std::size_t>(fallback), what));
+}
 
 }  // namespace skein::profile

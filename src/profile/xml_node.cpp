@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <pugixml.hpp>
 
-#include "text_positions.hpp"
 #include "words.hpp"
 #include "xml_markup.hpp"
 #include "xml_text.hpp"
@@ -26,11 +25,7 @@ bool names_schema(std::string_view attribute) {
 class Document {
  public:
   Document(std::string_view text, const std::string& file, FindingList& findings)
-      : file_(file),
-        findings_(findings),
-        buffer_(text.begin(), text.end()),
-        original_(text),
-        positions_(original_) {
+      : file_(file), findings_(findings), buffer_(text.begin(), text.end()), original_(text) {
     demand_plain_xml_text(original_, file_);
     if (trimmed(text).empty()) {
       throw DescriptionError({Finding{Severity::Error, {file_, 0, 0}, "is empty", {}}});
@@ -57,19 +52,28 @@ class Document {
   }
 
  private:
-  void demand_one_root() const {
+  void demand_one_root() {
     const auto second = tree_.document_element().next_sibling();
     if (!second) return;
     throw DescriptionError({Finding{Severity::Error, position_of(second.name() - 1),
                                     "a second element at the top", "a file has one"}});
   }
 
-  /// The place of a name or a value of the tree, which lies inside of the parsed buffer.
-  SourcePosition position_of(const char* place) const {
+  /// The place of a name or a value of the tree, which lies inside of the parsed buffer. Goes on
+  /// from the place before, so that a whole file costs one pass, however long its lines are.
+  SourcePosition position_of(const char* place) {
     const auto offset = static_cast<std::size_t>(place - buffer_.data());
     if (place < buffer_.data() || offset >= buffer_.size()) return {file_, 0, 0};
-    const auto [line, column] = positions_.line_and_column(offset);
-    return {file_, line, column};
+    if (offset < counted_) counted_ = 0, position_ = {file_, 1, 1};
+    for (; counted_ < offset; ++counted_) {
+      const char c = original_[counted_];
+      if (c == '\n') {
+        position_ = {file_, position_.line + 1, 1};
+      } else if ((c & 0xC0) != 0x80) {
+        ++position_.column;
+      }
+    }
+    return position_;
   }
 
   XmlNode node_of(const pugi::xml_node& element, int depth) {
@@ -120,7 +124,8 @@ class Document {
   FindingList& findings_;
   std::vector<char> buffer_;  // parsed in place: the tree points into it
   std::string original_;      // the parser writes into buffer_
-  TextPositions positions_;   // of original_
+  std::size_t counted_ = 0;   // bytes of it before position_
+  SourcePosition position_{file_, 1, 1};
   pugi::xml_document tree_;
   std::size_t nodes_ = 0;
 };
