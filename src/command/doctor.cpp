@@ -67,7 +67,7 @@ doctor::Purpose purpose_of(const DoctorArguments& arguments,
   return purpose;
 }
 
-/// Where the doctor joins: as the mission's peers do where a sound profile tells.
+/// How the doctor joins: as the mission's peers do if the profile is sound.
 Onlooker place_of(const DoctorArguments& arguments, const doctor::Purpose& purpose, bool sound) {
   Onlooker place;
   if (sound && !arguments.domain && arguments.interface.empty()) {
@@ -81,7 +81,7 @@ Onlooker place_of(const DoctorArguments& arguments, const doctor::Purpose& purpo
   return place;
 }
 
-/// What its launcher says; nothing where it does not fly here, or its launcher hangs.
+/// The launcher's answer; nothing if the mission does not fly here, or the launcher hangs.
 std::optional<launch::MissionStatus> status_of(const profile::MissionProfile& mission,
                                                const std::string& host) {
   try {

@@ -22,14 +22,8 @@ struct Module {
 // All that the library knows of its back ends, beside their modules.
 const std::vector<Module>& modules() {
   static const std::vector<Module> known{
-      {"fastdds",
-       "libfastrtps2.9",
-       true,
-       {"fastdds",
-        "libfastrtps.so.",
-        "2.9.1",
-        {"fastrtps_", "fastdds_", "sem.fastrtps_", "sem.fastdds_", "fast_datasharing_"}}},
-      {"cyclonedds", "libddsc0debian", false, {"cyclonedds", "libddsc.so.", "0.10.2", {}}}};
+      {"fastdds", "libfastrtps2.9", true, {"fastdds", "libfastrtps.so.", "2.9.1"}},
+      {"cyclonedds", "libddsc0debian", false, {"cyclonedds", "libddsc.so.", "0.10.2"}}};
   return known;
 }
 

@@ -25,8 +25,6 @@ struct VendorLibrary {
   std::string vendor;
   std::string file;     ///< How its file's name begins; the version follows.
   std::string version;  ///< With which Skein is tested.
-  /// How the names of its files in shared memory begin.
-  std::vector<std::string> shared_files;
 };
 
 const std::vector<VendorLibrary>& vendor_libraries();

@@ -25,16 +25,14 @@ TEST_CASE("a sound machine has nothing wrong, and each thing that was looked at 
   const Symptoms symptoms = diagnose(on_eth0(), sound_machine());
   CHECK(worst_of(symptoms) == Severity::Fine);
   for (const char* about : {"loopback", "interface", "buffers", "domain", "firewall", "fastdds",
-                            "cyclonedds", "clock", "shared memory", "limits", "processors"})
+                            "cyclonedds", "clock", "shared memory", "limits"})
     CHECK(only(symptoms, about).severity == Severity::Fine);
 }
 
 TEST_CASE("whatever is wrong has a cause, and all but notes a remedy") {
   Facts facts;  // of a machine that has nothing
   facts.vendors = {{"fastdds", "no such file", "", "", "2.9.1"}};
-  facts.limits = {64, 0, 1 << 20, 0};
-  facts.processors = {2, 2, 0.1, 1 << 20};
-  facts.missing_folders = {"/opt/nothing"};
+  facts.limits = {64, 0, 0};
   Purpose purpose = on_eth0();
   purpose.priority = 50;
   purpose.locks_memory = true;
@@ -114,13 +112,11 @@ TEST_CASE("an interface without multicast is fine where hosts are named") {
 
 TEST_CASE("buffers that are smaller than what Skein asks for are a warning") {
   Facts facts = sound_machine();
-  facts.receive_buffer = 212992;
+  facts.buffer = 212992;
   const Symptom symptom = only(diagnose_network({}, facts), "buffers");
   CHECK(symptom.severity == Severity::Warning);
   CHECK_THAT(symptom.cause, Contains("208 KiB of the 4 MiB"));
   CHECK_THAT(symptom.remedy, Contains("net.core.rmem_max=4194304"));
-  facts.receive_buffer = std::nullopt;
-  CHECK(only(diagnose_network({}, facts), "buffers").severity == Severity::Note);
 }
 
 TEST_CASE("packets that a socket of the domain had no room for are told with whose it is") {
@@ -188,29 +184,17 @@ TEST_CASE("two missions on one domain are a warning, each on its own are none") 
   CHECK(worst_of(diagnose_network({}, facts)) == Severity::Fine);
 }
 
-TEST_CASE("a domain whose ports the kernel lends to others is a warning") {
-  Purpose purpose;
-  purpose.domain = 100;
-  CHECK(worst_of(diagnose_network(purpose, sound_machine())) == Severity::Fine);
-  purpose.domain = 101;
-  const Symptom symptom = only(diagnose_network(purpose, sound_machine()), "ports");
-  CHECK(symptom.severity == Severity::Warning);
-  CHECK_THAT(symptom.remedy, Contains("a domain below 101") && Contains("32650-32899"));
-}
-
-TEST_CASE("a firewall that cannot be read is a note, one that drops is a warning with the rule") {
+TEST_CASE("a firewall that drops is a note with its rule and the ports of the domain") {
   Facts facts = sound_machine();
   facts.firewall = std::nullopt;
   CHECK(only(diagnose_network({}, facts), "firewall").severity == Severity::Note);
-  facts.firewall =
-      "table inet filter {\n\tchain input {\n"
-      "\t\ttype filter hook input priority filter; policy drop;\n"
-      "\t\tiif \"lo\" accept\n\t}\n}\n";
+  facts.firewall = "table inet filter {\n\tchain input {\n\t\tudp dport 53 accept\n\t}\n}\n";
   CHECK(only(diagnose_network({}, facts), "firewall").severity == Severity::Fine);
-  const Symptom symptom = only(diagnose_network(on_eth0(), facts), "firewall");
-  CHECK(symptom.severity == Severity::Warning);
-  CHECK_THAT(symptom.evidence, Contains("policy drop"));
-  CHECK_THAT(symptom.remedy, Contains("iifname \"eth0\" udp dport 7400-7649 accept"));
+  facts.firewall->insert(facts.firewall->find("\t\tudp"), "\t\tudp dport 7400-7500 drop\n");
+  const Symptom symptom = only(diagnose_network({}, facts), "firewall");
+  CHECK(symptom.severity == Severity::Note);
+  CHECK(symptom.evidence == "udp dport 7400-7500 drop");
+  CHECK_THAT(symptom.remedy, Contains("UDP ports 7400-7649"));
 }
 
 TEST_CASE("ports of a domain are its 250, and of the last one those that there are") {
@@ -218,30 +202,4 @@ TEST_CASE("ports of a domain are its 250, and of the last one those that there a
   CHECK(ports_of(0).last == 7649);
   CHECK(ports_of(232).first == 65400);
   CHECK(ports_of(232).last == 65535);
-}
-
-TEST_CASE("the rules of a firewall are read in their order") {
-  const auto blocks = [](const std::string& rules, const std::string& policy = "accept") {
-    return what_blocks(
-        "table inet filter {\n\tchain input {\n\t\ttype filter hook input priority 0; policy " +
-            policy + ";\n" + rules +
-            "\n\t}\n\tchain output {\n\t\ttype filter hook output "
-            "priority 0; policy drop;\n\t}\n}\n",
-        "eth0", {7400, 7649});
-  };
-  CHECK(!blocks(""));
-  CHECK(blocks("", "drop"));
-  CHECK(blocks("\t\tudp dport 7000-8000 drop") == "udp dport 7000-8000 drop");
-  CHECK(blocks("\t\tudp dport { 53, 7410 } reject"));
-  CHECK(!blocks("\t\tudp dport 53 drop"));
-  CHECK(!blocks("\t\ttcp dport 7400-7649 drop"));
-  CHECK(!blocks("\t\tct state invalid drop"));
-  CHECK(!blocks("\t\tiifname \"wlan0\" drop"));
-  CHECK(blocks("\t\tiifname \"eth0\" drop"));
-  CHECK(!blocks("\t\tudp dport 7400-7649 accept\n\t\tdrop"));
-  CHECK(blocks("\t\tudp dport 7400-7500 accept\n\t\tdrop"));
-  CHECK(blocks("\t\tdrop\n\t\tudp dport 7400-7649 accept"));
-  CHECK(!blocks("\t\tct state established,related accept\n\t\tudp dport { 7400-7649 } accept",
-                "drop"));
-  CHECK(blocks("\t\tct state established,related accept", "drop"));
 }

@@ -1,6 +1,4 @@
 // How the doctor reads this machine.
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -8,18 +6,13 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 
-#include "../tools/temporary_folder.hpp"
 #include "command/doctor/reading.hpp"
 #include "core/file_descriptor.hpp"
 #include "launch/mission_claim.hpp"
 
 using namespace skein;
 using namespace skein::command::doctor;
-
-namespace fs = std::filesystem;
 
 TEST_CASE("the kernel's list of UDP sockets is read by its columns") {
   const std::string text =
@@ -40,36 +33,6 @@ TEST_CASE("a library's version is what follows .so") {
   CHECK(version_of("/usr/lib/libfastrtps.so.2.9.1") == "2.9.1");
   CHECK(version_of("/usr/lib/libfastrtps.so").empty());
   CHECK(version_of("").empty());
-}
-
-TEST_CASE("a segment in shared memory is in use while somebody has it open, or holds its lock") {
-  const TemporaryFolder temporary;
-  const fs::path folder = temporary.path();
-  for (const char* name :
-       {"fastrtps_dead", "fastrtps_open", "fastrtps_locked", "fastrtps_locked_el",
-        "sem.fastrtps_open_mutex", "sem.fastrtps_dead_mutex", "somebody_elses"})
-    std::ofstream(folder / name) << "x";
-  const FileDescriptor open_one(open((folder / "fastrtps_open").c_str(), O_RDONLY | O_CLOEXEC));
-  FileDescriptor lock(open((folder / "fastrtps_locked_el").c_str(), O_RDONLY | O_CLOEXEC));
-  REQUIRE(flock(lock.get(), LOCK_EX) == 0);
-  const auto in_use = [&](const std::string& name) {
-    const auto memory = read_shared_memory(folder);
-    for (const SharedFile& file : memory.value().files)
-      if (file.path == folder / name) return file.in_use;
-    FAIL(name << " is not told");
-    return false;
-  };
-  CHECK(!in_use("fastrtps_dead"));
-  CHECK(in_use("fastrtps_open"));
-  CHECK(in_use("fastrtps_locked"));
-  CHECK(in_use("fastrtps_locked_el"));
-  CHECK(in_use("sem.fastrtps_open_mutex"));
-  CHECK(!in_use("sem.fastrtps_dead_mutex"));
-  CHECK(read_shared_memory(folder)->files.size() == 6);
-  lock.reset();
-  CHECK(!in_use("fastrtps_locked"));
-  fs::remove_all(folder);
-  CHECK(!read_shared_memory(folder));
 }
 
 TEST_CASE("a launcher is seen by its claim, with the domain of its mission") {
@@ -124,7 +87,7 @@ TEST_CASE("other sockets are no launchers") {
 TEST_CASE("this machine can be read") {
   const Facts facts = collect_facts();
   CHECK(!facts.interfaces.empty());
-  CHECK(facts.processors.present >= 1);
+  CHECK(facts.buffer > 0);
   CHECK(facts.vendors.size() >= 2);
   for (const VendorModule& vendor : facts.vendors) {
     CAPTURE(vendor.name, vendor.library);

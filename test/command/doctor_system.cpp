@@ -36,7 +36,7 @@ TEST_CASE("another version of a vendor than the tested one is a warning") {
 
 TEST_CASE("a clock that is not synchronised matters between hosts") {
   Facts facts = sound_machine();
-  facts.clock->synchronised = false;
+  facts.synchronised_clock = false;
   CHECK(only(diagnose_system({}, facts), "clock").severity == Severity::Note);
   Purpose purpose;
   SECTION("on an interface") { purpose.interfaces = {"eth0"}; }
@@ -44,50 +44,24 @@ TEST_CASE("a clock that is not synchronised matters between hosts") {
   CHECK(only(diagnose_system(purpose, facts), "clock").severity == Severity::Warning);
 }
 
-TEST_CASE("a clock that jumps is a warning even where it is synchronised") {
-  Facts facts = sound_machine();
-  facts.clock->stepped = std::chrono::milliseconds(-250);
-  const Symptom symptom = only(diagnose_system({}, facts), "clock");
-  CHECK(symptom.severity == Severity::Warning);
-  CHECK_THAT(symptom.evidence, Contains("-250 ms"));
-}
-
-TEST_CASE(
-    "files that dead processes left in shared memory are told with their size and how to remove "
-    "them") {
-  Facts facts = sound_machine();
-  facts.shared_memory->files = {{"/dev/shm/fastrtps_1", 16 * kMiB, false},
-                                {"/dev/shm/fastrtps_2", 16 * kMiB, true}};
-  const Symptom symptom = only(diagnose_system({}, facts), "shared memory");
-  CHECK(symptom.severity == Severity::Warning);
-  CHECK_THAT(symptom.cause, Contains("1 file behind, 16 MiB"));
-  CHECK(symptom.remedy == "rm /dev/shm/fastrtps_1");
-  facts.shared_memory->files[0].in_use = true;
-  CHECK(only(diagnose_system({}, facts), "shared memory").severity == Severity::Fine);
-}
-
 TEST_CASE("shared memory without room matters to missions that use it") {
   Facts facts = sound_machine();
-  facts.shared_memory->free = 16 * kMiB;
+  facts.free_shared_memory = 16 * kMiB;
   CHECK(worst_of(diagnose_system({}, facts)) == Severity::Note);
   Purpose purpose;
   purpose.shared_memory = true;
   CHECK(worst_of(diagnose_system(purpose, facts)) == Severity::Warning);
-  facts.shared_memory = std::nullopt;
+  facts.free_shared_memory = std::nullopt;
   CHECK(worst_of(diagnose_system(purpose, facts)) == Severity::Error);
 }
 
-TEST_CASE("few files, little address space, no priority and no locked memory are each a warning") {
+TEST_CASE("few files, no priority and no locked memory are each a warning") {
   Facts facts = sound_machine();
   Purpose purpose;
   std::string evidence;
   SECTION("files") {
     facts.limits.open_files = 256;
     evidence = "ulimit -n";
-  }
-  SECTION("address space") {
-    facts.limits.address_space = 1024 * kMiB;
-    evidence = "ulimit -v";
   }
   SECTION("priority") {
     facts.limits.real_time_priority = 0;
@@ -109,28 +83,4 @@ TEST_CASE("limits on what the mission does not ask for are none") {
   facts.limits.real_time_priority = 0;
   facts.limits.locked_memory = 0;
   CHECK(only(diagnose_system({}, facts), "limits").severity == Severity::Fine);
-}
-
-TEST_CASE("too little address space for one entity is an error") {
-  Facts facts = sound_machine();
-  facts.limits.address_space = 200 * kMiB;
-  CHECK(only(diagnose_system({}, facts), "limits").severity == Severity::Error);
-}
-
-TEST_CASE("less than a processor, or than 256 MiB, is a warning") {
-  Facts facts = sound_machine();
-  facts.processors.quota = 1.5;
-  CHECK(only(diagnose_system({}, facts), "processors").severity == Severity::Note);
-  facts.processors.quota = 0.5;
-  CHECK_THAT(only(diagnose_system({}, facts), "processors").cause,
-             Contains("may use 0.5 of 4 processors"));
-  CHECK(only(diagnose_system({}, facts), "processors").severity == Severity::Warning);
-  facts.processors.memory = 128 * kMiB;
-  CHECK(only(diagnose_system({}, facts), "memory").severity == Severity::Warning);
-}
-
-TEST_CASE("a folder of plugins that is not there is a warning") {
-  Facts facts = sound_machine();
-  facts.missing_folders = {"/opt/plugins"};
-  CHECK(only(diagnose_system({}, facts), "plugins").evidence == "/opt/plugins");
 }

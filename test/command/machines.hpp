@@ -14,15 +14,13 @@ inline command::doctor::Facts sound_machine() {
   constexpr std::uint64_t kMiB = 1 << 20;
   Facts facts;
   facts.interfaces = {{"lo", {"127.0.0.1"}, true, false}, {"eth0", {"10.0.0.2"}, true, true}};
-  facts.receive_buffer = facts.send_buffer = 4 * kMiB;
-  facts.any_ports = {32768, 60999};
+  facts.buffer = 4 * kMiB;
   facts.vendors = {{"fastdds", "", "libfastrtps.so.2.9.1", "2.9.1", "2.9.1"},
                    {"cyclonedds", "", "libddsc.so.0.10.2", "0.10.2", "0.10.2"}};
-  facts.clock = SystemClock{true, {}};
-  facts.shared_memory = SharedMemory{1024 * kMiB, {}};
+  facts.synchronised_clock = true;
+  facts.free_shared_memory = 1024 * kMiB;
   facts.firewall = "";
-  facts.limits = {1024, std::nullopt, std::nullopt, 99};
-  facts.processors = {4, 4, std::nullopt, std::nullopt};
+  facts.limits = {1024, std::nullopt, 99};
   return facts;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <optional>
-#include <string>
+#include <cstdint>
 
 #include "facts.hpp"
 #include "symptom.hpp"
@@ -23,11 +22,5 @@ struct PortRange {
 
 /// The UDP ports of a domain.
 PortRange ports_of(std::uint32_t domain);
-
-/// The rule of an nftables ruleset by which packets to UDP ports of the range may not come in on
-/// that interface; nothing where none is seen. Rules in chains of their own, to which others jump,
-/// are not followed.
-std::optional<std::string> what_blocks(const std::string& ruleset, const std::string& interface,
-                                       PortRange ports);
 
 }  // namespace skein::command::doctor

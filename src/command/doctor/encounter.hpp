@@ -12,9 +12,9 @@
 namespace skein::command::doctor {
 
 /// Joins the domain with one peer on each of `vendors`, and tells which of them do not find each
-/// other; then which peers of the mission (null: of none), whose launcher runs where it `flies`, do
+/// other; then which peers of the mission (null: of none), whose launcher runs if it `flies`, do
 /// not answer. Takes a second, or five
-/// where somebody is not found; an interruption ends it sooner.
+/// if somebody is not found; an interruption ends it sooner.
 Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendors,
                    const profile::MissionProfile* mission, bool flies,
                    const Interruption& interruption);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
@@ -96,21 +97,13 @@ Symptom interface(const std::string& wanted, bool by_multicast, const Facts& fac
 
 Symptom buffers(const Facts& facts) {
   constexpr std::uint64_t kWanted = dds::kSocketBuffer;
-  if (!facts.receive_buffer || !facts.send_buffer) {
-    return {Severity::Note, "buffers", "how large UDP buffers may be cannot be read",
-            "/proc/sys/net/core/rmem_max", ""};
-  }
-  const std::string evidence = "net.core.rmem_max = " + std::to_string(*facts.receive_buffer) +
-                               ", net.core.wmem_max = " + std::to_string(*facts.send_buffer);
-  const std::uint64_t least = std::min(*facts.receive_buffer, *facts.send_buffer);
-  if (least >= kWanted) {
-    return {Severity::Fine, "buffers", "UDP buffers may hold " + mebibytes(least), "", ""};
-  }
+  if (facts.buffer >= kWanted)
+    return {Severity::Fine, "buffers", "UDP buffers may hold " + mebibytes(facts.buffer), "", ""};
   const std::string size = std::to_string(kWanted);
   return {Severity::Warning, "buffers",
-          "UDP buffers may hold " + mebibytes(least) + " of the " + mebibytes(kWanted) +
+          "UDP buffers may hold " + mebibytes(facts.buffer) + " of the " + mebibytes(kWanted) +
               " that Skein asks for: bursts and large messages lose packets, and take longer",
-          evidence,
+          "sysctl net.core.rmem_max net.core.wmem_max",
           "sudo sysctl -w net.core.rmem_max=" + size + " net.core.wmem_max=" + size +
               "; for good, write both into /etc/sysctl.d/60-skein.conf"};
 }
@@ -197,41 +190,25 @@ void two_missions(const Purpose& purpose, const Facts& facts, Symptoms& symptoms
   }
 }
 
-void lent_ports(const Purpose& purpose, const Facts& facts, Symptoms& symptoms) {
-  if (!facts.any_ports) return;
-  const PortRange ports = ports_of(purpose.domain);
-  const auto& [first, last] = *facts.any_ports;
-  if (ports.last < first || ports.first > last) return;
-  symptoms.push_back(
-      {Severity::Warning, "ports",
-       "the ports of domain " + std::to_string(purpose.domain) +
-           " are among those that the kernel lends to any program: one may be taken at a bad time",
-       "net.ipv4.ip_local_port_range = " + std::to_string(first) + " " + std::to_string(last),
-       "choose a domain below " + std::to_string((first - ports_of(0).first) / kPortsOfDomain) +
-           ", or: sudo sysctl -w net.ipv4.ip_local_reserved_ports=" + std::to_string(ports.first) +
-           "-" + std::to_string(ports.last)});
-}
-
+/// Whether a rule drops our packets depends on the rules before it, which are not read.
 Symptom firewall(const Purpose& purpose, const Facts& facts) {
   constexpr const char* kAbout = "firewall";
   if (!facts.firewall) {
     return {Severity::Note, kAbout, "the firewall's rules cannot be read",
             "nft list ruleset needs root", "sudo skein doctor"};
   }
-  const PortRange ports = ports_of(purpose.domain);
-  std::set<std::string> names{"lo"};
-  for (const std::string& wanted : purpose.interfaces) {
-    if (const Interface* found = find_interface(facts, wanted)) names.insert(found->name);
+  std::istringstream lines(*facts.firewall);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("drop") == std::string::npos && line.find("reject") == std::string::npos)
+      continue;
+    const PortRange ports = ports_of(purpose.domain);
+    return {Severity::Note, kAbout, "a firewall is active, and drops packets",
+            line.substr(line.find_first_not_of(" \t")),
+            "see by `sudo nft list ruleset` whether it accepts UDP ports " +
+                std::to_string(ports.first) + "-" + std::to_string(ports.last) +
+                " on lo and on the interfaces of the mission"};
   }
-  for (const std::string& name : names) {
-    const auto rule = what_blocks(*facts.firewall, name, ports);
-    if (!rule) continue;
-    return {Severity::Warning, kAbout,
-            "the firewall may drop what peers send to this host on " + name, *rule,
-            "sudo nft insert rule inet filter input iifname \"" + name + "\" udp dport " +
-                std::to_string(ports.first) + "-" + std::to_string(ports.last) + " accept"};
-  }
-  return {Severity::Fine, kAbout, "no rule is seen that keeps peers apart", "", ""};
+  return {Severity::Fine, kAbout, "no rule drops packets", "", ""};
 }
 
 }  // namespace
@@ -251,7 +228,6 @@ Symptoms diagnose_network(const Purpose& purpose, const Facts& facts) {
   stopped_programs(facts, ports_of(purpose.domain), symptoms);
   symptoms.push_back(free_ports(purpose, facts));
   two_missions(purpose, facts, symptoms);
-  lent_ports(purpose, facts, symptoms);
   symptoms.push_back(firewall(purpose, facts));
   return symptoms;
 }

@@ -15,9 +15,9 @@ enum class Severity {
 struct Symptom {
   Severity severity = Severity::Fine;
   std::string about;     ///< A word or two: `buffers`.
-  std::string cause;     ///< What is so, in one sentence without a full stop.
-  std::string evidence;  ///< Where that shows; may be empty.
-  std::string remedy;    ///< What to do or to type; empty where nothing needs doing.
+  std::string cause;     ///< The fact, in one sentence without a full stop.
+  std::string evidence;  ///< The command or file that shows it; may be empty.
+  std::string remedy;    ///< What to do or to type; empty if nothing needs doing.
 };
 
 using Symptoms = std::vector<Symptom>;

@@ -63,7 +63,7 @@ void add_doctor(CLI::App& app, int& result) {
       app, "doctor",
       "Find what on this machine keeps peers from speaking to each other\n\n"
       "Looks at network interfaces, firewall, UDP buffers and ports, other missions, DDS vendors, "
-      "clock, shared memory, limits and processors, and lets two peers find each other. With a "
+      "clock, shared memory and limits, and lets two peers find each other. With a "
       "profile also at what `skein check` finds, and at which peers of the mission answer.\n\n"
       "Exit code 0 where nothing is wrong, 1 with warnings, 2 with errors.",
       {{"skein doctor", "This machine, for missions that stay on it"},
