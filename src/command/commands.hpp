@@ -9,14 +9,14 @@
 #include "onlooker.hpp"
 
 /// The subcommands of `skein`: what the command line (the folder `line`) tells each, and the
-/// function that runs it. It returns the exit code; line/main.cpp has one for whatever it throws.
+/// function that runs it. It returns the exit code; line/main.cpp has one for each exception.
 namespace skein::command {
 
 struct BenchArguments {
   std::string vendor = "cyclonedds";
   std::uint32_t domain = 99;
   std::string interface;  ///< Empty: loopback.
-  std::string peer;       ///< The other host's address, where they speak on an interface.
+  std::string peer;       ///< The other host's address, if they speak on an interface.
   std::string profile;    ///< A mission profile: vendor, interface and threads are its peers'.
   std::string provider;   ///< Its peer that is called; empty: its first.
   std::string caller;     ///< Its peer that calls; empty: the provider.
@@ -29,7 +29,7 @@ struct BenchArguments {
   std::string output;
 };
 
-/// `skein bench latency|throughput|discovery`: what calls cost here.
+/// `skein bench latency|throughput|discovery`: the cost of calls here.
 int bench_latency(const BenchArguments& arguments);
 int bench_throughput(const BenchArguments& arguments);
 int bench_discovery(const BenchArguments& arguments);
@@ -40,7 +40,7 @@ struct BenchCompareArguments {
 };
 
 /// `skein bench compare A B`: prints the rows that two saved results share, with the quotient of
-/// their medians. Throws InvalidArgument where a file holds no result, or where they share none.
+/// their medians. Throws InvalidArgument if a file holds no result, or if they share none.
 int bench_compare(const BenchCompareArguments& arguments);
 
 struct CallsArguments : Onlooker {
@@ -67,7 +67,7 @@ struct DecisionsArguments : Onlooker {
   std::vector<std::string> plugins;
 };
 
-/// `skein decisions`: how the Heads on a domain decide, live or from a log. 1 where a replay comes
+/// `skein decisions`: how the Heads on a domain decide, live or from a log. 1 if a replay comes
 /// out differently.
 int show_decisions(const DecisionsArguments& arguments);
 
@@ -150,7 +150,7 @@ struct PeersArguments : Onlooker {
   bool json = false;
 };
 
-/// `skein peers`: who is on a domain now.
+/// `skein peers`: the peers on a domain now.
 int list_peers(const PeersArguments& arguments);
 
 struct RunningArguments {
@@ -180,7 +180,7 @@ struct ServicesArguments : Onlooker {
   bool json = false;
 };
 
-/// `skein services`: what is provided on a domain now.
+/// `skein services`: the services on a domain now.
 int list_services(const ServicesArguments& arguments);
 
 struct CallArguments : Onlooker {
@@ -195,7 +195,7 @@ struct CallArguments : Onlooker {
 };
 
 /// `skein call`: an operation of a service, by its description alone; or an example of its
-/// arguments. 1 where it ends with an exception that its interface declares.
+/// arguments. 1 if it ends with an exception that its interface declares.
 int call(const CallArguments& arguments);
 
 struct ParamArguments : Onlooker {
@@ -207,18 +207,18 @@ struct ParamArguments : Onlooker {
   bool json = false;
 };
 
-/// `skein param list|get|set`: parameters of peers that run. `set` returns 1 where the component
-/// refuses the value; `list` of all kNoAnswer where one did not answer.
+/// `skein param list|get|set`: parameters of peers that run. `set` returns 1 if the component
+/// refuses the value; `list` of all kNoAnswer if one did not answer.
 int list_parameters(const ParamArguments& arguments);
 int get_parameter(const ParamArguments& arguments);
 int set_parameter(const ParamArguments& arguments);
 
 struct LiveNamesArguments : Onlooker {
-  std::string kind;  ///< `service`, `operation`, `topic`, `entity`, `parameter` or `name`.
-  std::vector<std::string> words;  ///< That stand before on the command line.
+  std::string kind;    ///< `service`, `operation`, `topic`, `entity`, `parameter` or `name`.
+  std::string before;  ///< The argument before it on the command line: of which service.
 };
 
-/// `skein complete`: names of that kind on a domain, for the completion of shells.
+/// Of `skein complete`: names of that kind on a domain, for the completion of shells.
 int print_live_names(const LiveNamesArguments& arguments);
 
 struct DescribeArguments : Onlooker {
@@ -247,7 +247,7 @@ struct TopicArguments : Onlooker {
   bool json = false;
 };
 
-/// `skein echo TOPIC`: its values as they come. 1 where fewer come than it is to end after.
+/// `skein echo TOPIC`: its values as they come. 1 if fewer come than it is to end after.
 int echo(const TopicArguments& arguments);
 
 /// `skein rate TOPIC`: how often values come, how evenly, and how large they are.
@@ -258,7 +258,7 @@ struct PublishArguments : TopicArguments {
   double rate = 0;    ///< Values a second; 0: one alone.
 };
 
-/// `skein publish TOPIC VALUE`. Throws Interrupted where a signal comes before all is published.
+/// `skein publish TOPIC VALUE`. Throws Interrupted if a signal comes before all is published.
 int publish(const PublishArguments& arguments);
 
 struct TopArguments : Onlooker {
@@ -311,7 +311,7 @@ struct InfoArguments {
   bool json = false;
 };
 
-/// `skein info FILE`: what a recording has. 1 where it holds no messages.
+/// `skein info FILE`: what a recording has. 1 if it holds no messages.
 int show_recording(const InfoArguments& arguments);
 
 struct ExportArguments {

@@ -85,8 +85,7 @@ Names names_of(Entity& entity, const std::string& kind, const std::string& befor
 int print_live_names(const LiveNamesArguments& arguments) {
   Entity entity = join(arguments, "complete");
   std::this_thread::sleep_for(kListening);
-  const std::string before = arguments.words.empty() ? "" : arguments.words.back();
-  for (const std::string& name : names_of(entity, arguments.kind, before))
+  for (const std::string& name : names_of(entity, arguments.kind, arguments.before))
     std::printf("%s\n", printable(name).c_str());
   return 0;
 }

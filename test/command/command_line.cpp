@@ -257,6 +257,32 @@ TEST_CASE("a word that an option does not know is refused with those that it kno
   });
 }
 
+TEST_CASE("what a domain is asked for to complete a command line is told by the options' types") {
+  const CommandLineRun line;
+  const auto asked = [&](std::vector<std::string> words) {
+    const Completion completion = completion_of(line.app, std::move(words));
+    return completion.live + " " + completion.before;
+  };
+  CHECK(asked({"echo", "po"}) == "topic ");
+  CHECK(asked({"call", "--domain", "47", "IGr"}) == "service ");
+  CHECK(asked({"call", "IGreeter", ""}) == "operation IGreeter");
+  CHECK(asked({"param", "set", "beacon", "P"}) == "parameter beacon");
+  CHECK(asked({"record", "--topics", "po"}) == "topic ");
+  CHECK(asked({"replay", "flight.mcap", "--topics", "po"}) ==
+        " flight.mcap");  // they are the file's
+  CHECK(asked({}) == " ");
+  CHECK(asked({"echo", "pose", "more"}) == " pose");
+}
+
+TEST_CASE("a value that is glued to its option is completed with it") {
+  const CommandLineRun line;
+  using Lines = std::vector<std::string>;
+  CHECK(completion_of(line.app, {"completion", "b"}).lines == Lines{"bash", "zsh", "fish"});
+  CHECK(completion_of(line.app, {"graph", "--format=m"}).lines ==
+        Lines{"--format=dot", "--format=mermaid", "--format=json"});
+  CHECK(completion_of(line.app, {"graph", "--profile=m"}).lines.empty());
+}
+
 TEST_CASE("what sets nothing is refused with how it is written") {
   for (const char* wrong : {"launch mission.xml --set lift=3", "check mission.xml --set lift=3.5"})
     CHECK_THAT(refusal(wrong), Contains("--set: ") && Contains("PEER.PARAMETER=VALUE") &&

@@ -99,17 +99,9 @@ class InShell(unittest.TestCase):
         """Names that a domain has now, as a command in place of Skein's tells them, with what it was asked."""
         told = self.stand_in()
         self.assertEqual(self.complete("skein echo po"), ["pose"])
-        self.assertEqual(told(), ["complete topic echo"])
-        self.assertEqual(self.complete("skein call --domain 47 IGr"), ["IGreeter"])
-        self.assertIn("complete service call --domain 47", told())
-        self.assertIn("greet", self.complete("skein call IGreeter "))
-        self.assertIn("complete operation call IGreeter", told())
-        self.assertIn("Period", self.complete("skein param set beacon P"))
-        self.assertTrue(any(line.startswith("complete parameter ") and line.endswith("set beacon") for line in told()))
-        self.assertEqual(self.complete("skein record --topics po"), ["pose"])
-        told()
-        self.assertEqual(self.complete("skein replay flight.mcap --topics po"), [])  # they are the file's
-        self.assertEqual(told(), [])
+        self.assertEqual(told(), ["complete -- echo po"])
+        self.assertIn("pose", self.complete("skein call --domain 47 "))
+        self.assertIn("complete -- call --domain 47 ", told())
         self.assertFalse((pathlib.Path(self.place.name) / "evil").exists())
 
     def stand_in(self):
@@ -118,10 +110,8 @@ class InShell(unittest.TestCase):
         folder.mkdir()
         calls = folder / "calls"
         calls.touch()
-        names = {"topic": "pose; echo '$(touch evil)'", "service": "IGreeter", "operation": "greet", "entity": "beacon", "parameter": "Period", "name": "pose"}
-        cases = "".join(f"{kind}) echo {name} ;; " for kind, name in names.items())
         program = folder / "skein"
-        program.write_text(f'#!/bin/sh\necho "$*" >> {calls}\ncase $2 in {cases}esac\n')
+        program.write_text(f"#!/bin/sh\necho \"$*\" >> {calls}\necho pose; echo '$(touch evil)'\n")
         program.chmod(0o755)
         self.before = f"{folder}:"
 
@@ -152,7 +142,7 @@ class Bash(InShell):
     def test_asks_a_domain_that_stands_behind_an_equals_sign(self):
         told = self.stand_in()
         self.assertEqual(self.complete_words(["skein", "echo", "--domain", "=", "47", "po"]), ["pose"])
-        self.assertEqual(told(), ["complete topic echo --domain 47"])
+        self.assertEqual(told(), ["complete -- echo --domain 47 po"])
 
     def test_takes_the_value_of_an_option_for_no_argument(self):
         self.assertEqual(self.complete("skein peer --set a.b=1 mis"), ["mission.xml"])
@@ -189,7 +179,7 @@ class Fish(InShell):
 
 @needs("zsh")
 class Zsh(InShell):
-    def test_is_a_script_that_defines_a_function_for_each_command(self):
+    def test_is_a_script_that_is_loaded_by_its_name(self):
         self.run_shell("zsh", "-n", FOLDER / "completion/_skein")
         script = 'fpath=("$1" $fpath); autoload -Uz compinit; compinit -u -D; print $_comps[skein]; autoload +X _skein'
         self.assertEqual(self.run_shell("zsh", "-fc", script, "zsh", FOLDER / "completion").strip(), "_skein")

@@ -53,7 +53,7 @@ std::vector<std::string> long_options_of(const CLI::App& command) {
   return names;
 }
 
-/// What is wrong where options come first; empty where they do not.
+/// The complaint about options that come first; empty if none does.
 std::string misplaced_options(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty() || !words[0].starts_with('-') || app.get_option_no_throw(words[0])) return {};
   const std::string nearest = suggestion(words[0], long_options_of(app));
@@ -70,7 +70,7 @@ std::string misplaced_options(const CLI::App& app, const std::vector<std::string
   return "options follow the command: " + line;
 }
 
-/// What is wrong with a command that is none; empty where there is one, or an option in its place.
+/// The complaint about a command that is none; empty for a command, or an option in its place.
 /// CLI11 would say that a command is missing.
 std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
   std::size_t length = 0;
@@ -113,7 +113,7 @@ std::string unexpected(const std::vector<std::string>& words,
   return text;
 }
 
-/// CLI11's text, with the nearest option where there is none of that name.
+/// CLI11's text, with the nearest option if there is none of that name.
 std::string text_of(const CLI::ParseError& error, const CLI::App& app,
                     const std::vector<std::string>& words) {
   std::size_t length = 0;

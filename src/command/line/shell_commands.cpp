@@ -34,34 +34,34 @@ void add_completion(CLI::App& app) {
       ->type_name(one_of(shells()))
       ->check(known_word(shells()))
       ->required();
-  command.callback([&app, shell] { std::cout << completion(app, *shell); });
+  command.callback([shell] { std::cout << completion_script(*shell); });
 }
 
-/// Of commands that are completed: their values are no words of `complete`.
-void ignore_other_options(const CLI::App& app, CLI::App& complete) {
-  for_each_command(app, [&](const CLI::App& command, const std::string&) {
-    for (const CLI::Option* option : command.get_options()) {
-      if (option->get_items_expected_max() == 0) continue;
-      for (const std::string& name : option->get_lnames()) {
-        if (complete.get_option_no_throw("--" + name)) continue;
-        complete.add_option_function<std::string>("--" + name, [](const std::string&) {})
-            ->expected(0, 1)  // it may be the value that is completed
-            ->take_last();
-      }
-    }
-  });
+int complete(const CLI::App& app, const std::vector<std::string>& words) {
+  const Completion completion = completion_of(app, words);
+  for (const std::string& line : completion.lines) std::cout << line << '\n';
+  if (completion.live.empty()) return 0;
+  LiveNamesArguments arguments;
+  arguments.kind = completion.live;
+  arguments.before = completion.before;
+  CLI::App looking;
+  add_onlooker(looking, arguments);
+  looking.allow_extras();  // options and arguments of the command that is completed
+  try {
+    looking.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError&) {
+    return 0;
+  }
+  return look(arguments, [&] { return print_live_names(arguments); });
 }
 
 /// Hidden: completion runs it, with all words that were typed.
 void add_complete(CLI::App& app, int& result) {
-  auto& command = add_command(app, "complete", "Print names of a domain for completion", {});
+  auto& command = add_command(app, "complete", "Print what completes a command line", {});
   command.group("");
-  auto& arguments = arguments_of(command, print_live_names, result);
-  command.add_option("KIND", arguments.kind, "Of the names")->required();
-  command.add_option("WORD", arguments.words, "What was typed");
-  add_onlooker(command, arguments);
-  ignore_other_options(app, command);
-  command.allow_extras();
+  const auto words = std::make_shared<std::vector<std::string>>();
+  command.add_option("WORD", *words, "What was typed behind skein; the last may be a part");
+  command.callback([&app, &result, words] { result = complete(app, *words); });
 }
 
 /// Hidden: the build runs it.
