@@ -1,79 +1,37 @@
 #include "view/server_messages.hpp"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "skein/detail/json.hpp"
 #include "view/server.hpp"
 
 namespace skein::view {
 namespace {
 
-using idl::JsonWriter;
+using Json = nlohmann::ordered_json;
 
 constexpr char kMessageData = 1;
 constexpr char kCallResponse = 3;
 
-/// A JSON message, to which `write` adds members.
-template <class Write>
-Frame text_message(std::string_view operation, const Write& write) {
-  JsonWriter json;
-  json.begin_object();
-  json.key("op");
-  json.write_string(operation);
-  write(json);
-  json.end_object();
-  return {true, {}, std::make_shared<const std::string>(json.take())};
+/// Text that is no UTF-8 would be refused.
+Frame text_message(const Json& message) {
+  return {true,
+          {},
+          std::make_shared<const std::string>(
+              message.dump(-1, ' ', false, Json::error_handler_t::replace))};
 }
 
-void write_member(JsonWriter& json, std::string_view name, std::string_view value) {
-  json.key(name);
-  json.write_string(value);
+Json ends_of(const Graph::Ends& ends, const char* ids) {
+  auto list = Json::array();
+  for (const auto& [what, who] : ends) list.push_back({{"name", what}, {ids, who}});
+  return list;
 }
 
-void write_member(JsonWriter& json, std::string_view name, std::uint32_t value) {
-  json.key(name);
-  json.write(value);
-}
-
-template <class Texts>
-void write_list(JsonWriter& json, std::string_view name, const Texts& texts) {
-  json.key(name);
-  json.begin_array();
-  for (const auto& text : texts) json.write_string(text);
-  json.end_array();
-}
-
-void write_ends(JsonWriter& json, std::string_view name, std::string_view ids,
-                const Graph::Ends& ends) {
-  json.key(name);
-  json.begin_array();
-  for (const auto& [what, who] : ends) {
-    json.begin_object();
-    write_member(json, "name", what);
-    write_list(json, ids, who);
-    json.end_object();
-  }
-  json.end_array();
-}
-
-Frame withdrawal(std::string_view operation, std::string_view list, std::uint32_t id) {
-  return text_message(operation, [&](JsonWriter& json) {
-    json.key(list);
-    json.begin_array();
-    json.write(id);
-    json.end_array();
-  });
-}
-
-void write_format(JsonWriter& json, std::string_view name, const std::string& type,
-                  const std::string& schema) {
-  json.key(name);
-  json.begin_object();
-  write_member(json, "encoding", kCallEncoding);
-  write_member(json, "schemaName", type);
-  write_member(json, "schemaEncoding", "jsonschema");
-  write_member(json, "schema", schema);
-  json.end_object();
+Json format_of(const std::string& type, const std::string& schema) {
+  return {{"encoding", kCallEncoding},
+          {"schemaName", type},
+          {"schemaEncoding", "jsonschema"},
+          {"schema", schema}};
 }
 
 /// Little-endian.
@@ -87,73 +45,60 @@ void append(std::string& bytes, Number number) {
 }  // namespace
 
 Frame server_info(const std::string& name, const std::string& session) {
-  return text_message("serverInfo", [&](JsonWriter& json) {
-    write_member(json, "name", name);
-    write_list(json, "capabilities", std::vector<std::string>{"connectionGraph", "services"});
-    write_list(json, "supportedEncodings", std::vector<std::string_view>{kCallEncoding});
-    write_member(json, "sessionId", session);
-  });
+  return text_message({{"op", "serverInfo"},
+                       {"name", name},
+                       {"capabilities", Json::array({"connectionGraph", "services"})},
+                       {"supportedEncodings", Json::array({kCallEncoding})},
+                       {"sessionId", session}});
 }
 
 Frame status(Level level, const std::string& text, const std::string& id) {
-  return text_message("status", [&](JsonWriter& json) {
-    write_member(json, "level", static_cast<std::uint32_t>(level));
-    write_member(json, "message", text);
-    if (!id.empty()) write_member(json, "id", id);
-  });
+  Json message{{"op", "status"}, {"level", static_cast<std::uint32_t>(level)}, {"message", text}};
+  if (!id.empty()) message["id"] = id;
+  return text_message(message);
 }
 
 Frame advertise(const std::map<std::uint32_t, const Channel*>& channels) {
-  return text_message("advertise", [&](JsonWriter& json) {
-    json.key("channels");
-    json.begin_array();
-    for (const auto& [id, channel] : channels) {
-      json.begin_object();
-      write_member(json, "id", id);
-      write_member(json, "topic", channel->topic);
-      write_member(json, "encoding", "cdr");
-      write_member(json, "schemaName", channel->type);
-      write_member(json, "schemaEncoding", "omgidl");
-      write_member(json, "schema", channel->schema);
-      json.end_object();
-    }
-    json.end_array();
-  });
+  auto list = Json::array();
+  for (const auto& [id, channel] : channels) {
+    list.push_back({{"id", id},
+                    {"topic", channel->topic},
+                    {"encoding", "cdr"},
+                    {"schemaName", channel->type},
+                    {"schemaEncoding", "omgidl"},
+                    {"schema", channel->schema}});
+  }
+  return text_message({{"op", "advertise"}, {"channels", list}});
 }
 
 Frame unadvertise(std::uint32_t channel) {
-  return withdrawal("unadvertise", "channelIds", channel);
+  return text_message({{"op", "unadvertise"}, {"channelIds", Json::array({channel})}});
 }
 
 Frame advertise_services(const std::map<std::uint32_t, const Service*>& services) {
-  return text_message("advertiseServices", [&](JsonWriter& json) {
-    json.key("services");
-    json.begin_array();
-    for (const auto& [id, service] : services) {
-      json.begin_object();
-      write_member(json, "id", id);
-      write_member(json, "name", service->name);
-      write_member(json, "type", service->type);
-      write_format(json, "request", service->type + "_Request", service->request_schema);
-      write_format(json, "response", service->type + "_Response", service->response_schema);
-      json.end_object();
-    }
-    json.end_array();
-  });
+  auto list = Json::array();
+  for (const auto& [id, service] : services) {
+    list.push_back(
+        {{"id", id},
+         {"name", service->name},
+         {"type", service->type},
+         {"request", format_of(service->type + "_Request", service->request_schema)},
+         {"response", format_of(service->type + "_Response", service->response_schema)}});
+  }
+  return text_message({{"op", "advertiseServices"}, {"services", list}});
 }
 
 Frame unadvertise_service(std::uint32_t service) {
-  return withdrawal("unadvertiseServices", "serviceIds", service);
+  return text_message({{"op", "unadvertiseServices"}, {"serviceIds", Json::array({service})}});
 }
 
 Frame graph_update(const GraphChange& change) {
-  return text_message("connectionGraphUpdate", [&](JsonWriter& json) {
-    write_ends(json, "publishedTopics", "publisherIds", change.changed.publishers);
-    write_ends(json, "subscribedTopics", "subscriberIds", change.changed.subscribers);
-    write_ends(json, "advertisedServices", "providerIds", change.changed.providers);
-    write_list(json, "removedTopics", change.removed_topics);
-    write_list(json, "removedServices", change.removed_services);
-  });
+  return text_message({{"op", "connectionGraphUpdate"},
+                       {"publishedTopics", ends_of(change.changed.publishers, "publisherIds")},
+                       {"subscribedTopics", ends_of(change.changed.subscribers, "subscriberIds")},
+                       {"advertisedServices", ends_of(change.changed.providers, "providerIds")},
+                       {"removedTopics", change.removed_topics},
+                       {"removedServices", change.removed_services}});
 }
 
 Frame message_data(std::uint32_t subscription, std::uint64_t time,
@@ -174,11 +119,8 @@ Frame call_response(std::uint32_t service, std::uint32_t call, std::string respo
 }
 
 Frame call_failure(std::uint32_t service, std::uint32_t call, const std::string& text) {
-  return text_message("serviceCallFailure", [&](JsonWriter& json) {
-    write_member(json, "serviceId", service);
-    write_member(json, "callId", call);
-    write_member(json, "message", text);
-  });
+  return text_message(
+      {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", text}});
 }
 
 }  // namespace skein::view

@@ -81,7 +81,7 @@ HOMES = {
     "OMPL": (r"ompl/", ["src/navigation/planners"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion", "examples/reconnaissance"]),
     "pugixml": (r"pugixml", ["src/profile", "test"]),
-    "JSON": (r"nlohmann/", ["src/idl", "src/command", "src/navigation/routes", "test", "benchmarks",
+    "JSON": (r"nlohmann/", ["src/idl", "src/command", "src/view", "src/navigation/routes", "test", "benchmarks",
                              "examples/reconnaissance/report/report.cpp", "examples/reconnaissance/test"]),
     "zstd": (r"zstd\.h", ["src/recording/compression.cpp"]),
     "libdeflate": (r"libdeflate\.h", ["src/recording/compression.cpp"]),
