@@ -16,6 +16,7 @@
 #include "../tools/places.hpp"
 
 namespace skein::test {
+
 CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandOptions& options) {
   std::vector<std::string> words{built_program("skein")};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -40,10 +41,9 @@ CommandRun::CommandRun(const std::vector<std::string>& arguments, const CommandO
 }
 
 CommandRun::~CommandRun() {
-  if (pid_ > 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
+  if (pid_ <= 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
 }
 
 std::string CommandRun::output() const {

@@ -123,12 +123,8 @@ class Input {
 };
 
 /// A folder for recordings.
-class Shelf {
- public:
-  std::string operator/(const std::string& name) const { return (folder_.path() / name).string(); }
-
- private:
-  TemporaryFolder folder_;
+struct Shelf : TemporaryFolder {
+  std::string operator/(const std::string& name) const { return (path() / name).string(); }
 };
 
 /// Lists are taken of what is known after a while: repeats the command until it succeeds and

@@ -1,5 +1,5 @@
 // A small mission, for tests of how missions are started: a desk that answers, one that fails its
-// self-test, and those who ask; and a strategy of selection.
+// self-test, and those who ask.
 #include <cstdio>
 #include <cstdlib>
 #include <future>
@@ -15,7 +15,6 @@
 #include "skein/error.hpp"
 #include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
-#include "skein/selection.hpp"
 #include "worker.idl.hpp"
 
 namespace {
@@ -33,14 +32,6 @@ class Desk final : public crew::Desk {
 
  private:
   volatile unsigned spun_ = 0;
-};
-
-class First final : public SelectionStrategy {
- public:
-  std::string name() const override { return "first"; }
-  Selection select(const std::vector<Candidate>&, const Situation& situation) const override {
-    return {0, situation.remaining, "it is the first"};
-  }
 };
 
 int ask(Entity& entity, const ParameterValues&) {
@@ -150,5 +141,4 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   registry.add_activity("herald", call_out);
   registry.add_activity("page", call_thrice);
   registry.add_activity("thinker", ponder);
-  registry.add_strategy(std::make_shared<First>());
 }

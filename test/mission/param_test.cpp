@@ -1,7 +1,6 @@
 // `skein param`: parameters of a peer that runs, on each vendor.
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "../tools/places.hpp"
@@ -59,12 +58,11 @@ class Patrol {
  private:
   std::string profile(const std::string& system, const std::string& mission) const {
     const std::string guide = project_file("test/guide/");
-    const std::string file = (folder_.path() / "patrol.xml").string();
-    std::ofstream(file) << "<mission name='" << mission << "' domain='48' system='" << system
-                        << "' vendor='" << vendor_ << "' plugin='patrol_components' dictionary='"
-                        << guide << "dictionary.xml'><peer name='beacon' component='" << guide
-                        << "beacon.xml'><parameter name='Period' value='0.1 s'/></peer></mission>";
-    return file;
+    return folder_.write(
+        "patrol.xml", "<mission name='" + mission + "' domain='48' system='" + system +
+                          "' vendor='" + vendor_ + "' plugin='patrol_components' dictionary='" +
+                          guide + "dictionary.xml'><peer name='beacon' component='" + guide +
+                          "beacon.xml'><parameter name='Period' value='0.1 s'/></peer></mission>");
   }
 
   const std::string vendor_;

@@ -222,20 +222,3 @@ TEST_CASE("a dry run names the other hosts, and starts nothing") {
   CHECK_THAT(run.output(),
              Contains("attend") && Contains(" 10.78.0.2\n") && !Contains("not started here"));
 }
-
-// Not part of the tests: how long the start takes, beside that of the same peers on one host.
-TEST_CASE("start over ssh, beside local", "[.measure]") {
-  const TwoHosts hosts;
-  const Errand errand;
-  const SshHost there(hosts.beta, kThere);
-  const auto measure = [&](const std::string& host) {
-    const std::string profile = errand.profile(
-        "interface='skein0'", peer("client", kHere, "role='mission'") + peer("office", host));
-    const auto begin = Clock::now();
-    Flight flight(hosts, there, {profile});
-    REQUIRE(flight.run().writes("processes are ready"));
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  };
-  for (int i = 0; i < 5; ++i)
-    std::printf("start: local %.2f s, over ssh %.2f s\n", measure(kHere), measure(kThere));
-}
