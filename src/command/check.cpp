@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "json_output.hpp"
 #include "launch/exit_codes.hpp"
 #include "launch/launch_plan.hpp"
 #include "launch/machine_check.hpp"
@@ -45,7 +45,7 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
 
 namespace {
 
-std::string json_of_findings(const std::vector<profile::Finding>& findings) {
+void print_as_json(const std::vector<profile::Finding>& findings) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& finding : findings) {
     list.push_back({{"file", finding.where.file},
@@ -55,7 +55,7 @@ std::string json_of_findings(const std::vector<profile::Finding>& findings) {
                     {"problem", finding.problem},
                     {"remedy", finding.remedy}});
   }
-  return list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  print_json(list, true);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ int check(const CheckArguments& arguments) {
   const auto findings = findings_of(arguments);
   const int result = profile::has_errors(findings) ? launch::kConfigurationError : 0;
   if (arguments.json) {
-    std::printf("%s\n", json_of_findings(findings).c_str());
+    print_as_json(findings);
     return result;
   }
   std::fputs(profile::to_text(findings).c_str(), stderr);

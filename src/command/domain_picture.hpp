@@ -15,18 +15,18 @@ class Entity;
 
 namespace skein::command {
 
-/// A peer as others see it, and what it says of itself.
+/// A peer as others see it, and as it describes itself.
 struct PeerPicture {
   std::string name;  ///< `system/entity`; of a CSP that only the Broker knows, its owner's.
   Guid participant;
   std::optional<inspection::Peer> process;  ///< Nothing: it does not answer.
-  /// What it provides, managed services included; sorted by name.
+  /// Its services, managed ones included; sorted by name.
   std::vector<std::shared_ptr<const discovery::ServiceDescription>> services;
   std::vector<inspection::TopicEndpoint> topics;
   std::vector<inspection::Connection> connections;
 };
 
-/// Who is on a domain at one moment, ordered by name; not who looks.
+/// The peers on a domain at one moment, ordered by name, without the one that looks.
 using DomainPicture = std::vector<PeerPicture>;
 
 /// Puts together what the Broker knows of services, and what peers answer.
@@ -35,8 +35,8 @@ class DomainLook {
   /// `entity` must outlive it. Throws as Inspector.
   explicit DomainLook(Entity& entity) : entity_(entity), inspector_(entity) {}
 
-  /// Topics and connections only where `whole`. Takes as long as the slowest peer that answers, at
-  /// most a second, or two where `whole`.
+  /// Topics and connections only if `whole`. Takes as long as the slowest peer that answers, at
+  /// most a second, or two if `whole`.
   DomainPicture take(bool whole);
 
  private:
@@ -44,7 +44,7 @@ class DomainLook {
   Inspector inspector_;
 };
 
-/// The peer of a picture by its participant; null where there is none.
+/// The peer of a picture by its participant; null if there is none.
 const PeerPicture* find_peer(const DomainPicture& picture, const Guid& participant);
 
 /// Whether it is one of Skein's commands, and not of a mission.

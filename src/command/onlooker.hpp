@@ -16,7 +16,7 @@ struct EntityOptions;
 
 namespace skein::command {
 
-/// Where a command that only looks at a domain joins it.
+/// How a command that only looks at a domain joins it.
 struct Onlooker {
   /// The system of all onlookers.
   static constexpr const char* kSystem = "tools";
@@ -31,21 +31,21 @@ struct Onlooker {
   std::vector<std::string> variables;  ///< Of the profile: NAME=VALUE.
 
   /// The domain that it looks at: the option's or the profile's; without either that of the
-  /// variable SKEIN_DOMAIN, or 0. Throws InvalidArgument where that is no number.
+  /// variable SKEIN_DOMAIN, or 0. Throws InvalidArgument if that is no number.
   std::uint32_t watched_domain() const;
 
-  /// What an entity of the command's `name` joins with. Throws what reading the profile throws, and
-  /// InvalidArgument where none of its peers is of this host, or options are missing.
+  /// What an entity of the command's `name` joins with. Throws as reading the profile does, and
+  /// InvalidArgument if none of its peers is of this host, or options are missing.
   EntityOptions entity_options(const std::string& name) const;
 };
 
-/// Joins the domain. Throws as entity_options(), and Internal where that fails: nothing was looked
+/// Joins the domain. Throws as entity_options(), and Internal if that fails: nothing was looked
 /// for yet.
 Entity join(const Onlooker& onlooker, const std::string& name);
 
 inline constexpr const char* kDomainVariable = "SKEIN_DOMAIN";
 
-/// Of commands that look: what they looked for is not there, or did not answer.
+/// Of commands that look: the thing is not there, or did not answer.
 inline constexpr int kNothingThere = 69;
 inline constexpr int kNoAnswer = 124;
 
@@ -68,11 +68,11 @@ inline constexpr std::array kLookingExitCodes{
     launch::ExitCode{"128 + N", "interrupted by signal N before it was done"},
 };
 
-/// Runs a command that looks. What it did not find is told with the domain, and with those on which
-/// missions fly here.
+/// Runs a command that looks. A thing that is not found is told with the domain, and with those on
+/// which missions fly here.
 int look(const Onlooker& onlooker, const std::function<int()>& command);
 
-/// On stderr, for who finds nobody: where missions fly, if they do.
+/// On stderr, if nobody is found: the domains on which missions fly.
 void tell_missions_elsewhere(const Onlooker& onlooker);
 
 /// On stderr: what it waits for, where, and how it ends.

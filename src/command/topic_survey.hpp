@@ -9,17 +9,17 @@
 
 namespace skein::command {
 
-/// How long entities that are known have to answer; who hangs is left out.
+/// How long entities that are known have to answer; those that hang are left out.
 inline constexpr std::chrono::seconds kAnswerPatience{2};
 
 /// The topic of that name, once an entity has it. Throws Unavailable with the most similar name
-/// where none has it after `seconds`, InvalidArgument where there are two of that name, and
+/// if none has it after `seconds`, InvalidArgument if there are two of that name, and
 /// Interrupted.
 KnownTopic await_topic(Inspector& inspector, const std::string& name, double seconds,
                        const Interruption& interruption);
 
-/// The types that a topic's type names, as its publishers tell them where there are any, or its
-/// subscriptions; the other way round where not `publishers`.
+/// The types that a topic's type names, as its publishers tell them if there are any, or its
+/// subscriptions; the other way round if not `publishers`.
 types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers = true);
 
 /// Asks entities for the types of their topics. `inspector` must outlive it.
