@@ -128,11 +128,10 @@ struct PeerArguments : MissionArguments {
 int run_peer(const PeerArguments& arguments);
 
 struct ScriptArguments : PlanArguments {
-  std::string output;   ///< The script's file; empty: stdout.
-  std::string systemd;  ///< A folder for units of systemd, instead of a script.
+  std::string output;  ///< The script's file; empty: stdout.
 };
 
-/// `skein script PROFILE`: the mission as a shell script, or as units of systemd.
+/// `skein script PROFILE`: the mission as a shell script.
 int write_script(const ScriptArguments& arguments);
 
 struct GraphArguments : Onlooker {

@@ -3,10 +3,8 @@
 #include <string>
 
 #include "commands.hpp"
-#include "core/printable.hpp"
 #include "core/whole_file.hpp"
 #include "launch/start_script.hpp"
-#include "launch/systemd_units.hpp"
 #include "mission_plan.hpp"
 #include "skein/error.hpp"
 
@@ -19,14 +17,6 @@ void make_executable(const std::filesystem::path& file) {
                                std::filesystem::perm_options::add);
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error) return;
-  throw WriteFailed("the folder '" + printable(folder.string()) +
-                    "' cannot be made: " + error.message());
-}
-
 }  // namespace
 
 int write_script(const ScriptArguments& given) {
@@ -35,14 +25,7 @@ int write_script(const ScriptArguments& given) {
   const profile::MissionProfile mission = read_mission(arguments);
   const auto plan = plan_of(mission, arguments);
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
-  if (!arguments.systemd.empty()) {
-    make_folder(arguments.systemd);
-    for (const auto& [name, text] : launch::systemd_units(plan)) {
-      const auto file = std::filesystem::path(arguments.systemd) / name;
-      write_output([&] { write_whole_file("the unit", file, text); });
-      std::printf("%s\n", name.c_str());
-    }
-  } else if (!arguments.output.empty()) {
+  if (!arguments.output.empty()) {
     write_output(
         [&] { write_whole_file("the script", arguments.output, launch::start_script(plan)); });
     make_executable(arguments.output);

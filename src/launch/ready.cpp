@@ -10,8 +10,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "service_manager.hpp"
-
 namespace skein::launch {
 namespace {
 
@@ -38,8 +36,7 @@ void write_text(int descriptor, std::string_view text) noexcept {
 
 void report_ready() noexcept {
   const int descriptor = ready_descriptor();
-  if (reported.exchange(true)) return;
-  if (descriptor < 0) return notify_service_manager("READY=1");
+  if (reported.exchange(true) || descriptor < 0) return;
   ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);  // what this process starts cannot speak for it
   write_text(descriptor, "\n");
 }
@@ -47,23 +44,20 @@ void report_ready() noexcept {
 void report_progress() noexcept {
   if (!reported) return;
   const int descriptor = ready_descriptor();
-  if (descriptor < 0) return notify_service_manager("WATCHDOG=1");
-  write_text(descriptor, "\n");
+  if (descriptor >= 0) write_text(descriptor, "\n");
 }
 
 void report_waiting(std::string_view reason) noexcept {
   const int descriptor = ready_descriptor();
-  const std::string_view beginning = descriptor < 0 ? "STATUS=" : "?";
-  std::array<char, kLongestReason + 8> line;
-  auto end = std::copy(beginning.begin(), beginning.end(), line.begin());
-  end = std::replace_copy(
+  if (descriptor < 0) return;
+  std::array<char, kLongestReason + 2> line;
+  line.front() = '?';
+  auto end = std::replace_copy(
       reason.begin(),
-      reason.begin() + static_cast<std::ptrdiff_t>(std::min(reason.size(), kLongestReason)), end,
-      '\n', ' ');
+      reason.begin() + static_cast<std::ptrdiff_t>(std::min(reason.size(), kLongestReason)),
+      line.begin() + 1, '\n', ' ');
   *end++ = '\n';
-  const std::string_view text(line.data(), static_cast<std::size_t>(end - line.begin()));
-  if (descriptor < 0) return notify_service_manager(text);
-  write_text(descriptor, text);
+  write_text(descriptor, {line.data(), static_cast<std::size_t>(end - line.begin())});
 }
 
 }  // namespace skein::launch

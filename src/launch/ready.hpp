@@ -13,21 +13,19 @@ using profile::kReadyVariable;
 inline constexpr std::size_t kLongestReason = 2048;
 
 /// Tells the launcher that this process is ready: it answers calls, and what it depends on is
-/// there. In a process without a launcher, systemd is told where it asks (a service of
-/// Type=notify). Every call after the first, and any call in a process without either, does
-/// nothing. Any process can do the same without this library, by writing a byte to the descriptor
-/// whose number stands in SKEIN_READY_FD (in a shell: `echo >&$SKEIN_READY_FD`). A process that
-/// does not within its ready timeout is taken for hung. Callable from any thread.
+/// there. Every call after the first, and any call in a process without a launcher, does nothing.
+/// Any process can do the same without this library, by writing a byte to the descriptor whose
+/// number stands in SKEIN_READY_FD (in a shell: `echo >&$SKEIN_READY_FD`). A process that does not
+/// within its ready timeout is taken for hung. Callable from any thread.
 void report_ready() noexcept;
 
 /// Tells the launcher that this process, which is ready, makes progress: without this library, by
-/// one more byte. Feeds systemd's watchdog, where that started the process. Does nothing before
-/// report_ready(); never blocks.
+/// one more byte. Does nothing before report_ready(); never blocks.
 void report_progress() noexcept;
 
 /// Tells the launcher what this process waits for before it is ready, or what keeps it from making
 /// progress: the last such reason stands in what the launcher says of its end. Without this
-/// library: write a line that begins with `?`. systemd shows it as the service's status.
+/// library: write a line that begins with `?`.
 void report_waiting(std::string_view reason) noexcept;
 
 }  // namespace skein::launch

@@ -105,7 +105,6 @@ TEST_CASE("each exit code of the table has its cause") {
 
   const std::string nowhere = "/no/such/folder/file";
   table.expect(launch::kOutputLost, {"script", whole, "--output", nowhere});
-  table.expect(launch::kOutputLost, {"script", whole, "--systemd", "/dev/null/units"});
   table.expect(launch::kOutputLost, {"record", "--domain", "49", "--output", nowhere});
   table.expect(launch::kOutputLost,
                {"record", "--domain", "49", "--output", recording});  // it is there

@@ -186,22 +186,13 @@ void add_attend(CLI::App& app, int& result) {
 }
 
 void add_script(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "script", "Write a mission as a shell script, or as services of systemd",
-      {{"skein script mission.xml --output start.sh",
-        "A script that starts it without Skein's launcher"},
-       {"skein script mission.xml --systemd units", "A unit for each process, and a target"}});
+  auto& command = add_command(app, "script", "Write a mission as a shell script",
+                              {{"skein script mission.xml --output start.sh",
+                                "A script that starts it without Skein's launcher"}});
   auto& arguments = arguments_of(command, write_script, result);
   add_plan(command, arguments);
-  auto* output =
-      command
-          .add_option("--output", arguments.output, "The script's file; default: standard output")
-          ->type_name(kFile);
-  command
-      .add_option("--systemd", arguments.systemd,
-                  "Folder for units of systemd, instead; default: none")
-      ->type_name(kDirectory)
-      ->excludes(output);
+  command.add_option("--output", arguments.output, "The script's file; default: standard output")
+      ->type_name(kFile);
 }
 
 }  // namespace
