@@ -7,22 +7,16 @@
 #include <vector>
 
 #include "core/log.hpp"
-#include "core/thread_stack.hpp"
 
 namespace skein {
 namespace {
 
 void tell_of_stall(const std::string& name, pid_t thread) {
-  std::string where;
-  for (const std::string& function : stack_of(thread)) {
-    where += (where.empty() ? ": it is in " : ", called by ") + function;
-  }
-  if (where.empty()) where = "; where it is cannot be seen";
   log(LogLevel::Warning, "watchdog",
       "the thread '" + name + "' (" + std::to_string(thread) +
           ") has not come to the end of one piece of work for more than a second, and all that it "
-          "has to do waits" +
-          where);
+          "has to do waits; `gdb -p " +
+          std::to_string(thread) + " -batch -ex bt` shows where it is");
 }
 
 }  // namespace

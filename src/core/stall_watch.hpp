@@ -17,8 +17,8 @@ namespace skein {
 
 class StallWatch;
 
-/// One of the library's own threads whose work comes in short pieces. Of a piece that takes a
-/// second the log tells, with the thread's stack, while somebody looks (StallWatch::look).
+/// One of the library's own threads whose work comes in short pieces. The log tells of a
+/// piece that takes more than a second, while somebody looks (StallWatch::look).
 class WatchedThread {
  public:
   /// Of the calling thread, which also destroys it.

@@ -1,21 +1,11 @@
 #include "core/stall_watch.hpp"
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <atomic>
 #include <catch2/catch.hpp>
-#include <csignal>
 #include <string>
-#include <thread>
 #include <vector>
-
-#include "../tools/eventually.hpp"
-#include "core/thread_stack.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
-using skein::test::eventually;
 
 namespace {
 
@@ -33,35 +23,6 @@ struct Watched {
 };
 
 using Names = std::vector<std::string>;
-
-/// A thread that waits in the kernel until it is let go.
-class WaitingThread {
- public:
-  explicit WaitingThread(bool takes_signals = true) {
-    REQUIRE(pipe(ends_) == 0);
-    thread_ = std::thread([this, takes_signals] {
-      sigset_t all;
-      sigfillset(&all);
-      if (!takes_signals) pthread_sigmask(SIG_BLOCK, &all, nullptr);
-      number_ = gettid();
-      char octet;
-      while (read(ends_[0], &octet, 1) > 0) {
-      }
-    });
-    REQUIRE(eventually([&] { return number_ != 0; }));
-  }
-  ~WaitingThread() {
-    close(ends_[1]);
-    thread_.join();
-    close(ends_[0]);
-  }
-  pid_t number() const { return number_; }
-
- private:
-  int ends_[2]{};
-  std::atomic<pid_t> number_{0};
-  std::thread thread_;
-};
 
 }  // namespace
 
@@ -140,28 +101,3 @@ TEST_CASE("who has ended is not looked at") {
   watched.look(5);
   CHECK(watched.told.empty());
 }
-
-// TSan lets no handler run before the system call in which its thread waits has returned.
-#ifndef __SANITIZE_THREAD__
-TEST_CASE("the stack of a thread is seen while it waits, and it goes on waiting") {
-  WaitingThread waiting;
-  for (int i = 0; i < 3; ++i) {
-    const auto functions = stack_of(waiting.number());
-    CAPTURE(functions);
-    const auto reads = std::ranges::find_if(
-        functions, [](const std::string& function) { return function.starts_with("read ("); });
-    CHECK(functions.end() - reads > 2);  // with who called it, and who called that one
-  }
-}
-
-TEST_CASE("of a thread that has ended, or takes no signals, no stack is seen") {
-  pid_t number = 0;
-  {
-    const WaitingThread waiting;
-    number = waiting.number();
-  }
-  CHECK(stack_of(number).empty());
-  CHECK(stack_of(WaitingThread(false).number()).empty());
-  CHECK_FALSE(stack_of(WaitingThread().number()).empty());  // others are seen again
-}
-#endif
