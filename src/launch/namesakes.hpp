@@ -7,10 +7,6 @@
 
 #include "brokerless_discovery/table.hpp"
 
-namespace skein::inspection {
-struct Answer;
-}
-
 namespace skein::launch {
 
 /// Notices other processes that run a peer of the same name: callers are then served by either.
@@ -27,12 +23,8 @@ class Namesakes {
   /// What is to be told where that is a service of a namesake that lives; once for each process,
   /// otherwise empty.
   std::string look_at(const brokerless_discovery::Change& change);
-  /// The same of what an entity says of itself, which may provide nothing.
-  std::string look_at(const inspection::Answer& answer);
 
  private:
-  std::string tell(const std::string& host, std::uint32_t process, bool here);
-
   const std::string system_;
   const std::string entity_;
   const std::string host_;

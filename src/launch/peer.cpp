@@ -36,7 +36,6 @@
 #include "profile/component_xml.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
-#include "skein/inspector.hpp"
 #include "skein/wait_for_signal.hpp"
 #include "used_topics.hpp"
 #include "wake_up.hpp"
@@ -295,33 +294,6 @@ bool await_dependencies(Entity& entity, const PeerProfile& peer,
   return !told_to_end();
 }
 
-/// Asks all entities once, a while after it was made, whether one is a namesake of a peer that
-/// provides nothing: neither is in the other's table.
-class NamesakeQuestion {
- public:
-  /// Both outlive this object.
-  NamesakeQuestion(Entity& entity, Namesakes& namesakes)
-      : asks_([&entity, &namesakes](const std::stop_token& ends) {
-          constexpr Duration kUntilAllAreKnown = std::chrono::seconds(2);
-          constexpr Duration kPatience = std::chrono::seconds(1);
-          if (await_end(entity, ends, kUntilAllAreKnown)) return;
-          try {
-            Inspector inspector(entity);
-            for (const auto& [guid, answer] :
-                 inspector.ask_all(inspection::Subject::Self, kPatience)) {
-              const std::string text = namesakes.look_at(answer);
-              if (!text.empty()) log(LogLevel::Warning, entity.id(), text);
-            }
-          } catch (const std::exception& error) {
-            log(LogLevel::Warning, entity.id(),
-                std::string("cannot look for peers of the same name: ") + error.what());
-          }
-        }) {}
-
- private:
-  std::jthread asks_;
-};
-
 /// Until the process is told to end, and its calls have ended. The rest of the time until it is
 /// killed is for the entity's own end.
 void serve(Entity& entity, const profile::ProcessRules& rules) {
@@ -441,9 +413,6 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   try {
     int code = 0;
     if (peer.component->interfaces.empty()) {
-      Namesakes silent(peer.system, peer.name, brokerless_discovery::ProcessWatch::host(),
-                       static_cast<std::uint32_t>(::getpid()));
-      const NamesakeQuestion question(entity, silent);
       code = run_user_code("", [&] { return run_own_code(entity, peer, registry, values); });
     } else {
       serve(entity, peer.rules);

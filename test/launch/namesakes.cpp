@@ -4,9 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/host.hpp"
 #include "skein/discovery.idl.hpp"
-#include "skein/inspection.idl.hpp"
 
 using namespace skein;
 using namespace skein::launch;
@@ -41,36 +39,13 @@ TEST_CASE("A peer of the same name in another process is told once") {
   CHECK_THAT(namesakes.look_at(added(service_of("there", getpid()))), Contains("on another host"));
 }
 
-TEST_CASE("A namesake that provides nothing is told by what it says of itself, once") {
-  Namesakes namesakes("boat", "tide", "here", static_cast<std::uint32_t>(getpid()));
-  inspection::Answer answer;
-  answer.entity = "boat/tide";
-  CHECK(namesakes.look_at(answer).empty());
-  answer.peer.emplace_back();
-  answer.peer[0].host = name_of_this_host();
-  answer.peer[0].pid = static_cast<std::uint32_t>(getpid());
-  CHECK(namesakes.look_at(answer).empty());
-  answer.peer[0].pid = static_cast<std::uint32_t>(kOther);
-  CHECK_THAT(namesakes.look_at(answer),
-             Contains("process " + std::to_string(kOther) + " runs a peer of the same name"));
-  CHECK(namesakes.look_at(answer).empty());
-  CHECK(namesakes.look_at(added(service_of("here", kOther))).empty());
-  answer.peer[0].host = "elsewhere";
-  CHECK_THAT(namesakes.look_at(answer), Contains("on another host"));
-  answer.entity = "boat/chart";
-  answer.peer[0].pid += 1;
-  CHECK(namesakes.look_at(answer).empty());
-}
-
 TEST_CASE("Who has another name, belongs to another, goes or is dead is no namesake") {
   Namesakes namesakes("boat", "tide", "here", static_cast<std::uint32_t>(getpid()));
   auto service = service_of("here", kOther);
   SECTION("another system") { service.system = "port"; }
   SECTION("another name") { service.entity = "chart"; }
   SECTION("a managed service") { service.owner = "boat/tide"; }
-  SECTION("a service of Skein's own, beside which it tells of itself") {
-    service.service = "skein/launch/ILiveParameters";
-  }
+  SECTION("a service of Skein's own") { service.service = "skein/launch/ILiveParameters"; }
   SECTION("dead") { service.pid = 0x7fff'fff0; }
   CHECK(namesakes.look_at(added(service)).empty());
   CHECK(namesakes

@@ -321,16 +321,6 @@ TEST_CASE("two peers of one name each warn of the other, and the doctor of both"
   CHECK_THAT(doctor.output(), Contains("2 peers are called uav-1/office"));
 }
 
-TEST_CASE("of two peers of one name that provide nothing the later one warns of the other") {
-  if (!installed("fastdds")) return;
-  const Errand errand;
-  const std::string profile = errand.profile("", "<peer name='h' component='herald.xml'/>");
-  CommandRun first({"peer", profile, "h"});
-  REQUIRE(first.writes("hear, hear"));
-  CommandRun second({"peer", profile, "h"});
-  CHECK(second.writes("process " + std::to_string(first.pid()) + " runs a peer of the same name"));
-}
-
 TEST_CASE("a launcher says on which domain it flies, and that commands look on another") {
   const Errand errand;
   const std::string profile =
