@@ -28,12 +28,6 @@ namespace {
 constexpr std::string_view kPrefix = "skein/";
 constexpr std::size_t kParticipantDigits = 24;
 
-// How long nobody is let in after somebody was turned away, and after the kernel had no descriptor:
-// who waits there meanwhile costs nothing, and hears of this process's end all the same.
-constexpr std::chrono::milliseconds kAfterRefusal{10};
-constexpr std::chrono::milliseconds kAfterShortage{100};
-constexpr int kAcceptedInARow = 16;
-
 constexpr std::uint64_t kWake = 0;
 constexpr std::uint64_t kTimer = 1;
 
@@ -137,13 +131,9 @@ struct ProcessWatch::State {
     listener.address = std::string(kPrefix) + participant.hex().substr(0, kParticipantDigits) +
                        Guid::random().hex().substr(kParticipantDigits);
     listener.socket = local_socket();
-    sockaddr_un name;
-    const socklen_t length = fill_address(name, listener.address);
     std::lock_guard lock(mutex);
     const std::uint64_t id = ++last_id;
-    if (!listener.socket ||
-        bind(listener.socket.get(), reinterpret_cast<sockaddr*>(&name), length) != 0 ||
-        ::listen(listener.socket.get(), SOMAXCONN) != 0 ||
+    if (!listener.socket || !listen_at(listener.socket, listener.address) ||
         !control(EPOLL_CTL_ADD, listener.socket, id, EPOLLIN)) {
       throw_unavailable();
     }
@@ -154,17 +144,10 @@ struct ProcessWatch::State {
 
   void let_in(const Listener& listener) {
     const std::uint64_t before = refused;
-    for (int i = 0; i < kAcceptedInARow; ++i) {
-      FileDescriptor socket(
-          accept4(listener.socket.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-      if (!socket) {
-        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) {
-          return let_nobody_in(kAfterShortage);
-        }
-        break;
-      }
+    const bool served = skein::let_in(listener.socket.get(), kAcceptedInARow, [&](auto socket) {
       if (!greet(std::move(socket))) ++refused;
-    }
+    });
+    if (!served) return let_nobody_in(kAfterShortage);
     if (refused > before) let_nobody_in(kAfterRefusal);
   }
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "file_descriptor.hpp"
 
@@ -27,6 +29,33 @@ inline socklen_t fill_address(sockaddr_un& address, const std::string& name) {
   const std::size_t length = std::min(name.size(), sizeof(address.sun_path) - 1);
   std::memcpy(address.sun_path + 1, name.data(), length);
   return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+}
+
+/// False, with errno, where the name is taken or the kernel refuses.
+inline bool listen_at(const FileDescriptor& socket, const std::string& name,
+                      int backlog = SOMAXCONN) {
+  sockaddr_un address;
+  const socklen_t length = fill_address(address, name);
+  return bind(socket.get(), reinterpret_cast<sockaddr*>(&address), length) == 0 &&
+         listen(socket.get(), backlog) == 0;
+}
+
+// Whoever waits at a listening socket costs nothing. So nobody is let in for a while after somebody
+// was turned away, and after the kernel had no descriptor.
+inline constexpr std::chrono::milliseconds kAfterRefusal{10};
+inline constexpr std::chrono::milliseconds kAfterShortage{100};
+/// Others have their turn then.
+inline constexpr std::size_t kAcceptedInARow = 16;
+
+/// Lets in those who wait, `most` at most. False if the kernel has no descriptor for the next one.
+template <class Take>
+bool let_in(int listening, std::size_t most, const Take& take) {
+  for (; most > 0; --most) {
+    FileDescriptor socket(accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
+    take(std::move(socket));
+  }
+  return true;
 }
 
 /// Nobody listens, or nothing is known, with the socket not connected.

@@ -2,7 +2,6 @@
 
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 #include <sstream>
 #include <string>
 
-#include "../core/file_descriptor.hpp"
+#include "../core/abstract_socket.hpp"
 #include "../core/log.hpp"
 #include "skein/error.hpp"
 #include "wake_up.hpp"
@@ -44,23 +43,9 @@ std::string name_of(const profile::MissionProfile& mission, const std::string& h
          (number == 0 ? "" : "-" + std::to_string(number));
 }
 
-/// In the abstract namespace, which begins with a zero and is each network namespace's own.
-sockaddr_un address_of(const std::string& name) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  name.copy(address.sun_path + 1, sizeof address.sun_path - 1);
-  return address;
-}
-
 /// Who listens there, once `client` is connected to it; nothing where nobody does any more.
-std::optional<ucred> connect(const FileDescriptor& client, const sockaddr_un& address) {
-  ucred holder{};
-  socklen_t size = sizeof holder;
-  if (::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::getsockopt(client.get(), SOL_SOCKET, SO_PEERCRED, &holder, &size) != 0) {
-    return std::nullopt;
-  }
-  return holder;
+std::optional<ucred> holder_of(const std::string& name, const FileDescriptor& client) {
+  return connect_to(client, name) == Reached::Yes ? other_end(client) : std::nullopt;
 }
 
 constexpr std::string_view kUnconnected = "01";  // SS_UNCONNECTED of <linux/net.h>
@@ -75,10 +60,7 @@ std::map<std::string, std::string> bound_sockets() {
     for (int i = 0; i < 5; ++i) columns >> word;
     columns >> state >> inode >> shown;
     // What is connected to it bears its name, too.
-    if (state != kUnconnected || !shown.starts_with('@')) continue;
-    // Each zero shows as '@', and the name is filled up with them.
-    shown.erase(shown.find_last_not_of('@') + 1);
-    if (shown.size() > 1) inodes.emplace(shown.substr(1), inode);
+    if (state == kUnconnected && shown.starts_with('@')) inodes.emplace(shown.substr(1), inode);
   }
   return inodes;
 }
@@ -112,8 +94,7 @@ bool has_open(const std::filesystem::path& process, const std::string& link) {
 /// The process of this user whose socket has that name. One that listens is known by its
 /// connection, any other by its descriptors.
 std::optional<pid_t> own_holder_of(const std::string& name) {
-  const FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (const auto holder = connect(client, address_of(name)))
+  if (const auto holder = holder_of(name, local_socket()))
     return holder->uid == ::getuid() ? std::optional(holder->pid) : std::nullopt;
   const auto link = link_to(name);
   if (!link) return std::nullopt;
@@ -187,7 +168,7 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
   std::optional<ucred> holder;
   for (int number = 0; number < kNames && !holder; ++number) {
     const std::string name = name_of(mission, host, number);
-    if (own_holder_of(name)) holder = connect(socket, address_of(name));
+    if (own_holder_of(name)) holder = holder_of(name, socket);
   }
   if (!holder) {
     throw Unavailable("the mission '" + mission.name + "' is not flown here on domain " +
@@ -203,7 +184,7 @@ std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
   for (const auto& [name, inode] : bound_sockets()) {
     if (!name.starts_with(own_prefix())) continue;
     const FileDescriptor socket = patient_socket();
-    const auto holder = connect(socket, address_of(name));
+    const auto holder = holder_of(name, socket);
     if (!holder || holder->uid != ::getuid()) continue;
     try {
       answers.push_back({ask(socket, holder->pid, request), ""});
@@ -215,7 +196,7 @@ std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
 }
 
 MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::string& host) {
-  FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  FileDescriptor socket = local_socket();
   if (!socket) throw_system_error("a socket");
   const auto refuse_if_flown = [&](int number) {
     const auto holder = own_holder_of(name_of(mission, host, number));
@@ -228,10 +209,8 @@ MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::st
   // Another user may have given back a name since a launcher of this user took a later one.
   for (int number = 0; number < kNames; ++number) refuse_if_flown(number);
   for (int number = 0; number < kNames; ++number) {
-    const sockaddr_un address = address_of(name_of(mission, host, number));
-    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-      if (::listen(socket.get(), 8) != 0) throw_system_error("a socket that listens");
-      socket_ = socket.release();
+    if (listen_at(socket, name_of(mission, host, number), 8)) {
+      socket_ = std::move(socket);
       return;
     }
     if (errno != EADDRINUSE) throw_system_error("a socket with a name");
@@ -240,10 +219,6 @@ MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::st
   log(LogLevel::Warning, "launch",
       "other users' processes have taken all names of the socket for requests (`ss -xlp` shows "
       "them): skein status finds nothing, and nothing keeps this mission from being flown twice");
-}
-
-MissionClaim::~MissionClaim() {
-  if (socket_ >= 0) ::close(socket_);
 }
 
 std::optional<std::uint32_t> claimed_domain(std::string_view socket) {

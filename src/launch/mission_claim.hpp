@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../core/file_descriptor.hpp"
 #include "profile/mission_profile.hpp"
 
 namespace skein::launch {
@@ -37,15 +38,12 @@ class MissionClaim {
   /// Throws InvalidArgument, which names the other launcher's process, where it is taken;
   /// Unavailable where the system refuses a socket. `host`: as for is_here().
   MissionClaim(const profile::MissionProfile& mission, const std::string& host);
-  ~MissionClaim();
-  MissionClaim(const MissionClaim&) = delete;
-  MissionClaim& operator=(const MissionClaim&) = delete;
 
   /// A non-blocking socket that listens; -1 where other users' processes have taken all its names.
-  int requests() const noexcept { return socket_; }
+  int requests() const noexcept { return socket_.get(); }
 
  private:
-  int socket_ = -1;
+  FileDescriptor socket_;
 };
 
 /// The domain of the mission that the holder of a socket flies, by the socket's name as

@@ -5,17 +5,9 @@
 #include <array>
 #include <cerrno>
 
+#include "../core/abstract_socket.hpp"
+
 namespace skein::launch {
-namespace {
-
-bool is_of_this_user(int socket) {
-  ucred other{};
-  socklen_t size = sizeof other;
-  return ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &other, &size) == 0 &&
-         (other.uid == ::getuid() || other.uid == 0);
-}
-
-}  // namespace
 
 void RequestServer::add_to(std::vector<pollfd>& watched) const {
   watched.push_back({listener_, POLLIN, 0});
@@ -23,13 +15,13 @@ void RequestServer::add_to(std::vector<pollfd>& watched) const {
 }
 
 void RequestServer::take_clients() {
-  while (listener_ >= 0) {
-    FileDescriptor socket(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    if (!socket) return;
-    if (!is_of_this_user(socket.get())) continue;
+  if (listener_ < 0) return;
+  let_in(listener_, kAcceptedInARow, [&](FileDescriptor socket) {
+    const auto owner = other_end(socket);
+    if (!owner || (owner->uid != ::getuid() && owner->uid != 0)) return;
     if (clients_.size() == kMostClients) clients_.pop_front();
     clients_.push_back({std::move(socket), ""});
-  }
+  });
 }
 
 bool RequestServer::is_done(Client& client) const {

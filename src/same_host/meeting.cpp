@@ -28,10 +28,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long nobody is let in after somebody was turned away, or the kernel had no descriptor.
-constexpr std::chrono::milliseconds kAfterRefusal{10};
-constexpr std::chrono::milliseconds kAfterShortage{100};
-constexpr std::size_t kAcceptedInARow = 16;
 // Of how many users it is remembered that the log knows of them.
 constexpr std::size_t kToldUsers = 16;
 constexpr std::uint64_t kWake = 0;
@@ -212,15 +208,8 @@ struct Meeting::State {
   void let_in(const std::shared_ptr<Offer>& offer) {
     const std::uint64_t before = refused;
     const std::size_t room = rules.newcomers - std::min(rules.newcomers, newcomers.size());
-    for (std::size_t i = 0; i < std::clamp<std::size_t>(room, 1, kAcceptedInARow); ++i) {
-      FileDescriptor accepted(
-          accept4(offer->socket.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-      if (!accepted) {
-        if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) {
-          return let_nobody_in(kAfterShortage);
-        }
-        break;
-      }
+    const std::size_t most = std::clamp<std::size_t>(room, 1, kAcceptedInARow);
+    const bool served = skein::let_in(offer->socket.get(), most, [&](FileDescriptor accepted) {
       const auto owner = other_end(accepted);
       const std::uint64_t id = ++last_id;
       const auto socket = std::make_shared<const FileDescriptor>(std::move(accepted));
@@ -228,10 +217,11 @@ struct Meeting::State {
       if (!owner || !knows(owner->uid) || newcomers.size() >= rules.newcomers ||
           !control(EPOLL_CTL_ADD, *socket, id, EPOLLIN)) {
         ++refused;
-        continue;
+        return;
       }
       newcomers.emplace(id, Newcomer{offer, socket, owner->pid, Clock::now() + rules.patience});
-    }
+    });
+    if (!served) return let_nobody_in(kAfterShortage);
     if (refused > before) let_nobody_in(kAfterRefusal);
   }
 
@@ -251,7 +241,6 @@ struct Meeting::State {
                      "ones like it are not logged");
   }
 
-  // Who waits meanwhile costs nothing.
   void let_nobody_in(std::chrono::milliseconds time) {
     for (const auto& [id, offer] : offers) control(EPOLL_CTL_MOD, offer->socket, id, 0);
     closed_until = Clock::now() + time;
@@ -341,13 +330,9 @@ struct Meeting::State {
   // ---- for others
 
   void offer(std::shared_ptr<Offer> offer) {
-    sockaddr_un name;
-    const socklen_t length = fill_address(name, address_of(offer->provider));
     std::lock_guard lock(mutex);
     const std::uint64_t id = ++last_id;
-    if (!offer->socket ||
-        bind(offer->socket.get(), reinterpret_cast<sockaddr*>(&name), length) != 0 ||
-        listen(offer->socket.get(), SOMAXCONN) != 0 ||
+    if (!offer->socket || !listen_at(offer->socket, address_of(offer->provider)) ||
         !control(EPOLL_CTL_ADD, offer->socket, id, closed_until ? 0u : std::uint32_t{EPOLLIN})) {
       refuse();
     }

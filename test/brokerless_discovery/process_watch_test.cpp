@@ -23,7 +23,7 @@
 using namespace skein::brokerless_discovery;
 using skein::connect_to;
 using skein::FileDescriptor;
-using skein::fill_address;
+using skein::listen_at;
 using skein::local_socket;
 using skein::Reached;
 using skein::test::eventually;
@@ -110,12 +110,7 @@ struct Doorman {
   std::string address = "skein/" + skein::Guid::random().hex();
   FileDescriptor socket = local_socket();
 
-  Doorman() {
-    sockaddr_un name;
-    const socklen_t length = fill_address(name, address);
-    REQUIRE(bind(socket.get(), reinterpret_cast<sockaddr*>(&name), length) == 0);
-    REQUIRE(listen(socket.get(), 8) == 0);
-  }
+  Doorman() { REQUIRE(listen_at(socket, address)); }
   FileDescriptor let_in() const {
     FileDescriptor guest;
     REQUIRE(eventually([&] {

@@ -281,11 +281,7 @@ class HostileProvider : Attacker {
   /// Of the address under which clients look for it.
   static FileDescriptor listen_as(const Guid& provider) {
     FileDescriptor socket = local_socket(SOCK_SEQPACKET);
-    sockaddr_un address;
-    const socklen_t length = fill_address(address, address_of(provider));
-    if (bind(socket.get(), reinterpret_cast<sockaddr*>(&address), length) != 0) return {};
-    if (listen(socket.get(), SOMAXCONN) != 0) return {};
-    return socket;
+    return listen_at(socket, address_of(provider)) ? std::move(socket) : FileDescriptor();
   }
 
   /// Whether a client came.

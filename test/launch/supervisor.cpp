@@ -222,28 +222,7 @@ TEST_CASE("A failing process is restarted by its rules and then given up") {
   CHECK(numbers_in(starts).size() == 4);
 }
 
-TEST_CASE("A mission goes on without a process that it does not require") {
-  TemporaryFolder folder;
-  const std::string go = (folder.path() / "go").string();
-  auto child = shell_child("a", "ready; exit 1");
-  child.rules.on_loss = LossPolicy::Continue;
-  child.rules.restart.policy = RestartPolicy::Always;
-  child.rules.restart.max_restarts = 2;
-  RecordedMission mission(
-      {child, supervised_mission("ready; while [ ! -e " + go + " ]; do sleep 0.01; done")});
-  mission.on_event = [&](const ChildEvent& event) {
-    if (event.text.find("given up after 2 restarts") != std::string::npos) folder.write("go", "");
-  };
-  const auto result = mission.run();
-  CHECK(result.outcome == Outcome::MissionEnded);
-  CHECK(result.exit_code == 0);
-}
-
-namespace {
-
-/// From the moment in which the launcher has read that the last of two providers is ready, to that
-/// in which it has started who depends on both; negative where it started before.
-std::chrono::nanoseconds time_to_start_a_dependant() {
+TEST_CASE("A dependant starts when what it depends on is ready, and not before") {
   TemporaryFolder folder;
   const std::string go = (folder.path() / "go").string();
   auto dependant = supervised_mission("exit 0");
@@ -252,37 +231,12 @@ std::chrono::nanoseconds time_to_start_a_dependant() {
   RecordedMission mission(
       {dependant, shell_child("a", "while [ ! -e " + go + " ]; do sleep 0.01; done; " + kWait),
        shell_child("b", kWait)});
-  Time ready{}, started{};
+  bool ready = false;
   mission.on_event = [&](const ChildEvent& event) {
     if (event.child == "b" && event.state == ChildState::Ready) folder.write("go", "");
-    if (event.child == "a" && event.state == ChildState::Ready) ready = event.when;
-    if (event.child == "mission" && event.text.starts_with("started")) started = event.when;
+    if (event.child == "a" && event.state == ChildState::Ready) ready = true;
+    if (event.child == "mission" && event.text.starts_with("started")) CHECK(ready);
   };
-  CHECK(mission.run().exit_code == 0);
-  REQUIRE(ready != Time{});
-  return started - ready;
-}
-
-}  // namespace
-
-TEST_CASE("A dependant starts at once when what it depends on is ready, and not before") {
-  std::vector<std::chrono::nanoseconds> times(9);
-  std::ranges::generate(times, time_to_start_a_dependant);
-  std::ranges::sort(times);
-  const auto median = times[times.size() / 2];
-  WARN("from the sign of readiness to the dependant's start: median " << median / 1us << " µs of "
-                                                                      << times.size());
-  CHECK(times.front() >= 0s);
-  CHECK(median < 5s);  // machines are loaded
-}
-
-TEST_CASE("Who depends on a process that is given up starts all the same") {
-  auto lost = shell_child("a", "exit 1");
-  lost.rules.on_loss = LossPolicy::Continue;
-  auto dependant = supervised_mission("exit 0");
-  dependant.layer = 1;
-  dependant.after = {{"M/I", {"a"}}};
-  RecordedMission mission({lost, dependant});
   CHECK(mission.run().exit_code == 0);
 }
 
@@ -380,23 +334,6 @@ TEST_CASE("What left its process's group and session goes with the process") {
   CHECK(mission.run().exit_code == 0);
   REQUIRE(numbers_in(pids).size() == 2);
   for (const pid_t process : numbers_in(pids)) CHECK_FALSE(exists(process));
-}
-
-TEST_CASE("A process killed from outside comes back") {
-  TemporaryFolder folder;
-  const std::string starts = (folder.path() / "starts").string();
-  auto child = shell_child("a", "echo $$ >> " + starts + "; " + kWait);
-  child.rules.restart.policy = RestartPolicy::OnFailure;
-  RecordedMission mission({child, supervised_mission("ready; while [ $(wc -l < " + starts +
-                                                     ") -lt 2 ]; do sleep 0.01; done")});
-  folder.write("starts", "");
-  mission.on_event = [&, killed = false](const ChildEvent& event) mutable {
-    if (event.child != "a" || event.state != ChildState::Ready || killed) return;
-    killed = true;
-    ::kill(numbers_in(starts).at(0), SIGKILL);
-  };
-  CHECK(mission.run().exit_code == 0);
-  CHECK(mission.saw("a: ended by signal 9 (Killed); restart number 1 follows"));
 }
 
 TEST_CASE("When run() returns, no process of any group is left") {

@@ -338,11 +338,9 @@ TEST_CASE("another user is turned away whichever side he is on, and told of in t
   });
   const auto offered = as_another_user([&] {
     const FileDescriptor listening = local_socket(SOCK_SEQPACKET);
-    sockaddr_un name;
-    const socklen_t length = fill_address(name, "skein-call/" + claimed.hex());
     char octet;
-    if (bind(listening.get(), reinterpret_cast<sockaddr*>(&name), length) != 0) return 1;
-    if (listen(listening.get(), 4) != 0 || write(ready[1], "x", 1) != 1) return 2;
+    if (!listen_at(listening, "skein-call/" + claimed.hex())) return 1;
+    if (write(ready[1], "x", 1) != 1) return 2;
     return read(go[0], &octet, 1) == 1 ? 0 : 3;
   });
   asker.join();
@@ -443,10 +441,7 @@ TEST_CASE("a stranger who comes again and again costs some wake-ups a second, wh
 TEST_CASE("a provider that hands over what can be taken away again is refused") {
   const Guid provider = Guid::random();
   FileDescriptor listening = local_socket(SOCK_SEQPACKET);
-  sockaddr_un name;
-  const socklen_t length = fill_address(name, "skein-call/" + provider.hex());
-  REQUIRE(bind(listening.get(), reinterpret_cast<sockaddr*>(&name), length) == 0);
-  REQUIRE(listen(listening.get(), 1) == 0);
+  REQUIRE(listen_at(listening, "skein-call/" + provider.hex()));
   std::thread liar([&] {
     FileDescriptor accepted;
     eventually([&] {
