@@ -55,7 +55,6 @@ class MissionState {
   std::optional<Time> next_tick() const;
 
   const ChildStateMachine& child(std::size_t number) const { return machines_[number]; }
-  std::size_t size() const noexcept { return machines_.size(); }
   /// The first cause of the mission's end; nothing as long as it goes on.
   const std::optional<Verdict>& verdict() const noexcept { return verdict_; }
   /// Whether no child is awaited any more: each is ready, or has ended for good.

@@ -160,7 +160,7 @@ class EndWatch {
 
   const std::function<void(int)> told_;
   StopRequest over_;
-  SignalReader signals_{true};
+  SignalReader signals_;
   std::thread thread_;
 };
 

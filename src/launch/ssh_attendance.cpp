@@ -68,7 +68,7 @@ Ssh start_ssh(const SshAttendance& attendance) {
 class Attending {
  public:
   explicit Attending(const SshAttendance& attendance)
-      : attendance_(attendance), signals_(true), ssh_(start_ssh(attendance)) {
+      : attendance_(attendance), ssh_(start_ssh(attendance)) {
     ::signal(SIGPIPE, SIG_IGN);
     ::fcntl(ssh_.input.get(), F_SETFL, O_NONBLOCK);
     report_waiting("connects to " + attendance.host + " by ssh");

@@ -31,7 +31,7 @@ std::string seconds_text(std::chrono::nanoseconds time) {
 }
 
 void SupervisedChild::report(const std::string& text) const {
-  options_.on_event({plan_.name, machine_.state(), text, std::chrono::steady_clock::now()});
+  options_.on_event({plan_.name, machine_.state(), text});
 }
 
 bool SupervisedChild::spawn(Time now) {

@@ -48,17 +48,6 @@ class ChildKeeping {
   struct sigaction action_before_ {};
 };
 
-constexpr std::size_t kNameColumn = 22;
-
-void print_line(std::FILE* stream, std::string_view name, std::string_view separator,
-                std::string_view text) {
-  std::string line(name);
-  if (line.size() < kNameColumn) line.resize(kNameColumn, ' ');
-  line.append(separator).append(text).append("\n");
-  std::fwrite(line.data(), 1, line.size(), stream);
-  std::fflush(stream);
-}
-
 constexpr const char* kOpenEnd =
     "; the peer that runs the mission is not among them: this launcher runs until it is "
     "interrupted "
@@ -82,20 +71,6 @@ std::optional<std::size_t> process_named(std::string_view asked,
 std::string accepted(const std::string& text) { return std::string(kAccepted).append(text); }
 std::string refused(const std::string& text) { return std::string(kRefused).append(text); }
 
-SupervisorOptions with_defaults(SupervisorOptions options) {
-  if (!options.on_output) {
-    options.on_output = [](std::string_view child, std::string_view line) {
-      print_line(stdout, child, " | ", line);
-    };
-  }
-  if (!options.on_event) {
-    options.on_event = [](const ChildEvent& event) {
-      print_line(stderr, event.child.empty() ? "mission" : event.child, " * ", event.text);
-    };
-  }
-  return options;
-}
-
 /// One run of a mission, from the start of its processes to the end of the last one.
 class MissionRun {
  public:
@@ -103,7 +78,6 @@ class MissionRun {
       : plan_(plan),
         options_(options),
         stop_(stop),
-        signals_(options.handle_signals),
         state_(plan),
         requests_(options.requests, [this](std::string_view request) { return answer(request); }) {
     for (std::size_t i = 0; i < plan.children.size(); ++i)
@@ -127,9 +101,7 @@ class MissionRun {
  private:
   using Steps = MissionState::Steps;
 
-  void report(const std::string& text) const {
-    options_.on_event({"", ChildState::Idle, text, now()});
-  }
+  void report(const std::string& text) const { options_.on_event({"", ChildState::Idle, text}); }
 
   void look_at(std::size_t i) {
     SupervisedChild& child = children_[i];
@@ -218,7 +190,6 @@ class MissionRun {
     if (result_ || !state_.verdict()) return;
     result_ = result_of(*state_.verdict());
     if (result_->exit_code == 0 && state_.is_degraded()) {
-      result_->outcome = Outcome::Degraded;
       result_->exit_code = kDegraded;
     }
     using End = MissionState::End;
@@ -233,28 +204,27 @@ class MissionRun {
     switch (verdict.end) {
       case MissionState::End::MissionEnded: {
         const SupervisedChild& child = children_[verdict.child];
-        return {Outcome::MissionEnded, child.last_status()->exit_code(),
+        return {child.last_status()->exit_code(),
                 child.plan().name + ", which runs the mission, " + child.end_text() +
                     child.last_reason(),
                 ""};
       }
       case MissionState::End::Lost: {
         if (children_[verdict.child].is_misconfigured()) {
-          return {Outcome::StartFailed, kConfigurationError, children_[verdict.child].loss(), ""};
+          return {kConfigurationError, children_[verdict.child].loss(), ""};
         }
         const bool started = child_of(verdict.child).was_ready();
-        return {started ? Outcome::PeerLost : Outcome::StartFailed,
-                started ? kPeerLost : kStartFailed, children_[verdict.child].loss(), ""};
+        return {started ? kPeerLost : kStartFailed, children_[verdict.child].loss(), ""};
       }
       case MissionState::End::Stopped:
-        return {Outcome::Interrupted, kInterrupted + signal_, stop_reason_, ""};
+        return {kInterrupted + signal_, stop_reason_, ""};
       case MissionState::End::AllEnded:
         break;
     }
     for (const SupervisedChild& child : children_) {
-      if (!child.loss().empty()) return {Outcome::PeerLost, kPeerLost, child.loss(), ""};
+      if (!child.loss().empty()) return {kPeerLost, child.loss(), ""};
     }
-    return {Outcome::MissionEnded, 0, "all processes have ended", ""};
+    return {0, "all processes have ended", ""};
   }
 
   void stop(int signal, const std::string& reason) {
@@ -360,27 +330,21 @@ class MissionRun {
 
 }  // namespace
 
-class Supervisor::Implementation {
- public:
-  Implementation(LaunchPlan plan, SupervisorOptions options)
-      : plan_(std::move(plan)), options_(with_defaults(std::move(options))) {}
-
-  LaunchResult run() { return MissionRun(plan_, options_, stop_).run(); }
-  void request_stop() noexcept { stop_.raise(); }
-
- private:
-  LaunchPlan plan_;
-  SupervisorOptions options_;
-  StopRequest stop_;
+struct Supervisor::State {
+  const LaunchPlan plan;
+  const SupervisorOptions options;
+  StopRequest stop{};
 };
 
 Supervisor::Supervisor(LaunchPlan plan, SupervisorOptions options)
-    : implementation_(std::make_unique<Implementation>(std::move(plan), std::move(options))) {}
+    : state_(new State{std::move(plan), std::move(options)}) {}
 
 Supervisor::~Supervisor() = default;
 
-LaunchResult Supervisor::run() { return implementation_->run(); }
+LaunchResult Supervisor::run() {
+  return MissionRun(state_->plan, state_->options, state_->stop).run();
+}
 
-void Supervisor::request_stop() noexcept { implementation_->request_stop(); }
+void Supervisor::request_stop() noexcept { state_->stop.raise(); }
 
 }  // namespace skein::launch

@@ -11,16 +11,7 @@
 
 namespace skein::launch {
 
-enum class Outcome {
-  MissionEnded,  ///< The peer that runs the mission ended by itself, or all processes did.
-  Degraded,      ///< As MissionEnded with code 0, but without a process that was to be there.
-  StartFailed,   ///< A process that must not be lost could not be started, or never became ready.
-  PeerLost,      ///< Such a process was ready once, ended, and was not mended by restarts.
-  Interrupted,   ///< SIGINT, SIGTERM, SIGHUP or request_stop().
-};
-
 struct LaunchResult {
-  Outcome outcome = Outcome::MissionEnded;
   /// One of kExitCodes. 0 only if the mission's peer ended with 0 by itself (without such a peer:
   /// if all processes ended as they were meant to). Its own code if it ended with another, 128 + N
   /// if by signal N.
@@ -35,18 +26,13 @@ struct ChildEvent {
   std::string child;  ///< Empty for the mission as a whole.
   ChildState state = ChildState::Idle;
   std::string text;  ///< For people, such as `ready after 0.21 s` or `ended by signal 11 (...)`.
-  Time when{};
 };
 
 struct SupervisorOptions {
-  /// A line of a child's output, without its line break; by default `name | line` on stdout.
-  std::function<void(std::string_view child, std::string_view line)> on_output;
-  /// By default `name | * text` on stderr.
-  std::function<void(const ChildEvent& event)> on_event;
-  /// Whether run() ends the mission in order on SIGINT, SIGTERM and SIGHUP; a second one kills at
-  /// once, unless it is the same and comes within 300 ms. The signals are blocked in the calling
-  /// thread while run() lasts; other threads of the process must block them, too.
-  bool handle_signals = true;
+  /// A line of a child's output, without its line break.
+  std::function<void(std::string_view child, std::string_view line)> on_output =
+      [](std::string_view, std::string_view) {};
+  std::function<void(const ChildEvent& event)> on_event = [](const ChildEvent&) {};
   /// A listening socket for requests (see MissionClaim): `status`, answered by a MissionStatus as
   /// JSON, and `restart PROCESS`. Negative: there are none.
   int requests = -1;
@@ -74,16 +60,19 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// Runs the mission to its end; once only. Throws Unavailable if the operating system refuses
-  /// what the launcher itself needs (pipes, its guard); nothing is left running then.
+  /// Runs the mission to its end; once only. Ends it in order on SIGINT, SIGTERM and SIGHUP; a
+  /// second one kills at once, unless it is the same and comes within 300 ms. The signals are
+  /// blocked in the calling thread meanwhile; other threads must block them, too. Throws
+  /// Unavailable if the operating system refuses what the launcher itself needs (pipes, its guard);
+  /// nothing is left running then.
   LaunchResult run();
 
   /// Ends the mission in order, from any thread or signal handler; before run() as well.
   void request_stop() noexcept;
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  struct State;
+  const std::unique_ptr<State> state_;
 };
 
 }  // namespace skein::launch

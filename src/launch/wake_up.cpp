@@ -46,17 +46,14 @@ bool StopRequest::take() noexcept {
   return ::read(event_.get(), &count, sizeof count) == sizeof count;
 }
 
-SignalReader::SignalReader(bool enabled) {
-  if (!enabled) return;
+SignalReader::SignalReader() {
   const sigset_t wanted = ending_signals();
   signals_ = FileDescriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
   if (!signals_) throw_system_error("a signal descriptor");
   pthread_sigmask(SIG_BLOCK, &wanted, &before_);
 }
 
-SignalReader::~SignalReader() {
-  if (signals_) pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
+SignalReader::~SignalReader() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 SignalReader::Signal SignalReader::take() noexcept {
   signalfd_siginfo information{};

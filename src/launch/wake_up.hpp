@@ -39,7 +39,7 @@ class StopRequest {
 /// and were not read included.
 class SignalReader {
  public:
-  explicit SignalReader(bool enabled);
+  SignalReader();
   SignalReader(const SignalReader&) = delete;
   SignalReader& operator=(const SignalReader&) = delete;
   ~SignalReader();

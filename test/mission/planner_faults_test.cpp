@@ -150,8 +150,6 @@ TEST_CASE(
   std::atomic<int> aborts = 0;
   std::atomic<bool> given_up = false;
   launch::SupervisorOptions options;
-  options.handle_signals = false;
-  options.on_output = [](std::string_view, std::string_view) {};
   options.on_event = [&](const launch::ChildEvent& event) {
     if (event.child != "aborting") return;
     if (event.text.find("signal 6") != std::string::npos) ++aborts;
