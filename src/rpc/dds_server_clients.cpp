@@ -303,14 +303,16 @@ void DdsServer::State::end_foreign_calls(const Guid& writer) {
   cancel_if([&](const RequestId&, const Invocation& call) { return call.connection == writer; });
 }
 
-// Unlocked: whoever hears of it may answer at once.
+// Cancels unlocked: an implementation that hears of it may answer at once. Oneway calls run all the
+// same: their caller may leave as soon as they are sent.
 template <class Predicate>
 void DdsServer::State::cancel_if(Predicate predicate) {
   std::vector<std::shared_ptr<Invocation>> cancelled;
   {
     std::lock_guard lock(mutex);
     for (const auto& [id, invocation] : active) {
-      if (predicate(id, *invocation)) cancelled.push_back(invocation);
+      if (!invocation->operation->oneway && predicate(id, *invocation))
+        cancelled.push_back(invocation);
     }
   }
   for (const auto& invocation : cancelled) invocation->cancel();
@@ -346,10 +348,7 @@ void DdsServer::State::drop(const Guid& key) {
     discount_unsent(*client, client->unsent_size);
     client->unsent.clear();
   }
-  // For a oneway call nobody has waited anyway.
-  cancel_if([&](const RequestId& id, const Invocation& call) {
-    return id.client == key && !call.operation->oneway;
-  });
+  cancel_if([&](const RequestId& id, const Invocation&) { return id.client == key; });
   clock.cancel(patience);
   clock.cancel(retry);
 }

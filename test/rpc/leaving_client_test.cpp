@@ -107,16 +107,28 @@ Bytes open_request(const Guid& client) {
   return message;
 }
 
-/// One for an hour's work, as one without Skein writes it.
-Bytes foreign_request(const Guid& client, std::uint64_t number) {
+/// As a client without Skein writes it.
+template <class In>
+Bytes foreign_request(const Guid& client, std::uint64_t number, std::string_view name,
+                      const In& in) {
   for (const OperationInfo& operation : Echo::interface_info().operations) {
-    if (operation.name != "wait") continue;
-    const ::test::Echo_wait_In in{3'600'000};
+    if (operation.name != name) continue;
     Bytes message = request(client, number, operation.hash);
     operation.in->encode(&in, message);
     return message;
   }
-  throw std::logic_error("the interface has no operation 'wait'");
+  throw std::logic_error("the interface has no such operation");
+}
+
+/// One for an hour's work.
+Bytes foreign_request(const Guid& client, std::uint64_t number) {
+  return foreign_request(client, number, "wait", ::test::Echo_wait_In{3'600'000});
+}
+
+Bytes oneway_request(const Guid& client, std::uint64_t number) {
+  Bytes message = foreign_request(client, number, "note", ::test::Echo_note_In{"x"});
+  rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1h});
+  return message;
 }
 
 Bytes long_request(const Guid& client, std::uint64_t number) {
@@ -131,12 +143,12 @@ struct Provider {
   SystemClock clock;
   ThreadExecutor control{"control"};
   ThreadExecutor executor{"worker"};
+  std::shared_ptr<EchoService> service = std::make_shared<EchoService>();
   rpc::DdsServer server{participant,
                         control,
                         clock,
-                        std::make_shared<rpc::Service>(
-                            std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()),
-                            executor, clock, rpc::Service::Options{}),
+                        std::make_shared<rpc::Service>(std::make_shared<Echo::Skeleton>(service),
+                                                       executor, clock, rpc::Service::Options{}),
                         {.foreign_clients = true}};
 };
 
@@ -205,6 +217,24 @@ TEST_CASE("a request of a client without Skein ends when its sender leaves, othe
   CHECK(eventually([&] { return provider.server.counters().active == 1; }));
   provider.participant.match_request_writer(staying, false);
   CHECK(eventually([&] { return provider.server.counters().active == 0; }));
+}
+
+TEST_CASE("oneway calls that wait when their client leaves are executed") {
+  Provider provider;
+  PlayedParticipant& participant = provider.participant;
+  const Guid client = Guid::random();
+  participant.request(client, open_request(client));
+  REQUIRE(eventually([&] { return participant.answers(client); }));
+  participant.match(client, true);
+  std::promise<void> free;
+  REQUIRE(provider.executor.post([until = free.get_future().share()] { until.wait(); }));
+  for (std::uint64_t i = 1; i <= 3; ++i) participant.request(client, oneway_request(client, i));
+  REQUIRE(provider.server.counters().active == 3);
+  participant.match_request_writer(client, false);
+  participant.match(client, false);
+  REQUIRE(eventually([&] { return provider.server.counters().clients == 0; }));
+  free.set_value();
+  CHECK(eventually([&] { return provider.service->noted() == 3; }));
 }
 
 TEST_CASE("a client that leaves before its reader was found keeps no session for long") {
