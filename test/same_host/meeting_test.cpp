@@ -15,9 +15,9 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "../tools/eventually.hpp"
@@ -41,6 +41,8 @@ Guid beside(const Guid& endpoint) {
   return other;
 }
 
+std::string address_of(const Guid& provider) { return "skein-call/" + provider.hex(); }
+
 /// A provider that keeps its guests.
 struct Host {
   explicit Host(Meeting::Rules rules = {}, const Guid& id = Guid::random())
@@ -60,7 +62,6 @@ struct Host {
     std::lock_guard lock(mutex);
     return which < guests.size() ? guests[which] : nullptr;
   }
-  std::string address() const { return "skein-call/" + provider.hex(); }
 
   const Guid provider;
   const Guid server;
@@ -81,9 +82,9 @@ std::size_t open_descriptors() {
 }
 
 /// One who connects and does not keep to what is said there.
-FileDescriptor stranger(const Host& host) {
+FileDescriptor stranger(const Guid& provider) {
   FileDescriptor socket = local_socket(SOCK_SEQPACKET);
-  connect_to(socket, host.address());
+  connect_to(socket, address_of(provider));
   return socket;
 }
 
@@ -94,25 +95,53 @@ std::array<char, 24> hello_of(const Guid& client) {
   return hello;
 }
 
-/// What a process of another user makes of `action`, which must do nothing but system calls.
-/// Nothing where this one may not become somebody else.
-constexpr uid_t kAnother = 65'534;
-template <class Action>
-std::optional<int> as_another_user(Action&& action) {
-  if (geteuid() != 0) return std::nullopt;
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
+/// A process that runs `action` once it is told to. Made before this one has threads, whose locks
+/// nobody would release in the new process.
+class Forked {
+ public:
+  template <class Action>
+  explicit Forked(Action action) {
+    REQUIRE(pipe(go_) == 0);
+    pid_ = fork();
+    REQUIRE(pid_ >= 0);
+    if (pid_ > 0) return;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     alarm(60);
-    _exit(setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99);
+    char octet;
+    _exit(read(go_[0], &octet, 1) == 1 ? action() : 98);
   }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 98;
+  ~Forked() { end(); }
+  Forked(const Forked&) = delete;
+  Forked& operator=(const Forked&) = delete;
+
+  void start() { REQUIRE(write(go_[1], "x", 1) == 1); }
+  /// Starts it; what it exits with.
+  int run() {
+    start();
+    int status = 0;
+    waitpid(std::exchange(pid_, 0), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 97;
+  }
+  void end() {
+    if (pid_ > 0) {
+      kill(pid_, SIGKILL);
+      waitpid(std::exchange(pid_, 0), nullptr, 0);
+    }
+    for (int& each : go_) close(std::exchange(each, -1));
+  }
+
+ private:
+  int go_[2];
+  pid_t pid_ = 0;
+};
+
+constexpr uid_t kAnother = 65'534;
+template <class Action>
+auto as_another_user(Action action) {
+  return [action] { return setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99; };
 }
 
-bool hung_up(const FileDescriptor& socket) {
+bool hung_upbool hung_up(const FileDescriptor& socket) {
   char octet;
   return eventually([&] {
     const auto size = recv(socket.get(), &octet, 1, MSG_DONTWAIT);
@@ -186,10 +215,7 @@ TEST_CASE("a signal that interrupts the meeting's thread is nobody's end") {
 
 TEST_CASE("a link ends with the process at its other end, also one that is killed") {
   const Guid provider = Guid::random();
-  const pid_t child = fork();  // before this process has threads
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Forked client([&] {
     Meeting meeting;
     std::shared_ptr<Link> link;
     eventually([&] {
@@ -199,15 +225,14 @@ TEST_CASE("a link ends with the process at its other end, also one that is kille
       }
       return link != nullptr;
     });
-    pause();
-    _exit(0);
-  }
+    return pause();
+  });
   Host host({}, provider);
+  client.start();
   REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
   CHECK_FALSE(host.guest(0)->ended());
-  kill(child, SIGKILL);
+  client.end();
   CHECK(eventually([&] { return host.guest(0)->ended(); }));
-  waitpid(child, nullptr, 0);
 }
 
 TEST_CASE("who waits for room is let go when the other side ends") {
@@ -260,12 +285,22 @@ TEST_CASE("there is room for so many connections, and the next one is told so") 
 }
 
 TEST_CASE("a process has its share of the connections, and the log tells once who wants more") {
+  const Guid provider = Guid::random();
+  Forked another([&] {
+    const FileDescriptor socket = stranger(provider);
+    const auto hello = hello_of(Guid::random());
+    char answer[128] = {};
+    send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL);
+    pollfd answered{socket.get(), POLLIN, 0};
+    poll(&answered, 1, 20'000);
+    return recv(socket.get(), answer, sizeof answer, 0) == sizeof answer && answer[24] == 0 ? 0 : 1;
+  });
   const skein::test::Log log;
   Meeting::Rules rules;
   rules.guests_of_process = 2;
-  Host host(rules);
+  Host host(rules, provider);
   Meeting meeting;
-  const auto join = [&] { return meeting.join(host.provider, Guid::random(), [] {}); };
+  const auto join = [&] { return meeting.join(provider, Guid::random(), [] {}); };
   auto one = join();
   const auto other = join();
   for (int i = 0; i < 3; ++i) {
@@ -273,21 +308,7 @@ TEST_CASE("a process has its share of the connections, and the log tells once wh
         join(), Catch::Contains("has its share of connections of this kind already (at most 2)"));
   }
   CHECK(eventually([&] { return log.count("wants more than its share of 2 connections") == 1; }));
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    alarm(60);
-    const FileDescriptor socket = stranger(host);
-    const auto hello = hello_of(Guid::random());
-    char answer[128] = {};
-    send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL);
-    pollfd answered{socket.get(), POLLIN, 0};
-    poll(&answered, 1, 20'000);
-    _exit(recv(socket.get(), answer, sizeof answer, 0) == sizeof answer && answer[24] == 0 ? 0 : 1);
-  }
-  int status = 1;
-  waitpid(child, &status, 0);
-  CHECK(status == 0);  // another process has a share of its own
+  CHECK(another.run() == 0);  // it has a share of its own
   one->close();
   CHECK(eventually([&] {
     try {
@@ -299,55 +320,43 @@ TEST_CASE("a process has its share of the connections, and the log tells once wh
 }
 
 TEST_CASE("another user is turned away whichever side he is on, and told of in the log once") {
-  const skein::test::Log log;
-  Host host;
-  const auto turned_away = [&] {
-    const FileDescriptor socket = stranger(host);
+  if (geteuid() != 0) {
+    WARN("not shown: only root can become another user");
+    return;
+  }
+  const Guid provider = Guid::random();
+  const Guid claimed = Guid::random();
+  const auto turned_away = as_another_user([&] {
+    const FileDescriptor socket = stranger(provider);
     pollfd answered{socket.get(), POLLIN, 0};
     char octet;
     poll(&answered, 1, 20'000);
     return recv(socket.get(), &octet, 1, MSG_DONTWAIT) <= 0 ? 0 : 1;
-  };
-  const auto code = as_another_user(turned_away);
-  if (!code) {
-    WARN("not shown: only root can become another user");
-    return;
-  }
-  CHECK(*code == 0);
-  CHECK(as_another_user(turned_away) == 0);
+  });
+  Forked first(turned_away);
+  Forked second(turned_away);
+  int ready[2];
+  REQUIRE(pipe(ready) == 0);
+  Forked offering(as_another_user([&] {
+    const FileDescriptor listening = local_socket(SOCK_SEQPACKET);
+    if (!listen_at(listening, address_of(claimed)) || write(ready[1], "x", 1) != 1) return 1;
+    return pause();
+  }));
+  const skein::test::Log log;
+  Host host({}, provider);
+  CHECK(first.run() == 0);
+  CHECK(second.run() == 0);
   CHECK(host.meeting.counters().guests == 0);
   CHECK(eventually([&] { return log.count("of user 65534 is turned away") == 1; }));
 
   Meeting meeting;
-  const Guid claimed = Guid::random();
-  int go[2];
-  REQUIRE(pipe(go) == 0);
-  int ready[2];
-  REQUIRE(pipe(ready) == 0);
-  std::string refusal;
-  bool asked = false;  // Catch's macros are for one thread
-  std::thread asker([&] {
-    char octet;
-    const bool offers = read(ready[0], &octet, 1) == 1;
-    try {
-      if (offers) meeting.join(claimed, Guid::random(), [] {});
-    } catch (const Unavailable& error) {
-      refusal = error.what();
-    }
-    asked = write(go[1], "x", 1) == 1;
-  });
-  const auto offered = as_another_user([&] {
-    const FileDescriptor listening = local_socket(SOCK_SEQPACKET);
-    char octet;
-    if (!listen_at(listening, "skein-call/" + claimed.hex())) return 1;
-    if (write(ready[1], "x", 1) != 1) return 2;
-    return read(go[0], &octet, 1) == 1 ? 0 : 3;
-  });
-  asker.join();
-  CHECK(offered == 0);
-  CHECK(asked);
-  CHECK_THAT(refusal, Catch::Contains("another user offers it"));
-  for (const int end : {go[0], go[1], ready[0], ready[1]}) close(end);
+  offering.start();
+  close(ready[1]);
+  char octet;
+  CHECK(read(ready[0], &octet, 1) == 1);
+  close(ready[0]);
+  CHECK_THROWS_WITH(meeting.join(claimed, Guid::random(), [] {}),
+                    Catch::Contains("another user offers it"));
 }
 
 TEST_CASE("who answers under a provider's name as another participant is refused") {
@@ -390,7 +399,7 @@ TEST_CASE("a stranger who says nothing is put out after a while, and few may wai
   rules.patience = 200ms;
   Host host(rules);
   std::vector<FileDescriptor> silent;
-  for (int i = 0; i < 20; ++i) silent.push_back(stranger(host));
+  for (int i = 0; i < 20; ++i) silent.push_back(stranger(host.provider));
   CHECK(eventually([&] { return host.meeting.counters().newcomers > 0; }));
   CHECK(host.meeting.counters().newcomers <= 4);
   CHECK(hung_up(silent.front()));
@@ -404,7 +413,7 @@ TEST_CASE("a stranger who says what nobody says is put out") {
   Host host;
   const std::string said = GENERATE(as<std::string>(), "x", std::string(23, 'a'),
                                     std::string(24, 'a'), std::string(4000, 'b'));
-  const auto socket = stranger(host);
+  const auto socket = stranger(host.provider);
   REQUIRE(send(socket.get(), said.data(), said.size(), MSG_NOSIGNAL) ==
           static_cast<ssize_t>(said.size()));
   char answer[256];
@@ -428,7 +437,7 @@ TEST_CASE("a stranger who comes again and again costs some wake-ups a second, wh
   const auto before = host.meeting.counters();
   std::size_t attempts = 0;
   while (host.meeting.counters().refused < before.refused + 100) {
-    stranger(host);
+    stranger(host.provider);
     ++attempts;
   }
   const auto pauses = (std::chrono::steady_clock::now() - begin) / 10ms + 1;
@@ -441,7 +450,7 @@ TEST_CASE("a stranger who comes again and again costs some wake-ups a second, wh
 TEST_CASE("a provider that hands over what can be taken away again is refused") {
   const Guid provider = Guid::random();
   FileDescriptor listening = local_socket(SOCK_SEQPACKET);
-  REQUIRE(listen_at(listening, "skein-call/" + provider.hex()));
+  REQUIRE(listen_at(listening, address_of(provider)));
   std::thread liar([&] {
     FileDescriptor accepted;
     eventually([&] {
