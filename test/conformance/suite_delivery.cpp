@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "../tools/invariant.hpp"
-#include "wire.hpp"
+#include "talk.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -12,11 +12,7 @@ using namespace skein::dds::conformance;
 using skein::test::eventually;
 using namespace std::chrono_literals;
 
-TEST_CASE("samples of every size arrive whole, byte for byte and in order") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(connected(outbox, inbox));
+TEST_CASE_METHOD(Connected, "samples of every size arrive whole, byte for byte and in order") {
   // Bodies of 0 to 8 bytes and around: what RTPS pads must come off again.
   const std::vector<std::size_t> sizes{4,
                                        5,
@@ -57,12 +53,11 @@ TEST_CASE("samples of every size arrive whole, byte for byte and in order") {
   CHECK(inbox.reader().counters().malformed == 0);
 }
 
-TEST_CASE("a burst of reliable samples arrives complete and in order") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a burst of reliable samples arrives complete and in order") {
   Qos qos = keep_all();
   qos.max_blocking = 5s;
-  Outbox outbox(*wire.writing, keyless(), qos);
-  Inbox inbox(*wire.reading, keyless(), qos);
+  Outbox outbox(*writing, keyless(), qos);
+  Inbox inbox(*reading, keyless(), qos);
   REQUIRE(connected(outbox, inbox));
   constexpr std::uint32_t kCount = 5000;
   for (std::uint32_t i = 0; i < kCount; ++i) outbox.writer().write(make_number(i));
@@ -72,12 +67,11 @@ TEST_CASE("a burst of reliable samples arrives complete and in order") {
   CHECK(outbox.writer().wait_for_acknowledgments(10s));
 }
 
-TEST_CASE("large reliable samples in a row all arrive") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "large reliable samples in a row all arrive") {
   Qos qos = keep_all();
   qos.max_blocking = 10s;
-  Outbox outbox(*wire.writing, keyless(), qos);
-  Inbox inbox(*wire.reading, keyless(), qos);
+  Outbox outbox(*writing, keyless(), qos);
+  Inbox inbox(*reading, keyless(), qos);
   REQUIRE(connected(outbox, inbox));
   for (std::uint32_t i = 0; i < 16; ++i) outbox.writer().write(make_sample(1u << 20, i));
   REQUIRE(eventually([&] { return inbox.count() == 16; }));
@@ -85,11 +79,7 @@ TEST_CASE("large reliable samples in a row all arrive") {
   for (std::uint32_t i = 0; i < 16; ++i) CHECK((received[i].cdr == make_sample(1u << 20, i)));
 }
 
-TEST_CASE("samples of both byte orders are handed over as they are") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(connected(outbox, inbox));
+TEST_CASE_METHOD(Connected, "samples of both byte orders are handed over as they are") {
   auto big_endian = make_number(1);
   big_endian[1] = std::byte{0};
   outbox.writer().write(big_endian);
@@ -97,13 +87,12 @@ TEST_CASE("samples of both byte orders are handed over as they are") {
   CHECK((inbox.received()[0].cdr == big_endian));
 }
 
-TEST_CASE("best-effort samples that arrive are whole, and none comes twice") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "best-effort samples that arrive are whole, and none comes twice") {
   Qos qos;
   qos.reliable = false;
   qos.history_depth = 1000;
-  Outbox outbox(*wire.writing, keyless(), qos);
-  Inbox inbox(*wire.reading, keyless(), qos);
+  Outbox outbox(*writing, keyless(), qos);
+  Inbox inbox(*reading, keyless(), qos);
   REQUIRE(matched(outbox, inbox));
   std::uint32_t next = 0;
   REQUIRE(eventually([&] {
@@ -114,35 +103,34 @@ TEST_CASE("best-effort samples that arrive are whole, and none comes twice") {
   for (std::size_t i = 1; i < values.size(); ++i) CHECK(values[i - 1] < values[i]);
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Wire,
     "a best-effort reader hears a reliable writer, but a reliable reader no best-effort one") {
-  Wire wire;
   Qos best_effort;
   best_effort.reliable = false;
-  Outbox reliable(*wire.writing, keyless("reliable"), keep_all());
-  Inbox modest(*wire.reading, keyless("reliable"), best_effort);
-  Outbox careless(*wire.writing, keyless("careless"), best_effort);
-  Inbox demanding(*wire.reading, keyless("careless"), keep_all());
+  Outbox reliable(*writing, keyless("reliable"), keep_all());
+  Inbox modest(*reading, keyless("reliable"), best_effort);
+  Outbox careless(*writing, keyless("careless"), best_effort);
+  Inbox demanding(*reading, keyless("careless"), keep_all());
   REQUIRE(matched(reliable, modest));
   REQUIRE(eventually([&] {
     reliable.writer().write(make_number(7));
     return modest.count() > 0;
   }));
   // Discovery is in order: had these two been to match, they would have by now.
-  Outbox later(*wire.writing, keyless("later"), keep_all());
-  Inbox late(*wire.reading, keyless("later"), keep_all());
+  Outbox later(*writing, keyless("later"), keep_all());
+  Inbox late(*reading, keyless("later"), keep_all());
   REQUIRE(matched(later, late));
   CHECK(careless.writer().matched_readers().empty());
   CHECK(demanding.reader().matched_writers().empty());
 }
 
-TEST_CASE("a reader with a depth keeps the newest samples of each instance") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a reader with a depth keeps the newest samples of each instance") {
   Qos qos = keep_all();
   qos.history_depth = 2;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
-  const auto reader = wire.reading->create_reader(keyed(), qos);
-  Inbox witness(*wire.reading, keyed(), keep_all());
+  Outbox outbox(*writing, keyed(), keep_all());
+  const auto reader = reading->create_reader(keyed(), qos);
+  Inbox witness(*reading, keyed(), keep_all());
   REQUIRE(matched(outbox, witness));
   REQUIRE(eventually([&] { return !reader->matched_writers().empty(); }));
   REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
@@ -160,10 +148,9 @@ TEST_CASE("a reader with a depth keeps the newest samples of each instance") {
   CHECK(kept[make_key(2)] == std::vector<std::uint32_t>{103, 104});
 }
 
-TEST_CASE("take hands over at most as many samples as asked for, oldest first") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  const auto reader = wire.reading->create_reader(keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "take hands over at most as many samples as asked for, oldest first") {
+  Outbox outbox(*writing, keyless(), keep_all());
+  const auto reader = reading->create_reader(keyless(), keep_all());
   REQUIRE(eventually([&] { return !reader->matched_writers().empty(); }));
   REQUIRE(eventually([&] { return !outbox.writer().matched_readers().empty(); }));
   for (std::uint32_t i = 0; i < 5; ++i) outbox.writer().write(make_number(i));
@@ -183,12 +170,11 @@ TEST_CASE("take hands over at most as many samples as asked for, oldest first") 
   CHECK(reader->take(keep) == 0);
 }
 
-TEST_CASE("one writer serves several threads") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "one writer serves several threads") {
   Qos qos = keep_all();
   qos.max_blocking = 5s;
-  Outbox outbox(*wire.writing, keyless(), qos);
-  Inbox inbox(*wire.reading, keyless(), qos);
+  Outbox outbox(*writing, keyless(), qos);
+  Inbox inbox(*reading, keyless(), qos);
   REQUIRE(connected(outbox, inbox));
   constexpr std::uint32_t kThreads = 4;
   constexpr std::uint32_t kEach = 250;
@@ -208,12 +194,11 @@ TEST_CASE("one writer serves several threads") {
   }
 }
 
-TEST_CASE("many writers of one topic reach one reader, each in its order") {
-  Wire wire;
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "many writers of one topic reach one reader, each in its order") {
+  Inbox inbox(*reading, keyless(), keep_all());
   std::vector<std::unique_ptr<Outbox>> writers;
   for (int i = 0; i < 20; ++i) {
-    writers.push_back(std::make_unique<Outbox>(*wire.writing, keyless(), keep_all()));
+    writers.push_back(std::make_unique<Outbox>(*writing, keyless(), keep_all()));
   }
   for (const auto& writer : writers) REQUIRE(matched(*writer, inbox));
   for (std::uint32_t round = 0; round < 10; ++round) {
@@ -227,22 +212,12 @@ TEST_CASE("many writers of one topic reach one reader, each in its order") {
   CHECK(next.size() == writers.size());
 }
 
-TEST_CASE("a writer and a reader of one participant match and talk") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.writing, keyless(), keep_all());
-  REQUIRE(connected(outbox, inbox));
-  outbox.writer().write(make_number(3));
-  REQUIRE(eventually([&] { return inbox.count() == 1; }));
-  CHECK(inbox.received()[0].writer == outbox.writer().guid());
-}
-
-TEST_CASE("several readers, also of the writer's own participant, get the same bytes") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox own(*wire.writing, keyless(), keep_all());
-  Inbox one(*wire.reading, keyless(), keep_all());
-  Inbox other(*wire.reading, keyless(), keep_all());
+TEST_CASE_METHOD(Wire,
+                 "several readers, also of the writer's own participant, get the same bytes") {
+  Outbox outbox(*writing, keyless(), keep_all());
+  Inbox own(*writing, keyless(), keep_all());
+  Inbox one(*reading, keyless(), keep_all());
+  Inbox other(*reading, keyless(), keep_all());
   for (Inbox* inbox : {&own, &one, &other}) REQUIRE(connected(outbox, *inbox));
   for (Inbox* inbox : {&own, &one, &other}) {
     REQUIRE(outbox.writer().wait_for_acknowledgments(10s));
@@ -258,9 +233,9 @@ TEST_CASE("several readers, also of the writer's own participant, get the same b
   }
 }
 
-TEST_CASE("a sample that is kept outlives the call, its reader's next samples and the reader") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
+TEST_CASE_METHOD(
+    Wire, "a sample that is kept outlives the call, its reader's next samples and the reader") {
+  Outbox outbox(*writing, keyless(), keep_all());
   std::mutex mutex;
   std::vector<std::pair<std::shared_ptr<const void>, std::span<const std::byte>>> kept;
   ReaderListener listener;
@@ -270,7 +245,7 @@ TEST_CASE("a sample that is kept outlives the call, its reader's next samples an
       kept.emplace_back(sample.keep(), sample.cdr);
     });
   };
-  auto reader = wire.reading->create_reader(keyless(), keep_all(), listener);
+  auto reader = reading->create_reader(keyless(), keep_all(), listener);
   REQUIRE(eventually([&] { return !outbox.writer().matched_readers().empty(); }));
   REQUIRE(eventually([&] { return !reader->matched_writers().empty(); }));
   for (std::uint32_t i = 0; i < 10; ++i) outbox.writer().write(make_sample(10'001, i));
@@ -285,9 +260,9 @@ TEST_CASE("a sample that is kept outlives the call, its reader's next samples an
   }
 }
 
-TEST_CASE("a sample that no reader would take is refused where it is written, with the limit") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
+TEST_CASE_METHOD(
+    Wire, "a sample that no reader would take is refused where it is written, with the limit") {
+  Outbox outbox(*writing, keyless(), keep_all());
   const std::size_t size = (std::size_t{256} << 20) + 1;
   const std::unique_ptr<std::byte, void (*)(void*)> memory(
       static_cast<std::byte*>(std::calloc(size, 1)), std::free);  // none of which is touched

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "wire.hpp"
+#include "talk.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -9,11 +9,8 @@ using skein::test::eventually;
 using namespace std::chrono_literals;
 using Catch::Contains;
 
-TEST_CASE("a sample in another encoding is counted and dropped, the next one arrives") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(Matched,
+                 "a sample in another encoding is counted and dropped, the next one arrives") {
   auto parameter_list = make_number(1);
   parameter_list[1] = std::byte{0x03};
   auto xcdr2 = make_number(2);
@@ -29,9 +26,8 @@ TEST_CASE("a sample in another encoding is counted and dropped, the next one arr
   CHECK(inbox.reader().counters().malformed == 3);
 }
 
-TEST_CASE("a sample without room for its header is refused by the writer") {
-  Wire wire;
-  const auto writer = wire.writing->create_writer(keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "a sample without room for its header is refused by the writer") {
+  const auto writer = writing->create_writer(keyless(), keep_all());
   const std::vector<std::byte> three(3);
   CHECK_THROWS_AS(writer->write(three), InvalidArgument);
   CHECK_THROWS_AS(writer->write({}), InvalidArgument);
@@ -70,52 +66,50 @@ TEST_CASE("a peer that is no host's name is refused") {
   CHECK_THROWS_AS(load_vendor(kPairing.writing)->create_participant(options), InvalidArgument);
 }
 
-TEST_CASE("names and settings that a vendor could not honour are refused by all") {
-  Wire wire;
-  CHECK_THROWS_WITH(wire.writing->create_writer({"a:b", "T", false}, keep_all()), Contains("a:b"));
-  CHECK_THROWS_AS(wire.writing->create_writer({"7up", "T", false}, keep_all()), InvalidArgument);
-  CHECK_THROWS_AS(wire.writing->create_writer({"", "T", false}, keep_all()), InvalidArgument);
-  CHECK_THROWS_AS(wire.writing->create_writer({"t", "", false}, keep_all()), InvalidArgument);
+TEST_CASE_METHOD(Wire, "names and settings that a vendor could not honour are refused by all") {
+  CHECK_THROWS_WITH(writing->create_writer({"a:b", "T", false}, keep_all()), Contains("a:b"));
+  CHECK_THROWS_AS(writing->create_writer({"7up", "T", false}, keep_all()), InvalidArgument);
+  CHECK_THROWS_AS(writing->create_writer({"", "T", false}, keep_all()), InvalidArgument);
+  CHECK_THROWS_AS(writing->create_writer({"t", "", false}, keep_all()), InvalidArgument);
   Qos qos;
   qos.partitions = {"unit_*"};
-  CHECK_THROWS_WITH(wire.writing->create_reader(keyless(), qos), Contains("unit_*"));
+  CHECK_THROWS_WITH(writing->create_reader(keyless(), qos), Contains("unit_*"));
   qos = {};
   qos.history_depth = 0;
-  CHECK_THROWS_AS(wire.writing->create_reader(keyless(), qos), InvalidArgument);
+  CHECK_THROWS_AS(writing->create_reader(keyless(), qos), InvalidArgument);
 }
 
-TEST_CASE("a bounded writer is not held up by readers that acknowledge nothing by contract") {
-  Wire wire;
+TEST_CASE_METHOD(
+    Wire, "a bounded writer is not held up by readers that acknowledge nothing by contract") {
   Qos bounded = keep_all();
   bounded.max_samples = 4;
   bounded.max_blocking = 2s;
   Qos best_effort;
   best_effort.reliable = false;
-  Outbox outbox(*wire.writing, keyless(), bounded);
-  Inbox inbox(*wire.reading, keyless(), best_effort);
+  Outbox outbox(*writing, keyless(), bounded);
+  Inbox inbox(*reading, keyless(), best_effort);
   REQUIRE(matched(outbox, inbox));
   for (std::uint32_t i = 0; i < 100; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
 }
 
-TEST_CASE("a bounded writer goes on as its readers acknowledge") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a bounded writer goes on as its readers acknowledge") {
   Qos bounded = keep_all();
   bounded.max_samples = 4;
   bounded.max_blocking = 10s;
-  Outbox outbox(*wire.writing, keyless(), bounded);
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+  Outbox outbox(*writing, keyless(), bounded);
+  Inbox inbox(*reading, keyless(), keep_all());
   REQUIRE(matched(outbox, inbox));
   for (std::uint32_t i = 0; i < 40; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
   CHECK(eventually([&] { return inbox.count() == 40; }));
 }
 
-TEST_CASE("a bounded writer waits only for room, not for the acknowledgment of its last samples") {
-  Wire wire;
+TEST_CASE_METHOD(
+    Wire, "a bounded writer waits only for room, not for the acknowledgment of its last samples") {
   Qos bounded = keep_all();
   bounded.max_samples = 4;
   bounded.max_blocking = 0ms;
-  Outbox outbox(*wire.writing, keyless(), bounded);
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+  Outbox outbox(*writing, keyless(), bounded);
+  Inbox inbox(*reading, keyless(), keep_all());
   REQUIRE(matched(outbox, inbox));
   for (std::uint32_t i = 0; i < 40; ++i) {
     REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
@@ -125,14 +119,14 @@ TEST_CASE("a bounded writer waits only for room, not for the acknowledgment of i
   CHECK(eventually([&] { return inbox.count() == 40; }));
 }
 
-TEST_CASE("a bounded writer that never pauses finds room when its reader has all it wrote") {
-  Wire wire;
+TEST_CASE_METHOD(Wire,
+                 "a bounded writer that never pauses finds room when its reader has all it wrote") {
   Qos bounded = keep_all();
   bounded.max_samples = 128;
   // Less than a writer is silent before it asks by itself.
   bounded.max_blocking = 10ms;
-  Outbox outbox(*wire.writing, keyless(), bounded);
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+  Outbox outbox(*writing, keyless(), bounded);
+  Inbox inbox(*reading, keyless(), keep_all());
   REQUIRE(connected(outbox, inbox));
   for (std::uint32_t i = 0; i < 500; ++i) {
     REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
@@ -140,11 +134,10 @@ TEST_CASE("a bounded writer that never pauses finds room when its reader has all
   }
 }
 
-TEST_CASE("a bounded writer without readers never waits") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a bounded writer without readers never waits") {
   Qos bounded = keep_all();
   bounded.max_samples = 2;
-  Outbox outbox(*wire.writing, keyless(), bounded);
+  Outbox outbox(*writing, keyless(), bounded);
   for (std::uint32_t i = 0; i < 20; ++i) REQUIRE_NOTHROW(outbox.writer().write(make_number(i)));
   CHECK(outbox.writer().wait_for_acknowledgments(1s));
 }

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "wire.hpp"
+#include "talk.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -9,11 +9,7 @@ using namespace skein::dds::conformance;
 using skein::test::eventually;
 using namespace std::chrono_literals;
 
-TEST_CASE("each sample of a keyed topic comes with its key") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
-  Inbox inbox(*wire.reading, keyed(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedKeyed, "each sample of a keyed topic comes with its key") {
   for (std::uint8_t i = 0; i < 10; ++i) {
     outbox.writer().write(make_sample(100 + i, i), make_key(i % 3));
   }
@@ -25,22 +21,15 @@ TEST_CASE("each sample of a keyed topic comes with its key") {
   }
 }
 
-TEST_CASE("a large keyed sample keeps its key") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
-  Inbox inbox(*wire.reading, keyed(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedKeyed, "a large keyed sample keeps its key") {
   outbox.writer().write(make_sample(300'001), make_key(9));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   CHECK(inbox.received()[0].key == make_key(9));
   CHECK(inbox.received()[0].cdr.size() == 300'001);
 }
 
-TEST_CASE("a disposal arrives with the right key, after what was written before") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
-  Inbox inbox(*wire.reading, keyed(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedKeyed,
+                 "a disposal arrives with the right key, after what was written before") {
   outbox.writer().write(make_number(1), make_key(1));
   outbox.writer().write(make_number(2), make_key(2));
   outbox.writer().dispose(make_key(1));
@@ -55,11 +44,7 @@ TEST_CASE("a disposal arrives with the right key, after what was written before"
   CHECK(inbox.reader().counters().malformed == 0);
 }
 
-TEST_CASE("a disposed instance can be written again") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), last_state());
-  Inbox inbox(*wire.reading, keyed(), last_state());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedState, "a disposed instance can be written again") {
   for (std::uint32_t round = 0; round < 3; ++round) {
     outbox.writer().write(make_number(round), make_key(1));
     REQUIRE(eventually([&] { return inbox.count() == 2 * round + 1; }));
@@ -70,11 +55,7 @@ TEST_CASE("a disposed instance can be written again") {
   CHECK(inbox.received()[5].state == InstanceState::Disposed);
 }
 
-TEST_CASE("a disposal just before the writer goes still arrives") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), last_state());
-  Inbox inbox(*wire.reading, keyed(), last_state());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedState, "a disposal just before the writer goes still arrives") {
   outbox.writer().write(make_number(1), make_key(1));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   outbox.writer().dispose(make_key(1));
@@ -85,16 +66,12 @@ TEST_CASE("a disposal just before the writer goes still arrives") {
   CHECK(inbox.received()[1].key == make_key(1));
 }
 
-TEST_CASE("a writer that goes disposes nothing") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), last_state());
-  Inbox inbox(*wire.reading, keyed(), last_state());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(MatchedState, "a writer that goes disposes nothing") {
   outbox.writer().write(make_number(1), make_key(1));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
   outbox.close();
   REQUIRE(eventually([&] { return inbox.matches().size() == 2; }));
-  Outbox next(*wire.writing, keyed(), last_state());
+  Outbox next(*writing, keyed(), last_state());
   REQUIRE(matched(next, inbox));
   next.writer().write(make_number(2), make_key(2));
   REQUIRE(eventually([&] { return inbox.count() >= 2; }));
@@ -102,21 +79,19 @@ TEST_CASE("a writer that goes disposes nothing") {
   CHECK(inbox.received()[1].key == make_key(2));
 }
 
-TEST_CASE("only keyed topics can be disposed") {
-  Wire wire;
-  const auto writer = wire.writing->create_writer(keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "only keyed topics can be disposed") {
+  const auto writer = writing->create_writer(keyless(), keep_all());
   CHECK_THROWS_AS(writer->dispose(make_key(1)), InvalidArgument);
 }
 
-TEST_CASE("a late joiner gets the last sample of each instance, once") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), last_state());
+TEST_CASE_METHOD(Wire, "a late joiner gets the last sample of each instance, once") {
+  Outbox outbox(*writing, keyed(), last_state());
   for (std::uint32_t round = 0; round < 3; ++round) {
     for (std::uint8_t key = 0; key < 50; ++key) {
       outbox.writer().write(make_number(round * 100 + key), make_key(key));
     }
   }
-  Inbox inbox(*wire.reading, keyed(), last_state());
+  Inbox inbox(*reading, keyed(), last_state());
   REQUIRE(matched(outbox, inbox));
   outbox.writer().write(make_number(1000), make_key(50));
   REQUIRE(eventually([&] { return inbox.count() >= 51; }));
@@ -128,11 +103,10 @@ TEST_CASE("a late joiner gets the last sample of each instance, once") {
   }
 }
 
-TEST_CASE("a late joiner gets nothing of a volatile writer's past") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
+TEST_CASE_METHOD(Wire, "a late joiner gets nothing of a volatile writer's past") {
+  Outbox outbox(*writing, keyed(), keep_all());
   outbox.writer().write(make_number(1), make_key(1));
-  Inbox inbox(*wire.reading, keyed(), keep_all());
+  Inbox inbox(*reading, keyed(), keep_all());
   REQUIRE(matched(outbox, inbox));
   REQUIRE(eventually([&] {
     outbox.writer().write(make_number(2), make_key(1));
@@ -143,13 +117,12 @@ TEST_CASE("a late joiner gets nothing of a volatile writer's past") {
 }
 
 // Whether it is also sent the writer's past is not promised: Cyclone sends it to Fast DDS.
-TEST_CASE("a volatile reader of a transient-local writer gets what comes after it") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a volatile reader of a transient-local writer gets what comes after it") {
   Qos present = last_state();
   present.transient_local = false;
-  Outbox outbox(*wire.writing, keyed(), last_state());
+  Outbox outbox(*writing, keyed(), last_state());
   outbox.writer().write(make_number(1), make_key(1));
-  Inbox inbox(*wire.reading, keyed(), present);
+  Inbox inbox(*reading, keyed(), present);
   REQUIRE(matched(outbox, inbox));
   REQUIRE(eventually([&] {
     outbox.writer().write(make_number(2), make_key(2));
@@ -158,13 +131,12 @@ TEST_CASE("a volatile reader of a transient-local writer gets what comes after i
   }));
 }
 
-TEST_CASE("a disposed instance is no news to a late joiner, or told as disposed") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), last_state());
+TEST_CASE_METHOD(Wire, "a disposed instance is no news to a late joiner, or told as disposed") {
+  Outbox outbox(*writing, keyed(), last_state());
   outbox.writer().write(make_number(1), make_key(1));
   outbox.writer().write(make_number(2), make_key(2));
   outbox.writer().dispose(make_key(1));
-  Inbox inbox(*wire.reading, keyed(), last_state());
+  Inbox inbox(*reading, keyed(), last_state());
   REQUIRE(eventually([&] {
     const auto received = inbox.received();
     return std::any_of(received.begin(), received.end(),

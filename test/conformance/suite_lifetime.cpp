@@ -43,18 +43,16 @@ class SteadyWriter {
 
 }  // namespace
 
-TEST_CASE("readers come and go while samples flow") {
-  Wire wire;
-  SteadyWriter stream(*wire.writing, keyless());
+TEST_CASE_METHOD(Wire, "readers come and go while samples flow") {
+  SteadyWriter stream(*writing, keyless());
   for (int round = 0; round < 15; ++round) {
-    Inbox inbox(*wire.reading, keyless(), keep_all());
+    Inbox inbox(*reading, keyless(), keep_all());
     REQUIRE(eventually([&] { return inbox.count() > 2; }));
   }
 }
 
-TEST_CASE("no listener runs after its reader or writer is destroyed") {
-  Wire wire;
-  SteadyWriter stream(*wire.writing, keyless());
+TEST_CASE_METHOD(Wire, "no listener runs after its reader or writer is destroyed") {
+  SteadyWriter stream(*writing, keyless());
   std::atomic<int> late{0};
   for (int round = 0; round < 15; ++round) {
     auto ended = std::make_shared<std::atomic<bool>>(false);
@@ -69,9 +67,9 @@ TEST_CASE("no listener runs after its reader or writer is destroyed") {
       note();
     };
     listener.on_matched = [note](const Guid&, bool) { note(); };
-    auto reader = wire.reading->create_reader(keyless(), keep_all(), listener);
+    auto reader = reading->create_reader(keyless(), keep_all(), listener);
     auto writer =
-        wire.reading->create_writer(keyless(), keep_all(), {[note](const Guid&, bool) { note(); }});
+        reading->create_writer(keyless(), keep_all(), {[note](const Guid&, bool) { note(); }});
     REQUIRE(eventually([&] { return *seen > 3; }));
     writer.reset();
     reader.reset();
@@ -80,24 +78,22 @@ TEST_CASE("no listener runs after its reader or writer is destroyed") {
   CHECK(late == 0);
 }
 
-TEST_CASE("writers come and go while their reader reads") {
-  Wire wire;
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "writers come and go while their reader reads") {
+  Inbox inbox(*reading, keyless(), keep_all());
   for (int round = 0; round < 15; ++round) {
     const std::size_t before = inbox.count();
-    SteadyWriter stream(*wire.writing, keyless());
+    SteadyWriter stream(*writing, keyless());
     REQUIRE(eventually([&] { return inbox.count() > before + 2; }));
   }
   CHECK(eventually([&] { return inbox.reader().matched_writers().empty(); }));
 }
 
-TEST_CASE("participants come and go while others talk") {
-  Wire wire;
-  SteadyWriter stream(*wire.writing, keyless());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "participants come and go while others talk") {
+  SteadyWriter stream(*writing, keyless());
+  Inbox inbox(*reading, keyless(), keep_all());
   for (int round = 0; round < 4; ++round) {
     const auto guest =
-        make_participant(round % 2 == 0 ? kPairing.reading : kPairing.writing, wire.domain);
+        make_participant(round % 2 == 0 ? kPairing.reading : kPairing.writing, domain);
     Inbox guest_inbox(*guest, keyless(), keep_all());
     REQUIRE(eventually([&] { return guest_inbox.count() > 2; }));
   }
@@ -105,16 +101,15 @@ TEST_CASE("participants come and go while others talk") {
   CHECK(eventually([&] { return inbox.count() > before; }));
 }
 
-TEST_CASE("endpoints are made and destroyed by several threads at once") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "endpoints are made and destroyed by several threads at once") {
   std::vector<std::thread> threads;
   std::atomic<int> delivered{0};
   for (int number = 0; number < 3; ++number) {
     threads.emplace_back([&, number] {
       const Topic topic = keyless("parallel_" + std::to_string(number));
       for (int round = 0; round < 4; ++round) {
-        Outbox outbox(*wire.writing, topic, keep_all());
-        Inbox inbox(*wire.reading, topic, keep_all());
+        Outbox outbox(*writing, topic, keep_all());
+        Inbox inbox(*reading, topic, keep_all());
         if (!matched(outbox, inbox)) return;
         // Cyclone DDS reports a match a moment before it delivers: a first sample can come too
         // early.
@@ -130,10 +125,9 @@ TEST_CASE("endpoints are made and destroyed by several threads at once") {
   CHECK(delivered == 12);
 }
 
-TEST_CASE("samples that nobody took are given back with the reader") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), keep_all());
-  auto reader = wire.reading->create_reader(keyed(), keep_all());
+TEST_CASE_METHOD(Wire, "samples that nobody took are given back with the reader") {
+  Outbox outbox(*writing, keyed(), keep_all());
+  auto reader = reading->create_reader(keyed(), keep_all());
   REQUIRE(eventually([&] { return !reader->matched_writers().empty(); }));
   REQUIRE(eventually([&] { return !outbox.writer().matched_readers().empty(); }));
   for (std::uint8_t i = 0; i < 20; ++i) outbox.writer().write(make_sample(5000, i), make_key(i));

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "wire.hpp"
+#include "talk.hpp"
 
 using namespace skein;
 using namespace skein::dds;
@@ -10,26 +10,18 @@ using namespace std::chrono_literals;
 
 using Events = std::vector<std::pair<Guid, bool>>;
 
-TEST_CASE("both sides call an endpoint by the same GUID") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(Matched, "both sides call an endpoint by the same GUID") {
   const Guid writer = outbox.writer().guid();
   const Guid reader = inbox.reader().guid();
-  CHECK(writer.participant() == wire.writing->guid());
-  CHECK(reader.participant() == wire.reading->guid());
+  CHECK(writer.participant() == writing->guid());
+  CHECK(reader.participant() == reading->guid());
   CHECK(writer != reader);
   REQUIRE(eventually([&] { return !outbox.matches().empty() && !inbox.matches().empty(); }));
   CHECK(outbox.matches() == Events{{reader, true}});
   CHECK(inbox.matches() == Events{{writer, true}});
 }
 
-TEST_CASE("a writer that goes is told to its readers") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(Matched, "a writer that goes is told to its readers") {
   const Guid writer = outbox.writer().guid();
   outbox.close();
   REQUIRE(eventually([&] { return inbox.matches().size() == 2; }));
@@ -37,11 +29,7 @@ TEST_CASE("a writer that goes is told to its readers") {
   CHECK(inbox.reader().matched_writers().empty());
 }
 
-TEST_CASE("a reader that goes is told to its writers") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(outbox, inbox));
+TEST_CASE_METHOD(Matched, "a reader that goes is told to its writers") {
   const Guid reader = inbox.reader().guid();
   inbox.close();
   REQUIRE(eventually([&] { return outbox.matches().size() == 2; }));
@@ -49,20 +37,18 @@ TEST_CASE("a reader that goes is told to its writers") {
   CHECK(outbox.writer().matched_readers().empty());
 }
 
-TEST_CASE("endpoints that come later match too, on either side") {
-  Wire wire;
-  Outbox early(*wire.writing, keyless("one"), keep_all());
-  Inbox early_inbox(*wire.reading, keyless("one"), keep_all());
+TEST_CASE_METHOD(Wire, "endpoints that come later match too, on either side") {
+  Outbox early(*writing, keyless("one"), keep_all());
+  Inbox early_inbox(*reading, keyless("one"), keep_all());
   REQUIRE(matched(early, early_inbox));
-  Inbox waiting(*wire.reading, keyless("two"), keep_all());
-  Outbox late(*wire.writing, keyless("two"), keep_all());
+  Inbox waiting(*reading, keyless("two"), keep_all());
+  Outbox late(*writing, keyless("two"), keep_all());
   CHECK(matched(late, waiting));
-  Outbox another(*wire.writing, keyless("two"), keep_all());
+  Outbox another(*writing, keyless("two"), keep_all());
   CHECK(matched(another, waiting));
 }
 
-TEST_CASE("a partition is matched exactly") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a partition is matched exactly") {
   const std::string id = "0123456789abcdef0123456789abcdef";
   Qos own = keep_all();
   own.partitions = {id};
@@ -73,12 +59,12 @@ TEST_CASE("a partition is matched exactly") {
   Qos upper = keep_all();
   upper.partitions = {"0123456789ABCDEF0123456789ABCDEF"};
 
-  Inbox to_server(*wire.reading, keyless(), server);
-  Inbox to_neighbour(*wire.reading, keyless(), neighbour);
-  Inbox to_upper(*wire.reading, keyless(), upper);
-  Inbox to_all(*wire.reading, keyless(), keep_all());
-  Outbox direct(*wire.writing, keyless(), own);
-  Outbox broadcast(*wire.writing, keyless(), keep_all());
+  Inbox to_server(*reading, keyless(), server);
+  Inbox to_neighbour(*reading, keyless(), neighbour);
+  Inbox to_upper(*reading, keyless(), upper);
+  Inbox to_all(*reading, keyless(), keep_all());
+  Outbox direct(*writing, keyless(), own);
+  Outbox broadcast(*writing, keyless(), keep_all());
   REQUIRE(matched(direct, to_server));
   REQUIRE(matched(broadcast, to_server));
   REQUIRE(matched(broadcast, to_all));
@@ -95,52 +81,27 @@ TEST_CASE("a partition is matched exactly") {
   CHECK(to_upper.count() == 0);
 }
 
-TEST_CASE("no partition and the partition with the empty name are the same") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "no partition and the partition with the empty name are the same") {
   Qos named = keep_all();
   named.partitions = {""};
-  Outbox outbox(*wire.writing, keyless("a"), named);
-  Inbox inbox(*wire.reading, keyless("a"), keep_all());
+  Outbox outbox(*writing, keyless("a"), named);
+  Inbox inbox(*reading, keyless("a"), keep_all());
   CHECK(matched(outbox, inbox));
-  Outbox plain(*wire.writing, keyless("b"), keep_all());
-  Inbox named_inbox(*wire.reading, keyless("b"), named);
+  Outbox plain(*writing, keyless("b"), keep_all());
+  Inbox named_inbox(*reading, keyless("b"), named);
   CHECK(matched(plain, named_inbox));
 }
 
-TEST_CASE("sharing one of several partitions is enough") {
-  Wire wire;
-  Qos writing = keep_all();
-  writing.partitions = {"a", "b"};
-  Qos reading = keep_all();
-  reading.partitions = {"b", "c"};
-  Outbox outbox(*wire.writing, keyless(), writing);
-  Inbox inbox(*wire.reading, keyless(), reading);
-  REQUIRE(matched(outbox, inbox));
-  outbox.writer().write(make_number(5));
-  REQUIRE(eventually([&] { return inbox.count() == 1; }));
-}
-
-TEST_CASE("topics of one name and different types do not match") {
-  Wire wire;
-  Outbox outbox(*wire.writing, {"same", "test::One", false}, keep_all());
-  Inbox inbox(*wire.reading, {"same", "test::Other", false}, keep_all());
-  Outbox other(*wire.writing, keyless(), keep_all());
-  Inbox other_inbox(*wire.reading, keyless(), keep_all());
-  REQUIRE(matched(other, other_inbox));
-  CHECK(outbox.writer().matched_readers().empty());
-  CHECK(inbox.reader().matched_writers().empty());
-}
-
-TEST_CASE("another type of the same topic is told on both sides") {
-  Wire wire;
-  Outbox early(*wire.writing, {"early", "test::One", false}, keep_all());
-  Inbox inbox(*wire.reading, {"early", "test::Other", false}, keep_all());
-  Inbox waiting(*wire.reading, {"late", "test::Other", false}, keep_all());
-  Outbox late(*wire.writing, {"late", "test::One", false}, keep_all());
-  for (const auto* outbox : {&early, &late}) {
+TEST_CASE_METHOD(Wire, "another type of the same topic is told on both sides") {
+  Outbox early(*writing, {"early", "test::One", false}, keep_all());
+  Inbox inbox(*reading, {"early", "test::Other", false}, keep_all());
+  Inbox waiting(*reading, {"late", "test::Other", false}, keep_all());
+  Outbox late(*writing, {"late", "test::One", false}, keep_all());
+  for (Outbox* outbox : {&early, &late}) {
     REQUIRE(eventually([&] { return !outbox->incompatible().empty(); }));
     CHECK(outbox->incompatible().front().offered == "test::One");
     CHECK(outbox->incompatible().front().requested == "test::Other");
+    CHECK(outbox->writer().matched_readers().empty());
   }
   for (const auto* each : {&inbox, &waiting}) {
     REQUIRE(eventually([&] { return !each->incompatible().empty(); }));
@@ -152,8 +113,8 @@ TEST_CASE("another type of the same topic is told on both sides") {
   }
 }
 
-TEST_CASE("a writer of another version of the type is not matched, and nothing of it is taken") {
-  Wire wire;
+TEST_CASE_METHOD(
+    Wire, "a writer of another version of the type is not matched, and nothing of it is taken") {
   Qos right = keep_all();
   right.transient_local = true;
   right.exclusive = true;
@@ -161,12 +122,12 @@ TEST_CASE("a writer of another version of the type is not matched, and nothing o
   Qos wrong = right;
   wrong.type.signature = 2;
   wrong.strength = 9;
-  Outbox changed(*wire.writing, keyless(), wrong);
+  Outbox changed(*writing, keyless(), wrong);
   for (std::uint32_t i = 0; i < 10; ++i) changed.writer().write(make_number(i));
-  Inbox inbox(*wire.reading, keyless(), right);
+  Inbox inbox(*reading, keyless(), right);
   REQUIRE(
       eventually([&] { return !inbox.incompatible().empty() && !changed.incompatible().empty(); }));
-  Outbox same(*wire.writing, keyless(), right);
+  Outbox same(*writing, keyless(), right);
   same.writer().write(make_number(11));
   changed.writer().write(make_number(12));
   same.writer().write(make_number(13));
@@ -177,18 +138,16 @@ TEST_CASE("a writer of another version of the type is not matched, and nothing o
   CHECK(eventually([&] { return inbox.matches() == Events{{same.writer().guid(), true}}; }));
 }
 
-TEST_CASE("a topic name that is in use with another type is refused") {
-  Wire wire;
-  const auto writer = wire.writing->create_writer({"taken", "test::One", false}, keep_all());
+TEST_CASE_METHOD(Wire, "a topic name that is in use with another type is refused") {
+  const auto writer = writing->create_writer({"taken", "test::One", false}, keep_all());
   CHECK_THROWS_WITH(
-      wire.writing->create_reader({"taken", "test::Other", false}, keep_all()),
+      writing->create_reader({"taken", "test::Other", false}, keep_all()),
       Catch::Contains("taken") && Catch::Contains("test::One") && Catch::Contains("test::Other"));
-  CHECK_THROWS_AS(wire.writing->create_writer({"taken", "test::One", true}, keep_all()),
+  CHECK_THROWS_AS(writing->create_writer({"taken", "test::One", true}, keep_all()),
                   InvalidArgument);
 }
 
-TEST_CASE("a topic name is free again when its last user has gone") {
-  Wire wire;
-  wire.writing->create_writer({"reused", "test::One", false}, keep_all());
-  CHECK_NOTHROW(wire.writing->create_writer({"reused", "test::Other", false}, keep_all()));
+TEST_CASE_METHOD(Wire, "a topic name is free again when its last user has gone") {
+  writing->create_writer({"reused", "test::One", false}, keep_all());
+  CHECK_NOTHROW(writing->create_writer({"reused", "test::Other", false}, keep_all()));
 }

@@ -61,28 +61,26 @@ TEST_CASE("participants of different domains do not find each other") {
   CHECK(other.told().empty());
 }
 
-TEST_CASE("a participant that leaves takes its endpoints along") {
-  Wire wire;
-  auto outbox = std::make_unique<Outbox>(*wire.writing, keyless(), keep_all());
-  Inbox inbox(*wire.reading, keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "a participant that leaves takes its endpoints along") {
+  auto outbox = std::make_unique<Outbox>(*writing, keyless(), keep_all());
+  Inbox inbox(*reading, keyless(), keep_all());
   REQUIRE(matched(*outbox, inbox));
   outbox.reset();
-  wire.writing.reset();
+  writing.reset();
   REQUIRE(eventually([&] { return inbox.reader().matched_writers().empty(); }));
-  wire.writing = make_participant(kPairing.writing, wire.domain);
-  Outbox again(*wire.writing, keyless(), keep_all());
+  writing = make_participant(kPairing.writing, domain);
+  Outbox again(*writing, keyless(), keep_all());
   REQUIRE(matched(again, inbox));
   again.writer().write(make_number(1));
   REQUIRE(eventually([&] { return inbox.count() == 1; }));
 }
 
-TEST_CASE("several participants of one process and vendor are independent") {
-  Wire wire;
-  const auto third = make_participant(kPairing.writing, wire.domain);
-  const auto fourth = make_participant(kPairing.reading, wire.domain);
-  Outbox one(*wire.writing, keyless(), keep_all());
+TEST_CASE_METHOD(Wire, "several participants of one process and vendor are independent") {
+  const auto third = make_participant(kPairing.writing, domain);
+  const auto fourth = make_participant(kPairing.reading, domain);
+  Outbox one(*writing, keyless(), keep_all());
   Outbox other(*third, keyless(), keep_all());
-  Inbox left(*wire.reading, keyless(), keep_all());
+  Inbox left(*reading, keyless(), keep_all());
   Inbox right(*fourth, keyless(), keep_all());
   for (Outbox* outbox : {&one, &other}) {
     REQUIRE(matched(*outbox, left));

@@ -1,11 +1,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "../tools/child_process.hpp"
-#include "../tools/temporary_folder.hpp"
 #include "wire.hpp"
 
 using namespace skein;
@@ -17,16 +13,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr const char* kPeer = "skein_conformance_peer";
-
-ChildProcess start(const std::string& role, std::uint32_t domain, const std::string& lease_ms,
-                   const std::vector<std::string>& environment = {},
-                   const std::string& directory = "") {
+ChildProcess start(const std::string& role, std::uint32_t domain, const std::string& lease_ms) {
   const std::string& vendor = role == "read" ? kPairing.reading : kPairing.writing;
-  return {kPeer,
-          {.arguments = {role, vendor, std::to_string(domain), lease_ms},
-           .environment = environment,
-           .directory = directory}};
+  return ChildProcess("skein_conformance_peer",
+                      {.arguments = {role, vendor, std::to_string(domain), lease_ms}});
 }
 
 /// The GUID that the peer says first.
@@ -213,61 +203,4 @@ TEST_CASE("more participants than the host may hold are refused, with a remedy")
   const auto first = vendor->create_participant(options);
   const auto second = vendor->create_participant(options);
   CHECK_THROWS_AS(vendor->create_participant(options), Unavailable);
-}
-
-namespace {
-
-constexpr const char* kHostileProfiles = R"(<?xml version="1.0" encoding="UTF-8"?>
-<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
-  <log><use_default>FALSE</use_default><consumer><class>FileConsumer</class>
-    <property><name>filename</name><value>fastdds.log</value></property></consumer></log>
-  <profiles>
-    <transport_descriptors><transport_descriptor><transport_id>elsewhere</transport_id>
-      <type>UDPv4</type><interfaceWhiteList><address>192.0.2.1</address></interfaceWhiteList>
-    </transport_descriptor></transport_descriptors>
-    <participant profile_name="hostile" is_default_profile="true"><domainId>99</domainId>
-      <rtps><name>hostile</name><useBuiltinTransports>false</useBuiltinTransports>
-        <userTransports><transport_id>elsewhere</transport_id></userTransports></rtps></participant>
-  </profiles></dds>)";
-
-}  // namespace
-
-TEST_CASE("a hostile environment changes nothing") {
-  const TemporaryFolder scratch;
-  scratch.write("DEFAULT_FASTRTPS_PROFILES.xml", kHostileProfiles);
-  scratch.write("profiles.xml", kHostileProfiles);
-  scratch.write("environment.json",
-                R"({"environment_variables": {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}})");
-  const std::string at = scratch.path().string();
-  const std::vector<std::string> environment{
-      "CYCLONEDDS_URI=<CycloneDDS><Domain><General><NetworkInterfaceAddress>192.0.2.1"
-      "</NetworkInterfaceAddress><AllowMulticast>true</AllowMulticast></General><Discovery><Peers>"
-      "<Peer Address=\"192.0.2.9\"/></Peers><ExternalDomainId>99</ExternalDomainId></Discovery>"
-      "<Tracing><Verbosity>finest</Verbosity><OutputFile>" +
-          at +
-          "/trace.log</OutputFile></Tracing>"
-          "</Domain></CycloneDDS>",
-      "FASTRTPS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
-      "FASTDDS_DEFAULT_PROFILES_FILE=" + at + "/profiles.xml",
-      "FASTDDS_ENVIRONMENT_FILE=" + at + "/environment.json",
-      "ROS_DISCOVERY_SERVER=127.0.0.1:11811",
-      "FASTDDS_STATISTICS=HISTORY_LATENCY_TOPIC;DATA_COUNT_TOPIC",
-      "FASTDDS_BUILTIN_TRANSPORTS=LARGE_DATA",
-      "ROS_LOCALHOST_ONLY=0",
-      "ROS_DOMAIN_ID=99"};
-  const std::uint32_t domain = fresh_domain();
-  const auto participant = make_participant(kPairing.reading, domain);
-  Inbox inbox(*participant, keyed(), last_state());
-  ChildProcess peer = start("write", domain, "10000", environment, at);
-  const Guid writer = endpoint(peer);
-  REQUIRE(eventually([&] { return inbox.count() == 1; }));
-  CHECK(inbox.reader().matched_writers() == std::vector{writer});
-  CHECK(peer.finish() == 0);
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) {
-    files.push_back(entry.path().filename());
-  }
-  std::sort(files.begin(), files.end());
-  CHECK(files == std::vector<std::string>{"DEFAULT_FASTRTPS_PROFILES.xml", "environment.json",
-                                          "profiles.xml"});
 }

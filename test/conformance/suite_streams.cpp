@@ -41,10 +41,9 @@ bool heard_from(Outbox& outbox, Inbox& inbox, std::uint32_t number, const KeyHas
 
 }  // namespace
 
-TEST_CASE("a missed deadline is told on both sides, of the instance that missed it") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), with_deadline(200ms));
-  Inbox inbox(*wire.reading, keyed(), with_deadline(300ms));
+TEST_CASE_METHOD(Wire, "a missed deadline is told on both sides, of the instance that missed it") {
+  Outbox outbox(*writing, keyed(), with_deadline(200ms));
+  Inbox inbox(*reading, keyed(), with_deadline(300ms));
   REQUIRE(matched(outbox, inbox));
   REQUIRE(heard_from(outbox, inbox, 1, make_key(1)));
   REQUIRE(eventually([&] { return holds(outbox.missed_deadlines(), make_key(1)); }));
@@ -56,10 +55,9 @@ TEST_CASE("a missed deadline is told on both sides, of the instance that missed 
   CHECK(eventually([&] { return inbox.missed_deadlines().size() > before; }));
 }
 
-TEST_CASE("a disposed instance misses no deadline") {
-  Wire wire;
-  Outbox outbox(*wire.writing, keyed(), with_deadline(200ms));
-  Inbox inbox(*wire.reading, keyed(), with_deadline(200ms));
+TEST_CASE_METHOD(Wire, "a disposed instance misses no deadline") {
+  Outbox outbox(*writing, keyed(), with_deadline(200ms));
+  Inbox inbox(*reading, keyed(), with_deadline(200ms));
   REQUIRE(matched(outbox, inbox));
   REQUIRE(heard_from(outbox, inbox, 1, make_key(1)));
   REQUIRE(heard_from(outbox, inbox, 1, make_key(2)));
@@ -76,13 +74,12 @@ TEST_CASE("a disposed instance misses no deadline") {
   CHECK(count(inbox.missed_deadlines()) == read);
 }
 
-TEST_CASE("a sample whose lifespan is over is not handed over, but counted") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a sample whose lifespan is over is not handed over, but counted") {
   Qos qos = keep_all();
   qos.lifespan = 200ms;
-  Outbox outbox(*wire.writing, keyless(), qos);
-  const auto reader = wire.reading->create_reader(keyless(), keep_all());
-  Inbox witness(*wire.reading, keyless(), keep_all());
+  Outbox outbox(*writing, keyless(), qos);
+  const auto reader = reading->create_reader(keyless(), keep_all());
+  Inbox witness(*reading, keyless(), keep_all());
   REQUIRE(connected(outbox, witness));
   REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
   // What connected() wrote, perhaps more than once, has arrived.
@@ -101,29 +98,28 @@ TEST_CASE("a sample whose lifespan is over is not handed over, but counted") {
   CHECK(witness.reader().counters().expired == 0);
 }
 
-TEST_CASE("a late joiner is not given what has expired") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "a late joiner is not given what has expired") {
   Qos qos = last_state();
   qos.lifespan = 300ms;
-  Outbox outbox(*wire.writing, keyed(), qos);
+  Outbox outbox(*writing, keyed(), qos);
   outbox.writer().write(make_number(1), make_key(1));
   const auto written = std::chrono::steady_clock::now();
   REQUIRE(eventually([&] { return std::chrono::steady_clock::now() - written > 300ms; }));
   qos.lifespan = std::nullopt;
-  Inbox late(*wire.reading, keyed(), qos);
+  Inbox late(*reading, keyed(), qos);
   REQUIRE(matched(outbox, late));
   outbox.writer().write(make_number(2), make_key(2));
   REQUIRE(eventually([&] { return late.count() > 0; }));
   CHECK(numbers(late.received()) == std::vector<std::uint32_t>{2});
 }
 
-TEST_CASE("a reader with a limit keeps the newest samples, and counts those that gave way") {
-  Wire wire;
+TEST_CASE_METHOD(Wire,
+                 "a reader with a limit keeps the newest samples, and counts those that gave way") {
   Qos qos = keep_all();
   qos.max_waiting = 3;
-  Outbox outbox(*wire.writing, keyless(), keep_all());
-  const auto reader = wire.reading->create_reader(keyless(), qos);
-  Inbox witness(*wire.reading, keyless(), keep_all());
+  Outbox outbox(*writing, keyless(), keep_all());
+  const auto reader = reading->create_reader(keyless(), qos);
+  Inbox witness(*reading, keyless(), keep_all());
   REQUIRE(connected(outbox, witness));
   REQUIRE(eventually([&] { return outbox.writer().matched_readers().size() == 2; }));
   REQUIRE(outbox.writer().wait_for_acknowledgments(10s));
@@ -138,14 +134,14 @@ TEST_CASE("a reader with a limit keeps the newest samples, and counts those that
   CHECK(values == std::vector<std::uint32_t>{7, 8, 9});
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Wire,
     "of an exclusive instance only the strongest writer is heard, and the next when it goes") {
-  Wire wire;
-  Inbox inbox(*wire.reading, keyed(), exclusive());
-  Outbox weak(*wire.writing, keyed(), exclusive(1));
+  Inbox inbox(*reading, keyed(), exclusive());
+  Outbox weak(*writing, keyed(), exclusive(1));
   REQUIRE(matched(weak, inbox));
   REQUIRE(heard_from(weak, inbox, 1, make_key(1)));
-  auto strong = std::make_unique<Outbox>(*wire.writing, keyed(), exclusive(2));
+  auto strong = std::make_unique<Outbox>(*writing, keyed(), exclusive(2));
   REQUIRE(matched(*strong, inbox));
   REQUIRE(heard_from(*strong, inbox, 2, make_key(1)));
   REQUIRE(strong->writer().wait_for_acknowledgments(10s));
@@ -159,15 +155,15 @@ TEST_CASE(
   CHECK(heard_from(weak, inbox, 5, make_key(1)));
 }
 
-TEST_CASE("the owner that misses a deadline loses the instance until it writes again") {
-  Wire wire;
+TEST_CASE_METHOD(Wire,
+                 "the owner that misses a deadline loses the instance until it writes again") {
   Qos qos = exclusive();
   qos.deadline = 300ms;
-  Inbox inbox(*wire.reading, keyed(), qos);
+  Inbox inbox(*reading, keyed(), qos);
   qos.strength = 1;
-  Outbox weak(*wire.writing, keyed(), qos);
+  Outbox weak(*writing, keyed(), qos);
   qos.strength = 2;
-  Outbox strong(*wire.writing, keyed(), qos);
+  Outbox strong(*writing, keyed(), qos);
   REQUIRE(matched(weak, inbox));
   REQUIRE(matched(strong, inbox));
   REQUIRE(heard_from(strong, inbox, 1, make_key(1)));
@@ -218,27 +214,25 @@ TEST_CASE("an incompatible offer is told on both sides with topic, policy, value
   }
 }
 
-TEST_CASE("what is in another partition is not incompatible") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "what is in another partition is not incompatible") {
   Qos elsewhere = keep_all();
   elsewhere.partitions = {"elsewhere"};
   elsewhere.reliable = false;
-  Outbox outbox(*wire.writing, keyless("one"), elsewhere);
-  Inbox inbox(*wire.reading, keyless("one"), keep_all());
-  Outbox later(*wire.writing, keyless("two"), keep_all());
-  Inbox late(*wire.reading, keyless("two"), keep_all());
+  Outbox outbox(*writing, keyless("one"), elsewhere);
+  Inbox inbox(*reading, keyless("one"), keep_all());
+  Outbox later(*writing, keyless("two"), keep_all());
+  Inbox late(*reading, keyless("two"), keep_all());
   REQUIRE(matched(later, late));
   CHECK(outbox.incompatible().empty());
   CHECK(inbox.incompatible().empty());
 }
 
-TEST_CASE("qualities of a stream that mean nothing are refused") {
-  Wire wire;
+TEST_CASE_METHOD(Wire, "qualities of a stream that mean nothing are refused") {
   Qos qos = keep_all();
   qos.strength = 3;
-  CHECK_THROWS_WITH(wire.writing->create_writer(keyless(), qos), Catch::Contains("exclusive"));
-  CHECK_THROWS_AS(wire.writing->create_writer(keyless(), with_deadline(0ms)), InvalidArgument);
+  CHECK_THROWS_WITH(writing->create_writer(keyless(), qos), Catch::Contains("exclusive"));
+  CHECK_THROWS_AS(writing->create_writer(keyless(), with_deadline(0ms)), InvalidArgument);
   qos = keep_all();
   qos.lifespan = 0ms;
-  CHECK_THROWS_AS(wire.writing->create_writer(keyless(), qos), InvalidArgument);
+  CHECK_THROWS_AS(writing->create_writer(keyless(), qos), InvalidArgument);
 }

@@ -44,7 +44,6 @@ struct Pair {
     listener.on_liveliness = [this](const Guid&, bool alive) {
       events += alive ? "alive " : "lost ";
     };
-    listener.on_deadline_missed = [this](const KeyHash&) { events += "missed "; };
     reader = two.participant->create_reader(kTopic, qos, listener);
   }
   ManualClock clock;
@@ -230,45 +229,6 @@ TEST_CASE("a listener's write that finds no room is refused at once, and waits f
   const auto hand = one.participant->create_writer(bell, Qos{});
   hand->write(number(3));
   CHECK(refused);
-}
-
-TEST_CASE("a deadline is missed when its period is over, and again after each further one") {
-  Qos qos;
-  qos.deadline = 100ms;
-  Pair pair(qos);
-  pair.clock.advance(1s);
-  CHECK(pair.events == "+");  // no sample yet: nothing is expected
-  pair.writer->write(number(1));
-  pair.clock.advance(60ms);
-  pair.writer->write(number(2));
-  pair.clock.advance(99ms);
-  CHECK(pair.events == "+");
-  pair.clock.advance(1ms);
-  CHECK(pair.events == "+missed ");
-  pair.clock.advance(200ms);
-  CHECK(pair.events == "+missed missed missed ");
-  pair.reader.reset();
-  pair.clock.advance(1s);
-  CHECK(pair.events == "+missed missed missed ");
-}
-
-TEST_CASE("a sample expires to the instant, on its way and in the reader") {
-  Qos qos;
-  qos.lifespan = 100ms;
-  Pair pair(qos);
-  pair.network.judge_transfers([](const Transfer& transfer) {
-    return transfer.sequence == 1 ? Fate::late(100ms) : Fate::deliver();
-  });
-  pair.writer->write(number(1));
-  pair.clock.advance(1ms);
-  pair.writer->write(number(2));
-  pair.clock.advance(99ms);
-  CHECK(take_all(*pair.reader) == std::vector{2});
-  CHECK(pair.reader->counters().expired == 1);
-  pair.writer->write(number(3));
-  pair.clock.advance(100ms);
-  CHECK(take_all(*pair.reader).empty());
-  CHECK(pair.reader->counters().expired == 2);
 }
 
 TEST_CASE("an owner that is silent for its lease hands over, and takes again when it is back") {

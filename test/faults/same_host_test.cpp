@@ -125,30 +125,6 @@ TEST_CASE_METHOD(Pair,
 }
 
 TEST_CASE_METHOD(Pair,
-                 "a stream from another process is in order, and ends there with its listener") {
-  std::int32_t expected = 0;
-  for (const std::int32_t number : echo.within(60s).count_up(10'000, -1))
-    INVARIANT(number == expected++);
-  CHECK(expected == 10'000);
-  {
-    auto numbers = echo.within(10min).count_up(1'000'000, -1);
-    for (std::int32_t i = 0; i < 100; ++i) INVARIANT(numbers.next() == i);
-    CHECK(inside(1));
-  }
-  CHECK(inside(0));
-}
-
-TEST_CASE_METHOD(Pair, "a call that is cancelled, or runs out of time, ends in the other process") {
-  auto call = echo.within(10min).async_wait(600'000);
-  REQUIRE(inside(1));
-  call.cancel();
-  CHECK(inside(0));
-  CHECK_THROWS_AS(echo.within(200ms).wait(600'000), TimedOut);
-  CHECK(inside(0));
-  CHECK(echo.within(20s).echo("after") == "after");
-}
-
-TEST_CASE_METHOD(Pair,
                  "a provider that is killed ends its calls as Disconnected; the next one goes to "
                  "another provider, over DDS where that has no more") {
   const bool memory = GENERATE(true, false);
@@ -166,20 +142,6 @@ TEST_CASE_METHOD(Pair,
   }));
   CHECK(transport(*client) == (memory ? "shared memory" : "DDS"));
   CHECK(next.ask("calls") == "calls 1");
-}
-
-TEST_CASE_METHOD(
-    Pair,
-    "a provider that is killed in a stream: what came is taken, then it ends as Disconnected") {
-  auto numbers = echo.within(10min).count_up(1'000'000, -1);
-  for (std::int32_t i = 0; i < 100; ++i) INVARIANT(numbers.next() == i);
-  provider.signal(SIGKILL);
-  std::int32_t expected = 100;
-  CHECK_THROWS_AS(
-      [&] {
-        while (const auto number = numbers.next()) INVARIANT(*number == expected++);
-      }(),
-      Disconnected);
 }
 
 TEST_CASE(
