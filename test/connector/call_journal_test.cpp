@@ -5,7 +5,7 @@
 
 #include "../tools/eventually.hpp"
 #include "../tools/log.hpp"
-#include "echo_service.hpp"
+#include "echo_pair.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
@@ -67,29 +67,32 @@ class Heard {
   introspection::Reader<CallEvents> reader_;  // last: goes first
 };
 
+const Steps kWhole{CallStep::Sent, CallStep::Received, CallStep::Replied, CallStep::Answered};
+const Steps kRefused{CallStep::Sent, CallStep::Received, CallStep::RepliedError,
+                     CallStep::EndedInError};
+
+/// Calls until each step of a call is heard. Best effort: the first ones may come before the
+/// journals know of the reader.
+bool hears(const Heard& heard, Echo::Proxy& echo) {
+  return eventually([&] {
+    echo.echo("x");
+    return eventually([&] { return heard.last("echo") == kWhole; }, 100ms);
+  });
+}
+
 }  // namespace
 
 TEST_CASE("while somebody reads, each step of a call is told by both sides under one number",
           "[wire]") {
-  const auto server = make_server();
-  const auto service = std::make_shared<EchoService>();
-  server->provide<LouderEcho>(service);
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-  const Heard heard(client->participant());
-  const Steps whole{CallStep::Sent, CallStep::Received, CallStep::Replied, CallStep::Answered};
-  // Best effort: the first calls may come before the journals know of the reader.
-  REQUIRE(eventually([&] {
-    echo.echo("x");
-    return eventually([&] { return heard.last("echo") == whole; }, 100ms);
-  }));
+  EchoPair pair(make_server(), make_client());
+  auto& echo = *pair.echo;
+  const Heard heard(pair.client->participant());
+  REQUIRE(hears(heard, echo));
   std::int32_t remainder;
   CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
-  CHECK(eventually([&] { return heard.last("divide") == whole; }));
+  CHECK(eventually([&] { return heard.last("divide") == kWhole; }));
   CHECK_THROWS_AS(echo.fail("standard"), Internal);
-  const Steps refused{CallStep::Sent, CallStep::Received, CallStep::RepliedError,
-                      CallStep::EndedInError};
-  CHECK(eventually([&] { return heard.last("fail") == refused; }));
+  CHECK(eventually([&] { return heard.last("fail") == kRefused; }));
 
   echo.note("a oneway call");
   CHECK(eventually([&] { return heard.last("note").size() == 4; }));
@@ -97,13 +100,7 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
   CHECK_THROWS_AS(echo.within(50ms).wait(20'000), TimedOut);
   const Steps late{CallStep::Sent, CallStep::Received, CallStep::EndedInError,
                    CallStep::RepliedError};
-  CHECK(eventually([&] {
-    auto steps = heard.last("wait");
-    std::sort(steps.begin(), steps.end());
-    auto wanted = late;
-    std::sort(wanted.begin(), wanted.end());
-    return steps == wanted;
-  }));
+  CHECK(eventually([&] { return std::ranges::is_permutation(heard.last("wait"), late); }));
   for (const CallEvent& event : heard.all()) {
     const bool at_client = event.step == CallStep::Sent || event.step == CallStep::Answered ||
                            event.step == CallStep::EndedInError;
@@ -121,17 +118,11 @@ TEST_CASE("a call within a process is told by both sides, too") {
   auto echo = entity->connect<Echo>();
   const auto onlooker = make_client();
   const Heard heard(onlooker->participant());
-  const Steps whole{CallStep::Sent, CallStep::Received, CallStep::Replied, CallStep::Answered};
-  REQUIRE(eventually([&] {
-    echo.echo("x");
-    return eventually([&] { return heard.last("echo") == whole; }, 100ms);
-  }));
+  REQUIRE(hears(heard, echo));
   CHECK_THROWS_AS(echo.fail("standard"), Internal);
-  const Steps refused{CallStep::Sent, CallStep::Received, CallStep::RepliedError,
-                      CallStep::EndedInError};
-  CHECK(eventually([&] { return heard.last("fail") == refused; }));
+  CHECK(eventually([&] { return heard.last("fail") == kRefused; }));
   echo.async_echo("y").get();
-  CHECK(eventually([&] { return heard.last("echo") == whole; }));
+  CHECK(eventually([&] { return heard.last("echo") == kWhole; }));
   echo.note("a oneway call");
   CHECK(eventually([&] { return heard.last("note").size() == 4; }));
   auto waiting = echo.async_wait(20'000);

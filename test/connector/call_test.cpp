@@ -1,12 +1,10 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <condition_variable>
 #include <thread>
 
 #include "../tools/eventually.hpp"
 #include "../tools/invariant.hpp"
 #include "../tools/log.hpp"
-#include "echo_service.hpp"
+#include "echo_pair.hpp"
 #include "pairing.hpp"
 #include "rpc/dds_channel.hpp"
 
@@ -19,23 +17,12 @@ using ::test::LouderEcho;
 
 namespace {
 
-/// A server with an Echo and a connected client, each an entity of its own.
-struct Pair {
+struct Pair : EchoPair<> {
   explicit Pair(const ServiceOptions& options = {})
-      : server(make_server()), client(make_client()), service(std::make_shared<EchoService>()) {
-    id = server->provide<LouderEcho>(service, options);
-    echo.emplace(client->connect<Echo>());
-  }
-  ~Pair() { echo.reset(); }
+      : EchoPair(make_server(), make_client(), options) {}
 
   /// A proxy of the client's, or of one in the server's process.
   Echo::Proxy connect(bool same_process) { return same_process ? server->connect<Echo>() : *echo; }
-
-  std::unique_ptr<Entity> server;
-  std::unique_ptr<Entity> client;
-  std::shared_ptr<EchoService> service;
-  Guid id;
-  std::optional<Echo::Proxy> echo;
 };
 
 ServiceOptions threads(std::size_t count) {
@@ -152,7 +139,8 @@ TEST_CASE("calls from several threads do not disturb each other", "[wire]") {
     callers.emplace_back([&, caller] {
       for (int i = 0; i < 50; ++i) {
         const std::string text = std::to_string(caller) + ":" + std::to_string(i);
-        right += pair.echo->within(30s).echo(text) == text;
+        auto echo = pair.echo->within(30s);
+        right += (i % 3 == 0 ? echo.async_echo(text).get() : echo.echo(text)) == text;
       }
     });
   }
@@ -177,40 +165,10 @@ TEST_CASE("a service with one thread is never inside two calls at once, one with
   CHECK_FALSE(one.service->overlapped);
 }
 
-TEST_CASE("a call that is not answered in time ends as TimedOut and the server learns of it",
-          "[wire]") {
-  Pair pair;
-  REQUIRE(with_enough_time(50ms, [&](auto limit) {
-    CHECK_THROWS_AS(pair.echo->within(limit).wait(600'000), TimedOut);
-    return pair.service->calls > 0;
-  }));
-  CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
-  CHECK(pair.echo->echo("next") == "next");
-}
-
-TEST_CASE("a call that waits behind others until its deadline is never executed") {
-  Pair pair;
-  auto long_one = pair.echo->within(10min).async_wait(600'000);
-  const auto before = [&] { return pair.service->inside == 1; };
-  REQUIRE(eventually(before));
-  CHECK_THROWS_AS(pair.echo->within(20ms).echo("too late"), TimedOut);
-  long_one.cancel();
-  CHECK(pair.echo->echo("in time") == "in time");
-  CHECK(pair.service->calls == 2);
-}
-
-TEST_CASE("dropping an asynchronous call cancels it at the server", "[wire]") {
-  Pair pair;
-  {
-    const auto dropped = pair.echo->within(60s).async_wait(60'000);
-    REQUIRE(eventually([&] { return pair.service->inside == 1; }));
-  }
-  CHECK(eventually([&] { return pair.service->saw_cancellation.load(); }));
-}
-
 TEST_CASE(
     "dropping, cancelling, timing out and disconnecting each reach the running call, on every "
-    "transport") {
+    "transport",
+    "[wire]") {
   const auto server = make_server();
   const auto service = std::make_shared<EchoService>();
   server->provide<LouderEcho>(service);
@@ -320,68 +278,6 @@ TEST_CASE(
   running.cancel();
   for (int i = 0; i < 2; ++i) CHECK(calls[i].get() == "x");
   CHECK(pair.service->calls == 3);
-}
-
-TEST_CASE(
-    "a client with one call does not wait behind another's thousands, and each of these is "
-    "answered") {
-  struct Gated : EchoService {
-    std::string echo(const std::string& text) override {
-      std::unique_lock lock(mutex);
-      order.push_back(text);
-      changed.wait(lock, [&] { return open; });
-      return text;
-    }
-    std::mutex mutex;
-    std::condition_variable changed;
-    bool open = false;
-    std::vector<std::string> order;
-  };
-  const auto server = make_server();
-  const auto service = std::make_shared<Gated>();
-  ServiceOptions options;
-  options.queue = 64;
-  server->provide<LouderEcho>(service, options);
-  const auto greedy = make_client("greedy");
-  const auto polite = make_client("polite");
-  auto many = greedy->connect<Echo>().within(60s);
-  auto one = polite->connect<Echo>().within(60s);
-
-  auto running = many.async_echo("greedy");
-  const auto inside = [&] {
-    std::lock_guard lock(service->mutex);
-    return service->order.size() == 1;
-  };
-  REQUIRE(eventually(inside));
-  // The last of each is refused as there is no room any more, so what was sent first waits in line.
-  std::vector<Call<std::string>> flood;
-  for (int i = 0; i < 2000; ++i) flood.push_back(many.async_echo("greedy"));
-  REQUIRE(eventually([&] { return flood.back().ready(); }));
-  std::vector<Call<std::string>> few;
-  for (int i = 0; i < 40; ++i) few.push_back(one.async_echo("polite"));
-  REQUIRE(eventually([&] { return few.back().ready(); }));
-  CHECK_THROWS_AS(few.back().get(), Overloaded);
-  {
-    std::lock_guard lock(service->mutex);
-    service->open = true;
-    service->changed.notify_all();
-  }
-  CHECK(running.get() == "greedy");
-  CHECK(few.front().get() == "polite");
-  std::size_t executed = 0;
-  std::size_t refused = 0;
-  for (auto& call : flood) {
-    try {
-      executed += call.get() == "greedy";
-    } catch (const Overloaded&) {
-      ++refused;
-    }
-  }
-  CHECK(executed + refused == 2000);
-  CHECK(executed == 32);  // half of the queue
-  std::lock_guard lock(service->mutex);
-  CHECK(std::find(service->order.begin(), service->order.end(), "polite") <=
-        service->order.begin() + 2);
 }
 
 TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not sent") {

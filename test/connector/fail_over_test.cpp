@@ -3,7 +3,7 @@
 
 #include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
-#include "echo_service.hpp"
+#include "echo_pair.hpp"
 #include "pairing.hpp"
 
 using namespace skein;
@@ -13,14 +13,6 @@ using ::test::Echo;
 using ::test::LouderEcho;
 
 namespace {
-
-struct NamedEcho : EchoService {
-  explicit NamedEcho(std::string name) : name_(std::move(name)) {}
-  std::string echo(const std::string&) override { return name_; }
-
- private:
-  std::string name_;
-};
 
 /// Refuses the first so many calls.
 struct RefusingEcho : EchoService {
@@ -68,41 +60,28 @@ struct Trio {
 }  // namespace
 
 TEST_CASE("when a provider leaves the next call goes to the next one", "[wire]") {
-  auto first = make_server("first");
-  const auto second = make_server("second");
-  first->provide<LouderEcho>(std::make_shared<NamedEcho>("first"));
-  second->provide<LouderEcho>(std::make_shared<NamedEcho>("second"));
-  const auto client = make_client();
-  REQUIRE(eventually([&] {
-    return client->broker().find_service(client->broker().query("test::Echo")).size() == 2;
-  }));
-  auto echo = client->connect<Echo>();
-  CHECK(echo.echo("") == "first");
-  first.reset();
-  CHECK(eventually([&] { return echo.within(5s).async_echo("").get() == "second"; }));
-  CHECK(echo.echo("") == "second");
+  Trio<EchoService> trio;
+  CHECK(trio.echo->echo("x") == "x");
+  CHECK(trio.first_service->calls == 1);
+  trio.first.reset();
+  CHECK(trio.echo->within(5s).async_echo("y").get() == "y");
+  CHECK(trio.echo->echo("z") == "z");
+  CHECK(trio.second_service->calls == 2);
 }
 
 TEST_CASE("a call on its way when its provider leaves ends, and not by its deadline", "[wire]") {
-  auto server = make_server();
-  const auto service = std::make_shared<EchoService>();
-  const Guid id = server->provide<LouderEcho>(service);
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-  auto call = echo.within(10min).async_wait(600'000);
-  REQUIRE(eventually([&] { return service->inside == 1; }));
-  server->withdraw(id);
+  EchoPair pair(make_server(), make_client());
+  auto call = pair.echo->within(10min).async_wait(600'000);
+  REQUIRE(eventually([&] { return pair.service->inside == 1; }));
+  pair.server->withdraw(pair.id);
   CHECK_THROWS_AS(call.get(), Disconnected);
 }
 
 TEST_CASE("with no provider left a call says so") {
-  auto server = make_server();
-  server->provide<LouderEcho>(std::make_shared<EchoService>());
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-  server.reset();
-  REQUIRE(eventually([&] { return client->broker().all().empty(); }));
-  CHECK_THROWS_AS(echo.within(100ms).echo("x"), Unavailable);
+  EchoPair pair(make_server(), make_client());
+  pair.server.reset();
+  REQUIRE(eventually([&] { return pair.client->broker().all().empty(); }));
+  CHECK_THROWS_AS(pair.echo->within(100ms).echo("x"), Unavailable);
 }
 
 TEST_CASE("an idempotent call on its way when its provider leaves is answered by the next one",
@@ -143,15 +122,11 @@ TEST_CASE("a call that is not idempotent is never made twice") {
 }
 
 TEST_CASE("with nobody else to ask an idempotent call ends with what its provider said") {
-  const auto server = make_server();
-  const auto service = std::make_shared<RefusingEcho>();
-  server->provide<LouderEcho>(service);
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-  service->refusals = 2;
-  CHECK_THROWS_WITH(echo.within(10min).who(0), Catch::Contains("not now"));
-  CHECK_THROWS_WITH(echo.within(10min).async_who(0).get(), Catch::Contains("not now"));
-  CHECK(echo.who(0) == "echo");
+  EchoPair<RefusingEcho> pair(make_server(), make_client());
+  pair.service->refusals = 2;
+  CHECK_THROWS_WITH(pair.echo->within(10min).who(0), Catch::Contains("not now"));
+  CHECK_THROWS_WITH(pair.echo->within(10min).async_who(0).get(), Catch::Contains("not now"));
+  CHECK(pair.echo->who(0) == "echo");
 }
 
 TEST_CASE("dropping an idempotent call cancels it at the provider to which it moved") {

@@ -2,7 +2,7 @@
 
 #include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
-#include "echo_service.hpp"
+#include "echo_pair.hpp"
 #include "entity/statistics_topic.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
@@ -61,14 +61,9 @@ class Teller {
 }  // namespace
 
 TEST_CASE("each call is counted by its outcome, with the time that it waited and ran") {
-  const auto server = make_server();
-  const auto service = std::make_shared<EchoService>();
-  ServiceOptions options;
-  options.queue = 4;
-  server->provide<LouderEcho>(service, options);
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-
+  EchoPair pair(make_server(), make_client(), {.queue = 4});
+  auto& [service, server, client, id, connected] = pair;
+  auto echo = *connected;
   for (int i = 0; i < 5; ++i) echo.echo("x");
   std::int32_t remainder;
   CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
@@ -105,25 +100,21 @@ TEST_CASE("each call is counted by its outcome, with the time that it waited and
 
 TEST_CASE("a call on the caller's own thread is counted, and did not wait") {
   const auto process = std::make_shared<Process>();
-  const auto server = make_entity("server", Pairing::get().server, "uav-1", process);
-  const auto client = make_entity("client", Pairing::get().client, "uav-1", process);
-  server->provide<LouderEcho>(std::make_shared<EchoService>(), {.thread = CallThread::Caller});
-  auto echo = client->connect<Echo>();
-  echo.echo("x");
-  CHECK(of(server->statistics(), "echo").answered == 1);
-  CHECK(of(server->statistics(), "echo").waited.count == 0);
+  EchoPair pair(make_entity("server", Pairing::get().server, "uav-1", process),
+                make_entity("client", Pairing::get().client, "uav-1", process),
+                {.thread = CallThread::Caller});
+  pair.echo->echo("x");
+  CHECK(of(pair.server->statistics(), "echo").answered == 1);
+  CHECK(of(pair.server->statistics(), "echo").waited.count == 0);
 }
 
 TEST_CASE(
     "statistics of all entities reach whoever reads their topic, and tell of later calls too") {
-  const auto server = make_server();
-  server->provide<LouderEcho>(std::make_shared<EchoService>());
-  const auto client = make_client();
-  auto echo = client->connect<Echo>();
-  echo.echo("x");
-  const introspection::StatisticsReader reader(client->participant());
+  EchoPair pair(make_server(), make_client());
+  pair.echo->echo("x");
+  const introspection::StatisticsReader reader(pair.client->participant());
   CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 1; }));
-  echo.echo("x");
+  pair.echo->echo("x");
   CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 2; }));
   CHECK(reader.latest().at(0).entity == "server");
 }

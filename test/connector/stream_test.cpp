@@ -18,23 +18,22 @@ constexpr std::int32_t kNever = -1;
 constexpr std::int32_t kEndlessStream = 1 << 30;
 constexpr std::int32_t kWindow = PendingStream::kWindow;
 
-// A service and a client of it: in another entity, or in the service's own and so in one process.
+/// A service and a client of it: in another entity, or in the service's own and so in one process.
 struct Streaming {
-  explicit Streaming(bool same_process)
-      : server(make_server()), service(std::make_shared<EchoService>()) {
-    ServiceOptions options;
-    options.threads = 2;
-    id = server->provide<LouderEcho>(service, options);
-    if (!same_process) client = make_client();
-  }
-
-  Echo::Proxy connect() { return (client ? *client : *server).connect<Echo>(); }
-
-  std::unique_ptr<Entity> server;
-  std::shared_ptr<EchoService> service;
-  std::unique_ptr<Entity> client;
-  Guid id;
+  const std::shared_ptr<EchoService> service = std::make_shared<EchoService>();
+  const std::unique_ptr<Entity> server = make_server();
+  const Guid id = server->provide<LouderEcho>(service, {.threads = 2});
+  const std::unique_ptr<Entity> client = GENERATE(false, true) ? make_client() : nullptr;
+  Echo::Proxy echo = (client ? *client : *server).connect<Echo>();
 };
+
+/// Takes all that comes.
+template <class T>
+std::int32_t exhaust(Stream<T>& stream) {
+  std::int32_t taken = 0;
+  while (stream.next()) ++taken;
+  return taken;
+}
 
 struct Detached {
   struct promise_type {
@@ -58,59 +57,53 @@ Detached sum_up(Stream<std::int32_t> numbers, std::promise<std::int64_t>& sum) {
 
 }  // namespace
 
-TEST_CASE("a stream brings every result in order and then ends", "[wire]") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "a stream brings every result in order and then ends", "[wire]") {
   std::int32_t expected = 0;
   for (const std::int32_t number : echo.count_up(1000, kNever)) INVARIANT(number == expected++);
   INVARIANT(expected == 1000);
   auto empty = echo.count_up(0, kNever);
   CHECK(empty.next() == std::nullopt);
   CHECK(empty.next() == std::nullopt);
-  CHECK(eventually([&] { return test.service->inside == 0; }));
+  CHECK(eventually([&] { return service->inside == 0; }));
 }
 
-TEST_CASE("results that came before a stream failed are taken before the failure is thrown") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(
+    Streaming, "results that came before a stream failed are taken before the failure is thrown") {
   auto numbers = echo.count_up(10, 3);
   for (std::int32_t i = 0; i < 3; ++i) CHECK(numbers.next() == i);
   CHECK_THROWS_AS(numbers.next(), ::test::DivisionByZero);
   CHECK(numbers.next() == std::nullopt);
 }
 
-TEST_CASE("a reader that takes nothing holds the server up, and nothing piles up", "[wire]") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "a reader that takes nothing holds the server up, and nothing piles up",
+                 "[wire]") {
   auto numbers = echo.within(10min).count_up(100, kNever);
-  REQUIRE(eventually([&] { return test.service->pushed == kWindow; }));
+  REQUIRE(eventually([&] { return service->pushed == kWindow; }));
   CHECK(echo.echo("an answer, which comes later than any result that was not waited with") != "");
-  CHECK(test.service->pushed == kWindow);
+  CHECK(service->pushed == kWindow);
   for (std::int32_t i = 0; i < 100; ++i) {
     REQUIRE(numbers.next() == i);
-    REQUIRE(test.service->pushed <= i + 1 + kWindow);
+    REQUIRE(service->pushed <= i + 1 + kWindow);
   }
   CHECK(numbers.next() == std::nullopt);
 }
 
-TEST_CASE("a service that does not want to wait is told that its reader is behind") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming,
+                 "a service that does not want to wait is told that its reader is behind") {
   auto stream = echo.within(10min).burst(100'000);
-  REQUIRE(eventually([&] { return test.service->stream_ended.load(); }));
+  REQUIRE(eventually([&] { return service->stream_ended.load(); }));
   int blocks = 0;
   for (const auto& block : stream) {
     CHECK(block.size() == 100'000);
     ++blocks;
   }
   CHECK(blocks == kWindow);
-  CHECK(blocks == test.service->pushed);
+  CHECK(blocks == service->pushed);
 }
 
-TEST_CASE("a reader that drops or cancels its stream stops the server", "[wire]") {
-  Streaming test(GENERATE(false, true));
+TEST_CASE_METHOD(Streaming, "a reader that drops or cancels its stream stops the server",
+                 "[wire]") {
   const bool drop = GENERATE(true, false);
-  auto echo = test.connect();
   {
     auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
     CHECK(numbers.next() == 0);
@@ -119,29 +112,25 @@ TEST_CASE("a reader that drops or cancels its stream stops the server", "[wire]"
       CHECK_THROWS_AS(numbers.next(), Cancelled);
     }
   }
-  CHECK(eventually([&] { return test.service->stream_ended.load(); }));
-  CHECK(test.service->saw_cancellation);
+  CHECK(eventually([&] { return service->stream_ended.load(); }));
+  CHECK(service->saw_cancellation);
 }
 
-TEST_CASE("a stream that gives way to another is dropped at once") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "a stream that gives way to another is dropped at once") {
   auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
   CHECK(numbers.next() == 1);
   auto others = echo.within(10min).count_up(3, kNever);
   numbers = std::move(others);
-  CHECK(eventually([&] { return test.service->saw_cancellation.load(); }));
+  CHECK(eventually([&] { return service->saw_cancellation.load(); }));
   CHECK(numbers.next() == 0);
 }
 
-TEST_CASE("the deadline ends a stream at both ends") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "the deadline ends a stream at both ends") {
   std::optional<Stream<std::int32_t>> numbers;
   REQUIRE(with_enough_time(300ms, [&](auto limit) {
     numbers.emplace(echo.within(limit).count_up(kEndlessStream, kNever));
-    return eventually([&] { return test.service->stream_ended.load(); }, 2 * limit);
+    return eventually([&] { return service->stream_ended.load(); }, 2 * limit);
   }));
   std::int32_t taken = 0;
   CHECK_THROWS_AS(
@@ -152,40 +141,25 @@ TEST_CASE("the deadline ends a stream at both ends") {
   CHECK(taken <= kWindow);
 }
 
-TEST_CASE("a stream whose provider leaves ends as Disconnected, and holds up nobody's leaving",
-          "[wire]") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(
+    Streaming, "a stream whose provider leaves ends as Disconnected, and holds up nobody's leaving",
+    "[wire]") {
   auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
-  test.server->withdraw(test.id);
-  CHECK_THROWS_AS(
-      [&] {
-        while (numbers.next()) {
-        }
-      }(),
-      Disconnected);
-  CHECK(test.service->stream_ended);
+  server->withdraw(id);
+  CHECK_THROWS_AS(exhaust(numbers), Disconnected);
+  CHECK(service->stream_ended);
 }
 
-TEST_CASE("a stream whose reader disconnects stops the server", "[wire]") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "a stream whose reader disconnects stops the server", "[wire]") {
   auto numbers = echo.within(10min).count_up(kEndlessStream, kNever);
   CHECK(numbers.next() == 0);
   echo.disconnect();
-  CHECK(eventually([&] { return test.service->stream_ended.load(); }));
-  CHECK_THROWS_AS(
-      [&] {
-        while (numbers.next()) {
-        }
-      }(),
-      Cancelled);
+  CHECK(eventually([&] { return service->stream_ended.load(); }));
+  CHECK_THROWS_AS(exhaust(numbers), Cancelled);
 }
 
-TEST_CASE("a coroutine takes a stream without a thread that waits") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "a coroutine takes a stream without a thread that waits") {
   std::promise<std::int64_t> sum;
   sum_up(echo.count_up(100, kNever), sum);
   CHECK(sum.get_future().get() == 4950);
@@ -194,9 +168,7 @@ TEST_CASE("a coroutine takes a stream without a thread that waits") {
   CHECK_THROWS_AS(failed.get_future().get(), ::test::DivisionByZero);
 }
 
-TEST_CASE("streams of one client do not disturb each other", "[wire]") {
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
+TEST_CASE_METHOD(Streaming, "streams of one client do not disturb each other", "[wire]") {
   auto one = echo.count_up(100, kNever);
   auto other = echo.count_up(100, kNever);
   for (std::int32_t i = 0; i < 100; ++i) {
@@ -205,7 +177,7 @@ TEST_CASE("streams of one client do not disturb each other", "[wire]") {
   }
 }
 
-TEST_CASE("a proxy is an implementation too: it passes a stream on to a sink") {
+TEST_CASE_METHOD(Streaming, "a proxy is an implementation too: it passes a stream on to a sink") {
   struct Collected final : StreamSink<std::int32_t> {
     bool put(std::int32_t item, bool) override {
       items.push_back(item);
@@ -213,8 +185,6 @@ TEST_CASE("a proxy is an implementation too: it passes a stream on to a sink") {
     }
     std::vector<std::int32_t> items;
   };
-  Streaming test(GENERATE(false, true));
-  auto echo = test.connect();
   Collected collected;
   Echo& implementation = echo;
   implementation.count_up(20, kNever, collected);
