@@ -42,34 +42,6 @@ TEST_CASE("a CSP that leaves while it works is followed by the next best", "[wir
   CHECK(office.attempts() == Lines{"leaver disconnected", "stayer accepted"});
 }
 
-TEST_CASE("CSPs come and go under load and no task is lost", "[wire]") {
-  Office office;
-  office.add("steady", Place::Inside, answer_as("steady"), declared("10", "0.5"));
-  std::atomic<bool> done = false;
-  std::atomic<int> right = 0, wrong = 0, refused = 0;
-  std::thread client([&] {
-    while (!done) {
-      try {
-        const std::string result = office.owner->head().perform(Office::task("x"), nullptr, 30s);
-        ++(result.ends_with(" did x") ? right : wrong);
-      } catch (const Error&) {
-        ++refused;
-      }
-    }
-  });
-  for (int round = 0; round < 5; ++round) {
-    const std::string name = "guest" + std::to_string(round);
-    const auto guest = office.add(name, Place::Outside, answer_as(name), declared("10", "0.9"));
-    CHECK(eventually([&] { return guest->calls > 0; }));
-    office.remove(name);
-  }
-  done = true;
-  client.join();
-  INVARIANT(wrong == 0);
-  CHECK(refused == 0);
-  CHECK(right >= 5);
-}
-
 TEST_CASE("two CSPs take turns under load and no task is lost", "[wire]") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
   const auto execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);

@@ -32,35 +32,25 @@ struct FirstFails {
 
 }  // namespace
 
-TEST_CASE("a CSP that throws is followed by the next best", "[wire]") {
+TEST_CASE("a CSP that throws, refuses, or whose result is rejected is followed by the next best",
+          "[wire]") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
-  FirstFails team(place, crash());
+  const auto& [script, outcome, text] =
+      GENERATE(table<ScriptedWorker::Script, std::string, std::string>(
+          {{crash(), "failed", "a bug"},
+           {refuse(false), "refused", ""},
+           {answer_as("wrong"), "rejected", "it is wrong did it"}}));
+  FirstFails team(place, script);
   CHECK(team.office.perform(Office::task(), 10s) == "second did it");
-  CHECK(team.office.attempts() == Lines{"first failed", "second accepted"});
-  CHECK_THAT(team.office.record.attempts[0].text, Catch::Contains("a bug"));
+  CHECK(team.office.attempts() == Lines{"first " + outcome, "second accepted"});
+  CHECK_THAT(team.office.record.attempts[0].text, Catch::Contains(text));
 }
 
-TEST_CASE("a CSP that refuses is followed by the next best, unless its word settles the matter") {
-  const Place place = GENERATE(Place::Inside, Place::Outside);
-  SECTION("it does not") {
-    FirstFails team(place, refuse(false));
-    CHECK(team.office.perform(Office::task(), 10s) == "second did it");
-    CHECK(team.office.attempts() == Lines{"first refused", "second accepted"});
-  }
-  SECTION("it does") {
-    FirstFails team(place, refuse(true));
-    CHECK_THROWS_AS(team.office.perform(Office::task(), 10s), NoAnswer);
-    CHECK(team.office.attempts() == Lines{"first refused"});
-    CHECK(team.second->calls == 0);
-  }
-}
-
-TEST_CASE("a CSP whose result is rejected is followed by the next best") {
-  const Place place = GENERATE(Place::Inside, Place::Outside);
-  FirstFails team(place, answer_as("wrong"));
-  CHECK(team.office.perform(Office::task(), 10s) == "second did it");
-  CHECK(team.office.attempts() == Lines{"first rejected", "second accepted"});
-  CHECK(team.office.record.attempts[0].text == "it is wrong did it");
+TEST_CASE("a CSP that refuses is followed by nobody if its word settles the matter") {
+  FirstFails team(GENERATE(Place::Inside, Place::Outside), refuse(true));
+  CHECK_THROWS_AS(team.office.perform(Office::task(), 10s), NoAnswer);
+  CHECK(team.office.attempts() == Lines{"first refused"});
+  CHECK(team.second->calls == 0);
 }
 
 TEST_CASE("a CSP that hangs is given up in time for the next best", "[wire]") {

@@ -66,8 +66,7 @@ class AttackedProvider {
   static constexpr const char* kReplyTopic = "test/LouderEcho_Reply";
   static constexpr const char* kReplyType = "test::LouderEcho_Reply";
 
-  AttackedProvider() : server_(start_peer("server", *Pairing::get().server)) {
-    server_.ask("provide");
+  AttackedProvider() : server_(start_provider("server", *Pairing::get().server)) {
     ports_ = receiving_ports_of(server_.pid());
     // What makes it take all memory is not to take the machine's.
     constexpr rlim_t kEnough = rlim_t{6} << 30;

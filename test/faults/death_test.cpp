@@ -44,7 +44,7 @@ struct GatedEcho : EchoService {
 TEST_CASE(
     "a provider killed on the same host: its call ends as Disconnected and its description goes, "
     "long before the lease") {
-  auto server = start_peer("server", *Pairing::get().server, kLongLeaseArgument);
+  auto server = start_provider("server", *Pairing::get().server, kLongLeaseArgument);
   const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
   std::atomic<int> deaths = 0;
   std::atomic<int> others = 0;
@@ -52,8 +52,6 @@ TEST_CASE(
     if (change.kind != Change::Kind::Removed) return;
     ++(change.departure == Departure::Died ? deaths : others);
   });
-  server.send("provide");
-  server.expect("provided");
   auto echo = client->connect<LouderEcho>({.timeout = 20s});
   auto call = echo.within(10min).async_wait(600'000);
   REQUIRE(eventually([&] { return server.ask("calls") == "calls 1"; }));
@@ -75,10 +73,8 @@ TEST_CASE(
 
 TEST_CASE(
     "a provider killed in the middle of a stream: what came can be taken, then the stream ends") {
-  auto server = start_peer("server", *Pairing::get().server, kLongLeaseArgument);
+  auto server = start_provider("server", *Pairing::get().server, kLongLeaseArgument);
   const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
-  server.send("provide");
-  server.expect("provided");
   auto echo = client->connect<LouderEcho>({.timeout = 20s});
   auto numbers = echo.within(10min).count_up(1'000'000, -1);
   for (std::int32_t i = 0; i < 100; ++i) REQUIRE(numbers.next() == i);
@@ -94,13 +90,9 @@ TEST_CASE(
 }
 
 TEST_CASE("after a provider's death the next call goes to the next provider") {
-  auto first = start_peer("first", *Pairing::get().server, kLongLeaseArgument);
-  auto second = start_peer("second", *Pairing::get().server, kLongLeaseArgument);
+  auto first = start_provider("first", *Pairing::get().server, kLongLeaseArgument);
+  auto second = start_provider("second", *Pairing::get().server, kLongLeaseArgument);
   const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
-  for (ChildProcess* server : {&first, &second}) {
-    server->send("provide");
-    server->expect("provided");
-  }
   REQUIRE(knows(*client, 2));
   auto echo = client->connect<LouderEcho>({.timeout = 20s});
   CHECK(echo.within(20s).echo("x") == "x");
@@ -114,10 +106,8 @@ TEST_CASE("after a provider's death the next call goes to the next provider") {
 TEST_CASE(
     "a provider that was stopped for longer than its lease is found again by itself, and answers",
     "[R17]") {
-  auto server = start_peer("server", *Pairing::get().server);
+  auto server = start_provider("server", *Pairing::get().server);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
-  server.send("provide");
-  server.expect("provided");
   auto echo = client->connect<LouderEcho>({.timeout = 20s});
   CHECK(echo.within(20s).echo("before") == "before");
   server.signal(SIGSTOP);
@@ -133,9 +123,8 @@ TEST_CASE(
     "a client that was stopped for longer than its lease finds its provider again, and calls it") {
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   ExposedService service(*server, std::make_shared<EchoService>());
-  auto client = start_peer("client", *Pairing::get().client);
-  client.send("connect\necho 1 before");
-  client.expect("connected");
+  auto client = start_client("client", *Pairing::get().client);
+  client.send("echo 1 before");
   client.expect("echoed");
   REQUIRE(service.counters().clients == 1);
   client.signal(SIGSTOP);
@@ -150,9 +139,8 @@ TEST_CASE("with a client that died its session goes, and its call learns of it")
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   const auto echo = std::make_shared<EchoService>();
   ExposedService service(*server, echo);
-  auto client = start_peer("client", *Pairing::get().client);
-  client.send("connect\nwait");
-  client.expect("connected");
+  auto client = start_client("client", *Pairing::get().client);
+  client.send("wait");
   client.expect("waiting");
   REQUIRE(eventually([&] { return echo->inside == 1; }));
   CHECK(service.counters().clients == 1);
@@ -162,9 +150,8 @@ TEST_CASE("with a client that died its session goes, and its call learns of it")
   CHECK(eventually([&] { return service.counters().clients == 0 && service.sessions() == 0; }));
   CHECK(eventually([&] { return service.counters().active == 0; }));
 
-  auto next = start_peer("client", *Pairing::get().client);
-  next.send("connect\necho 1 next");
-  next.expect("connected");
+  auto next = start_client("client", *Pairing::get().client);
+  next.send("echo 1 next");
   next.expect("echoed");
 }
 
@@ -172,12 +159,8 @@ TEST_CASE("a client that does not read its replies holds up nobody else") {
   const auto server = entity_with_lease("server", Pairing::get().server, kLongLease);
   const auto echo = std::make_shared<GatedEcho>();
   ExposedService service(*server, echo);
-  auto deaf = start_peer("deaf", *Pairing::get().client, kLongLeaseArgument);
-  auto good = start_peer("good", *Pairing::get().client, kLongLeaseArgument);
-  for (ChildProcess* client : {&deaf, &good}) {
-    client->send("connect");
-    client->expect("connected");
-  }
+  auto deaf = start_client("deaf", *Pairing::get().client, kLongLeaseArgument);
+  auto good = start_client("good", *Pairing::get().client, kLongLeaseArgument);
   deaf.send("pour 200");
   deaf.expect("poured");
   REQUIRE(eventually([&] { return service.counters().active == 200; }));

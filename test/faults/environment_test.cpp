@@ -90,12 +90,9 @@ std::size_t packets_beyond_loopback(const std::vector<std::string>& environment,
   {
     ChildProcess::Options options;
     options.environment = environment;
-    auto server = start_peer("server", *Pairing::get().server, arguments, options);
-    auto client = start_peer("client", *Pairing::get().client, arguments, options);
-    server.send("provide");
-    server.expect("provided");
-    client.send("connect\necho 10 hello");
-    client.expect("connected", 30s);
+    auto server = start_provider("server", *Pairing::get().server, arguments, options);
+    auto client = start_client("client", *Pairing::get().client, arguments, options);
+    client.send("echo 10 hello");
     client.expect("echoed");
     CHECK(client.finish() == 0);
     CHECK(server.finish() == 0);

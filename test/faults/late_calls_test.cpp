@@ -19,12 +19,10 @@ constexpr std::chrono::milliseconds kLongLease{60'000};
 /// A provider that has answered one call.
 struct OneProvider {
   OneProvider() {
-    server.send("provide");
-    server.expect("provided");
     echo.emplace(client->connect<LouderEcho>({.timeout = 20s}));
     CHECK(echo->within(20s).wait(0));
   }
-  ChildProcess server = start_peer("server", *Pairing::get().server, {"lease=60000"});
+  ChildProcess server = start_provider("server", *Pairing::get().server, {"lease=60000"});
   const std::unique_ptr<Entity> client =
       entity_with_lease("client", Pairing::get().client, kLongLease);
   std::optional<LouderEcho::Proxy> echo;

@@ -15,15 +15,16 @@ using namespace std::chrono_literals;
 namespace {
 
 /// Two hosts at the ends of one cable, a peer on each: `left` on the server's vendor, `right` on
-/// the client's. Each provides the echo service.
+/// the client's. Each provides the echo service, and is connected to the other.
 struct TwoHosts {
   TwoHosts() {
     left.emplace(peer("left", *Pairing::get().server, here, "10.77.0.2", {"keep_log"}));
     right.emplace(peer("right", *Pairing::get().client, there, "10.77.0.1"));
-    for (auto* one : {&*left, &*right}) {
-      one->send("provide");
-      one->expect("provided");
-    }
+    REQUIRE(each_knows(2));
+    left->send("connect right");
+    left->expect("connected", 30s);
+    right->send("connect left");
+    right->expect("connected", 30s);
   }
 
   static ChildProcess peer(const std::string& name, const skein::dds::Vendor& vendor,
@@ -32,19 +33,11 @@ struct TwoHosts {
     ChildProcess::Options options;
     options.network = space.descriptor();
     more.insert(more.end(), {"interface=skein0", "host=" + other_host});
-    return start_peer(name, vendor, more, options);
+    return start_provider(name, vendor, more, options);
   }
 
   bool each_knows(int count) {
     return eventually([&] { return services_of(*left) == count && services_of(*right) == count; });
-  }
-
-  /// Each opens a connection to the other.
-  void connect() {
-    left->send("connect right");
-    left->expect("connected", 30s);
-    right->send("connect left");
-    right->expect("connected", 30s);
   }
 
   /// One call in each direction.
@@ -63,8 +56,6 @@ struct TwoHosts {
 
 TEST_CASE("a provider killed on another host: its call ends as Disconnected with the lease") {
   TwoHosts hosts;
-  REQUIRE(hosts.each_knows(2));
-  hosts.connect();
   REQUIRE(hosts.right->ask("wait") == "waiting");
   REQUIRE(eventually([&] { return hosts.left->ask("calls") == "calls 1"; }));
 
@@ -81,8 +72,6 @@ TEST_CASE("a provider killed on another host: its call ends as Disconnected with
 
 TEST_CASE("a host that has lost its way to another says so in a few lines, however much it sends") {
   TwoHosts hosts;
-  REQUIRE(hosts.each_knows(2));
-  hosts.connect();
   hosts.here.run("ip route flush dev skein0");
   // The other one, which hears nothing, while this one sends and still hears it.
   REQUIRE(eventually([&] { return services_of(*hosts.right) == 1; }));
@@ -98,8 +87,6 @@ TEST_CASE("a host that has lost its way to another says so in a few lines, howev
 
 TEST_CASE("two hosts that were cut off from each other find each other again, and call") {
   TwoHosts hosts;
-  REQUIRE(hosts.each_knows(2));
-  hosts.connect();
   hosts.call();
   SECTION("by silence on the cable") {
     hosts.cable.disturb(Disturbance::cut());
@@ -117,8 +104,6 @@ TEST_CASE("two hosts that were cut off from each other find each other again, an
 
 TEST_CASE("a host that was not heard, but heard the other, is found again, and both call") {
   TwoHosts hosts;
-  REQUIRE(hosts.each_knows(2));
-  hosts.connect();
   hosts.call();
   const bool left_mute = GENERATE(true, false);
   ChildProcess& hears_nothing = left_mute ? *hosts.right : *hosts.left;
@@ -131,8 +116,6 @@ TEST_CASE("a host that was not heard, but heard the other, is found again, and b
 
 TEST_CASE("cuts about as long as the lease leave nobody behind") {
   TwoHosts hosts;
-  REQUIRE(hosts.each_knows(2));
-  hosts.connect();
   std::mt19937_64 random(seed_of_this_run());
   for (int i = 0; i < 4; ++i) {
     const auto cut = 700ms + std::chrono::milliseconds(random() % 700);

@@ -27,6 +27,26 @@ inline ChildProcess start_peer(const std::string& name, const dds::Vendor& vendo
   return ChildProcess("faults_peer", options);
 }
 
+/// The same, once it provides the echo service.
+inline ChildProcess start_provider(const std::string& name, const dds::Vendor& vendor,
+                                   const std::vector<std::string>& more = {},
+                                   ChildProcess::Options options = {}) {
+  auto peer = start_peer(name, vendor, more, std::move(options));
+  peer.send("provide");
+  peer.expect("provided");
+  return peer;
+}
+
+/// The same, once it is connected to a provider.
+inline ChildProcess start_client(const std::string& name, const dds::Vendor& vendor,
+                                 const std::vector<std::string>& more = {},
+                                 ChildProcess::Options options = {}) {
+  auto peer = start_peer(name, vendor, more, std::move(options));
+  peer.send("connect");
+  peer.expect("connected", std::chrono::seconds(30));
+  return peer;
+}
+
 /// How many providers of the echo service a peer program knows now.
 inline int services_of(ChildProcess& peer) {
   peer.send("services");

@@ -28,14 +28,6 @@ std::shared_ptr<dds::Vendor> vendor(const char* name) {
   }
 }
 
-ChildProcess start_provider(const std::string& name,
-                            const std::vector<std::string>& arguments = kOverMemory) {
-  auto provider = start_peer(name, *vendor("fastdds"), arguments);
-  provider.send("provide");
-  provider.expect("provided");
-  return provider;
-}
-
 std::unique_ptr<Entity> make_entity(const std::string& name, const char* vendor_name) {
   EntityOptions options;
   options.name = name;
@@ -65,7 +57,7 @@ struct Pair {
     return eventually([&] { return provider.ask("inside") == "inside " + std::to_string(calls); });
   }
 
-  ChildProcess provider = start_provider("provider");
+  ChildProcess provider = start_provider("provider", *vendor("fastdds"), kOverMemory);
   const std::unique_ptr<Entity> client;
   LouderEcho::Proxy echo;
 };
@@ -132,7 +124,7 @@ TEST_CASE_METHOD(Pair,
   REQUIRE(inside(1));
   provider.signal(SIGKILL);
   CHECK_THROWS_AS(call.get(), Disconnected);
-  auto next = start_provider("next", memory ? kOverMemory : kOverDds);
+  auto next = start_provider("next", *vendor("fastdds"), memory ? kOverMemory : kOverDds);
   CHECK(eventually([&] {
     try {
       return echo.within(20s).echo("again") == "again";
@@ -147,11 +139,9 @@ TEST_CASE_METHOD(Pair,
 TEST_CASE(
     "of a client that is killed in a call, a stream or while it pours, its provider keeps "
     "nothing") {
-  auto provider = start_provider("provider");
+  auto provider = start_provider("provider", *vendor("fastdds"), kOverMemory);
   const auto kill_one = [&](const std::vector<const char*>& does) {
-    auto client = start_peer("client", *vendor("cyclonedds"), kOverMemory);
-    client.send("connect");
-    client.expect("connected");
+    auto client = start_client("client", *vendor("cyclonedds"), kOverMemory);
     REQUIRE(holding_of(provider).rings == 1);
     for (const char* command : does) {
       const std::string answer = client.ask(command);
@@ -176,12 +166,8 @@ TEST_CASE("a client that is stopped with its memory full of replies holds up nob
   const auto server = make_entity("server", "fastdds");
   const auto gated = std::make_shared<GatedEcho>();
   server->provide<LouderEcho>(gated);
-  auto deaf = start_peer("deaf", *vendor("cyclonedds"), kOverMemory);
-  auto good = start_peer("good", *vendor("cyclonedds"), kOverMemory);
-  for (ChildProcess* client : {&deaf, &good}) {
-    client->send("connect");
-    client->expect("connected");
-  }
+  auto deaf = start_client("deaf", *vendor("cyclonedds"), kOverMemory);
+  auto good = start_client("good", *vendor("cyclonedds"), kOverMemory);
   deaf.send("pour 100");
   deaf.expect("poured");
   deaf.signal(SIGSTOP);

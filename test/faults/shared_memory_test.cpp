@@ -51,13 +51,8 @@ std::ptrdiff_t segments() {
 struct Pair {
   Pair(const std::string& server_vendor, const std::vector<std::string>& server_options,
        const std::string& client_vendor, const std::vector<std::string>& client_options)
-      : server(start_peer("server", *dds::load_vendor(server_vendor), server_options)),
-        client(start_peer("client", *dds::load_vendor(client_vendor), client_options)) {
-    server.send("provide");
-    server.expect("provided");
-    client.send("connect");
-    client.expect("connected", 30s);
-  }
+      : server(start_provider("server", *dds::load_vendor(server_vendor), server_options)),
+        client(start_client("client", *dds::load_vendor(client_vendor), client_options)) {}
 
   /// How many UDP packets the large call took that are as large as one that carries a part of it.
   std::ptrdiff_t call() {
@@ -115,9 +110,7 @@ TEST_CASE(
   CHECK(pair.client.ask("wait") == "waiting");
   pair.server.signal(SIGKILL);
   CHECK_THAT(pair.client.ask("outcome"), Contains("Disconnected"));
-  auto next = start_peer("server", *dds::load_vendor("fastdds"), kShared);
-  next.send("provide");
-  next.expect("provided");
+  const auto next = start_provider("server", *dds::load_vendor("fastdds"), kShared);
   pair.client.send("connect");
   pair.client.expect("connected", 30s);
   CHECK(pair.call() == 0);

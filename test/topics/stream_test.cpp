@@ -11,7 +11,6 @@
 using namespace skein;
 using namespace skein::test;
 using namespace std::chrono_literals;
-using streams::Depth;
 using streams::Rudder;
 using streams::Sighting;
 using streams::Wave;
@@ -57,42 +56,6 @@ TEST_CASE("a reliable stream arrives complete and in order") {
   CHECK(watch.counters().received == heard.values().size());
 }
 
-TEST_CASE("a sensor's stream arrives, new values only") {
-  const auto ship = make_server("ship");
-  const auto shore = make_client("shore");
-  Publisher<Depth> depths = ship->publisher<Depth>("depth", TopicQos::sensor());
-  Subscription<Depth> watch = shore->subscription<Depth>("depth", TopicQos::sensor());
-  std::int32_t next = 0;
-  std::vector<double> values;
-  REQUIRE(eventually([&] {
-    depths.publish({1, static_cast<double>(++next), "keel"});
-    while (const auto value = watch.take()) values.push_back(value->depth_m);
-    return values.size() >= 20;
-  }));
-  CHECK(std::is_sorted(values.begin(), values.end()));
-}
-
-TEST_CASE("the state of each key is there for who comes late, until it is disposed") {
-  const auto ship = make_server("ship");
-  auto depths = ship->publisher<Depth>("depth", TopicQos::state());
-  for (const std::int32_t sensor : {1, 2, 3}) depths.publish({sensor, 10.0 * sensor, "keel"});
-  depths.dispose({2, 0, ""});
-  const auto shore = make_client("shore");
-  Heard<Depth> heard;
-  std::atomic<int> disposed = 0;
-  SubscriptionOptions options;
-  options.on_disposed = [&](const Guid& key) {
-    if (key == key_hash(Depth{1, 0, ""})) ++disposed;
-  };
-  const auto watch =
-      shore->subscription<Depth>("depth", TopicQos::state(), heard.callback(), options);
-  REQUIRE(eventually([&] { return heard.values().size() == 2; }));
-  CHECK(heard.values()[0] == Depth{1, 10, "keel"});
-  CHECK(heard.values()[1] == Depth{3, 30, "keel"});
-  depths.dispose({1, 0, ""});
-  CHECK(eventually([&] { return disposed == 1; }));
-}
-
 TEST_CASE("types that may grow arrive, with their keys, as others do") {
   const auto ship = make_server("ship");
   auto sightings = ship->publisher<Sighting>("sighting", TopicQos::state());
@@ -120,21 +83,6 @@ TEST_CASE("types that may grow arrive, with their keys, as others do") {
   sea.publish({2.5, {1, 2, 3}});
   REQUIRE(eventually([&] { return waves.values().size() == 1; }));
   CHECK(waves.values()[0] == Wave{2.5, {1, 2, 3}});
-}
-
-TEST_CASE("a topic stays in its system, unless others are named") {
-  const auto ship = make_server("ship");
-  const auto other = make_entity("other", Pairing::get().client, "uav-2");
-  const auto shore = make_client("shore");
-  auto depths = ship->publisher<Depth>("depth", TopicQos::state());
-  const auto stranger = other->subscription<Depth>("depth", TopicQos::state());
-  TopicQos fleet = TopicQos::state();
-  fleet.systems = {"uav-1", "uav-2"};
-  const auto station = other->subscription<Depth>("depth", fleet);
-  const auto friendly = shore->subscription<Depth>("depth", TopicQos::state());
-  REQUIRE(eventually([&] { return depths.subscribers() == 2; }));
-  REQUIRE(eventually([&] { return friendly.publishers() == 1 && station.publishers() == 1; }));
-  CHECK(stranger.publishers() == 0);
 }
 
 TEST_CASE("a subscriber that does not return from its callback holds up nobody else") {
