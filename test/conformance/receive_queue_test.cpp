@@ -82,32 +82,29 @@ struct Stage {
 
 }  // namespace
 
-TEST_CASE("samples are taken oldest first, no more than are asked for, and once") {
-  Stage stage;
-  CHECK(stage.queue.empty());
-  CHECK(stage.store(1, guid(1)));
-  CHECK(stage.store(2, guid(2)));
-  CHECK(stage.dispose(guid(1)));
-  CHECK(stage.take(2) == std::vector{1, 2});
-  CHECK_FALSE(stage.queue.empty());
-  CHECK(stage.take() == std::vector{-1});
-  CHECK(stage.queue.empty());
+TEST_CASE_METHOD(Stage, "samples are taken oldest first, no more than are asked for, and once") {
+  CHECK(queue.empty());
+  CHECK(store(1, guid(1)));
+  CHECK(store(2, guid(2)));
+  CHECK(dispose(guid(1)));
+  CHECK(take(2) == std::vector{1, 2});
+  CHECK_FALSE(queue.empty());
+  CHECK(take() == std::vector{-1});
+  CHECK(queue.empty());
 }
 
-TEST_CASE("what is no PLAIN_CDR, or has no key, is dropped and counted") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "what is no PLAIN_CDR, or has no key, is dropped and counted") {
   const auto comes = [&](SharedBytes bytes, std::optional<KeyHash> key) {
-    return stage.queue.store(
-        {payload(std::move(bytes)), InstanceState::Alive, key, guid(1), stage.now()},
-        WriterOffer{});
+    return queue.store({payload(std::move(bytes)), InstanceState::Alive, key, guid(1), now()},
+                       WriterOffer{});
   };
   CHECK_FALSE(comes(bytes_of({}), KeyHash{}));
   CHECK_FALSE(comes(bytes_of({0, 1, 0}), KeyHash{}));
   CHECK_FALSE(comes(bytes_of({0, 7, 0, 0, 1}), KeyHash{}));
   CHECK_FALSE(comes(number(1), std::nullopt));
-  CHECK(stage.queue.counters().malformed == 4);
+  CHECK(queue.counters().malformed == 4);
   CHECK(comes(number(2), KeyHash{}));
-  CHECK(stage.take() == std::vector{2});
+  CHECK(take() == std::vector{2});
 }
 
 TEST_CASE("a key that did not come beside the sample is found in it, in a disposal's bytes too") {
@@ -153,55 +150,53 @@ TEST_CASE("the oldest of an instance, or of all, gives way to what is beyond the
   }
 }
 
-TEST_CASE("a sample expires to the instant, on its way and while it waits") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a sample expires to the instant, on its way and while it waits") {
   const WriterOffer offer{0, 100ms};
   const auto comes = [&](std::uint8_t value, std::optional<SourceTime> written) {
-    return stage.queue.store(
-        {payload(number(value)), InstanceState::Alive, KeyHash{}, guid(1), written}, offer);
+    return queue.store({payload(number(value)), InstanceState::Alive, KeyHash{}, guid(1), written},
+                       offer);
   };
-  CHECK_FALSE(comes(1, stage.now() - 100ms));
-  CHECK(comes(2, stage.now() - 99ms));
-  CHECK(stage.take() == std::vector{2});
-  CHECK(comes(3, stage.now() - 1ms));
+  CHECK_FALSE(comes(1, now() - 100ms));
+  CHECK(comes(2, now() - 99ms));
+  CHECK(take() == std::vector{2});
+  CHECK(comes(3, now() - 1ms));
   CHECK(comes(4, std::nullopt));  // counted from when it came
-  stage.clock.advance(99ms);
-  CHECK(stage.take() == std::vector{4});
+  clock.advance(99ms);
+  CHECK(take() == std::vector{4});
   CHECK(comes(5, std::nullopt));
-  stage.clock.advance(100ms);
-  CHECK(stage.take().empty());
-  CHECK(stage.queue.counters().expired == 3);
+  clock.advance(100ms);
+  CHECK(take().empty());
+  CHECK(queue.counters().expired == 3);
 }
 
-TEST_CASE("a writer of whom all has expired when it comes is told of once, with the difference") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "a writer of whom all has expired when it comes is told of once, with the difference") {
   test::Log log;
   const WriterOffer offer{0, 500ms};
   const auto comes = [&](std::uint8_t writer, SourceTime written) {
-    return stage.queue.store(
-        {payload(number(1)), InstanceState::Alive, KeyHash{}, guid(writer), written}, offer);
+    return queue.store({payload(number(1)), InstanceState::Alive, KeyHash{}, guid(writer), written},
+                       offer);
   };
   // Late now and then, and another one in time.
-  for (int i = 0; i < 9; ++i) CHECK_FALSE(comes(1, stage.now() - 3600s));
-  CHECK(comes(1, stage.now()));
+  for (int i = 0; i < 9; ++i) CHECK_FALSE(comes(1, now() - 3600s));
+  CHECK(comes(1, now()));
   for (int i = 0; i < 9; ++i) {
-    CHECK_FALSE(comes(1, stage.now() - 3600s));
-    CHECK(comes(2, stage.now()));
+    CHECK_FALSE(comes(1, now() - 3600s));
+    CHECK(comes(2, now()));
   }
   CHECK(log.text() == "");
-  for (int i = 0; i < 20; ++i) CHECK_FALSE(comes(1, stage.now() - 3600s));
+  for (int i = 0; i < 20; ++i) CHECK_FALSE(comes(1, now() - 3600s));
   CHECK(log.count("topic 'pose'") == 1);
   CHECK(log.count("is 3600000 ms old") == 1);
   CHECK(log.count("lifespan is 500 ms") == 1);
 }
 
-TEST_CASE("samples that do not say when they were written expire by when they came") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "samples that do not say when they were written expire by when they came") {
   test::Log log;
   for (int i = 0; i < 20; ++i) {
-    CHECK_FALSE(stage.queue.store(
-        {payload(number(1)), InstanceState::Alive, KeyHash{}, guid(1), std::nullopt},
-        WriterOffer{0, 0ms}));
+    CHECK_FALSE(
+        queue.store({payload(number(1)), InstanceState::Alive, KeyHash{}, guid(1), std::nullopt},
+                    WriterOffer{0, 0ms}));
   }
   CHECK(log.count("is 0 ms old") == 1);
 }
@@ -220,10 +215,9 @@ TEST_CASE("an instance is its strongest writer's, of equals the one with the les
   CHECK(stage.queue.counters().replaced == 0);
 }
 
-TEST_CASE("an instance without exclusive ownership is everybody's") {
-  Stage stage;
-  CHECK(stage.store(1, guid(7), guid(1), {2}));
-  CHECK(stage.store(2, guid(7), guid(2), {1}));
+TEST_CASE_METHOD(Stage, "an instance without exclusive ownership is everybody's") {
+  CHECK(store(1, guid(7), guid(1), {2}));
+  CHECK(store(2, guid(7), guid(2), {1}));
 }
 
 TEST_CASE("an instance passes on until its owner writes again") {

@@ -57,38 +57,35 @@ struct Pair {
 
 }  // namespace
 
-TEST_CASE("a sample is there when write returns, without any thread") {
-  Pair pair;
-  pair.writer->write(number(7));
-  CHECK(take_all(*pair.reader) == std::vector{7});
-  CHECK(pair.writer->wait_for_acknowledgments(0ms));
+TEST_CASE_METHOD(Pair, "a sample is there when write returns, without any thread") {
+  writer->write(number(7));
+  CHECK(take_all(*reader) == std::vector{7});
+  CHECK(writer->wait_for_acknowledgments(0ms));
 }
 
-TEST_CASE("a reliable reader gets what was lost after the repeat time, in order") {
-  Pair pair;
-  pair.network.judge_transfers([](const Transfer& transfer) {
+TEST_CASE_METHOD(Pair, "a reliable reader gets what was lost after the repeat time, in order") {
+  network.judge_transfers([](const Transfer& transfer) {
     return transfer.sequence == 2 && transfer.attempt < 3 ? Fate::drop() : Fate::deliver();
   });
-  for (int i = 1; i <= 3; ++i) pair.writer->write(number(static_cast<std::uint8_t>(i)));
-  CHECK(take_all(*pair.reader) == std::vector{1});
-  CHECK_FALSE(pair.writer->wait_for_acknowledgments(0ms));
-  pair.clock.advance(LoopbackNetwork::kRepeatAfter);
-  CHECK(take_all(*pair.reader).empty());
-  pair.clock.advance(LoopbackNetwork::kRepeatAfter);
-  CHECK(take_all(*pair.reader) == std::vector{2, 3});
-  CHECK(pair.writer->wait_for_acknowledgments(0ms));
+  for (int i = 1; i <= 3; ++i) writer->write(number(static_cast<std::uint8_t>(i)));
+  CHECK(take_all(*reader) == std::vector{1});
+  CHECK_FALSE(writer->wait_for_acknowledgments(0ms));
+  clock.advance(LoopbackNetwork::kRepeatAfter);
+  CHECK(take_all(*reader).empty());
+  clock.advance(LoopbackNetwork::kRepeatAfter);
+  CHECK(take_all(*reader) == std::vector{2, 3});
+  CHECK(writer->wait_for_acknowledgments(0ms));
 }
 
-TEST_CASE("a reliable reader sees neither duplicates nor a wrong order") {
-  Pair pair;
-  pair.network.judge_transfers([](const Transfer& transfer) {
+TEST_CASE_METHOD(Pair, "a reliable reader sees neither duplicates nor a wrong order") {
+  network.judge_transfers([](const Transfer& transfer) {
     return transfer.sequence == 1 ? Fate::late(5ms) : Fate::twice();
   });
-  pair.writer->write(number(1));
-  pair.writer->write(number(2));
-  CHECK(take_all(*pair.reader).empty());
-  pair.clock.advance(5ms);
-  CHECK(take_all(*pair.reader) == std::vector{1, 2});
+  writer->write(number(1));
+  writer->write(number(2));
+  CHECK(take_all(*reader).empty());
+  clock.advance(5ms);
+  CHECK(take_all(*reader) == std::vector{1, 2});
 }
 
 TEST_CASE("a best-effort reader loses what is dropped and what comes late") {
@@ -139,41 +136,38 @@ TEST_CASE("what was written during a short cut arrives with heal") {
   CHECK(pair.events == "+lost alive ");
 }
 
-TEST_CASE("a paused participant loses nobody, but is lost and found again") {
-  Pair pair;
-  pair.network.pause(pair.two.participant->guid());
-  pair.clock.advance(1s);
-  CHECK(pair.one.events == "+-");
-  CHECK(pair.two.events == "+");
-  pair.network.resume(pair.two.participant->guid());
-  CHECK(pair.one.events == "+-+");
-  CHECK(pair.two.events == "+");
-  pair.writer->write(number(4));
-  CHECK(take_all(*pair.reader) == std::vector{4});
+TEST_CASE_METHOD(Pair, "a paused participant loses nobody, but is lost and found again") {
+  network.pause(two.participant->guid());
+  clock.advance(1s);
+  CHECK(one.events == "+-");
+  CHECK(two.events == "+");
+  network.resume(two.participant->guid());
+  CHECK(one.events == "+-+");
+  CHECK(two.events == "+");
+  writer->write(number(4));
+  CHECK(take_all(*reader) == std::vector{4});
 }
 
-TEST_CASE("what is sent to a paused participant waits for it") {
-  Pair pair;
-  pair.network.pause(pair.two.participant->guid());
-  pair.writer->write(number(1));
-  pair.clock.advance(900ms);
-  CHECK(take_all(*pair.reader).empty());
-  pair.network.resume(pair.two.participant->guid());
-  CHECK(take_all(*pair.reader) == std::vector{1});
-  CHECK(pair.one.events == "+");
+TEST_CASE_METHOD(Pair, "what is sent to a paused participant waits for it") {
+  network.pause(two.participant->guid());
+  writer->write(number(1));
+  clock.advance(900ms);
+  CHECK(take_all(*reader).empty());
+  network.resume(two.participant->guid());
+  CHECK(take_all(*reader) == std::vector{1});
+  CHECK(one.events == "+");
 }
 
-TEST_CASE("a killed participant says no goodbye and never returns") {
-  Pair pair;
-  pair.network.kill(pair.one.participant->guid());
-  pair.writer.reset();
-  pair.clock.advance(999ms);
-  CHECK(pair.events == "+");
-  pair.clock.advance(1ms);
-  CHECK(pair.events == "+-");
-  CHECK(pair.two.events == "+-");
-  pair.network.heal();
-  CHECK(pair.two.events == "+-");
+TEST_CASE_METHOD(Pair, "a killed participant says no goodbye and never returns") {
+  network.kill(one.participant->guid());
+  writer.reset();
+  clock.advance(999ms);
+  CHECK(events == "+");
+  clock.advance(1ms);
+  CHECK(events == "+-");
+  CHECK(two.events == "+-");
+  network.heal();
+  CHECK(two.events == "+-");
 }
 
 TEST_CASE("transient-local samples come back after a long cut") {

@@ -44,29 +44,28 @@ bool is(const std::exception_ptr& error) {
 
 }  // namespace
 
-TEST_CASE("with use_future a call is a std::future of its result, or of what ended it") {
-  Called test;
-  CHECK(async_wait(test.echo.async_echo("x"), asio::use_future).get() == "x");
-  async_wait(test.echo.async_label("new"), asio::use_future).get();
-  CHECK(test.echo.label() == "new");
-  auto failed = async_wait(test.echo.async_divide(1, 0), asio::use_future);
+TEST_CASE_METHOD(Called,
+                 "with use_future a call is a std::future of its result, or of what ended it") {
+  CHECK(async_wait(echo.async_echo("x"), asio::use_future).get() == "x");
+  async_wait(echo.async_label("new"), asio::use_future).get();
+  CHECK(echo.label() == "new");
+  auto failed = async_wait(echo.async_divide(1, 0), asio::use_future);
   CHECK_THROWS_AS(failed.get(), ::test::DivisionByZero);
 }
 
-TEST_CASE("with use_awaitable a coroutine of Asio waits for calls") {
-  Called test;
+TEST_CASE_METHOD(Called, "with use_awaitable a coroutine of Asio waits for calls") {
   asio::io_context context;
-  auto twice = asio::co_spawn(context, echo_twice(test.echo, "ab"), asio::use_future);
+  auto twice = asio::co_spawn(context, echo_twice(echo, "ab"), asio::use_future);
   context.run();
   CHECK(twice.get() == "abab");
 }
 
-TEST_CASE("a callback bound to an executor runs there, and the executor waits for it") {
-  Called test;
+TEST_CASE_METHOD(Called,
+                 "a callback bound to an executor runs there, and the executor waits for it") {
   asio::io_context context;
   std::thread::id ran_on;
   std::string result;
-  async_wait(test.echo.async_echo("x"),
+  async_wait(echo.async_echo("x"),
              asio::bind_executor(context, [&](std::exception_ptr error, std::string text) {
                CHECK_FALSE(error);
                result = std::move(text);
@@ -77,41 +76,39 @@ TEST_CASE("a callback bound to an executor runs there, and the executor waits fo
   CHECK(ran_on == std::this_thread::get_id());
 }
 
-TEST_CASE("a callback may be movable only") {
-  Called test;
+TEST_CASE_METHOD(Called, "a callback may be movable only") {
   std::promise<std::string> done;
   auto future = done.get_future();
-  async_wait(test.echo.async_echo("x"),
+  async_wait(echo.async_echo("x"),
              [done = std::move(done)](std::exception_ptr, std::string text) mutable {
                done.set_value(std::move(text));
              });
   CHECK(future.get() == "x");
 }
 
-TEST_CASE("the cancellation slot's signal cancels the call, here and at the server") {
-  Called test;
+TEST_CASE_METHOD(Called,
+                 "the cancellation slot's signal cancels the call, here and at the server") {
   asio::io_context context;
   asio::cancellation_signal signal;
   bool cancelled = false;
-  async_wait(test.echo.within(10min).async_wait(600'000),
+  async_wait(echo.within(10min).async_wait(600'000),
              asio::bind_cancellation_slot(
                  signal.slot(), asio::bind_executor(context, [&](std::exception_ptr error, bool) {
                    cancelled = is<Cancelled>(error);
                  })));
-  REQUIRE(eventually([&] { return test.service->inside == 1; }));
+  REQUIRE(eventually([&] { return service->inside == 1; }));
   asio::post(context, [&] { signal.emit(asio::cancellation_type::terminal); });
   context.run();
   CHECK(cancelled);
-  CHECK(eventually([&] { return test.service->saw_cancellation.load(); }));
+  CHECK(eventually([&] { return service->saw_cancellation.load(); }));
 }
 
-TEST_CASE("a signal after the end of a call does nothing") {
-  Called test;
+TEST_CASE_METHOD(Called, "a signal after the end of a call does nothing") {
   asio::io_context context;
   asio::cancellation_signal signal;
   int ended = 0;
   async_wait(
-      test.echo.async_count(),
+      echo.async_count(),
       asio::bind_cancellation_slot(
           signal.slot(), asio::bind_executor(context, [&](std::exception_ptr error, std::uint64_t) {
             ended += error ? 10 : 1;

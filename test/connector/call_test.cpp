@@ -33,33 +33,31 @@ ServiceOptions threads(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("a call brings its result back", "[wire]") {
-  Pair pair;
-  CHECK(pair.echo->echo("hello") == "hello");
-  CHECK(pair.echo->echo("") == "");
+TEST_CASE_METHOD(Pair, "a call brings its result back", "[wire]") {
+  CHECK(echo->echo("hello") == "hello");
+  CHECK(echo->echo("") == "");
   std::int32_t remainder = 0;
-  CHECK(pair.echo->divide(17, 5, remainder) == 3);
+  CHECK(echo->divide(17, 5, remainder) == 3);
   CHECK(remainder == 2);
-  pair.echo->label("other");
-  CHECK(pair.echo->label() == "other");
+  echo->label("other");
+  CHECK(echo->label() == "other");
 }
 
-TEST_CASE("payloads of every size arrive unchanged", "[wire]") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "payloads of every size arrive unchanged", "[wire]") {
   for (const std::size_t size : {0u, 1u, 3u, 63u, 1024u, 65'537u, 1'048'576u, 4'194'305u}) {
     std::vector<std::uint8_t> content(size);
     for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<std::uint8_t>(i * 31 + i / 257);
     CAPTURE(size);
-    const auto answer = pair.echo->within(30s).echo_octets(content);
+    const auto answer = echo->within(30s).echo_octets(content);
     INVARIANT((answer == content));
   }
 }
 
-TEST_CASE("an exception that the interface declares arrives as its own type", "[wire]") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "an exception that the interface declares arrives as its own type",
+                 "[wire]") {
   std::int32_t remainder;
   try {
-    pair.echo->divide(9, 0, remainder);
+    echo->divide(9, 0, remainder);
     FAIL("no exception");
   } catch (const DivisionByZero& exception) {
     CHECK(exception.dividend == 9);
@@ -87,11 +85,11 @@ TEST_CASE(
   CHECK(echo.echo("still alive") == "still alive");
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Pair,
     "an exception that CDR cannot carry arrives as Internal on every transport, and the provider "
     "lives on") {
-  Pair pair;
-  auto echo = pair.connect(GENERATE(false, true));
+  auto echo = connect(GENERATE(false, true));
   const std::string how = GENERATE(as<std::string>(), "zero", "long");
   const auto text = Catch::Contains("the exception test::Garbled of 'garble' cannot be sent: ");
   CHECK_THROWS_AS(echo.garble(how), Internal);
@@ -101,34 +99,33 @@ TEST_CASE(
   CHECK(echo.echo("still alive") == "still alive");
 }
 
-TEST_CASE("an argument that CDR cannot carry is named with its member") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "an argument that CDR cannot carry is named with its member") {
   const std::string text("a\0b", 3);
-  CHECK_THROWS_AS(pair.echo->echo(text), InvalidArgument);
-  CHECK_THROWS_WITH(pair.echo->echo(text),
+  CHECK_THROWS_AS(echo->echo(text), InvalidArgument);
+  CHECK_THROWS_WITH(echo->echo(text),
                     "text with a zero byte cannot travel as an IDL string; use sequence<octet> "
                     "(in 'text')");
 }
 
-TEST_CASE("a result that CDR cannot carry is answered as Internal where it would have to be sent") {
-  Pair pair;
-  CHECK_THROWS_AS(pair.echo->garble("result"), Internal);
+TEST_CASE_METHOD(
+    Pair, "a result that CDR cannot carry is answered as Internal where it would have to be sent") {
+  CHECK_THROWS_AS(echo->garble("result"), Internal);
   CHECK_THROWS_WITH(
-      pair.echo->garble("result"),
+      echo->garble("result"),
       Catch::Contains("the result of 'garble' cannot be sent: text with a zero byte "
                       "cannot travel as an IDL string; use sequence<octet> (in 'return_')"));
-  auto stream = pair.echo->mumble();
+  auto stream = echo->mumble();
   CHECK(stream.next() == "clear");
   CHECK_THROWS_WITH(stream.next(), Catch::Contains("a result of 'mumble' cannot be sent: "));
   CHECK_THROWS_AS(
       [&] {
-        auto again = pair.echo->mumble();
+        auto again = echo->mumble();
         while (again.next()) {
         }
       }(),
       Internal);
-  CHECK(pair.echo->echo("still alive") == "still alive");
-  CHECK(pair.connect(true).garble("result").size() == 8);
+  CHECK(echo->echo("still alive") == "still alive");
+  CHECK(connect(true).garble("result").size() == 8);
 }
 
 TEST_CASE("calls from several threads do not disturb each other", "[wire]") {
@@ -209,57 +206,52 @@ TEST_CASE(
   CHECK(eventually([&] { return service->saw_cancellation && service->inside == 0; }));
 }
 
-TEST_CASE("an asynchronous call can be waited for, continued and cancelled") {
-  Pair pair;
-  CHECK(pair.echo->async_echo("later").get() == "later");
+TEST_CASE_METHOD(Pair, "an asynchronous call can be waited for, continued and cancelled") {
+  CHECK(echo->async_echo("later").get() == "later");
 
   std::atomic<bool> continued = false;
-  pair.echo->async_echo("then").then(
-      [&](Call<std::string> call) { continued = call.get() == "then"; });
+  echo->async_echo("then").then([&](Call<std::string> call) { continued = call.get() == "then"; });
   CHECK(eventually([&] { return continued.load(); }));
 
-  auto cancelled = pair.echo->within(60s).async_wait(60'000);
+  auto cancelled = echo->within(60s).async_wait(60'000);
   cancelled.cancel();
   CHECK_THROWS_AS(cancelled.get(), Cancelled);
 }
 
-TEST_CASE("what a continuation throws is told as the continuation's, and the next one runs") {
+TEST_CASE_METHOD(
+    Pair, "what a continuation throws is told as the continuation's, and the next one runs") {
   const Log log;
-  Pair pair;
   const bool standard = GENERATE(true, false);
-  pair.echo->async_echo("x").then([standard](Call<std::string>) {
+  echo->async_echo("x").then([standard](Call<std::string>) {
     if (standard) throw std::runtime_error("oops");
     throw 42;
   });
   std::atomic<bool> continued = false;
-  pair.echo->async_echo("x").then([&](Call<std::string>) { continued = true; });
+  echo->async_echo("x").then([&](Call<std::string>) { continued = true; });
   CHECK(eventually([&] { return continued.load(); }));
   CHECK(log.count(std::string("a continuation of Call::then threw: ") +
                   (standard ? "oops" : "something that is no std::exception")) == 1);
 }
 
-TEST_CASE("a time limit that has passed before any call is refused") {
-  Pair pair;
-  CHECK_THROWS_AS(pair.echo->within(-1s), InvalidArgument);
-  CHECK_THROWS_WITH(pair.echo->within(-1s),
+TEST_CASE_METHOD(Pair, "a time limit that has passed before any call is refused") {
+  CHECK_THROWS_AS(echo->within(-1s), InvalidArgument);
+  CHECK_THROWS_WITH(echo->within(-1s),
                     "within() is given -1000 ms; a call takes a time limit from 0 on, and ends as "
                     "TimedOut after it");
-  CHECK_THROWS_AS(pair.echo->within(0s).echo("x"), TimedOut);
+  CHECK_THROWS_AS(echo->within(0s).echo("x"), TimedOut);
 }
 
-TEST_CASE("a call is used once, and says so the second time") {
-  Pair pair;
-  auto call = pair.echo->async_echo("once");
+TEST_CASE_METHOD(Pair, "a call is used once, and says so the second time") {
+  auto call = echo->async_echo("once");
   CHECK(call.get() == "once");
   CHECK_THROWS_AS(call.get(), InvalidArgument);
   CHECK_THROWS_AS(call.cancel(), InvalidArgument);
   CHECK_THROWS_WITH(call.ready(), Catch::Contains("used before"));
 }
 
-TEST_CASE("oneway calls are executed in order without an answer", "[wire]") {
-  Pair pair;
-  for (int i = 0; i < 20; ++i) pair.echo->note("n");
-  CHECK(eventually([&] { return pair.echo->noted() == 20; }));
+TEST_CASE_METHOD(Pair, "oneway calls are executed in order without an answer", "[wire]") {
+  for (int i = 0; i < 20; ++i) echo->note("n");
+  CHECK(eventually([&] { return echo->noted() == 20; }));
 }
 
 TEST_CASE(
@@ -280,15 +272,14 @@ TEST_CASE(
   CHECK(pair.service->calls == 3);
 }
 
-TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not sent") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "calls beyond a connection's limit are refused as Overloaded and not sent") {
   ThreadExecutor control("control");
   rpc::DdsChannel::Options options;
   options.peer = "server";
   options.calls_in_flight = 2;
   Echo::Proxy echo(rpc::DdsChannel::open(
-      pair.client->participant(), control, std::make_shared<ThreadExecutor>("continue"),
-      std::make_shared<SystemClock>(), {std::string(LouderEcho::interface_info().name), pair.id},
+      client->participant(), control, std::make_shared<ThreadExecutor>("continue"),
+      std::make_shared<SystemClock>(), {std::string(LouderEcho::interface_info().name), id},
       options));
   auto first = echo.within(60s).async_wait(60'000);
   auto second = echo.within(60s).async_wait(60'000);
@@ -298,25 +289,23 @@ TEST_CASE("calls beyond a connection's limit are refused as Overloaded and not s
   first.cancel();
   second.cancel();
   CHECK(echo.within(30s).echo("fourth") == "fourth");
-  CHECK(pair.service->calls <= 3);
+  CHECK(service->calls <= 3);
 }
 
-TEST_CASE("a service whose threads can never run as told is not provided, and the entity goes on") {
-  Pair pair;
+TEST_CASE_METHOD(
+    Pair, "a service whose threads can never run as told is not provided, and the entity goes on") {
   ServiceOptions options;
   options.scheduling.cpus = {4000};
-  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(pair.service, options),
-                    Catch::Contains("no CPU 4000"));
-  CHECK(pair.echo->echo("still here") == "still here");
+  CHECK_THROWS_WITH(server->provide<LouderEcho>(service, options), Catch::Contains("no CPU 4000"));
+  CHECK(echo->echo("still here") == "still here");
 }
 
-TEST_CASE("a service that cannot work is refused with the reason") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "a service that cannot work is refused with the reason") {
   const auto provide = [&](const std::string& name, const std::string& owner,
                            const ServiceOptions& options = {}) {
-    pair.server->provide_csp<Echo>(name, owner, pair.service, options);
+    server->provide_csp<Echo>(name, owner, service, options);
   };
-  CHECK_THROWS_WITH(pair.server->provide<LouderEcho>(nullptr),
+  CHECK_THROWS_WITH(server->provide<LouderEcho>(nullptr),
                     Catch::Contains("'server' has no implementation"));
   CHECK_THROWS_WITH(provide("csp", "owner"), Catch::Contains("SYSTEM/ENTITY"));
   CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.attributes = {{"latency", "quick"}}}),
@@ -328,19 +317,19 @@ TEST_CASE("a service that cannot work is refused with the reason") {
   CHECK_NOTHROW(provide("csp", "uav-1/other"));
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Pair,
     "connecting by interface, entity and base finds the provider; what is not there gives the "
     "reason") {
-  Pair pair;
-  CHECK(pair.client->connect<LouderEcho>().shout("hey") == "HEY");
-  CHECK(pair.client->connect<Echo>({.name = "server"}).echo("x") == "x");
-  CHECK(pair.client->connect<Echo>({.name = "test::LouderEcho"}).echo("x") == "x");
-  CHECK_THROWS_AS(pair.client->connect<Echo>({.name = "sever", .timeout = 50ms}), Unavailable);
-  CHECK_THROWS_WITH(pair.client->connect<Echo>({.name = "sever", .timeout = 50ms}),
+  CHECK(client->connect<LouderEcho>().shout("hey") == "HEY");
+  CHECK(client->connect<Echo>({.name = "server"}).echo("x") == "x");
+  CHECK(client->connect<Echo>({.name = "test::LouderEcho"}).echo("x") == "x");
+  CHECK_THROWS_AS(client->connect<Echo>({.name = "sever", .timeout = 50ms}), Unavailable);
+  CHECK_THROWS_WITH(client->connect<Echo>({.name = "sever", .timeout = 50ms}),
                     Catch::Contains("did you mean 'server'"));
-  CHECK_THROWS_WITH(pair.client->connect<Echo>({.system = "uav-9", .timeout = 50ms}),
+  CHECK_THROWS_WITH(client->connect<Echo>({.system = "uav-9", .timeout = 50ms}),
                     Catch::Contains("system 'uav-9'"));
-  CHECK_THROWS_WITH(pair.client->connect<Echo>({.name = "nobody", .timeout = 50ms}),
+  CHECK_THROWS_WITH(client->connect<Echo>({.name = "nobody", .timeout = 50ms}),
                     Catch::Contains("in domain 17 on 127.0.0.1") ||
                         Catch::Contains("in domain 17 of the loopback network"));
 }
@@ -364,18 +353,18 @@ TEST_CASE(
       InvalidArgument);
 }
 
-TEST_CASE("a client with another version of the interface is told which operation differs") {
-  Pair pair;
-  CHECK_THROWS_WITH(pair.client->connect<changed::Echo>({.name = "test::Echo", .timeout = 50ms}),
+TEST_CASE_METHOD(Pair,
+                 "a client with another version of the interface is told which operation differs") {
+  CHECK_THROWS_WITH(client->connect<changed::Echo>({.name = "test::Echo", .timeout = 50ms}),
                     Catch::Contains("another version") && Catch::Contains("'echo'"));
 }
 
-TEST_CASE("a session with an unknown selection strategy is refused with the known ones") {
-  Pair pair;
+TEST_CASE_METHOD(Pair,
+                 "a session with an unknown selection strategy is refused with the known ones") {
   CHECK_THROWS_WITH(
-      pair.client->connect<Echo>({.strategy = "declard", .timeout = 5s}),
+      client->connect<Echo>({.strategy = "declard", .timeout = 5s}),
       Catch::Contains("unknown selection strategy") && Catch::Contains("did you mean 'declared'"));
-  CHECK(pair.client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
+  CHECK(client->connect<Echo>({.strategy = "fixed_order"}).echo("x") == "x");
 }
 
 TEST_CASE("a service reference can be returned, passed on and connected to", "[wire]") {
@@ -404,24 +393,21 @@ TEST_CASE("a service reference can be returned, passed on and connected to", "[w
   CHECK_THROWS_AS(client->connect(Reference<Echo>()), InvalidArgument);
 }
 
-TEST_CASE("a disconnected proxy refuses calls") {
-  Pair pair;
-  pair.echo->disconnect();
-  CHECK_THROWS_AS(pair.echo->echo("x"), Unavailable);
+TEST_CASE_METHOD(Pair, "a disconnected proxy refuses calls") {
+  echo->disconnect();
+  CHECK_THROWS_AS(echo->echo("x"), Unavailable);
 }
 
-TEST_CASE("a proxy that outlives its entity says so") {
-  Pair pair;
-  pair.client.reset();
+TEST_CASE_METHOD(Pair, "a proxy that outlives its entity says so") {
+  client.reset();
   CHECK_THROWS_WITH(
-      pair.echo->echo("x"),
+      echo->echo("x"),
       Catch::Contains("it was disconnected, or the entity that had connected has ended"));
 }
 
-TEST_CASE("a managed service is closed to strangers", "[wire]") {
-  Pair pair;
-  pair.server->provide_csp<Echo>("hidden", "uav-1/owner", std::make_shared<EchoService>());
-  CHECK_THROWS_AS(pair.client->connect<Echo>({.name = "hidden", .timeout = 100ms}), Unavailable);
+TEST_CASE_METHOD(Pair, "a managed service is closed to strangers", "[wire]") {
+  server->provide_csp<Echo>("hidden", "uav-1/owner", std::make_shared<EchoService>());
+  CHECK_THROWS_AS(client->connect<Echo>({.name = "hidden", .timeout = 100ms}), Unavailable);
 
   const auto owner = make_entity("owner", Pairing::get().client);
   CHECK(owner->connect<Echo>({.name = "hidden"}).echo("mine") == "mine");

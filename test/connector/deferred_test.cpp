@@ -307,11 +307,11 @@ TEST_CASE("an entity ends at once, whatever answers its implementations owe", "[
   for (auto& call : calls) CHECK_THROWS_AS(call.get(), Disconnected);
 }
 
-TEST_CASE("a client that is gone cancels its calls, and their answers go nowhere", "[wire]") {
-  Office office;
-  auto call = office.proxy->async_ask("what?");
-  auto [question, reply] = office.take();
-  office.client.reset();
+TEST_CASE_METHOD(Office, "a client that is gone cancels its calls, and their answers go nowhere",
+                 "[wire]") {
+  auto call = proxy->async_ask("what?");
+  auto [question, reply] = take();
+  client.reset();
   CHECK_THROWS_AS(call.get(), Disconnected);
   CHECK(eventually([&] { return reply.call().cancelled(); }));
   CHECK(reply.answer("nobody hears it"));
@@ -363,13 +363,13 @@ TEST_CASE("cancelling a call that is answered later cancels those that it waits 
   CHECK(eventually([&] { return reply.call().cancelled(); }));
 }
 
-TEST_CASE("a call that is answered later waits for no thread, and so not for itself") {
-  Office office;
-  auto call = office.proxy->async_ask("what?");
-  auto [question, reply] = office.take();
+TEST_CASE_METHOD(Office,
+                 "a call that is answered later waits for no thread, and so not for itself") {
+  auto call = proxy->async_ask("what?");
+  auto [question, reply] = take();
   {
     const CallContextScope scope(reply.call());
-    CHECK(office.proxy->label() == "desk");  // blocking, and by the thread that the call is not on
+    CHECK(proxy->label() == "desk");  // blocking, and by the thread that the call is not on
   }
   CHECK(reply.answer("that"));
   CHECK(call.get() == "that");

@@ -230,48 +230,46 @@ TEST_CASE("what is lent is copied where it cannot be read") {
   CHECK_FALSE(frame.in_use());
 }
 
-TEST_CASE("one value of a call is lent, and the others are copied") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "one value of a call is lent, and the others are copied") {
   Loaned<Frame> one;
   Loaned<Frame> other;
   one->pixels.fill(1);
   other->pixels.fill(2);
   const auto plain = std::make_unique<Frame>(*other);
   const std::uint64_t size = one->pixels.size();
-  CHECK(pair.album->weigh_both(*one, *other) == 3 * size);
-  CHECK(pair.gallery->came() == Came{"r--s", ""});
-  CHECK(pair.album->weigh_both(*one, *one) == 2 * size);
-  CHECK(pair.gallery->came() == Came{"r--s", ""});
-  CHECK(pair.album->weigh_both(*plain, *one) == 3 * size);
-  CHECK(pair.gallery->came() == Came{"", "r--s"});
-  CHECK(pair.album->weigh_both(*plain, *plain) == 4 * size);
-  CHECK(pair.gallery->came() == Came{"", ""});
+  CHECK(album->weigh_both(*one, *other) == 3 * size);
+  CHECK(gallery->came() == Came{"r--s", ""});
+  CHECK(album->weigh_both(*one, *one) == 2 * size);
+  CHECK(gallery->came() == Came{"r--s", ""});
+  CHECK(album->weigh_both(*plain, *one) == 3 * size);
+  CHECK(gallery->came() == Came{"", "r--s"});
+  CHECK(album->weigh_both(*plain, *plain) == 4 * size);
+  CHECK(gallery->came() == Came{"", ""});
 }
 
-TEST_CASE("whoever waits no longer can see that what he has lent is still read") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "whoever waits no longer can see that what he has lent is still read") {
   std::optional<Loaned<Frame>> frame(std::in_place);
   (*frame)->pixels.fill(5);
-  pair.gallery->holding = true;
+  gallery->holding = true;
   REQUIRE(with_enough_time(50ms, [&](std::chrono::milliseconds limit) {
-    CHECK_THROWS_AS(pair.album->within(limit).study(**frame), TimedOut);
-    return pair.gallery->inside == 1;
+    CHECK_THROWS_AS(album->within(limit).study(**frame), TimedOut);
+    return gallery->inside == 1;
   }));
   CHECK(frame->in_use());
   SECTION("until the implementation returns") {
-    pair.gallery->let_go();
+    gallery->let_go();
     CHECK(eventually([&] { return !frame->in_use(); }));
   }
   SECTION("also where the connection has ended") {
-    pair.client.reset();
+    client.reset();
     CHECK(frame->in_use());
-    pair.gallery->let_go();
+    gallery->let_go();
     CHECK(eventually([&] { return !frame->in_use(); }));
   }
   SECTION("and it stays for the reader when it goes") {
     frame.reset();
-    pair.gallery->let_go();
-    CHECK(eventually([&] { return pair.gallery->inside == 0; }));
+    gallery->let_go();
+    CHECK(eventually([&] { return gallery->inside == 0; }));
   }
 }
 
@@ -309,21 +307,20 @@ TEST_CASE("a value is lent also where the call travels as XCDR2") {
   CHECK(captioner->came == "before  after");
 }
 
-TEST_CASE("calls that are on their way together may lend the same value, or many") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "calls that are on their way together may lend the same value, or many") {
   std::vector<Loaned<Frame>> frames(20);
   std::vector<Call<std::uint64_t>> calls;
   for (std::size_t i = 0; i < 60; ++i) {
     auto& frame = frames[i % 20];
     if (i < 20) frame->pixels.fill(static_cast<std::uint8_t>(i + 1));
-    calls.push_back(pair.album->async_study(*frame));
+    calls.push_back(album->async_study(*frame));
   }
   // What finds all places taken is copied, which a busy provider may be too slow to take.
   const auto weighed = [&](std::size_t i) {
     try {
       return calls[i].get();
     } catch (const Overloaded&) {
-      return pair.album->study(*frames[i % 20]);
+      return album->study(*frames[i % 20]);
     }
   };
   for (std::size_t i = 0; i < calls.size(); ++i) {
@@ -332,18 +329,17 @@ TEST_CASE("calls that are on their way together may lend the same value, or many
   for (const auto& frame : frames) CHECK(eventually([&] { return !frame.in_use(); }));
 }
 
-TEST_CASE("a provider keeps a few memories of a client, and none that are gone") {
-  Pair pair;
+TEST_CASE_METHOD(Pair, "a provider keeps a few memories of a client, and none that are gone") {
   for (int i = 0; i < 40; ++i) {
     Loaned<Frame> frame;
     frame->pixels.fill(1);
-    CHECK(pair.album->study(*frame) == frame->pixels.size());
+    CHECK(album->study(*frame) == frame->pixels.size());
   }
-  CHECK(pair.gallery->came() == Came(40, "r--s"));
+  CHECK(gallery->came() == Came(40, "r--s"));
   CHECK(eventually([] { return mappings("memfd:skein-loan").empty(); }));
   std::vector<Loaned<Frame>> frames(40);
-  for (const auto& frame : frames) pair.album->study(*frame);
-  CHECK(pair.gallery->came() == Came(40, "r--s"));
+  for (const auto& frame : frames) album->study(*frame);
+  CHECK(gallery->came() == Came(40, "r--s"));
   CHECK(mappings("memfd:skein-loan").size() <= 40 + 8);
 }
 

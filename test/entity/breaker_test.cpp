@@ -22,16 +22,14 @@ ScriptedWorker::Script crash_while(std::shared_ptr<std::atomic<bool>> sick) {
 
 }  // namespace
 
-TEST_CASE("a CSP that fails again and again is quarantined, whatever it declares") {
-  Office office;
+TEST_CASE_METHOD(Office, "a CSP that fails again and again is quarantined, whatever it declares") {
   const auto sick = std::make_shared<std::atomic<bool>>(true);
-  const auto patient =
-      office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
-  office.add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
-  for (int i = 0; i < 3; ++i) office.perform(Office::task(), 10s);
-  CHECK(office.attempts() == Lines{"patient failed", "sound accepted"});
-  office.perform(Office::task(), 10s);
-  CHECK(office.attempts() == Lines{"sound accepted"});
+  const auto patient = add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
+  add("sound", Place::Inside, answer_as("sound"), declared("10", "0.5"));
+  for (int i = 0; i < 3; ++i) perform(Office::task(), 10s);
+  CHECK(attempts() == Lines{"patient failed", "sound accepted"});
+  perform(Office::task(), 10s);
+  CHECK(attempts() == Lines{"sound accepted"});
   CHECK(patient->calls == 3);
 }
 
@@ -51,31 +49,31 @@ TEST_CASE("after its quarantine a CSP is probed, and works again once it is well
   CHECK(office.attempts() == Lines{"patient accepted"});
 }
 
-TEST_CASE("where every CSP is quarantined the one whose quarantine ends first is tried") {
-  Office office;
+TEST_CASE_METHOD(Office,
+                 "where every CSP is quarantined the one whose quarantine ends first is tried") {
   const auto sick = std::make_shared<std::atomic<bool>>(true);
-  office.add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
+  add("patient", Place::Inside, crash_while(sick), declared("10", "0.9"));
   for (int i = 0; i < 3; ++i)
-    CHECK_THROWS_WITH(office.perform(Office::task(), 10s), "CSP 'patient': 'work' failed: a bug");
+    CHECK_THROWS_WITH(perform(Office::task(), 10s), "CSP 'patient': 'work' failed: a bug");
   *sick = false;
-  CHECK(office.perform(Office::task(), 10s) == "patient did it");
-  CHECK(office.record.candidates[0].breaker == introspection::BreakerState::Open);
+  CHECK(perform(Office::task(), 10s) == "patient did it");
+  CHECK(record.candidates[0].breaker == introspection::BreakerState::Open);
 }
 
-TEST_CASE("what is late by less than four times what was expected of it is not quarantined") {
+TEST_CASE_METHOD(
+    Office, "what is late by less than four times what was expected of it is not quarantined") {
   Hang hang;
-  Office office;
-  office.add("thorough", Place::Outside, hang.script(), declared("60000", "0.9"));
-  for (int i = 0; i < 4; ++i) CHECK_THROWS_AS(office.perform(Office::task(), 30ms), TimedOut);
-  CHECK(office.record.candidates[0].breaker == introspection::BreakerState::Closed);
+  add("thorough", Place::Outside, hang.script(), declared("60000", "0.9"));
+  for (int i = 0; i < 4; ++i) CHECK_THROWS_AS(perform(Office::task(), 30ms), TimedOut);
+  CHECK(record.candidates[0].breaker == introspection::BreakerState::Closed);
   hang.release();
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Office,
     "a result of which the CSP itself admits that it is approximate is no success and no fault") {
-  Office office;
-  office.add("rough", Place::Inside, answer_as("about"), declared("10", "0.9"));
-  office.add("exact", Place::Inside, answer_as("exact"), declared("10", "0.5"));
+  add("rough", Place::Inside, answer_as("about"), declared("10", "0.9"));
+  add("exact", Place::Inside, answer_as("exact"), declared("10", "0.5"));
   WorkTask task = Office::task();
   task.evaluate = {};
   task.evaluate.admitted("exact", [](const std::string& result) {
@@ -83,9 +81,9 @@ TEST_CASE(
                                        : std::nullopt;
   });
   for (int i = 0; i < 5; ++i) {
-    CHECK(office.perform(task, 10s) == "exact did it");
-    CHECK(office.attempts() == Lines{"rough rejected", "exact accepted"});
-    CHECK(office.record.attempts[0].check == "exact");
+    CHECK(perform(task, 10s) == "exact did it");
+    CHECK(attempts() == Lines{"rough rejected", "exact accepted"});
+    CHECK(record.attempts[0].check == "exact");
   }
 }
 

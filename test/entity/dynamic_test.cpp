@@ -33,9 +33,8 @@ struct Survey {
 
 }  // namespace
 
-TEST_CASE("a service is called without its IDL: arguments and results are JSON") {
-  Survey survey;
-  const DynamicProxy proxy = survey.connect();
+TEST_CASE_METHOD(Survey, "a service is called without its IDL: arguments and results are JSON") {
+  const DynamicProxy proxy = connect();
   CHECK(proxy.interface_name() == "survey/ISurveyor");
 
   const auto result = json::parse(
@@ -46,34 +45,30 @@ TEST_CASE("a service is called without its IDL: arguments and results are JSON")
   CHECK(proxy.async_call("greet", R"("you")").get() == R"({"return_":"Hello, you"})");
 }
 
-TEST_CASE("an example of an operation's arguments is taken as it stands") {
-  Survey survey;
-  const DynamicProxy proxy = survey.connect();
+TEST_CASE_METHOD(Survey, "an example of an operation's arguments is taken as it stands") {
+  const DynamicProxy proxy = connect();
   CHECK(proxy.example("measure") == R"({"plot":{"kind":"Meadow","corners":[]}})");
   CHECK(proxy.call("greet", proxy.example("greet")) == R"({"return_":"Hello, "})");
   CHECK(proxy.call("forget", proxy.example("forget")) == "{}");
 }
 
-TEST_CASE("one parameter may be given as its value alone, none as nothing") {
-  Survey survey;
-  const DynamicProxy proxy = survey.connect();
+TEST_CASE_METHOD(Survey, "one parameter may be given as its value alone, none as nothing") {
+  const DynamicProxy proxy = connect();
   CHECK(proxy.call("greet", R"("you")") == R"({"return_":"Hello, you"})");
   CHECK(proxy.call("forget", "") == "{}");
-  CHECK(eventually([&] { return survey.surveyor->forgotten == 1; }));
+  CHECK(eventually([&] { return surveyor->forgotten == 1; }));
 }
 
-TEST_CASE("a stream's results are JSON, one after the other") {
-  Survey survey;
+TEST_CASE_METHOD(Survey, "a stream's results are JSON, one after the other") {
   std::vector<std::string> corners;
-  for (const std::string& corner : survey.connect().stream("walk", "3")) corners.push_back(corner);
+  for (const std::string& corner : connect().stream("walk", "3")) corners.push_back(corner);
   CHECK(corners == std::vector<std::string>{R"({"return_":{"x":0,"y":0.5}})",
                                             R"({"return_":{"x":1,"y":0.5}})",
                                             R"({"return_":{"x":2,"y":0.5}})"});
 }
 
-TEST_CASE("an exception that the interface declares is told by name and members") {
-  Survey survey;
-  const DynamicProxy proxy = survey.connect();
+TEST_CASE_METHOD(Survey, "an exception that the interface declares is told by name and members") {
+  const DynamicProxy proxy = connect();
   try {
     proxy.call("measure", R"({"plot": {"kind": "Wood", "corners": []}})");
     FAIL("it did not throw");
@@ -85,9 +80,9 @@ TEST_CASE("an exception that the interface declares is told by name and members"
   }
 }
 
-TEST_CASE("what does not fit is refused before it is sent, with the place and what was meant") {
-  Survey survey;
-  const DynamicProxy proxy = survey.connect();
+TEST_CASE_METHOD(
+    Survey, "what does not fit is refused before it is sent, with the place and what was meant") {
+  const DynamicProxy proxy = connect();
   const auto refused = [&](const char* operation, const char* arguments, const char* why) {
     CHECK_THROWS_WITH(proxy.call(operation, arguments), Catch::Contains(why));
   };
@@ -102,36 +97,35 @@ TEST_CASE("what does not fit is refused before it is sent, with the place and wh
   refused("measure", R"({"plt": {}})", "$.plot has a member 'plt'");
   refused("measure", "", "this is no JSON");
   refused("walk", "3", "is a stream");
-  CHECK_THROWS_AS(survey.caller->connector().open(survey::ISurveyor::interface_info(),
-                                                  {.name = "Nobody", .timeout = 50ms}),
+  CHECK_THROWS_AS(caller->connector().open(survey::ISurveyor::interface_info(),
+                                           {.name = "Nobody", .timeout = 50ms}),
                   Unavailable);
 }
 
-TEST_CASE("the provider's types are the IDL that it was made of") {
-  Survey survey;
-  const std::string idl = to_idl(survey.connect("surveyor").types());
+TEST_CASE_METHOD(Survey, "the provider's types are the IDL that it was made of") {
+  const std::string idl = to_idl(connect("surveyor").types());
   CHECK_THAT(idl, Catch::Contains("interface ISurveyor") && Catch::Contains("struct Plot") &&
                       Catch::Contains("exception NoPlot") && Catch::Contains("enum Kind"));
 }
 
-TEST_CASE("a provider that does not tell its types in time is named") {
-  Survey survey;
-  Inspector inspector(*survey.caller);
-  CHECK_THROWS_WITH(inspector.types("survey/INothing", survey.provider->guid(), 50ms),
+TEST_CASE_METHOD(Survey, "a provider that does not tell its types in time is named") {
+  Inspector inspector(*caller);
+  CHECK_THROWS_WITH(inspector.types("survey/INothing", provider->guid(), 50ms),
                     Catch::Contains("survey/INothing") && Catch::Contains("did not answer"));
 }
 
-TEST_CASE("entities tell what they are, which topics they have, and whom they have connected to") {
-  Survey survey;
-  auto publisher = survey.provider->publisher<survey::Corner>("corner", TopicQos::state());
-  auto subscription = survey.provider->subscription<survey::Field>("field", TopicQos::sensor());
-  auto proxy = survey.provider->connect<survey::ISurveyor>();
-  Inspector inspector(*survey.caller);
+TEST_CASE_METHOD(
+    Survey,
+    "entities tell what they are, which topics they have, and whom they have connected to") {
+  auto publisher = provider->publisher<survey::Corner>("corner", TopicQos::state());
+  auto subscription = provider->subscription<survey::Field>("field", TopicQos::sensor());
+  auto proxy = provider->connect<survey::ISurveyor>();
+  Inspector inspector(*caller);
 
   const auto peers = inspector.ask_all(inspection::Subject::Self, 5s);
   REQUIRE(peers.size() == 1);
-  CHECK(peers[0].participant == survey.provider->guid());
-  CHECK(peers[0].answer.entity == survey.provider->id());
+  CHECK(peers[0].participant == provider->guid());
+  CHECK(peers[0].answer.entity == provider->id());
   const auto& peer = peers[0].answer.peer.at(0);
   CHECK(peer.pid == static_cast<std::uint32_t>(getpid()));
   CHECK(peer.vendor == Pairing::get().server->name());
@@ -158,21 +152,20 @@ TEST_CASE("entities tell what they are, which topics they have, and whom they ha
   CHECK(connections[0].transport == "process");
 }
 
-TEST_CASE("who publishes as a topic's subscriptions demand is heard by all of them") {
-  Survey survey;
-  auto strict = survey.provider->subscription<survey::Corner>("corner", TopicQos::command());
-  Inspector inspector(*survey.caller);
+TEST_CASE_METHOD(Survey,
+                 "who publishes as a topic's subscriptions demand is heard by all of them") {
+  auto strict = provider->subscription<survey::Corner>("corner", TopicQos::command());
+  Inspector inspector(*caller);
   std::vector<KnownTopic> topics;
   REQUIRE(eventually([&] {
     topics = known_topics(inspector, 5s);
     return !topics.empty();
   }));
-  auto publisher = survey.caller->publisher<survey::Corner>("corner", topics.front().writing_qos());
+  auto publisher = caller->publisher<survey::Corner>("corner", topics.front().writing_qos());
   CHECK(eventually([&] { return publisher.subscribers() == 1; }));
 }
 
-TEST_CASE("an answer by another one than who was asked does not count") {
-  Survey survey;
+TEST_CASE_METHOD(Survey, "an answer by another one than who was asked does not count") {
   auto stranger = make_client("stranger");
   const auto answers = stranger->participant().create_writer(introspection::kAnswers.dds_topic(),
                                                              introspection::kAnswers.qos());
@@ -189,19 +182,18 @@ TEST_CASE("an answer by another one than who was asked does not count") {
           ++answered;
         });
       });
-  Inspector inspector(*survey.caller);
+  Inspector inspector(*caller);
   CHECK_NOTHROW(inspector.types("survey/INothing", {}, 10s));  // of whoever knows them
-  CHECK_THROWS_AS(inspector.types("survey/INothing", survey.provider->guid(), 500ms), Unavailable);
+  CHECK_THROWS_AS(inspector.types("survey/INothing", provider->guid(), 500ms), Unavailable);
   CHECK(answered >= 2);
   executor.stop();
 }
 
-TEST_CASE("what has gone is told no more") {
-  Survey survey;
-  Inspector inspector(*survey.caller);
+TEST_CASE_METHOD(Survey, "what has gone is told no more") {
+  Inspector inspector(*caller);
   {
-    auto publisher = survey.provider->publisher<survey::Corner>("corner");
-    auto proxy = survey.provider->connect<survey::ISurveyor>();
+    auto publisher = provider->publisher<survey::Corner>("corner");
+    auto proxy = provider->connect<survey::ISurveyor>();
     CHECK(inspector.ask_all(inspection::Subject::Topics, 5s).at(0).answer.topics.size() == 1);
   }
   CHECK(inspector.ask_all(inspection::Subject::Topics, 5s).at(0).answer.topics.empty());

@@ -64,12 +64,11 @@ TEST_CASE("a CSP that hangs is given up in time for the next best", "[wire]") {
   hang.release();
 }
 
-TEST_CASE("where the only CSP has not returned, the next request says which") {
+TEST_CASE_METHOD(Office, "where the only CSP has not returned, the next request says which") {
   Hang hang;
-  Office office;
-  office.add("stuck", Place::Inside, hang.script(), declared("1", "0.9"));
-  CHECK_THROWS_AS(office.perform(Office::task(), 100ms), TimedOut);
-  CHECK_THROWS_WITH(office.perform(Office::task(), 100ms),
+  add("stuck", Place::Inside, hang.script(), declared("1", "0.9"));
+  CHECK_THROWS_AS(perform(Office::task(), 100ms), TimedOut);
+  CHECK_THROWS_WITH(perform(Office::task(), 100ms),
                     Catch::Contains("stuck has not returned from an earlier request"));
   hang.release();
 }
@@ -129,23 +128,23 @@ TEST_CASE("CSPs that lie: no wrong result is passed on, and none of them stays t
   CHECK(honest_first > 5);
 }
 
-TEST_CASE("where every result is rejected the task fails with what was wrong with the last one") {
-  Office office;
-  office.add("first", Place::Outside, answer_as("wrong first"), declared("20", "0.9"));
-  office.add("second", Place::Inside, answer_as("wrong second"), declared("10", "0.5"));
-  CHECK_THROWS_AS(office.perform(Office::task(), 10s), Internal);
-  CHECK_THROWS_WITH(office.perform(Office::task(), 10s),
+TEST_CASE_METHOD(
+    Office, "where every result is rejected the task fails with what was wrong with the last one") {
+  add("first", Place::Outside, answer_as("wrong first"), declared("20", "0.9"));
+  add("second", Place::Inside, answer_as("wrong second"), declared("10", "0.5"));
+  CHECK_THROWS_AS(perform(Office::task(), 10s), Internal);
+  CHECK_THROWS_WITH(perform(Office::task(), 10s),
                     Catch::Contains("the last one, of CSP 'second': it is wrong second did it"));
-  CHECK(office.attempts() == Lines{"first rejected", "second rejected"});
+  CHECK(attempts() == Lines{"first rejected", "second rejected"});
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Office,
     "where every CSP fails the task ends with the last one's error, and the record tells of all") {
-  Office office;
-  office.add("first", Place::Outside, crash(), declared("20", "0.9"));
-  office.add("second", Place::Inside, refuse(false), declared("10", "0.5"));
-  CHECK_THROWS_AS(office.perform(Office::task(), 10s), NoAnswer);
-  CHECK(office.attempts() == Lines{"first failed", "second refused"});
+  add("first", Place::Outside, crash(), declared("20", "0.9"));
+  add("second", Place::Inside, refuse(false), declared("10", "0.5"));
+  CHECK_THROWS_AS(perform(Office::task(), 10s), NoAnswer);
+  CHECK(attempts() == Lines{"first failed", "second refused"});
 }
 
 TEST_CASE("a client has its answer by its deadline although the CSP that was chosen hangs") {
@@ -159,18 +158,18 @@ TEST_CASE("a client has its answer by its deadline although the CSP that was cho
   hang.release();
 }
 
-TEST_CASE("an entity that ends waits no longer for several CSPs that hang than for one") {
+TEST_CASE_METHOD(Office,
+                 "an entity that ends waits no longer for several CSPs that hang than for one") {
   Hang hang;
-  Office office;
   std::vector<Call<std::string>> calls;
   for (const std::string name : {"a", "b", "c", "d"}) {
-    const auto worker = office.add(name, Place::Inside, hang.script(), declared("10", "0.5"));
-    auto proxy = office.owner->connect<crew::Worker>({.name = name}).within(10min);
+    const auto worker = add(name, Place::Inside, hang.script(), declared("10", "0.5"));
+    auto proxy = owner->connect<crew::Worker>({.name = name}).within(10min);
     calls.push_back(proxy.async_work("it"));
     REQUIRE(eventually([&] { return worker->inside == 1; }));
   }
   const auto begin = std::chrono::steady_clock::now();
-  office.owner.reset();
+  owner.reset();
   // For one it waits 2 s.
   CHECK(std::chrono::steady_clock::now() - begin < 6s);
   for (auto& call : calls) CHECK_THROWS_AS(call.get(), Disconnected);
@@ -245,26 +244,26 @@ TEST_CASE("what a Body's own function throws is told as the Body's, and no CSP p
   for (const auto& prediction : learned) CHECK((of_results || !prediction));
 }
 
-TEST_CASE("what decides whether a refusal is final may throw, too, and no CSP pays for it") {
-  Office office;
-  office.add("only", Place::Inside, refuse(false), declared("10", "0.9"));
+TEST_CASE_METHOD(Office,
+                 "what decides whether a refusal is final may throw, too, and no CSP pays for it") {
+  add("only", Place::Inside, refuse(false), declared("10", "0.9"));
   WorkTask task = Office::task();
   task.settles = [](const UserException&, const Candidate&) -> bool {
     throw std::runtime_error("my bug");
   };
-  CHECK_THROWS_WITH(office.perform(task, 10s), "the task's `settles` threw: my bug");
+  CHECK_THROWS_WITH(perform(task, 10s), "the task's `settles` threw: my bug");
 }
 
-TEST_CASE("an error of a Skein call inside a check keeps its class, and is the check's") {
-  Office office;
-  office.add("only", Place::Inside, answer_as("only"), declared("10", "0.9"));
+TEST_CASE_METHOD(Office,
+                 "an error of a Skein call inside a check keeps its class, and is the check's") {
+  add("only", Place::Inside, answer_as("only"), declared("10", "0.9"));
   WorkTask task = Office::task();
   task.evaluate.check("map", [](const std::string&) -> std::optional<std::string> {
     throw Unavailable("no map service");
   });
-  CHECK_THROWS_AS(office.perform(task, 10s), Unavailable);
-  CHECK_THROWS_WITH(office.perform(task, 10s), "the check 'map' threw: no map service");
-  CHECK(office.attempt_of("only").check == "map");
+  CHECK_THROWS_AS(perform(task, 10s), Unavailable);
+  CHECK_THROWS_WITH(perform(task, 10s), "the check 'map' threw: no map service");
+  CHECK(attempt_of("only").check == "map");
 }
 
 TEST_CASE("a strategy that fails is named, and its CSPs stay out of quarantine") {

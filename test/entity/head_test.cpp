@@ -80,12 +80,12 @@ struct Slowest final : SelectionStrategy {
 
 }  // namespace
 
-TEST_CASE("A CSP that holds another version of its interface is told once, with the difference") {
+TEST_CASE_METHOD(
+    Office, "A CSP that holds another version of its interface is told once, with the difference") {
   const Log log;
-  Office office;
-  office.add("near", Place::Inside, answer_as("near"), declared("1", "1"));
-  const DistantWorker stranger(office, "stranger", 1);
-  const auto ask = [&] { office.perform(Office::task(), 10s); };
+  add("near", Place::Inside, answer_as("near"), declared("1", "1"));
+  const DistantWorker stranger(*this, "stranger", 1);
+  const auto ask = [&] { perform(Office::task(), 10s); };
   const std::string told =
       "CSP 'stranger' is never chosen for crew/Worker, since it holds another "
       "version of it: operation 'work' has another signature there (";
@@ -97,20 +97,19 @@ TEST_CASE("A CSP that holds another version of its interface is told once, with 
   CHECK(log.count(told) == 1);
 }
 
-TEST_CASE("the Head selects by declared quality among those that fit into the time", "[wire]") {
-  Office office;
-  office.add("thorough", Place::Outside, answer_as("thorough"), declared("2000", "0.9"));
-  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
-  CHECK(office.perform(Office::task("a"), 10s) == "thorough did a");
-  CHECK(office.perform(Office::task("b"), 1s) == "quick did b");
+TEST_CASE_METHOD(Office, "the Head selects by declared quality among those that fit into the time",
+                 "[wire]") {
+  add("thorough", Place::Outside, answer_as("thorough"), declared("2000", "0.9"));
+  add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  CHECK(perform(Office::task("a"), 10s) == "thorough did a");
+  CHECK(perform(Office::task("b"), 1s) == "quick did b");
 }
 
-TEST_CASE("a decision's record holds candidates, choice, reason, outcome and times") {
-  Office office;
-  office.add("thorough", Place::Outside, answer_as("thorough"), declared("2000", "0.9"));
-  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
-  office.perform(Office::task(), 10s);
-  const introspection::Decision& record = office.record;
+TEST_CASE_METHOD(Office,
+                 "a decision's record holds candidates, choice, reason, outcome and times") {
+  add("thorough", Place::Outside, answer_as("thorough"), declared("2000", "0.9"));
+  add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  perform(Office::task(), 10s);
   CHECK(record.service == "crew/Worker");
   CHECK(record.strategy == "declared");
   CHECK(std::chrono::nanoseconds(record.available) == 10s);
@@ -122,48 +121,45 @@ TEST_CASE("a decision's record holds candidates, choice, reason, outcome and tim
     CHECK(candidate.quality == (quick ? 0.5 : 0.9));
     CHECK(candidate.pid == static_cast<std::uint32_t>(getpid()));
   }
-  REQUIRE(office.attempts() == std::vector<std::string>{"thorough accepted"});
+  REQUIRE(attempts() == std::vector<std::string>{"thorough accepted"});
   CHECK_THAT(record.attempts[0].reason, Catch::Contains("best declared quality"));
   CHECK(record.attempts[0].slice <= record.available - 10'000'000);
   CHECK(record.took >= record.attempts[0].took);
 }
 
-TEST_CASE("a result whose quality is no number is rejected, told, and nothing of it is learned") {
-  Office office;
-  office.add("dazed", Place::Inside, answer_as("dazed"), declared("10", "0.9"));
-  office.add("clear", Place::Inside, answer_as("clear"), declared("10", "0.5"));
+TEST_CASE_METHOD(
+    Office, "a result whose quality is no number is rejected, told, and nothing of it is learned") {
+  add("dazed", Place::Inside, answer_as("dazed"), declared("10", "0.9"));
+  add("clear", Place::Inside, answer_as("clear"), declared("10", "0.5"));
   WorkTask task = Office::task("a");
   task.quality = [](const std::string& result) {
     return result.starts_with("dazed") ? std::numeric_limits<double>::quiet_NaN() : 0.5;
   };
-  CHECK(office.perform(task, 10s) == "clear did a");
-  CHECK(office.attempts() == std::vector<std::string>{"dazed rejected", "clear accepted"});
-  CHECK(office.attempt_of("dazed").check == "quality");
-  CHECK(office.attempt_of("dazed").text == "its quality is no finite number");
-  CHECK(office.attempt_of("dazed").quality.empty());
+  CHECK(perform(task, 10s) == "clear did a");
+  CHECK(attempts() == std::vector<std::string>{"dazed rejected", "clear accepted"});
+  CHECK(attempt_of("dazed").check == "quality");
+  CHECK(attempt_of("dazed").text == "its quality is no finite number");
+  CHECK(attempt_of("dazed").quality.empty());
 }
 
-TEST_CASE("a declared quality or latency that is no finite number is refused") {
-  Office office;
+TEST_CASE_METHOD(Office, "a declared quality or latency that is no finite number is refused") {
   for (const std::string quality : {"nan", "inf", "-inf", "much"}) {
     CHECK_THROWS_WITH(
-        office.owner->provide_csp<crew::Worker>(
-            "dazed", office.owner->id(), std::make_shared<ScriptedWorker>(answer_as("dazed")),
-            declared("10", quality)),
+        owner->provide_csp<crew::Worker>("dazed", owner->id(),
+                                         std::make_shared<ScriptedWorker>(answer_as("dazed")),
+                                         declared("10", quality)),
         Catch::Contains("the attribute quality of 'dazed' is '" + quality + "'; write a number"));
   }
-  CHECK_THROWS_WITH(
-      office.owner->provide_csp<crew::Worker>("dazed", office.owner->id(),
-                                              std::make_shared<ScriptedWorker>(answer_as("dazed")),
-                                              declared("inf s", "0.5")),
-      Catch::Contains("the attribute latency of 'dazed' is 'inf s'"));
+  CHECK_THROWS_WITH(owner->provide_csp<crew::Worker>(
+                        "dazed", owner->id(), std::make_shared<ScriptedWorker>(answer_as("dazed")),
+                        declared("inf s", "0.5")),
+                    Catch::Contains("the attribute latency of 'dazed' is 'inf s'"));
 }
 
-TEST_CASE("a service without a thread is refused") {
-  Office office;
-  CHECK_THROWS_WITH(office.owner->provide<crew::Desk>(
-                        std::make_shared<OfficeBody>(office.owner->head()), {.threads = 0}),
-                    "the service of 'office' has 0 threads; give it 1 or more");
+TEST_CASE_METHOD(Office, "a service without a thread is refused") {
+  CHECK_THROWS_WITH(
+      owner->provide<crew::Desk>(std::make_shared<OfficeBody>(owner->head()), {.threads = 0}),
+      "the service of 'office' has 0 threads; give it 1 or more");
 }
 
 TEST_CASE("a declared latency is a number of milliseconds, or has any unit of time") {
@@ -186,38 +182,34 @@ TEST_CASE("a declared latency is a number of milliseconds, or has any unit of ti
   }
 }
 
-TEST_CASE("the last 64 decisions are kept and numbered") {
-  Office office;
-  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
-  for (int i = 0; i < 70; ++i) office.perform(Office::task(), 1s);
-  const auto decisions = office.owner->head().decisions();
+TEST_CASE_METHOD(Office, "the last 64 decisions are kept and numbered") {
+  add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  for (int i = 0; i < 70; ++i) perform(Office::task(), 1s);
+  const auto decisions = owner->head().decisions();
   REQUIRE(decisions.size() == 64);
   CHECK(decisions.front().number == 7);
   CHECK(decisions.back().number == 70);
 }
 
-TEST_CASE("only the CSP that is asked for by name runs") {
-  Office office;
-  office.add("thorough", Place::Outside, answer_as("thorough"), declared("20", "0.9"));
-  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+TEST_CASE_METHOD(Office, "only the CSP that is asked for by name runs") {
+  add("thorough", Place::Outside, answer_as("thorough"), declared("20", "0.9"));
+  add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
   WorkTask task = Office::task();
   task.only = "quick";
-  CHECK(office.perform(task, 10s) == "quick did it");
+  CHECK(perform(task, 10s) == "quick did it");
   task.only = "nobody";
-  CHECK_THROWS_AS(office.perform(task, 10s), Unavailable);
-  CHECK_THROWS_WITH(office.perform(task, 10s),
+  CHECK_THROWS_AS(perform(task, 10s), Unavailable);
+  CHECK_THROWS_WITH(perform(task, 10s),
                     Catch::Contains("'nobody'") && Catch::Contains("crew/Worker"));
 }
 
-TEST_CASE("a task that does not say how to call a CSP is refused") {
-  Office office;
-  CHECK_THROWS_WITH(office.perform(WorkTask(), 1s), Catch::Contains("no `run`"));
+TEST_CASE_METHOD(Office, "a task that does not say how to call a CSP is refused") {
+  CHECK_THROWS_WITH(perform(WorkTask(), 1s), Catch::Contains("no `run`"));
 }
 
-TEST_CASE("without any CSP a task is refused with the reason") {
-  Office office;
-  CHECK_THROWS_AS(office.perform(Office::task(), 1s), Unavailable);
-  CHECK_THROWS_WITH(office.perform(Office::task(), 1s), Catch::Contains("crew/Worker"));
+TEST_CASE_METHOD(Office, "without any CSP a task is refused with the reason") {
+  CHECK_THROWS_AS(perform(Office::task(), 1s), Unavailable);
+  CHECK_THROWS_WITH(perform(Office::task(), 1s), Catch::Contains("crew/Worker"));
 }
 
 TEST_CASE("a Head's default may be a strategy that it was given") {
@@ -241,12 +233,11 @@ TEST_CASE("a default that the Head does not know is refused with those that it k
                         Catch::Contains("there are: declared, fixed_order, learned, slowest"));
 }
 
-TEST_CASE("a client's session selects by the strategy that it asked for", "[wire]") {
-  Office office;
-  office.owner->head().add_strategy(std::make_shared<Slowest>());
-  office.add("slow", Place::Outside, answer_as("slow"), declared("60000", "0.1"));
-  office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
-  office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(office.owner->head()));
+TEST_CASE_METHOD(Office, "a client's session selects by the strategy that it asked for", "[wire]") {
+  owner->head().add_strategy(std::make_shared<Slowest>());
+  add("slow", Place::Outside, answer_as("slow"), declared("60000", "0.1"));
+  add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+  owner->provide<crew::Desk>(std::make_shared<OfficeBody>(owner->head()));
   const auto client = make_client();
   auto by_default = client->connect<crew::Desk>();
   auto by_own = client->connect<crew::Desk>({.strategy = "slowest"});
@@ -255,33 +246,32 @@ TEST_CASE("a client's session selects by the strategy that it asked for", "[wire
   CHECK(by_default.ask("c") == "quick did c");
 }
 
-TEST_CASE("the time of a task is the caller's, whatever the Body would give") {
-  Office office;
-  office.add("thorough", Place::Outside, answer_as("thorough"), declared("3000", "0.9"));
-  office.add("quick", Place::Inside, answer_as("quick"), declared("1", "0.5"));
-  office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(office.owner->head()));
+TEST_CASE_METHOD(Office, "the time of a task is the caller's, whatever the Body would give") {
+  add("thorough", Place::Outside, answer_as("thorough"), declared("3000", "0.9"));
+  add("quick", Place::Inside, answer_as("quick"), declared("1", "0.5"));
+  owner->provide<crew::Desk>(std::make_shared<OfficeBody>(owner->head()));
   const auto client = make_client();
   auto desk = client->connect<crew::Desk>();
   CHECK(desk.within(2s).ask("a") == "quick did a");
   CHECK(desk.within(20s).ask("b") == "thorough did b");
 }
 
-TEST_CASE("who works for the Head now is known while it works, where its description says",
-          "[wire]") {
-  Office office;
+TEST_CASE_METHOD(Office,
+                 "who works for the Head now is known while it works, where its description says",
+                 "[wire]") {
   Hang hang;
   const bool elsewhere = GENERATE(false, true);
   std::optional<DistantWorker> distant;
   std::shared_ptr<ScriptedWorker> worker;
   if (elsewhere) {
     worker = std::make_shared<ScriptedWorker>(hang.script());
-    distant.emplace(office, "slow").serve(worker);
+    distant.emplace(*this, "slow").serve(worker);
   } else {
-    worker = office.add("slow", Place::Outside, hang.script(), declared("10", "0.5"));
+    worker = add("slow", Place::Outside, hang.script(), declared("10", "0.5"));
   }
-  std::thread other([&] { office.perform(Office::task(), 60s); });
+  std::thread other([&] { perform(Office::task(), 60s); });
   const bool entered = eventually([&] { return worker->inside == 1; });
-  const auto running = office.owner->head().running();
+  const auto running = owner->head().running();
   hang.release();
   other.join();
   REQUIRE(entered);
@@ -289,71 +279,66 @@ TEST_CASE("who works for the Head now is known while it works, where its descrip
   CHECK(running[0].csp == "slow");
   CHECK((running[0].host == "elsewhere") == elsewhere);
   if (!elsewhere) CHECK(running[0].pid == static_cast<std::uint32_t>(getpid()));
-  CHECK(office.owner->head().running().empty());
+  CHECK(owner->head().running().empty());
 }
 
-TEST_CASE("a client changes its strategy by disconnecting and connecting again") {
-  Office office;
-  office.add("a", Place::Inside, answer_as("a"), declared("10", "0.1"));
-  office.add("b", Place::Inside, answer_as("b"), declared("10", "0.9"));
-  office.owner->provide<crew::Desk>(std::make_shared<OfficeBody>(office.owner->head()));
+TEST_CASE_METHOD(Office, "a client changes its strategy by disconnecting and connecting again") {
+  add("a", Place::Inside, answer_as("a"), declared("10", "0.1"));
+  add("b", Place::Inside, answer_as("b"), declared("10", "0.9"));
+  owner->provide<crew::Desk>(std::make_shared<OfficeBody>(owner->head()));
   const auto client = make_client();
-  const std::string first = office.owner->broker()
-                                .find_service(office.owner->broker().query("crew/Worker"))
-                                .front()
-                                ->entity;
+  const std::string first =
+      owner->broker().find_service(owner->broker().query("crew/Worker")).front()->entity;
   for (const std::string strategy : {"declared", "fixed_order", "learned"}) {
     auto desk = client->connect<crew::Desk>({.strategy = strategy});
     CHECK(desk.ask("it") == (strategy == "fixed_order" ? first : "b") + " did it");
-    CHECK(office.owner->head().decisions().back().strategy == strategy);
+    CHECK(owner->head().decisions().back().strategy == strategy);
     desk.disconnect();
   }
 }
 
-TEST_CASE("a Body may call the CSP that the Head selects beforehand itself") {
+TEST_CASE_METHOD(Office, "a Body may call the CSP that the Head selects beforehand itself") {
   const Place place = GENERATE(Place::Inside, Place::Outside);
-  Office office;
-  office.add("better", place, answer_as("better"), declared("10", "0.9"));
-  office.add("other", Place::Inside, answer_as("other"), declared("10", "0.5"));
-  auto worker = office.owner->head().preselect<crew::Worker>();
+  add("better", place, answer_as("better"), declared("10", "0.9"));
+  add("other", Place::Inside, answer_as("other"), declared("10", "0.5"));
+  auto worker = owner->head().preselect<crew::Worker>();
   CHECK(worker.work("a") == "better did a");
   CHECK(worker.work("b") == "better did b");
-  REQUIRE(office.owner->head().decisions().size() == 1);
-  office.record = office.owner->head().decisions().front();
-  CHECK(office.attempts() == std::vector<std::string>{"better preselected"});
-  CHECK_THAT(explain(office.record), Catch::Contains("for the Body to call itself") &&
-                                         Catch::Contains("better has the best declared quality"));
-  CHECK(replay(office.record).front().csp == "better");
+  REQUIRE(owner->head().decisions().size() == 1);
+  record = owner->head().decisions().front();
+  CHECK(attempts() == std::vector<std::string>{"better preselected"});
+  CHECK_THAT(explain(record), Catch::Contains("for the Body to call itself") &&
+                                  Catch::Contains("better has the best declared quality"));
+  CHECK(replay(record).front().csp == "better");
 }
 
-TEST_CASE("where nothing can be selected beforehand, that is recorded with the reason") {
-  Office office;
+TEST_CASE_METHOD(Office,
+                 "where nothing can be selected beforehand, that is recorded with the reason") {
   std::optional<DistantWorker> silent;
-  std::vector<std::string> attempts;
+  std::vector<std::string> made;
   SECTION("as there is no CSP") {
-    CHECK_THROWS_WITH(office.owner->head().preselect<crew::Worker>(),
+    CHECK_THROWS_WITH(owner->head().preselect<crew::Worker>(),
                       Catch::Contains("crew/Worker") &&
                           Catch::Contains("a CSP for it, by provide_csp() or by <csp>"));
   }
   SECTION("as the CSP does not answer") {
-    silent.emplace(office, "silent");
-    CHECK_THROWS_AS(office.owner->head().preselect<crew::Worker>({}, 100ms), Unavailable);
-    attempts = {"silent failed"};
+    silent.emplace(*this, "silent");
+    CHECK_THROWS_AS(owner->head().preselect<crew::Worker>({}, 100ms), Unavailable);
+    made = {"silent failed"};
   }
-  REQUIRE(office.owner->head().decisions().size() == 1);
-  office.record = office.owner->head().decisions().front();
-  CHECK(office.attempts() == attempts);
-  CHECK_FALSE(office.record.failure.empty());
-  CHECK_THAT(explain(office.record),
+  REQUIRE(owner->head().decisions().size() == 1);
+  record = owner->head().decisions().front();
+  CHECK(attempts() == made);
+  CHECK_FALSE(record.failure.empty());
+  CHECK_THAT(explain(record),
              Catch::Contains("for the Body to call itself") && Catch::Contains("  failed after"));
 }
 
-TEST_CASE("a task that no CSP could fulfil is refused with what is wrong in it") {
-  Office office;
-  const auto quick = office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
+TEST_CASE_METHOD(Office, "a task that no CSP could fulfil is refused with what is wrong in it") {
+  const auto quick = add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
   const auto refused = [&](const WorkTask& task, const std::string& text) {
-    CHECK_THROWS_AS(office.perform(task, 1s), InvalidArgument);
-    CHECK_THROWS_WITH(office.perform(task, 1s), text);
+    CHECK_THROWS_AS(perform(task, 1s), InvalidArgument);
+    CHECK_THROWS_WITH(perform(task, 1s), text);
   };
   WorkTask task = Office::task();
   task.width = 0;
@@ -371,17 +356,16 @@ TEST_CASE("a task that no CSP could fulfil is refused with what is wrong in it")
   refused(task, "the feature 'cells' of the task is no finite number");
   task.features = {{"cells", 1}, {"area", 2}, {"cells", 1}};
   refused(task, "the feature 'cells' of the task stands there twice");
-  CHECK_THROWS_WITH(office.owner->head().preselect<crew::Worker>(task.features),
+  CHECK_THROWS_WITH(owner->head().preselect<crew::Worker>(task.features),
                     "the feature 'cells' of the task stands there twice");
   CHECK(quick->calls == 0);
 }
 
-TEST_CASE("an attribute that is almost one which a Head reads is told of") {
+TEST_CASE_METHOD(Office, "an attribute that is almost one which a Head reads is told of") {
   const Log log;
-  Office office;
   ServiceOptions options;
   options.attributes = {{"latancy", "10"}, {"Quality", "0.5"}, {"cost", "3"}, {"quantity", "3"}};
-  office.add("quick", Place::Inside, answer_as("quick"), options);
+  add("quick", Place::Inside, answer_as("quick"), options);
   CHECK(log.count("uav-1/office: 'quick' declares the attribute 'latancy', which no Head reads "
                   "(did you mean 'latency'?)") == 1);
   CHECK(log.count("the attribute 'Quality', which no Head reads (did you mean 'quality'?)") == 1);

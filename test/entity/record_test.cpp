@@ -167,11 +167,10 @@ TEST_CASE("what was predicted is told, too, and who has not run before") {
   CHECK_THAT(explain(mixed.office.record), Catch::Contains("; has not run before"));
 }
 
-TEST_CASE("decisions without a result are recorded with the reason") {
-  Office office;
-  CHECK_THROWS_AS(office.perform(Office::task(), 1s), NoCandidate);
-  CHECK_THAT(office.record.failure, Catch::Contains("crew/Worker"));
-  CHECK(office.owner->head().decisions().size() == 1);
+TEST_CASE_METHOD(Office, "decisions without a result are recorded with the reason") {
+  CHECK_THROWS_AS(perform(Office::task(), 1s), NoCandidate);
+  CHECK_THAT(record.failure, Catch::Contains("crew/Worker"));
+  CHECK(owner->head().decisions().size() == 1);
 }
 
 TEST_CASE("each decision is a line of the log that the entity names") {

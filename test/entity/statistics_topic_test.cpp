@@ -46,60 +46,57 @@ struct World {
 
 }  // namespace
 
-TEST_CASE("while somebody reads statistics, they are told at once and then each second") {
-  World world;
-  world.pass(10s);
-  CHECK(world.asked == 0);
-  world.reader.emplace(*world.far);
-  world.settle();
-  CHECK(world.asked == 1);
-  REQUIRE(world.reader->latest().size() == 1);
-  CHECK(world.reader->latest()[0].waiting == 1);
-  world.pass(999ms);
-  CHECK(world.asked == 1);
-  world.pass(1ms);
-  CHECK(world.asked == 2);
-  CHECK(world.reader->latest()[0].waiting == 2);
-  CHECK(world.reader->refused() == 0);
+TEST_CASE_METHOD(World,
+                 "while somebody reads statistics, they are told at once and then each second") {
+  pass(10s);
+  CHECK(asked == 0);
+  reader.emplace(*far);
+  settle();
+  CHECK(asked == 1);
+  REQUIRE(reader->latest().size() == 1);
+  CHECK(reader->latest()[0].waiting == 1);
+  pass(999ms);
+  CHECK(asked == 1);
+  pass(1ms);
+  CHECK(asked == 2);
+  CHECK(reader->latest()[0].waiting == 2);
+  CHECK(reader->refused() == 0);
 }
 
-TEST_CASE("nobody is asked for statistics that nobody reads any more") {
-  World world;
-  world.reader.emplace(*world.far);
-  world.settle();
-  world.reader.reset();
-  world.pass(1s);
-  world.pass(10s);
-  CHECK(world.asked == 1);
-  world.reader.emplace(*world.far);
-  world.settle();
-  CHECK(world.asked == 2);
+TEST_CASE_METHOD(World, "nobody is asked for statistics that nobody reads any more") {
+  reader.emplace(*far);
+  settle();
+  reader.reset();
+  pass(1s);
+  pass(10s);
+  CHECK(asked == 1);
+  reader.emplace(*far);
+  settle();
+  CHECK(asked == 2);
 }
 
-TEST_CASE("statistics keep their pace for a reader that comes right after another") {
-  World world;
-  world.reader.emplace(*world.far);
-  world.settle();
-  world.reader.reset();
-  world.reader.emplace(*world.far);
-  world.settle();
-  CHECK(world.asked == 1);
-  for (int i = 0; i < 3; ++i) world.pass(1s);
-  CHECK(world.asked == 4);
+TEST_CASE_METHOD(World, "statistics keep their pace for a reader that comes right after another") {
+  reader.emplace(*far);
+  settle();
+  reader.reset();
+  reader.emplace(*far);
+  settle();
+  CHECK(asked == 1);
+  for (int i = 0; i < 3; ++i) pass(1s);
+  CHECK(asked == 4);
 }
 
-TEST_CASE("statistics are not asked for once their topic has gone") {
-  World world;
-  world.reader.emplace(*world.far);
+TEST_CASE_METHOD(World, "statistics are not asked for once their topic has gone") {
+  reader.emplace(*far);
   SECTION("before they were asked for") {}
-  SECTION("between two times") { world.settle(); }
+  SECTION("between two times") { settle(); }
   SECTION("when it was just due") {
-    world.settle();
-    world.clock.advance(1s);
+    settle();
+    clock.advance(1s);
   }
-  const std::uint32_t asked = world.asked;
-  world.topic.reset();
-  CHECK(world.reader->latest().empty());
-  world.pass(10s);
-  CHECK(world.asked == asked);
+  const std::uint32_t before = asked;
+  topic.reset();
+  CHECK(reader->latest().empty());
+  pass(10s);
+  CHECK(asked == before);
 }

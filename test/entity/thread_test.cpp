@@ -37,32 +37,30 @@ WorkTask blocking_task() {
 
 }  // namespace
 
-TEST_CASE("a CSP runs on its own thread unless it declares its caller's") {
-  Office office;
-  const Noted noted(office, declared("1", "0.9"));
-  CHECK(office.perform(blocking_task(), 60s) == "noted did it");
+TEST_CASE_METHOD(Office, "a CSP runs on its own thread unless it declares its caller's") {
+  const Noted noted(*this, declared("1", "0.9"));
+  CHECK(perform(blocking_task(), 60s) == "noted did it");
   CHECK(noted.thread.load() != std::this_thread::get_id());
 }
 
-TEST_CASE("a CSP that declares its caller's thread runs there, however long it takes") {
-  Office office;
-  const Noted noted(office, on(CallThread::Caller));
+TEST_CASE_METHOD(Office,
+                 "a CSP that declares its caller's thread runs there, however long it takes") {
+  const Noted noted(*this, on(CallThread::Caller));
   for (int i = 0; i < 20; ++i) {
-    CHECK(office.perform(blocking_task(), 60s) == "noted did it");
+    CHECK(perform(blocking_task(), 60s) == "noted did it");
     CHECK(noted.thread.load() == std::this_thread::get_id());
   }
 
   SECTION("but for an asynchronous call, which cannot") {
-    CHECK(office.perform(Office::task(), 60s) == "noted did it");
+    CHECK(perform(Office::task(), 60s) == "noted did it");
     CHECK(noted.thread.load() != std::this_thread::get_id());
   }
 }
 
-TEST_CASE("calls that run on their callers' threads run one at a time") {
-  Office office;
+TEST_CASE_METHOD(Office, "calls that run on their callers' threads run one at a time") {
   std::atomic<int> inside = 0;
   std::atomic<int> together = 0;
-  office.add(
+  add(
       "alone", Place::Inside,
       [&](const std::string& task) {
         if (++inside > 1) ++together;
@@ -75,21 +73,20 @@ TEST_CASE("calls that run on their callers' threads run one at a time") {
   for (int i = 0; i < 4; ++i) {
     callers.emplace_back([&, asynchronous = i % 2 == 1] {
       const WorkTask task = asynchronous ? Office::task() : blocking_task();
-      for (int j = 0; j < 50; ++j) office.owner->head().perform(task, nullptr, 60s);
+      for (int j = 0; j < 50; ++j) owner->head().perform(task, nullptr, 60s);
     });
   }
   for (std::thread& caller : callers) caller.join();
   CHECK(together == 0);
 }
 
-TEST_CASE("whose turn does not come by the deadline is told so, and nothing hangs") {
-  Office office;
+TEST_CASE_METHOD(Office, "whose turn does not come by the deadline is told so, and nothing hangs") {
   Hang hang;
-  auto busy = office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  auto busy = add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
   std::thread other(
-      [&] { CHECK(office.owner->head().perform(blocking_task(), nullptr, 60s) == "too late"); });
+      [&] { CHECK(owner->head().perform(blocking_task(), nullptr, 60s) == "too late"); });
   const bool entered = eventually([&] { return busy->inside == 1; });
-  auto proxy = office.owner->head().preselect<crew::Worker>({}, 100ms);
+  auto proxy = owner->head().preselect<crew::Worker>({}, 100ms);
   CHECK_THROWS_AS(proxy.work("it"), TimedOut);
   CHECK(busy->inside == 1);
   hang.release();
@@ -97,11 +94,10 @@ TEST_CASE("whose turn does not come by the deadline is told so, and nothing hang
   CHECK(entered);
 }
 
-TEST_CASE("a service that runs on its callers' threads has one thread of its own") {
-  Office office;
+TEST_CASE_METHOD(Office, "a service that runs on its callers' threads has one thread of its own") {
   ServiceOptions options = on(CallThread::Caller);
   options.threads = 2;
-  CHECK_THROWS_WITH(office.add("many", Place::Inside, answer_as("many"), options),
+  CHECK_THROWS_WITH(add("many", Place::Inside, answer_as("many"), options),
                     Catch::Contains("one call at a time") && Catch::Contains("2 threads"));
 }
 
@@ -139,15 +135,14 @@ TEST_CASE("an entity ends once the calls that run on others' threads have ended"
   CHECK(busy->calls == 1);
 }
 
-TEST_CASE("whoever waits for a turn is refused when the service is withdrawn") {
-  Office office;
+TEST_CASE_METHOD(Office, "whoever waits for a turn is refused when the service is withdrawn") {
   Hang hang;
-  const auto busy = office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
-  auto proxy = office.owner->head().preselect<crew::Worker>({}, 60s);
+  const auto busy = add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  auto proxy = owner->head().preselect<crew::Worker>({}, 60s);
   std::thread first([&] { proxy.work("it"); });
   const bool entered = eventually([&] { return busy->inside == 1; });
   auto second = proxy.async_work("it");  // waits on the service's own thread
-  std::thread withdrawing([&] { office.remove("busy"); });
+  std::thread withdrawing([&] { remove("busy"); });
   CHECK_THROWS_AS(second.get(), Error);
   hang.release();
   first.join();
@@ -156,16 +151,15 @@ TEST_CASE("whoever waits for a turn is refused when the service is withdrawn") {
   CHECK(busy->calls == 1);
 }
 
-TEST_CASE("a CSP that hangs on its caller's thread is told of at once, while its caller waits") {
+TEST_CASE_METHOD(
+    Office, "a CSP that hangs on its caller's thread is told of at once, while its caller waits") {
   const Log log;
-  Office office;
   Hang hang;
-  office.add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
+  add("busy", Place::Inside, hang.script(), on(CallThread::Caller));
   constexpr auto kLimit = 50ms;
   const auto begun = std::chrono::steady_clock::now();
-  std::thread caller([&] {
-    CHECK_THROWS_AS(office.owner->head().perform(blocking_task(), nullptr, kLimit), TimedOut);
-  });
+  std::thread caller(
+      [&] { CHECK_THROWS_AS(owner->head().perform(blocking_task(), nullptr, kLimit), TimedOut); });
   CHECK(eventually([&] {
     return log.count(
                "uav-1/office: CSP 'busy' has not returned from a request whose time is over; "

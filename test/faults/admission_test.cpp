@@ -12,103 +12,97 @@ using dds::SkippedNumbers;
 using Refusal = RtpsGuard::Refusal;
 using namespace std::chrono_literals;
 
-TEST_CASE("a heartbeat that leaps by 2^52 is refused, of a writer known or unknown") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a heartbeat that leaps by 2^52 is refused, of a writer known or unknown") {
   const auto leap = [](const Guid& writer) {
     const std::int64_t far = std::int64_t{1} << 52;
     return from(writer, kHeartbeat, 0, heartbeat(writer, far, far));
   };
-  CHECK(stage.refuses(leap(writer_of(2)), Refusal::Leap));
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
-  CHECK(stage.refuses(leap(kWriter), Refusal::Leap));
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 6))));
+  CHECK(refuses(leap(writer_of(2)), Refusal::Leap));
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  CHECK(refuses(leap(kWriter), Refusal::Leap));
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 6))));
 }
 
-TEST_CASE("a late joiner hears of a writer that has written a billion samples") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a late joiner hears of a writer that has written a billion samples") {
   const std::int64_t billion = 1'000'000'000;
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, billion, billion))));
-  CHECK(stage.passes(from(kWriter, kData, kHasPayload, data(kWriter, billion + 1, kPayload))));
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, billion, billion))));
+  CHECK(passes(from(kWriter, kData, kHasPayload, data(kWriter, billion + 1, kPayload))));
 }
 
-TEST_CASE("who was cut off may have missed a million samples a second") {
-  Stage stage;
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+TEST_CASE_METHOD(Stage, "who was cut off may have missed a million samples a second") {
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
   const std::int64_t missed = 60'000'000;
   const auto beat = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, missed, missed));
-  CHECK(stage.refuses(beat, Refusal::Leap));
-  stage.now += 60s;
-  CHECK(stage.passes(beat));
-  CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 2 * missed)),
-                      Refusal::Leap));
+  CHECK(refuses(beat, Refusal::Leap));
+  now += 60s;
+  CHECK(passes(beat));
+  CHECK(refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 2 * missed)), Refusal::Leap));
 }
 
-TEST_CASE("a gap is within what was announced, and no longer than a reader can count through") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "a gap is within what was announced, and no longer than a reader can count through") {
   const std::int64_t last = 900'000;
-  REQUIRE(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, last))));
-  CHECK(stage.passes(from(kWriter, kGap, 0, gap(kWriter, 3, 4000))));
-  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 1'000'000, std::int64_t{1} << 40)),
-                      Refusal::Leap));
-  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 0, 5)), Refusal::Form));
-  CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 5, 4)), Refusal::Form));
+  REQUIRE(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, last))));
+  CHECK(passes(from(kWriter, kGap, 0, gap(kWriter, 3, 4000))));
+  CHECK(refuses(from(kWriter, kGap, 0, gap(kWriter, 1'000'000, std::int64_t{1} << 40)),
+                Refusal::Leap));
+  CHECK(refuses(from(kWriter, kGap, 0, gap(kWriter, 0, 5)), Refusal::Form));
+  CHECK(refuses(from(kWriter, kGap, 0, gap(kWriter, 5, 4)), Refusal::Form));
   // The reader asks again for the rest.
-  CHECK(stage.pass(from(kWriter, kGap, 0, gap(kWriter, 2, last)).octets()) ==
+  CHECK(pass(from(kWriter, kGap, 0, gap(kWriter, 2, last)).octets()) ==
         from(kWriter, kGap, 0, gap(kWriter, 2, 2 + 65536)).octets());
 }
 
-TEST_CASE("all fragments of a sample agree on its size and theirs") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "all fragments of a sample agree on its size and theirs") {
   const auto fragment = [&](const FragmentClaim& claim) {
     return from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, claim, 4096));
   };
-  CHECK(stage.passes(fragment({1, 1, 1024, 60'000})));
-  CHECK(stage.refuses(fragment({2, 1, 1024, 6'000}), Refusal::Fragment));
-  CHECK(stage.refuses(fragment({2, 1, 2048, 60'000}), Refusal::Fragment));
-  CHECK(stage.passes(fragment({2, 1, 1024, 60'000})));
+  CHECK(passes(fragment({1, 1, 1024, 60'000})));
+  CHECK(refuses(fragment({2, 1, 1024, 6'000}), Refusal::Fragment));
+  CHECK(refuses(fragment({2, 1, 2048, 60'000}), Refusal::Fragment));
+  CHECK(passes(fragment({2, 1, 1024, 60'000})));
 }
 
-TEST_CASE("only who is matched may begin a sample in fragments") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "only who is matched may begin a sample in fragments") {
   const Guid other = writer_of(2);
-  CHECK(stage.refuses(stage.begins(other, 1, 100'000), Refusal::Unmatched));
-  stage.match(other);
-  CHECK(stage.passes(stage.begins(other, 1, 100'000)));
-  stage.match(other, false);
-  CHECK(stage.refuses(stage.begins(other, 1, 100'000), Refusal::Unmatched));
-  stage.guard.reader_gone(dds::rtps_message::entity_of(kReader));
-  CHECK(stage.refuses(stage.begins(kWriter, 1, 100'000), Refusal::Unmatched));
+  CHECK(refuses(begins(other, 1, 100'000), Refusal::Unmatched));
+  match(other);
+  CHECK(passes(begins(other, 1, 100'000)));
+  match(other, false);
+  CHECK(refuses(begins(other, 1, 100'000), Refusal::Unmatched));
+  guard.reader_gone(dds::rtps_message::entity_of(kReader));
+  CHECK(refuses(begins(kWriter, 1, 100'000), Refusal::Unmatched));
 }
 
-TEST_CASE("what may be begun depends on what was received: a claim of 256 MiB is no reason") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "what may be begun depends on what was received: a claim of 256 MiB is no reason") {
   constexpr std::uint32_t kLargest = Admission::kLargestSample;
-  CHECK(stage.refuses(stage.begins(kWriter, 1, kLargest + 1), Refusal::Room));
-  CHECK(stage.refuses(stage.begins(kWriter, 1, kLargest), Refusal::Room));
+  CHECK(refuses(begins(kWriter, 1, kLargest + 1), Refusal::Room));
+  CHECK(refuses(begins(kWriter, 1, kLargest), Refusal::Room));
   // Who really sends so much is refused a part of it, which the reader asks for again.
   const std::uint32_t fragments = (kLargest + 59'999) / 60'000;
   std::uint32_t refused = 0;
   for (std::uint32_t i = 1; i < fragments; ++i) {
-    refused += !stage.passes(
+    refused += !passes(
         from(kWriter, kDataFrag, 0, data_frag(kWriter, 1, {i, 1, 60'000, kLargest}, 60'000)));
   }
   CHECK(refused > 0);
   CHECK(refused * Admission::kAhead <= fragments);
 }
 
-TEST_CASE("small claims of one participant leave others their room, from the same address too") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "small claims of one participant leave others their room, from the same address too") {
   const Guid rogue = stranger_of(1);
-  stage.pass(announcement_of(rogue).octets(), kHere);
-  stage.match(rogue);
+  pass(announcement_of(rogue).octets(), kHere);
+  match(rogue);
   for (int i = 1; i <= 20'000; ++i) {
     const FragmentClaim claim{1, 1, 256, 20'000'000};
-    stage.pass(from(rogue, kDataFrag, 0, data_frag(rogue, i, claim, 256)).octets(), kHere);
+    pass(from(rogue, kDataFrag, 0, data_frag(rogue, i, claim, 256)).octets(), kHere);
   }
   // What kWriter begins it has to earn now.
   std::uint32_t refused = 0;
   for (std::uint32_t i = 1; i <= 17; ++i) {
-    refused += !stage.passes(
+    refused += !passes(
         from(kWriter, kDataFrag, 0,
              data_frag(kWriter, 1, {i, 1, 60'000, 1'000'000}, 40'000 + (i < 17 ? 20'000 : 0))));
   }
@@ -144,47 +138,45 @@ TEST_CASE("a participant that loses the rest of each sample may begin others") {
   }
 }
 
-TEST_CASE("samples that are complete claim nothing") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "samples that are complete claim nothing") {
   for (int i = 1; i <= 20'000; ++i) {
-    REQUIRE(stage.passes(
-        from(kWriter, kDataFrag, 0, data_frag(kWriter, i, {1, 1, 60'000, 60'000}, 60'000))));
+    REQUIRE(
+        passes(from(kWriter, kDataFrag, 0, data_frag(kWriter, i, {1, 1, 60'000, 60'000}, 60'000))));
   }
 }
 
-TEST_CASE("who has not announced itself is not heard") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "who has not announced itself is not heard") {
   const Guid stranger = stranger_of(1);
   const auto acknack = entities({}, stranger).number(1).u32(0).u32(7);
   const auto heard = [&](bool (Stage::*judged)(const RtpsPacket&)) {
-    return (stage.*judged)(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))) &&
-           (stage.*judged)(from(stranger, kData, kHasPayload, data(stranger, 1, kPayload))) &&
-           (stage.*judged)(from(stranger, kGap, 0, gap(stranger, 1, 3))) &&
-           (stage.*judged)(from(stranger, 0x06, 0, acknack));
+    return (this->*judged)(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))) &&
+           (this->*judged)(from(stranger, kData, kHasPayload, data(stranger, 1, kPayload))) &&
+           (this->*judged)(from(stranger, kGap, 0, gap(stranger, 1, 3))) &&
+           (this->*judged)(from(stranger, 0x06, 0, acknack));
   };
   CHECK(heard(&Stage::refuses_stranger));
-  CHECK(stage.passes(announcement_of(stranger)));
+  CHECK(passes(announcement_of(stranger)));
   CHECK(heard(&Stage::passes));
-  stage.guard.removed(stranger.participant());
+  guard.removed(stranger.participant());
   CHECK(heard(&Stage::refuses_stranger));
-  stage.guard.found(stranger.participant());
+  guard.found(stranger.participant());
   CHECK(heard(&Stage::passes));
 }
 
-TEST_CASE("a flood of strangers takes no memory, and none of those that are there forgotten") {
-  Stage stage;
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
-  stage.guard.found(kWriter.participant());
+TEST_CASE_METHOD(
+    Stage, "a flood of strangers takes no memory, and none of those that are there forgotten") {
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  guard.found(kWriter.participant());
   for (unsigned i = 0; i < 100'000; ++i) {
     const Guid stranger = stranger_of(i);
-    REQUIRE(stage.refuses_stranger(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))));
-    stage.pass(announcement_of(stranger).octets());
-    stage.now += 1ms;
+    REQUIRE(refuses_stranger(from(stranger, kHeartbeat, 0, heartbeat(stranger, 1, 5))));
+    pass(announcement_of(stranger).octets());
+    now += 1ms;
   }
-  CHECK(stage.guard.participants() <= Admission::kMaxParticipants);
+  CHECK(guard.participants() <= Admission::kMaxParticipants);
   const std::int64_t far = std::int64_t{1} << 50;
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
-  CHECK(stage.refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)), Refusal::Leap));
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  CHECK(refuses(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, far, far)), Refusal::Leap));
 }
 
 TEST_CASE("numbers that a reader counts one by one are skipped in parts, of which each is true") {
@@ -248,12 +240,12 @@ TEST_CASE("a reader that lacks a number is given few behind it that do not exist
   CHECK(stage.refuses(from(kWriter, kGap, 0, gap(kWriter, 70'000, 80'000)), Refusal::Leap));
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Stage,
     "an address has room for twice as many participants as find ports there, and they come one by "
     "one") {
-  Stage stage;
   const auto announce = [&](unsigned number, std::uint32_t source) {
-    return !stage.pass(announcement_of(stranger_of(number)).octets(), source).empty();
+    return !pass(announcement_of(stranger_of(number)).octets(), source).empty();
   };
   constexpr auto kAtOnce = static_cast<unsigned>(Admission::kNewcomersOfSource.at_once);
   unsigned accepted = 0;
@@ -262,49 +254,49 @@ TEST_CASE(
   CHECK(announce(5000, kSomewhere + 1));  // others have theirs
   CHECK(announce(0, kSomewhere));         // who is known may say it again
   for (int second = 0; second < 60; ++second) {
-    stage.now += 1s;
+    now += 1s;
     for (unsigned i = 0; i < 1000; ++i) {
       // The vendor has found them all.
-      if (announce(i, kSomewhere)) stage.guard.found(stranger_of(i).participant());
+      if (announce(i, kSomewhere)) guard.found(stranger_of(i).participant());
     }
   }
-  CHECK(stage.guard.participants() == Admission::kMaxParticipantsOfSource);
+  CHECK(guard.participants() == Admission::kMaxParticipantsOfSource);
   CHECK_FALSE(announce(2000, kSomewhere));
-  stage.guard.removed(stranger_of(0).participant());
+  guard.removed(stranger_of(0).participant());
   CHECK(announce(2000, kSomewhere));
 }
 
-TEST_CASE("participants that the vendor never finds are forgotten when others need their room") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "participants that the vendor never finds are forgotten when others need their room") {
   const auto announce = [&](unsigned number) {
-    return !stage.pass(announcement_of(stranger_of(number)).octets()).empty();
+    return !pass(announcement_of(stranger_of(number)).octets()).empty();
   };
   unsigned number = 0;
-  while (stage.guard.participants() < 1 + Admission::kMaxParticipantsOfSource) {
+  while (guard.participants() < 1 + Admission::kMaxParticipantsOfSource) {
     announce(++number);
-    stage.now += 10ms;
+    now += 10ms;
   }
-  stage.now += 1s;
+  now += 1s;
   CHECK_FALSE(announce(100'000));
-  stage.now += Admission::kUnconfirmed;
+  now += Admission::kUnconfirmed;
   CHECK(announce(100'000));
 }
 
-TEST_CASE("writers that participants invent are bounded, and leave others room for theirs") {
-  Stage stage;
+TEST_CASE_METHOD(Stage,
+                 "writers that participants invent are bounded, and leave others room for theirs") {
   std::size_t all = 0;
   for (unsigned rogue = 1; rogue <= 8; ++rogue) {
-    stage.pass(announcement_of(stranger_of(rogue)).octets());
+    pass(announcement_of(stranger_of(rogue)).octets());
     for (std::uint32_t number = 0; number < 5000; ++number) {
       const Guid writer = with_entity(stranger_of(rogue), number << 8 | 0x03);
-      all += stage.passes(from(writer, kHeartbeat, 0, heartbeat(writer, 1, 5)));
+      all += passes(from(writer, kHeartbeat, 0, heartbeat(writer, 1, 5)));
     }
   }
   CHECK(all <= Admission::kMaxWritersInAll);
   CHECK(all > Admission::kMaxWriters);
-  CHECK(stage.passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
-  stage.guard.removed(stranger_of(1).participant());
+  CHECK(passes(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5))));
+  guard.removed(stranger_of(1).participant());
   const Guid another = stranger_of(9);
-  stage.pass(announcement_of(another).octets());
-  CHECK(stage.passes(from(another, kHeartbeat, 0, heartbeat(another, 1, 5))));
+  pass(announcement_of(another).octets());
+  CHECK(passes(from(another, kHeartbeat, 0, heartbeat(another, 1, 5))));
 }

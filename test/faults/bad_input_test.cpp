@@ -89,29 +89,28 @@ std::mt19937_64 seeded_random() { return std::mt19937_64(seed_of_this_run()); }
 
 }  // namespace
 
-TEST_CASE("malformed requests are counted and dropped, and a good client does not notice") {
-  Attacked attacked;
-  const auto writer = writer_to(attacked);
+TEST_CASE_METHOD(Attacked,
+                 "malformed requests are counted and dropped, and a good client does not notice") {
+  const auto writer = writer_to(*this);
   auto random = seeded_random();
   const auto messages = bad_requests(writer->guid(), random);
   const auto looked_at = [&] {
-    const auto counters = attacked.service.counters();
+    const auto counters = service.counters();
     return counters.malformed + counters.refused + counters.unconnected;
   };
   const auto before = looked_at();
   for (const Message& message : messages) writer->write(message.bytes);
   CHECK(eventually([&] { return looked_at() >= before + messages.size(); }));
-  CHECK(attacked.service.counters().malformed > 0);
-  CHECK(attacked.service.counters().refused > 0);
-  CHECK(attacked.unharmed());
-  CHECK(eventually([&] { return attacked.service.counters().active <= 1; }));
-  CHECK(attacked.service.counters().clients == 1);
+  CHECK(service.counters().malformed > 0);
+  CHECK(service.counters().refused > 0);
+  CHECK(unharmed());
+  CHECK(eventually([&] { return service.counters().active <= 1; }));
+  CHECK(service.counters().clients == 1);
 }
 
-TEST_CASE("nobody speaks in another client's name") {
-  Attacked attacked;
-  const auto writer = writer_to(attacked);
-  const auto before = attacked.service.counters();
+TEST_CASE_METHOD(Attacked, "nobody speaks in another client's name") {
+  const auto writer = writer_to(*this);
+  const auto before = service.counters();
   for (const std::uint32_t operation : {rpc::wire::kOpen, rpc::wire::kCancel, rpc::wire::kCredit}) {
     Bytes message;
     rpc::wire::begin_request(message, {Guid::random(), 0}, operation);
@@ -119,35 +118,34 @@ TEST_CASE("nobody speaks in another client's name") {
     rpc::wire::append_trailer(message, rpc::wire::RequestTrailer{1s, 1, {}, ""});
     writer->write(message);
   }
-  CHECK(eventually([&] { return attacked.service.counters().malformed == before.malformed + 3; }));
-  CHECK(attacked.service.counters().clients == 1);
-  CHECK(attacked.unharmed());
+  CHECK(eventually([&] { return service.counters().malformed == before.malformed + 3; }));
+  CHECK(service.counters().clients == 1);
+  CHECK(unharmed());
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Attacked,
     "malformed service descriptions are counted and dropped, and every table stays as it is") {
-  Attacked attacked;
   dds::Qos qos;
   qos.transient_local = true;
   qos.history_depth = 1;
   qos.liveliness_lease = 1000ms;
   qos.partitions = {""};
   const auto writer = matched_writer(
-      *attacked.stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
+      *stranger, {"skein/services", "skein::discovery::ServiceDescription", true}, qos);
   REQUIRE(eventually([&] { return writer->matched_readers().size() == 3; }));
-  const std::vector<Entity*> all{attacked.server.get(), attacked.client.get(),
-                                 attacked.stranger.get()};
+  const std::vector<Entity*> all{server.get(), client.get(), stranger.get()};
   for (Entity* entity : all)
-    REQUIRE(eventually([&] { return entity->broker().knows(attacked.service.id()); }));
+    REQUIRE(eventually([&] { return entity->broker().knows(service.id()); }));
   auto random = seeded_random();
 
   Bytes good{std::span<const std::byte>(idl::kEncapsulation)};
-  auto description = describe_echo(attacked.stranger->broker().new_provider(), "stranger");
+  auto description = describe_echo(stranger->broker().new_provider(), "stranger");
   description.system = "uav-1";
   idl::type_support<brokerless_discovery::ServiceDescription>().encode(&description, good);
   const auto messages = broken_copies(good, random);
   for (const Message& message : messages) {
-    writer->write(message.bytes, attacked.stranger->broker().new_provider());
+    writer->write(message.bytes, stranger->broker().new_provider());
   }
 
   for (Entity* entity : all) {
@@ -158,8 +156,8 @@ TEST_CASE(
     }));
     CHECK(entity->broker().all().size() == 1);
   }
-  CHECK(attacked.unharmed());
-  CHECK(attacked.client->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
+  CHECK(unharmed());
+  CHECK(client->connect<LouderEcho>({.timeout = 20s}).echo("x") == "x");
 }
 
 namespace {
@@ -244,12 +242,12 @@ std::shared_ptr<rpc::DdsChannel> channel_to(const RogueServer& rogue, Entity& cl
 
 }  // namespace
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Attacked,
     "a server that answers with nonsense: each call ends, with the reason, and none stays "
     "pending") {
-  Attacked attacked;
-  RogueServer rogue(*attacked.stranger);
-  const auto channel = channel_to(rogue, *attacked.client);
+  RogueServer rogue(*stranger);
+  const auto channel = channel_to(rogue, *client);
   LouderEcho::Proxy proxy(channel, 20s);
   auto random = seeded_random();
 
@@ -269,16 +267,16 @@ TEST_CASE(
   }
   CHECK(channel->malformed() > 0);
   CHECK(channel->connected());
-  CHECK(attacked.unharmed());
+  CHECK(unharmed());
 
   rogue.answer_with([](const rpc::wire::RequestHead& head) { return good_reply(head); });
   CHECK(proxy.within(20s).echo("x") == "x");
 }
 
-TEST_CASE("a server that sends what is no part of a stream: the stream ends, with the reason") {
-  Attacked attacked;
-  RogueServer rogue(*attacked.stranger);
-  const auto channel = channel_to(rogue, *attacked.client);
+TEST_CASE_METHOD(
+    Attacked, "a server that sends what is no part of a stream: the stream ends, with the reason") {
+  RogueServer rogue(*stranger);
+  const auto channel = channel_to(rogue, *client);
   LouderEcho::Proxy proxy(channel, 20s);
   for (const BadReply& bad : bad_stream_replies()) {
     INFO(bad.name);
@@ -287,13 +285,13 @@ TEST_CASE("a server that sends what is no part of a stream: the stream ends, wit
     CHECK_THROWS_AS(numbers.next(), Internal);
     CHECK(channel->pending() == 0);
   }
-  CHECK(attacked.unharmed());
+  CHECK(unharmed());
 }
 
-TEST_CASE("the one reply of a server that knows no streams is a stream of one result") {
-  Attacked attacked;
-  RogueServer plain(*attacked.stranger);
-  LouderEcho::Proxy proxy(channel_to(plain, *attacked.client), 20s);
+TEST_CASE_METHOD(Attacked,
+                 "the one reply of a server that knows no streams is a stream of one result") {
+  RogueServer plain(*stranger);
+  LouderEcho::Proxy proxy(channel_to(plain, *client), 20s);
   plain.answer_with([](const rpc::wire::RequestHead& head) { return count_up_reply(head, 42); });
   auto numbers = proxy.count_up(1, -1);
   CHECK(numbers.next() == 42);

@@ -107,75 +107,69 @@ struct Stage {
 
 }  // namespace
 
-TEST_CASE("only the provider answers a call: a forged result is refused and counted") {
-  Stage stage;
-  auto call = stage.proxy.async_echo("true");
-  REQUIRE(eventually([&] { return stage.echo->inside == 1; }));
-  const auto request = stage.ear.await_request(LouderEcho::interface_info(), "echo");
-  stage.mouth->say(good_reply(request));
-  REQUIRE(stage.refused(1));
+TEST_CASE_METHOD(Stage,
+                 "only the provider answers a call: a forged result is refused and counted") {
+  auto call = proxy.async_echo("true");
+  REQUIRE(eventually([&] { return echo->inside == 1; }));
+  const auto request = ear.await_request(LouderEcho::interface_info(), "echo");
+  mouth->say(good_reply(request));
+  REQUIRE(refused(1));
   CHECK_FALSE(call.ready());
-  stage.echo->release();
+  echo->release();
   CHECK(call.get() == "true");
 }
 
-TEST_CASE("a forged end of a stream does not end it") {
-  Stage stage;
-  auto numbers = stage.proxy.count_up(kEndless, -1);
+TEST_CASE_METHOD(Stage, "a forged end of a stream does not end it") {
+  auto numbers = proxy.count_up(kEndless, -1);
   REQUIRE(numbers.next() == 0);
-  const auto request = stage.ear.await_request(LouderEcho::interface_info(), "count_up");
+  const auto request = ear.await_request(LouderEcho::interface_info(), "count_up");
   constexpr std::uint64_t kEnds = 32;
   for (std::uint64_t position = 0; position < kEnds; ++position) {
     Bytes end = count_up_reply(request, 0);
     wire::append_trailer(end, wire::ReplyTrailer{{}, {}, wire::StreamPart::End, position});
-    stage.mouth->say(end);
+    mouth->say(end);
   }
-  REQUIRE(stage.refused(kEnds));
+  REQUIRE(refused(kEnds));
   for (int i = 1; i < 50; ++i) CHECK(numbers.next() == i);
 }
 
-TEST_CASE("a forged dismissal does not end a connection") {
-  Stage stage;
-  auto call = stage.proxy.async_echo("x");
-  const auto request = stage.ear.await_request(LouderEcho::interface_info(), "echo");
-  stage.mouth->say(session_ended({stage.ear.client(), 0}));
-  stage.mouth->say(session_ended(request.id));
-  REQUIRE(stage.refused(2));
-  CHECK(stage.channel->connected());
-  stage.echo->release();
+TEST_CASE_METHOD(Stage, "a forged dismissal does not end a connection") {
+  auto call = proxy.async_echo("x");
+  const auto request = ear.await_request(LouderEcho::interface_info(), "echo");
+  mouth->say(session_ended({ear.client(), 0}));
+  mouth->say(session_ended(request.id));
+  REQUIRE(refused(2));
+  CHECK(channel->connected());
+  echo->release();
   CHECK(call.get() == "x");
 }
 
-TEST_CASE("who listens in on a connection, and leaves, does not end it") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "who listens in on a connection, and leaves, does not end it") {
   {
-    Ear second(stage.rogue->participant(), stage.service.address());
+    Ear second(rogue->participant(), service.address());
     dds::Qos qos;
-    qos.partitions = {stage.ear.client().hex()};
-    const auto replies =
-        stage.rogue->participant().create_reader(stage.service.address().reply_topic(), qos);
+    qos.partitions = {ear.client().hex()};
+    const auto replies = rogue->participant().create_reader(service.address().reply_topic(), qos);
     REQUIRE(eventually([&] { return second.matched() && replies->matched_writers().size() == 2; }));
   }
-  for (int i = 0; i < 100; ++i) CHECK(stage.proxy.label() == "echo");
-  CHECK(stage.channel->connected());
-  CHECK(stage.service.counters().unconnected == 0);
+  for (int i = 0; i < 100; ++i) CHECK(proxy.label() == "echo");
+  CHECK(channel->connected());
+  CHECK(service.counters().unconnected == 0);
 }
 
-TEST_CASE("a request in another client's name ends none of that client's calls") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a request in another client's name ends none of that client's calls") {
   dds::Qos qos;
-  qos.partitions = {stage.service.id().hex()};
-  const auto writer =
-      stage.rogue->participant().create_writer(stage.service.address().request_topic(), qos);
+  qos.partitions = {service.id().hex()};
+  const auto writer = rogue->participant().create_writer(service.address().request_topic(), qos);
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   // What is written before the other side has found the writer may be lost.
   REQUIRE(eventually([&] {
     writer->write(unknown_operation(writer->guid()));
-    return eventually([&] { return stage.service.counters().refused > 0; }, 200ms);
+    return eventually([&] { return service.counters().refused > 0; }, 200ms);
   }));
-  auto call = stage.proxy.async_echo("x");
-  const auto request = stage.ear.await_request(LouderEcho::interface_info(), "echo");
-  const auto before = stage.service.counters();
+  auto call = proxy.async_echo("x");
+  const auto request = ear.await_request(LouderEcho::interface_info(), "echo");
+  const auto before = service.counters();
 
   Bytes broken;
   wire::begin_request(broken, request.id, request.operation);
@@ -184,9 +178,9 @@ TEST_CASE("a request in another client's name ends none of that client's calls")
   wire::begin_request(unknown, request.id, 0xDEADBEEF);
   wire::append_default_branch(unknown);
   writer->write(unknown);
-  CHECK(eventually([&] { return stage.service.counters().malformed == before.malformed + 2; }));
-  CHECK(stage.service.counters().refused == before.refused);
-  stage.echo->release();
+  CHECK(eventually([&] { return service.counters().malformed == before.malformed + 2; }));
+  CHECK(service.counters().refused == before.refused);
+  echo->release();
   CHECK(call.get() == "x");
 }
 

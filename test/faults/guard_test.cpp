@@ -16,27 +16,26 @@ using dds::SkippedNumbers;
 using Refusal = RtpsGuard::Refusal;
 using namespace std::chrono_literals;
 
-TEST_CASE("a message that is no RTPS of version 2, or has no sender, is refused") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a message that is no RTPS of version 2, or has no sender, is refused") {
   const auto good = from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5));
-  CHECK(stage.passes(good));
+  CHECK(passes(good));
   for (const std::size_t broken : {0u, 1u, 2u, 3u, 4u}) {
     Octets octets = good.octets();
     octets[broken] ^= 0x20;
-    CHECK(stage.pass(octets).empty());
+    CHECK(pass(octets).empty());
   }
-  CHECK(stage.pass({good.octets().begin(), good.octets().begin() + 19}).empty());
-  CHECK(stage.refuses(from(Guid{}, kHeartbeat, 0, heartbeat(kWriter, 1, 5)), Refusal::Form));
+  CHECK(pass({good.octets().begin(), good.octets().begin() + 19}).empty());
+  CHECK(refuses(from(Guid{}, kHeartbeat, 0, heartbeat(kWriter, 1, 5)), Refusal::Form));
 }
 
-TEST_CASE("what follows a submessage that does not lie within its message is cut off") {
-  Stage stage;
+TEST_CASE_METHOD(Stage,
+                 "what follows a submessage that does not lie within its message is cut off") {
   RtpsPacket packet(kWriter);
   packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
   const Octets good = packet.octets();
   packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5), 2000);
-  CHECK(stage.pass(packet.octets()) == good);
-  CHECK(stage.guard.refused(Refusal::Form) == 1);
+  CHECK(pass(packet.octets()) == good);
+  CHECK(guard.refused(Refusal::Form) == 1);
 }
 
 TEST_CASE("every submessage's body must hold its fields") {
@@ -69,93 +68,89 @@ TEST_CASE("every submessage's body must hold its fields") {
   }
 }
 
-TEST_CASE("sets of numbers have at most 256 bits, which are there, and numbers that exist") {
-  Stage stage;
+TEST_CASE_METHOD(Stage,
+                 "sets of numbers have at most 256 bits, which are there, and numbers that exist") {
   const auto acknack = [&](std::int64_t base, std::uint32_t bits, std::size_t words) {
     return from(kWriter, 0x06, 0,
                 entities({}, kWriter).number(base).u32(bits).zeros(4 * words).u32(7));
   };
-  CHECK(stage.passes(acknack(1, 256, 8)));
-  CHECK(stage.passes(acknack(0, 0, 0)));
-  CHECK(stage.refuses(acknack(1, 257, 9), Refusal::Form));
-  CHECK(stage.refuses(acknack(1, 33, 1), Refusal::Form));
-  CHECK(stage.refuses(acknack(0, 1, 1), Refusal::Form));
-  CHECK(stage.refuses(acknack(-1, 1, 1), Refusal::Form));
-  CHECK(stage.refuses(acknack(INT64_MAX, 1, 1), Refusal::Form));
+  CHECK(passes(acknack(1, 256, 8)));
+  CHECK(passes(acknack(0, 0, 0)));
+  CHECK(refuses(acknack(1, 257, 9), Refusal::Form));
+  CHECK(refuses(acknack(1, 33, 1), Refusal::Form));
+  CHECK(refuses(acknack(0, 1, 1), Refusal::Form));
+  CHECK(refuses(acknack(-1, 1, 1), Refusal::Form));
+  CHECK(refuses(acknack(INT64_MAX, 1, 1), Refusal::Form));
 }
 
-TEST_CASE("a heartbeat names an order of samples that exist") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a heartbeat names an order of samples that exist") {
   const auto beat = [&](std::int64_t first, std::int64_t last) {
     return from(kWriter, kHeartbeat, 0, heartbeat(kWriter, first, last));
   };
-  CHECK(stage.passes(beat(1, 0)));
-  CHECK(stage.passes(beat(9, 8)));
-  CHECK(stage.refuses(beat(0, 0), Refusal::Form));
-  CHECK(stage.refuses(beat(-3, 8), Refusal::Form));
-  CHECK(stage.refuses(beat(9, 7), Refusal::Form));
+  CHECK(passes(beat(1, 0)));
+  CHECK(passes(beat(9, 8)));
+  CHECK(refuses(beat(0, 0), Refusal::Form));
+  CHECK(refuses(beat(-3, 8), Refusal::Form));
+  CHECK(refuses(beat(9, 7), Refusal::Form));
 }
 
-TEST_CASE("fragments exist in their sample, and are there") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "fragments exist in their sample, and are there") {
   const auto fragment = [&](const FragmentClaim& claim, std::size_t payload) {
     return from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, claim, payload));
   };
-  CHECK(stage.passes(fragment({1, 1, 1024, 2500}, 1024)));
-  CHECK(stage.passes(fragment({2, 2, 1024, 2500}, 1476)));
-  CHECK(stage.refuses(fragment({2, 2, 1024, 2500}, 1472), Refusal::Form));
-  CHECK(stage.refuses(fragment({0, 1, 1024, 2500}, 1024), Refusal::Form));
-  CHECK(stage.refuses(fragment({4, 1, 1024, 2500}, 1024), Refusal::Form));
-  CHECK(stage.refuses(fragment({3, 2, 1024, 2500}, 2048), Refusal::Form));
-  CHECK(stage.refuses(fragment({1, 0, 1024, 2500}, 1024), Refusal::Form));
-  CHECK(stage.refuses(fragment({1, 1, 0, 2500}, 1024), Refusal::Form));
-  CHECK(stage.refuses(fragment({1, 1, 1024, 0}, 1024), Refusal::Form));
+  CHECK(passes(fragment({1, 1, 1024, 2500}, 1024)));
+  CHECK(passes(fragment({2, 2, 1024, 2500}, 1476)));
+  CHECK(refuses(fragment({2, 2, 1024, 2500}, 1472), Refusal::Form));
+  CHECK(refuses(fragment({0, 1, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(refuses(fragment({4, 1, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(refuses(fragment({3, 2, 1024, 2500}, 2048), Refusal::Form));
+  CHECK(refuses(fragment({1, 0, 1024, 2500}, 1024), Refusal::Form));
+  CHECK(refuses(fragment({1, 1, 0, 2500}, 1024), Refusal::Form));
+  CHECK(refuses(fragment({1, 1, 1024, 0}, 1024), Refusal::Form));
   // 120 bytes that claim to be 100 MB in 1539 fragments.
-  CHECK(stage.refuses(fragment({1, 1539, 65000, 100'000'000}, 64), Refusal::Form));
+  CHECK(refuses(fragment({1, 1539, 65000, 100'000'000}, 64), Refusal::Form));
 }
 
-TEST_CASE("fragments too small for Fast DDS's list of those that are missing are refused") {
-  Stage stage;
+TEST_CASE_METHOD(Stage,
+                 "fragments too small for Fast DDS's list of those that are missing are refused") {
   for (const unsigned size : {1u, 3u, 5u, 64u}) {
-    CHECK(
-        stage.refuses(from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, {1, 1, size, 60'000}, 64)),
-                      Refusal::Fragment));
+    CHECK(refuses(from(kWriter, kDataFrag, 0, data_frag(kWriter, 7, {1, 1, size, 60'000}, 64)),
+                  Refusal::Fragment));
   }
 }
 
-TEST_CASE("vendors' own submessages are passed over in silence, the message's others go on") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "vendors' own submessages are passed over in silence, the message's others go on") {
   RtpsPacket packet(kWriter);
   packet.submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
   const Octets good = packet.octets();
   // As Fast DDS appends its statistics, and with four bytes behind, at which it aborts.
   packet.submessage(0x80, 0, OctetWriter().zeros(56));
-  CHECK(stage.pass(packet.octets()) == good);
-  CHECK(stage.guard.refused(Refusal::Unused) == 0);
-  CHECK(stage.pass(RtpsPacket(packet).append(OctetWriter().zeros(4)).octets()) == good);
+  CHECK(pass(packet.octets()) == good);
+  CHECK(guard.refused(Refusal::Unused) == 0);
+  CHECK(pass(RtpsPacket(packet).append(OctetWriter().zeros(4)).octets()) == good);
   RtpsPacket alone(kWriter);
   alone.submessage(0x80, 0, OctetWriter().zeros(56)).append(OctetWriter().zeros(4));
   REQUIRE(alone.octets().size() == 84);
-  CHECK(stage.pass(alone.octets()).empty());
+  CHECK(pass(alone.octets()).empty());
 }
 
-TEST_CASE("submessages of security, of replies to elsewhere and in another's name are dropped") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "submessages of security, of replies to elsewhere and in another's name are dropped") {
   const auto beat = heartbeat(kWriter, 1, 5);
   for (const unsigned kind : {0x0du, 0x0fu, 0x30u, 0x31u, 0x32u, 0x33u, 0x34u, 0x02u}) {
     RtpsPacket packet(kWriter);
     packet.submessage(kind, 0, OctetWriter().zeros(24)).submessage(kHeartbeat, 0, beat);
     RtpsPacket padded(kWriter);
     padded.submessage(kPad, 0, OctetWriter().zeros(24)).submessage(kHeartbeat, 0, beat);
-    CHECK(stage.pass(packet.octets()) == padded.octets());
+    CHECK(pass(packet.octets()) == padded.octets());
   }
   RtpsPacket renamed(kWriter);
   renamed.submessage(0x0c, 0, OctetWriter().zeros(20)).submessage(kHeartbeat, 0, beat);
-  CHECK(stage.pass(renamed.octets()).empty());
+  CHECK(pass(renamed.octets()).empty());
 }
 
-TEST_CASE("discovery's parameters, texts and lists lie within it") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "discovery's parameters, texts and lists lie within it") {
   const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](const OctetWriter& parameters) {
     const auto payload = list_with_lease(kWriter).append(parameters.octets());
@@ -172,8 +167,8 @@ TEST_CASE("discovery's parameters, texts and lists lie within it") {
   const auto text = [](std::uint32_t claimed, bool ended = true) {
     return OctetWriter().u32(claimed).u8('a').u8('b').u8('c').u8(ended ? 0 : 'd');
   };
-  CHECK(stage.passes(announcement(parameter(0x62, text(4)))));
-  CHECK(stage.passes(announcement(
+  CHECK(passes(announcement(parameter(0x62, text(4)))));
+  CHECK(passes(announcement(
       parameter(0x59, OctetWriter().u32(1).append(text(4).octets()).append(text(4).octets())))));
   const OctetWriter bad[] = {
       OctetWriter(),                            // no end
@@ -191,36 +186,34 @@ TEST_CASE("discovery's parameters, texts and lists lie within it") {
       parameter(0x02, OctetWriter().u32(0x80000000).u32(0)),
   };
   for (const OctetWriter& parameters : bad) {
-    CHECK(stage.refuses(announcement(parameters), Refusal::Parameters));
+    CHECK(refuses(announcement(parameters), Refusal::Parameters));
   }
   // A type's description is not looked at by anybody here.
-  CHECK(stage.pass(announcement(parameter(0x75, OctetWriter().zeros(16))).octets()) ==
+  CHECK(pass(announcement(parameter(0x75, OctetWriter().zeros(16))).octets()) ==
         announcement(parameter(0x00, OctetWriter().zeros(16))).octets());
-  CHECK(stage.refuses(
-      from(announcer, kDataFrag, 0, data_frag(announcer, 1, {1, 1, 1024, 1024}, 1024)),
-      Refusal::Unused));
+  CHECK(refuses(from(announcer, kDataFrag, 0, data_frag(announcer, 1, {1, 1, 1024, 1024}, 1024)),
+                Refusal::Unused));
 }
 
-TEST_CASE("a participant says when it counts as gone") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a participant says when it counts as gone") {
   const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](const Octets& payload) {
     return from(announcer, kData, kHasPayload, data(announcer, 1, payload));
   };
-  CHECK(stage.passes(announcement(list_with_lease(kWriter).append(kEndOfList).octets())));
-  CHECK(stage.refuses(announcement(list_of(kWriter).append(kEndOfList).octets()), Refusal::Lease));
+  CHECK(passes(announcement(list_with_lease(kWriter).append(kEndOfList).octets())));
+  CHECK(refuses(announcement(list_of(kWriter).append(kEndOfList).octets()), Refusal::Lease));
   const auto half = list_of(kWriter).u16(0x02).u16(4).u32(60).append(kEndOfList);
-  CHECK(stage.refuses(announcement(half.octets()), Refusal::Parameters));
+  CHECK(refuses(announcement(half.octets()), Refusal::Parameters));
 }
 
-TEST_CASE("the guard says whether it passed an announcement of a participant, and an ACKNACK") {
-  Stage stage;
+TEST_CASE_METHOD(
+    Stage, "the guard says whether it passed an announcement of a participant, and an ACKNACK") {
   const Guid announcer = announcer_of(kWriter);
   const Octets parameters = list_with_lease(kWriter).append(kEndOfList).octets();
   const auto acknack = entities({}, kWriter).number(1).u32(0).u32(7);
   const auto pass = [&](const RtpsPacket& packet) {
     Octets message = packet.octets();
-    return stage.guard.pass(message.data(), message.size(), kSomewhere, stage.now);
+    return guard.pass(message.data(), message.size(), kSomewhere, now);
   };
   auto passed = pass(from(announcer, kData, kHasPayload, data(announcer, 1, parameters)));
   CHECK(passed.announces);
@@ -234,14 +227,12 @@ TEST_CASE("the guard says whether it passed an announcement of a participant, an
   CHECK_FALSE(pass(from(announcer, kData, kHasPayload, data(announcer, 2, endless))).announces);
 }
 
-TEST_CASE("the guard says whether it passed what a participant's writers live by") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "the guard says whether it passed what a participant's writers live by") {
   Guid liveliness = writer_of(0, 0xc2);
   liveliness.bytes[13] = 0x02;  // 0x000200c2
   const auto asserts = [&](const RtpsPacket& packet) {
     Octets message = packet.octets();
-    return stage.guard.pass(message.data(), message.size(), kSomewhere, stage.now)
-        .asserts_liveliness;
+    return guard.pass(message.data(), message.size(), kSomewhere, now).asserts_liveliness;
   };
   const Octets alive = OctetWriter().u32(0x300).append(prefix_of(liveliness)).zeros(12).octets();
   CHECK(asserts(from(liveliness, kData, kHasPayload, data(liveliness, 1, alive))));
@@ -250,8 +241,7 @@ TEST_CASE("the guard says whether it passed what a participant's writers live by
   CHECK_FALSE(asserts(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 1))));
 }
 
-TEST_CASE("a message of liveliness holds what it says") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "a message of liveliness holds what it says") {
   Guid participant = writer_of(0, 0xc2);
   participant.bytes[13] = 0x02;  // 0x000200c2
   const auto message = [&](unsigned encapsulation, std::uint32_t claimed) {
@@ -265,16 +255,15 @@ TEST_CASE("a message of liveliness holds what it says") {
                              .zeros(4);
     return from(participant, kData, kHasPayload, data(participant, 1, payload.octets()));
   };
-  CHECK(stage.passes(message(1, 4)));
-  CHECK(stage.passes(message(3, 0)));  // as Fast DDS writes it
-  CHECK(stage.refuses(message(1, 5), Refusal::Parameters));
-  CHECK(stage.refuses(message(7, 0), Refusal::Parameters));
+  CHECK(passes(message(1, 4)));
+  CHECK(passes(message(3, 0)));  // as Fast DDS writes it
+  CHECK(refuses(message(1, 5), Refusal::Parameters));
+  CHECK(refuses(message(7, 0), Refusal::Parameters));
 }
 
-TEST_CASE("discovery speaks of its sender and of the sender's endpoints alone") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "discovery speaks of its sender and of the sender's endpoints alone") {
   const Guid other = stranger_of(1);
-  stage.pass(announcement_of(other).octets());
+  pass(announcement_of(other).octets());
   const auto guid = [](unsigned id, const Guid& whose) {
     return OctetWriter().u16(id).u16(16).append(whose.bytes);
   };
@@ -290,41 +279,40 @@ TEST_CASE("discovery speaks of its sender and of the sender's endpoints alone") 
                                            entity_id::kSubscriptionsAnnouncer};
   constexpr unsigned kKeyOnly = 0x08;
   for (const std::uint32_t announcer : kAnnouncers) {
-    CHECK(stage.passes(says(announcer, kHasPayload, list(guid(0x5a, kWriter)))));
-    CHECK(stage.refuses(says(announcer, kHasPayload, list(guid(0x5a, other))), Refusal::Foreign));
+    CHECK(passes(says(announcer, kHasPayload, list(guid(0x5a, kWriter)))));
+    CHECK(refuses(says(announcer, kHasPayload, list(guid(0x5a, other))), Refusal::Foreign));
     const auto both = guid(0x5a, kWriter).append(guid(0x70, other).octets());
-    CHECK(stage.refuses(says(announcer, kHasPayload, list(both)), Refusal::Foreign));
-    CHECK(stage.refuses(says(announcer, kHasPayload, list({})), Refusal::Foreign));
-    CHECK(stage.passes(says(announcer, kHasInlineQos, guid(0x70, kWriter).append(gone))));
-    CHECK(stage.refuses(says(announcer, kHasInlineQos, guid(0x70, other).append(gone)),
-                        Refusal::Foreign));
+    CHECK(refuses(says(announcer, kHasPayload, list(both)), Refusal::Foreign));
+    CHECK(refuses(says(announcer, kHasPayload, list({})), Refusal::Foreign));
+    CHECK(passes(says(announcer, kHasInlineQos, guid(0x70, kWriter).append(gone))));
+    CHECK(
+        refuses(says(announcer, kHasInlineQos, guid(0x70, other).append(gone)), Refusal::Foreign));
     // As Cyclone withdraws: by a key as payload.
     const auto key = [&](const Guid& whose) {
       return OctetWriter().append(gone).append(list(guid(0x5a, whose)).octets());
     };
-    CHECK(stage.passes(says(announcer, kHasInlineQos | kKeyOnly, key(kWriter))));
-    CHECK(stage.refuses(says(announcer, kHasInlineQos | kKeyOnly, key(other)), Refusal::Foreign));
+    CHECK(passes(says(announcer, kHasInlineQos | kKeyOnly, key(kWriter))));
+    CHECK(refuses(says(announcer, kHasInlineQos | kKeyOnly, key(other)), Refusal::Foreign));
   }
   const std::uint32_t participants = entity_id::kParticipantAnnouncer;
-  CHECK(stage.passes(says(participants, kHasInlineQos, guid(0x70, kWriter).append(gone))));
-  CHECK(stage.refuses(says(participants, kHasInlineQos, guid(0x70, other).append(gone)),
-                      Refusal::Foreign));
-  CHECK(stage.refuses(says(participants, kHasPayload, list_with_lease(other).append(kEndOfList)),
-                      Refusal::Foreign));
+  CHECK(passes(says(participants, kHasInlineQos, guid(0x70, kWriter).append(gone))));
+  CHECK(
+      refuses(says(participants, kHasInlineQos, guid(0x70, other).append(gone)), Refusal::Foreign));
+  CHECK(refuses(says(participants, kHasPayload, list_with_lease(other).append(kEndOfList)),
+                Refusal::Foreign));
   const auto alive = OctetWriter().u32(0x300).append(prefix_of(other)).zeros(12);
-  CHECK(stage.refuses(says(0x200c2, kHasPayload, alive), Refusal::Foreign));
+  CHECK(refuses(says(0x200c2, kHasPayload, alive), Refusal::Foreign));
 }
 
-TEST_CASE("no lease is longer than RTPS's default") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "no lease is longer than RTPS's default") {
   const Guid announcer = announcer_of(kWriter);
   const auto announcement = [&](std::uint32_t seconds) {
     const auto list = list_with_lease(kWriter, seconds).append(kEndOfList);
     return from(announcer, kData, kHasPayload, data(announcer, 1, list.octets()));
   };
-  CHECK(stage.passes(announcement(99)));
-  CHECK(stage.pass(announcement(101).octets()) == announcement(100).octets());
-  CHECK(stage.pass(announcement(0x7fffffff).octets()) == announcement(100).octets());  // never
+  CHECK(passes(announcement(99)));
+  CHECK(pass(announcement(101).octets()) == announcement(100).octets());
+  CHECK(pass(announcement(0x7fffffff).octets()) == announcement(100).octets());  // never
 }
 
 TEST_CASE("a participant names its own address, one of the profile, or a group of DDS") {
@@ -426,14 +414,13 @@ TEST_CASE("what is told of a vendor's messages is bounded, however many kinds th
   CHECK(told < 1000);
 }
 
-TEST_CASE("what the guard costs a packet", "[.benchmark]") {
-  Stage stage;
+TEST_CASE_METHOD(Stage, "what the guard costs a packet", "[.benchmark]") {
   const auto time = [&](const char* what, const RtpsPacket& packet) {
     constexpr int kPackets = 1'000'000;
     Octets message = packet.octets();
     const std::clock_t start = std::clock();
     for (int i = 0; i < kPackets; ++i) {
-      stage.guard.pass(message.data(), message.size(), kSomewhere, RtpsGuard::Clock::now());
+      guard.pass(message.data(), message.size(), kSomewhere, RtpsGuard::Clock::now());
     }
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     std::printf("%-40s %6.0f ns of CPU time\n", what, seconds / kPackets * 1e9);
@@ -444,7 +431,7 @@ TEST_CASE("what the guard costs a packet", "[.benchmark]") {
       .submessage(kData, kHasPayload, data(kWriter, 5, Octets(100)))
       .submessage(kHeartbeat, 0, heartbeat(kWriter, 1, 5));
   // As all that stand in the table are.
-  for (unsigned i = 0; i < 100; ++i) stage.pass(announcement_of(stranger_of(i)).octets());
+  for (unsigned i = 0; i < 100; ++i) pass(announcement_of(stranger_of(i)).octets());
   time("INFO_DST, INFO_TS, DATA and HEARTBEAT", call);
   time("HEARTBEAT", from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 5)));
   time("DATA_FRAG", from(kWriter, kDataFrag, 0, data_frag(kWriter, 5, {1, 1, 8192, 60'000}, 8192)));

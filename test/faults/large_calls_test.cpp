@@ -165,18 +165,17 @@ TEST_CASE("small answers behind one of 64 MiB on the same connection all arrive"
   CHECK(large.get() == content);
 }
 
-TEST_CASE("many large answers to one client all arrive") {
+TEST_CASE_METHOD(Stage, "many large answers to one client all arrive") {
   const SocketBuffersOfAtMost host(kDefaultSocketBuffer);
-  Stage stage;
   const std::vector<std::uint8_t> content(1 << 20, 7);
-  expect_answers(64, content, [&] { return stage.large.within(60s).async_echo_octets(content); });
+  expect_answers(64, content, [&] { return large.within(60s).async_echo_octets(content); });
 }
 
-TEST_CASE("a call that carries more than any provider takes is refused, with the limit") {
-  Stage stage;
+TEST_CASE_METHOD(Stage,
+                 "a call that carries more than any provider takes is refused, with the limit") {
   const std::vector<std::uint8_t> content(std::size_t{256} << 20);
-  CHECK_THROWS_AS(stage.large.within(kDeadline).echo_octets(content), InvalidArgument);
-  CHECK_THROWS_WITH(stage.large.within(kDeadline).echo_octets(content),
+  CHECK_THROWS_AS(large.within(kDeadline).echo_octets(content), InvalidArgument);
+  CHECK_THROWS_WITH(large.within(kDeadline).echo_octets(content),
                     Catch::StartsWith("the request of 'echo_octets' takes 2684355") &&
                         Catch::Contains(" bytes; readers take 268435456 (256 MiB) at most"));
 }

@@ -76,14 +76,18 @@ std::vector<ServiceDescription> extremes(const Rogue& rogue) {
   return all;
 }
 
-}  // namespace
-
-TEST_CASE("of a later version's description what is known counts, and the rest is passed over",
-          "[R25]") {
+struct LaterVersion {
   dds::Vendor& vendor = vendor_of_rogue();
   Scene scene;
-  Rogue rogue(vendor);
+  Rogue rogue{vendor};
   const Log log;
+};
+
+}  // namespace
+
+TEST_CASE_METHOD(
+    LaterVersion,
+    "of a later version's description what is known counts, and the rest is passed over", "[R25]") {
   std::uint32_t number = 0;
   for (const std::byte octet : {std::byte{0}, std::byte{0xff}}) {
     for (const std::size_t added : {1u, 4u, 5000u}) {
@@ -99,12 +103,9 @@ TEST_CASE("of a later version's description what is known counts, and the rest i
   CHECK(log.text().empty());
 }
 
-TEST_CASE("a description of the largest and oddest values that there may be stops nobody",
-          "[R25]") {
-  dds::Vendor& vendor = vendor_of_rogue();
-  Scene scene;
-  Rogue rogue(vendor);
-  const Log log;
+TEST_CASE_METHOD(LaterVersion,
+                 "a description of the largest and oddest values that there may be stops nobody",
+                 "[R25]") {
   for (const auto& description : extremes(rogue)) {
     CAPTURE(description.entity);
     rogue.write(description);
@@ -124,12 +125,9 @@ TEST_CASE("a description of the largest and oddest values that there may be stop
   CHECK(log.text().empty());
 }
 
-TEST_CASE("a later version's description that cannot be taken is told once, and stops nobody",
-          "[R25]") {
-  dds::Vendor& vendor = vendor_of_rogue();
-  Scene scene;
-  Rogue rogue(vendor);
-  const Log log;
+TEST_CASE_METHOD(
+    LaterVersion,
+    "a later version's description that cannot be taken is told once, and stops nobody", "[R25]") {
   for (std::uint32_t number = 1; number <= 3; ++number) {
     auto more = another(rogue, number, "more");  // than there may be of operations
     more.operations.resize(brokerless_discovery::kMaxOperations + number);

@@ -40,74 +40,73 @@ struct Stage {
 
 }  // namespace
 
-TEST_CASE("a heartbeat whose numbers begin at 2^32 does not stop a provider") {
-  AttackedProvider provider;
+TEST_CASE_METHOD(AttackedProvider,
+                 "a heartbeat whose numbers begin at 2^32 does not stop a provider") {
   const InventedPeer peer(1);
   const std::int64_t far = std::int64_t{1} << 32;
   SECTION("of the writer that announces endpoints") {
     const Guid writer = peer.entity(entity_id::kPublicationsAnnouncer);
-    provider.send(peer.announcement());
-    provider.send(peer.says(kHeartbeat, heartbeat(writer, far, far)));
+    send(peer.announcement());
+    send(peer.says(kHeartbeat, heartbeat(writer, far, far)));
   }
   SECTION("of a writer of requests") {
     const Guid writer = peer.writer(1);
-    provider.introduce(peer);
-    provider.check_answers();  // by then the writer is matched
+    introduce(peer);
+    check_answers();  // by then the writer is matched
     for (std::uint32_t i = 1; i <= 20; ++i) {
-      provider.send(peer.says(kHeartbeat, heartbeat(writer, far, far, i)));
+      send(peer.says(kHeartbeat, heartbeat(writer, far, far, i)));
     }
   }
-  CHECK(provider.has_read_all(kPatience));
-  provider.check_answers();
+  CHECK(has_read_all(kPatience));
+  check_answers();
 }
 
-TEST_CASE("gaps behind a number that is missing take little of a provider's memory") {
-  AttackedProvider provider;
+TEST_CASE_METHOD(AttackedProvider,
+                 "gaps behind a number that is missing take little of a provider's memory") {
   const InventedPeer peer(1);
-  provider.introduce(peer);
+  introduce(peer);
   const Guid writer = peer.writer(1);
-  provider.check_answers();  // by then the writer is matched
-  const std::size_t before = provider.resident_mib();
-  provider.send(peer.says(kHeartbeat, heartbeat(writer, 1, std::int64_t{1} << 32)));
+  check_answers();  // by then the writer is matched
+  const std::size_t before = resident_mib();
+  send(peer.says(kHeartbeat, heartbeat(writer, 1, std::int64_t{1} << 32)));
   for (std::int64_t i = 0; i < 300; ++i) {
     const std::int64_t start = 2 + i * 65'536;
-    provider.send(peer.says(kGap, gap(writer, start, start + 65'535)));
+    send(peer.says(kGap, gap(writer, start, start + 65'535)));
   }
-  CHECK(provider.has_read_all(kPatience));
-  CHECK(provider.resident_mib() <= before + kLittleMemory);
-  provider.check_answers();
+  CHECK(has_read_all(kPatience));
+  CHECK(resident_mib() <= before + kLittleMemory);
+  check_answers();
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    AttackedProvider,
     "a fragment that claims a large sample takes little of a provider's memory, for seconds") {
-  AttackedProvider provider;
   const InventedPeer peer(1);
-  provider.introduce(peer);
-  provider.check_answers();  // by then the writer is matched
-  const std::size_t before = provider.resident_mib();
+  introduce(peer);
+  check_answers();  // by then the writer is matched
+  const std::size_t before = resident_mib();
   for (const std::uint32_t claimed : {256u << 20, 20u << 20}) {
     for (int i = 1; i <= 24; ++i) {
       const FragmentClaim claim{1, 1, 256, claimed};
-      provider.send(peer.says(kDataFrag, data_frag(peer.writer(1), i, claim, 256)));
+      send(peer.says(kDataFrag, data_frag(peer.writer(1), i, claim, 256)));
     }
   }
-  CHECK(provider.has_read_all(kPatience));
-  CHECK(provider.resident_mib() <= before + kLittleMemory);
-  CHECK(eventually([&] { return provider.resident_mib() <= before + 8; }));
-  provider.check_answers();
+  CHECK(has_read_all(kPatience));
+  CHECK(resident_mib() <= before + kLittleMemory);
+  CHECK(eventually([&] { return resident_mib() <= before + 8; }));
+  check_answers();
 }
 
-TEST_CASE("fragments of writers that nobody reads keep no sample out") {
-  AttackedProvider provider;
+TEST_CASE_METHOD(AttackedProvider, "fragments of writers that nobody reads keep no sample out") {
   const InventedPeer peer(1);
-  provider.send(peer.announcement());
+  send(peer.announcement());
   for (std::uint32_t i = 1; i <= 8; ++i) {
     const FragmentClaim claim{1, 1, 256, 256u << 20};
-    provider.send(peer.says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
-    provider.send(InventedPeer(1 + i).says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
+    send(peer.says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
+    send(InventedPeer(1 + i).says(kDataFrag, data_frag(peer.writer(i), 1, claim, 256)));
   }
-  CHECK(provider.has_read_all(kPatience));
-  provider.check_answers(4s);
+  CHECK(has_read_all(kPatience));
+  check_answers(4s);
 }
 
 TEST_CASE("a reader that never acknowledges takes a bounded part of a writer's memory") {
@@ -159,24 +158,24 @@ TEST_CASE("who withdraws another's endpoint in its own name withdraws nothing") 
   CHECK(matched(writer->guid()));
 }
 
-TEST_CASE("thousands of invented participants keep no call from its answer") {
-  AttackedProvider provider;
+TEST_CASE_METHOD(AttackedProvider,
+                 "thousands of invented participants keep no call from its answer") {
   constexpr std::uint32_t kNever = 0x7fffffff;
   const auto start = std::chrono::steady_clock::now();
-  for (std::uint32_t i = 1; i <= 3000; ++i) provider.send(InventedPeer(i).announcement(kNever));
-  CHECK(provider.has_read_all(10s));
+  for (std::uint32_t i = 1; i <= 3000; ++i) send(InventedPeer(i).announcement(kNever));
+  CHECK(has_read_all(10s));
   CHECK(std::chrono::steady_clock::now() - start < 10s);
-  provider.check_answers();
+  check_answers();
 }
 
-TEST_CASE("nobody is sent anything because a stranger has named his address") {
+TEST_CASE_METHOD(AttackedProvider,
+                 "nobody is sent anything because a stranger has named his address") {
   constexpr std::uint32_t kVictim = 127u << 24 | 77;
   WireTap tap;
-  AttackedProvider provider;
   const InventedPeer liar(1, kVictim);
   const InventedPeer honest(2);
-  provider.introduce(liar);
-  provider.introduce(honest);
+  introduce(liar);
+  introduce(honest);
   const auto sent_to = [&](std::uint32_t address, std::uint16_t port) {
     return tap.count([=](const Packet& packet) {
       return packet.destination == address && packet.destination_port == port;
@@ -185,7 +184,7 @@ TEST_CASE("nobody is sent anything because a stranger has named his address") {
   constexpr int kManyTimes = 3;
   CHECK(eventually([&] { return sent_to(127u << 24 | 1, InventedPeer::kPort) >= kManyTimes; }));
   CHECK(sent_to(kVictim, InventedPeer::kPort) == 0);
-  provider.check_answers();
+  check_answers();
 }
 
 TEST_CASE("who is not among a profile's allowed sources is shut out, whatever it announces") {

@@ -10,9 +10,9 @@ import io
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
-import tempfile
 
 ROOT, CXX, LIBRARY, GENERATED = sys.argv[1:5]
 COUNT = int(sys.argv[5]) if len(sys.argv) > 5 else 12
@@ -97,12 +97,24 @@ def build_and_run(folder, text):
     source, binary = os.path.join(folder, "print.cpp"), os.path.join(folder, "print")
     write(source, text)
     flags = ["-std=c++20", "-O0", "-Wall", "-Wextra", "-Werror", f"-I{ROOT}/include", f"-I{ROOT}/src", f"-I{HERE}", f"-I{GENERATED}", f"-I{folder}/first"]
-    subprocess.run([CXX, *flags, source, LIBRARY, f"-Wl,-rpath,{os.path.dirname(LIBRARY)}", "-o", binary], check=True, timeout=280)
+    compiler = [f"{ROOT}/test/tools/cached_compiler", CXX] if shutil.which("ccache") else [CXX]
+    subprocess.run([*compiler, *flags, "-c", source, "-o", f"{binary}.o"], check=True, timeout=280)
+    subprocess.run([CXX, f"{binary}.o", LIBRARY, f"-Wl,-rpath,{os.path.dirname(LIBRARY)}", "-o", binary], check=True, timeout=60)
     subprocess.run([binary], check=True, timeout=120)
 
 
+@contextlib.contextmanager
+def empty_folder():
+    """One of always the same name: the compiler's cache knows what was compiled there."""
+    folder = os.path.abspath(f"describe_{COUNT}")
+    shutil.rmtree(folder, ignore_errors=True)
+    os.mkdir(folder)
+    yield folder
+    shutil.rmtree(folder)
+
+
 def main():
-    with tempfile.TemporaryDirectory() as folder:
+    with empty_folder() as folder:
         for name in ("first", "printed", "second"):
             os.mkdir(os.path.join(folder, name))
         systems = {}

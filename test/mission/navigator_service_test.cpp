@@ -58,13 +58,19 @@ std::shared_ptr<IFlightController> flying_at(double speed_m_s) {
   return std::make_shared<FlightController>(ParameterValues{{"Cruising speed", speed_m_s}});
 }
 
-/// A navigator, and a client who asks it for a route across `synthetic:7` that A* found.
+/// A navigator, and a client who asks it for a route across `synthetic:7` that A* found, once for
+/// all tests.
 struct Flight {
-  Flight() : terrains(std::make_shared<TerrainProvider>()) {
+  Flight() {
+    static const Problem problem = [] {
+      Problem demo = demo_problem(*terrains->load("synthetic:7"));
+      demo.time_limit_ms = 60'000;
+      return demo;
+    }();
+    static const Route route = make_planner("AStar", terrains)->plan(problem);
     request.request_id = "one";
-    request.problem = demo_problem(*terrains->load("synthetic:7"));
-    request.problem.time_limit_ms = 60'000;
-    planner->route = make_planner("AStar", terrains)->plan(request.problem);
+    request.problem = problem;
+    planner->route = route;
     navigator->provide<INavigator>(
         std::make_shared<Navigator>(*navigator, ParameterValues{}, terrains),
         {.threads = Navigator::kThreads});
@@ -72,7 +78,7 @@ struct Flight {
 
   Route ask() { return client->connect<INavigator>().within(60s).request_route(request); }
 
-  std::shared_ptr<TerrainProvider> terrains;
+  static inline const auto terrains = std::make_shared<TerrainProvider>();
   std::shared_ptr<OneRoute> planner = std::make_shared<OneRoute>();
   AE_navigatorI::RouteRequest request;
   std::unique_ptr<Entity> navigator = make_entity("navigator", Pairing::get().server);

@@ -78,6 +78,11 @@ void on_each_vendor(const std::function<void(const std::string& vendor)>& test) 
   }
 }
 
+/// What does not depend on the vendor.
+void on_one_vendor(const std::function<void(const std::string& vendor)>& test) {
+  if (installed("cyclonedds")) test("cyclonedds");
+}
+
 }  // namespace
 
 TEST_CASE("a parameter that may change is listed, read, and set while its peer runs") {
@@ -108,7 +113,7 @@ TEST_CASE("a parameter that may change is listed, read, and set while its peer r
 }
 
 TEST_CASE("completion is told the names that a domain has now") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const Patrol patrol(vendor);
     const auto completed = [&](Words words, const std::string& names) {
       CAPTURE(words);
@@ -128,7 +133,7 @@ TEST_CASE("completion is told the names that a domain has now") {
 }
 
 TEST_CASE("what may not be set is refused with its reason, by the code of its cause") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const Patrol patrol(vendor);
     const auto expect = [&](const Words& words, int code, const std::string& reason) {
       CAPTURE(words, reason);
@@ -148,7 +153,7 @@ TEST_CASE("what may not be set is refused with its reason, by the code of its ca
 }
 
 TEST_CASE("of entities of one name in several systems none is chosen") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const Patrol one(vendor);
     const Patrol other(vendor, "uav-2");
     const auto period = [&](const std::string& entity) {
@@ -166,7 +171,7 @@ TEST_CASE("of entities of one name in several systems none is chosen") {
 }
 
 TEST_CASE("of processes that have one name in one system none is chosen") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const Patrol one(vendor);
     const Patrol other(vendor, "uav-1", "another_patrol");
     Said said;
@@ -211,7 +216,7 @@ TEST_CASE("who asks a peer that does not answer is told so in time, and may give
 }
 
 TEST_CASE("of a peer whose parameters are all fixed that is told, and not only when time is up") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const Errand errand;
     const CommandRun launch({"launch", "--verbose", "--no-log",
                              errand.profile("vendor='" + vendor + "'",
@@ -224,7 +229,7 @@ TEST_CASE("of a peer whose parameters are all fixed that is told, and not only w
 }
 
 TEST_CASE("where nobody has parameters that may change, that is told") {
-  on_each_vendor([](const std::string& vendor) {
+  on_one_vendor([](const std::string& vendor) {
     const auto said = say({"param", "list", "--wait", "0.1s"}, vendor);
     CHECK(said.code == 0);
     CHECK_THAT(said.text, Contains("nobody in domain 48"));

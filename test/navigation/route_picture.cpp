@@ -17,15 +17,19 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::vector<PicturedRoute> two_routes(const Demo& demo) {
-  return {{"A*, 2 s", demo.plan("AStar")}, {"RRTConnect, 50 ms", demo.plan("RRTConnect")}};
+/// Planned once for all tests.
+const std::vector<PicturedRoute>& two_routes() {
+  static const Demo demo;
+  static const std::vector<PicturedRoute> routes{{"A*, 2 s", demo.plan("AStar")},
+                                                 {"RRTConnect, 50 ms", demo.plan("RRTConnect")}};
+  return routes;
 }
 
 }  // namespace
 
 TEST_CASE("A picture has the ground and what radars see of it, and stays below 2 MB") {
   const Demo demo;
-  const std::string text = route_picture(*demo.terrain, demo.problem, two_routes(demo), "Routes");
+  const std::string text = route_picture(*demo.terrain, demo.problem, two_routes(), "Routes");
   CHECK(text.size() < 2'000'000);
   const auto ground = Json::parse(text)["ground"];
   const std::size_t columns = ground["columns"];
@@ -47,7 +51,7 @@ TEST_CASE("A picture has the ground and what radars see of it, and stays below 2
 TEST_CASE("A picture names routes, zones, threats, both ends and the figures of each route") {
   Demo demo;
   demo.problem.missile_sites.push_back({"Sierra", {20'000, 15'000}, 20, 4000, 0.02});
-  const auto routes = two_routes(demo);
+  const auto routes = two_routes();
   const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));
   const auto names = [&](const char* list, const char* name) {
     std::set<std::string> all;
@@ -70,7 +74,7 @@ TEST_CASE("A picture names routes, zones, threats, both ends and the figures of 
 TEST_CASE(
     "A height profile leads over the ground to the end of the route, and tells what is seen") {
   const Demo demo;
-  const auto routes = two_routes(demo);
+  const auto routes = two_routes();
   const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));
   for (std::size_t i = 0; i < routes.size(); ++i) {
     const auto& profile = json["routes"][i]["profile"];
@@ -116,7 +120,7 @@ TEST_CASE("The text of the route-planning example tells what A* plans today") {
 
 TEST_CASE("A route with a number that is not finite is listed, but not drawn") {
   const Demo demo;
-  auto routes = two_routes(demo);
+  auto routes = two_routes();
   routes[1].route.waypoints[3].north_m = std::nan("");
   routes[1].label = "a\xff";
   const auto json = Json::parse(route_picture(*demo.terrain, demo.problem, routes, "Routes"));

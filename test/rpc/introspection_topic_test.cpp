@@ -72,107 +72,103 @@ ServiceStatistics statistics(std::uint8_t provider) {
 
 }  // namespace
 
-TEST_CASE("a publisher writes only while somebody reads") {
-  World world;
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+TEST_CASE_METHOD(World, "a publisher writes only while somebody reads") {
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
   CHECK_FALSE(publisher.on());
   publisher.publish(decision(1));
-  CHECK(world.control.run_all() == 0);
+  CHECK(control.run_all() == 0);
   {
-    Observer onlooker(*world.far, kDecisions);
+    Observer onlooker(*far, kDecisions);
     CHECK(publisher.on());
     publisher.publish(decision(2));
     publisher.publish(decision(3));
     CHECK(onlooker.values.empty());
-    CHECK(world.control.run_all() == 2);
+    CHECK(control.run_all() == 2);
     REQUIRE(onlooker.values.size() == 2);
     CHECK(onlooker.values[0] == decision(2));
     CHECK(onlooker.values[1] == decision(3));
   }
   CHECK_FALSE(publisher.on());
   publisher.publish(decision(4));
-  CHECK(world.control.run_all() == 0);
+  CHECK(control.run_all() == 0);
 }
 
-TEST_CASE("a publisher is on until its last reader goes, and for those who were there before it") {
-  World world;
-  auto first = std::make_optional<Observer>(*world.far, kDecisions);
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+TEST_CASE_METHOD(
+    World, "a publisher is on until its last reader goes, and for those who were there before it") {
+  auto first = std::make_optional<Observer>(*far, kDecisions);
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
   CHECK(publisher.on());
-  auto second = std::make_optional<Observer>(*world.near, kDecisions);
+  auto second = std::make_optional<Observer>(*near, kDecisions);
   first.reset();
   CHECK(publisher.on());
   second.reset();
   CHECK_FALSE(publisher.on());
 }
 
-TEST_CASE("what finds no room at a publisher is dropped") {
-  World world;
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
-  Observer onlooker(*world.far, kDecisions);
+TEST_CASE_METHOD(World, "what finds no room at a publisher is dropped") {
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
+  Observer onlooker(*far, kDecisions);
   for (std::size_t i = 0; i < publisher.kCapacity + 10; ++i) publisher.publish(decision(i));
-  world.control.run_all();
+  control.run_all();
   REQUIRE(onlooker.values.size() == publisher.kCapacity);
   CHECK(onlooker.values.back().number == publisher.kCapacity - 1);
   publisher.publish(decision(0));
-  world.control.run_all();
+  control.run_all();
   CHECK(onlooker.values.back().number == 0);
 }
 
-TEST_CASE("a value that cannot be sent is logged, and the others are sent") {
-  World world;
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
-  Observer onlooker(*world.far, kDecisions);
+TEST_CASE_METHOD(World, "a value that cannot be sent is logged, and the others are sent") {
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
+  Observer onlooker(*far, kDecisions);
   const Log log;
   Decision unspeakable = decision(1);
   unspeakable.request = std::string("\0", 1);
   publisher.publish(unspeakable);
   publisher.publish(decision(2));
-  world.control.run_all();
+  control.run_all();
   CHECK(log.count("skein/decisions: a sample was not sent") == 1);
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].number == 2);
 }
 
-TEST_CASE("who begins when somebody reads does so each time that somebody does after nobody did") {
-  World world;
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+TEST_CASE_METHOD(
+    World, "who begins when somebody reads does so each time that somebody does after nobody did") {
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
   std::optional<Observer> first, second;
   int begun = 0;
   const auto begin = [&] { ++begun; };
   SECTION("a reader comes later") {
     publisher.when_read(begin);
-    first.emplace(*world.far, kDecisions);
+    first.emplace(*far, kDecisions);
     CHECK(begun == 0);
   }
   SECTION("a reader is there already") {
-    first.emplace(*world.far, kDecisions);
+    first.emplace(*far, kDecisions);
     publisher.when_read(begin);
     CHECK(begun == 0);
   }
-  world.control.run_all();
+  control.run_all();
   CHECK(begun == 1);
-  second.emplace(*world.far, kDecisions);
+  second.emplace(*far, kDecisions);
   first.reset();
-  CHECK(world.control.run_all() == 0);
+  CHECK(control.run_all() == 0);
   second.reset();
-  first.emplace(*world.far, kDecisions);
-  world.control.run_all();
+  first.emplace(*far, kDecisions);
+  control.run_all();
   CHECK(begun == 2);
 }
 
-TEST_CASE("a closed publisher uses neither its participant nor its executor") {
-  World world;
+TEST_CASE_METHOD(World, "a closed publisher uses neither its participant nor its executor") {
   auto control = std::make_unique<ManualExecutor>();
-  introspection::Publisher<Decision> publisher(*world.near, *control, kDecisions);
+  introspection::Publisher<Decision> publisher(*near, *control, kDecisions);
   bool ran = false;
   publisher.when_read([&] { ran = true; });
-  Observer onlooker(*world.far, kDecisions);
+  Observer onlooker(*far, kDecisions);
   publisher.publish(decision(1));
   publisher.post([&] { ran = true; });
   publisher.close();
   CHECK_FALSE(publisher.on());
-  world.near.reset();
+  near.reset();
   CHECK(control->run_all() == 3);
   CHECK_FALSE(ran);
   control.reset();
@@ -183,21 +179,19 @@ TEST_CASE("a closed publisher uses neither its participant nor its executor") {
   CHECK(onlooker.values.empty());
 }
 
-TEST_CASE("tasks that a publisher has posted may outlive it") {
-  World world;
-  Observer onlooker(*world.far, kDecisions);
+TEST_CASE_METHOD(World, "tasks that a publisher has posted may outlive it") {
+  Observer onlooker(*far, kDecisions);
   {
-    introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+    introspection::Publisher<Decision> publisher(*near, control, kDecisions);
     publisher.publish(decision(1));
   }
-  CHECK(world.control.run_all() == 1);
+  CHECK(control.run_all() == 1);
   CHECK(onlooker.values.empty());
 }
 
-TEST_CASE("a publisher that closes waits for its task that runs") {
-  World world;
+TEST_CASE_METHOD(World, "a publisher that closes waits for its task that runs") {
   ThreadExecutor control("control");
-  introspection::Publisher<Decision> publisher(*world.near, control, kDecisions);
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
   std::promise<void> begun, end;
   bool ended = false;
   publisher.post([&] {
@@ -214,13 +208,12 @@ TEST_CASE("a publisher that closes waits for its task that runs") {
   CHECK(ended);
 }
 
-TEST_CASE("a reader refuses what is no value, or one of another key, and logs the first alone") {
-  World world;
+TEST_CASE_METHOD(
+    World, "a reader refuses what is no value, or one of another key, and logs the first alone") {
   std::vector<ServiceStatistics> taken;
   introspection::Reader<ServiceStatistics> reader(
-      *world.far, kStatistics,
-      [&](const ServiceStatistics& statistics) { taken.push_back(statistics); });
-  const auto writer = world.near->create_writer(kStatistics.dds_topic(), kStatistics.qos());
+      *far, kStatistics, [&](const ServiceStatistics& statistics) { taken.push_back(statistics); });
+  const auto writer = near->create_writer(kStatistics.dds_topic(), kStatistics.qos());
   const Log log;
   const ServiceStatistics one = statistics(1);
   Bytes half = idl::encode_message(one);
@@ -231,7 +224,7 @@ TEST_CASE("a reader refuses what is no value, or one of another key, and logs th
   CHECK(reader.refused() == 2);
   CHECK(taken.empty());
   CHECK(log.count("skein/statistics: dropped a sample of participant " +
-                  world.near->guid().hex().substr(0, 24)) == 1);
+                  near->guid().hex().substr(0, 24)) == 1);
   writer->write(idl::encode_message(one), key_hash(one));
   writer->dispose(key_hash(one));
   CHECK(reader.refused() == 2);
@@ -239,52 +232,49 @@ TEST_CASE("a reader refuses what is no value, or one of another key, and logs th
   CHECK(taken[0] == one);
 }
 
-TEST_CASE("a reader refuses what its consumer throws at") {
-  World world;
-  introspection::Publisher<Decision> publisher(*world.near, world.control, kDecisions);
+TEST_CASE_METHOD(World, "a reader refuses what its consumer throws at") {
+  introspection::Publisher<Decision> publisher(*near, control, kDecisions);
   const Log log;
   introspection::Reader<Decision> reader(
-      *world.far, kDecisions, [](const Decision&) { throw InvalidArgument("it is not believed"); });
+      *far, kDecisions, [](const Decision&) { throw InvalidArgument("it is not believed"); });
   publisher.publish(decision(1));
   publisher.publish(decision(2));
-  world.control.run_all();
+  control.run_all();
   CHECK(reader.refused() == 2);
   CHECK(log.count("it is not believed") == 1);
 }
 
-TEST_CASE("what is told of each call is gathered, and written as one sample") {
-  World world;
-  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+TEST_CASE_METHOD(World, "what is told of each call is gathered, and written as one sample") {
+  RecordPublisher publisher(*near, clock, control, kCallRecords);
   publisher.publish(record(1));
-  world.clock.advance(1s);
-  CHECK(world.control.run_all() == 0);
-  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+  clock.advance(1s);
+  CHECK(control.run_all() == 0);
+  Onlooker<CallRecords> onlooker(*far, kCallRecords);
   publisher.publish(record(2));
   publisher.publish(record(3));
-  CHECK(world.control.run_all() == 0);
-  world.clock.advance(publisher.kGatherTime);
-  CHECK(world.control.run_all() == 1);
+  CHECK(control.run_all() == 0);
+  clock.advance(publisher.kGatherTime);
+  CHECK(control.run_all() == 1);
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].values == std::vector{record(2), record(3)});
   CHECK(onlooker.values[0].dropped == 0);
   publisher.publish(record(4));
-  world.clock.advance(publisher.kGatherTime);
-  CHECK(world.control.run_all() == 1);
+  clock.advance(publisher.kGatherTime);
+  CHECK(control.run_all() == 1);
   REQUIRE(onlooker.values.size() == 2);
   CHECK(onlooker.values[1].values == std::vector{record(4)});
 }
 
-TEST_CASE("large values are written in several samples, in their order") {
-  World world;
-  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
-  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+TEST_CASE_METHOD(World, "large values are written in several samples, in their order") {
+  RecordPublisher publisher(*near, clock, control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*far, kCallRecords);
   const std::size_t third = publisher.kMostInSample / 3;
   for (const auto& each : {record(1, third), record(2, third), record(3, third),
                            record(4, 10 * third), record(5), record(6)}) {
     publisher.publish(each);
   }
-  world.clock.advance(publisher.kGatherTime);
-  world.control.run_all();
+  clock.advance(publisher.kGatherTime);
+  control.run_all();
   std::vector<std::vector<std::uint64_t>> numbers;
   for (const CallRecords& batch : onlooker.values) {
     numbers.emplace_back();
@@ -293,42 +283,42 @@ TEST_CASE("large values are written in several samples, in their order") {
   CHECK(numbers == std::vector<std::vector<std::uint64_t>>{{1, 2}, {3}, {4}, {5, 6}});
 }
 
-TEST_CASE("gathered values for which there is no room are dropped, and samples tell how many") {
-  World world;
-  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
-  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+TEST_CASE_METHOD(
+    World, "gathered values for which there is no room are dropped, and samples tell how many") {
+  RecordPublisher publisher(*near, clock, control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*far, kCallRecords);
   for (int i = 0; i < 5; ++i) publisher.publish(record(1, publisher.kMostWaiting / 3));
   publisher.publish(record(2));
-  world.clock.advance(publisher.kGatherTime);
-  world.control.run_all();
+  clock.advance(publisher.kGatherTime);
+  control.run_all();
   REQUIRE(onlooker.values.size() == 3);
   CHECK(onlooker.values.back().values == std::vector{record(2)});
   CHECK(onlooker.values.back().dropped == 3);
 }
 
-TEST_CASE("a value that is larger than what may wait is written, where it waits alone") {
-  World world;
-  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
-  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
+TEST_CASE_METHOD(World,
+                 "a value that is larger than what may wait is written, where it waits alone") {
+  RecordPublisher publisher(*near, clock, control, kCallRecords);
+  Onlooker<CallRecords> onlooker(*far, kCallRecords);
   publisher.publish(record(1, publisher.kMostWaiting + 1));
   publisher.publish(record(2, publisher.kMostWaiting + 1));
-  world.clock.advance(publisher.kGatherTime);
-  world.control.run_all();
+  clock.advance(publisher.kGatherTime);
+  control.run_all();
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].values.at(0).number == 1);
   CHECK(onlooker.values[0].dropped == 1);
 }
 
-TEST_CASE("what was gathered is written when the publisher closes, and nothing after that") {
-  World world;
-  Onlooker<CallRecords> onlooker(*world.far, kCallRecords);
-  RecordPublisher publisher(*world.near, world.clock, world.control, kCallRecords);
+TEST_CASE_METHOD(World,
+                 "what was gathered is written when the publisher closes, and nothing after that") {
+  Onlooker<CallRecords> onlooker(*far, kCallRecords);
+  RecordPublisher publisher(*near, clock, control, kCallRecords);
   publisher.publish(record(1));
   publisher.close();
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].values == std::vector{record(1)});
   publisher.publish(record(2));
-  world.clock.advance(1s);
-  CHECK(world.control.run_all() == 0);
+  clock.advance(1s);
+  CHECK(control.run_all() == 0);
   CHECK(onlooker.values.size() == 1);
 }

@@ -186,12 +186,9 @@ TEST_CASE("a request that comes at the moment in which its client leaves keeps n
   }
 }
 
-TEST_CASE("a client that leaves before it is admitted takes no session with it") {
-  Provider provider;
-  PlayedParticipant& participant = provider.participant;
-  rpc::DdsServer& server = provider.server;
+TEST_CASE_METHOD(Provider, "a client that leaves before it is admitted takes no session with it") {
   std::promise<void> idle;
-  REQUIRE(provider.control.post([until = idle.get_future().share()] { until.wait(); }));
+  REQUIRE(control.post([until = idle.get_future().share()] { until.wait(); }));
   const Guid client = Guid::random();
   participant.request(client, open_request(client));
   participant.match_request_writer(client, false);
@@ -203,57 +200,52 @@ TEST_CASE("a client that leaves before it is admitted takes no session with it")
   CHECK(server.counters().clients == 1);
 }
 
-TEST_CASE("a request of a client without Skein ends when its sender leaves, others go on") {
-  Provider provider;
+TEST_CASE_METHOD(Provider,
+                 "a request of a client without Skein ends when its sender leaves, others go on") {
   const Guid leaving = Guid::random();
   const Guid staying = Guid::random();
   for (const Guid& writer : {leaving, staying}) {
-    provider.participant.match_request_writer(writer);
+    participant.match_request_writer(writer);
     // Its name for itself need not be its writer's.
-    provider.participant.request(writer, foreign_request(Guid::random(), 1));
+    participant.request(writer, foreign_request(Guid::random(), 1));
   }
-  REQUIRE(provider.server.counters().active == 2);
-  provider.participant.match_request_writer(leaving, false);
-  CHECK(eventually([&] { return provider.server.counters().active == 1; }));
-  provider.participant.match_request_writer(staying, false);
-  CHECK(eventually([&] { return provider.server.counters().active == 0; }));
+  REQUIRE(server.counters().active == 2);
+  participant.match_request_writer(leaving, false);
+  CHECK(eventually([&] { return server.counters().active == 1; }));
+  participant.match_request_writer(staying, false);
+  CHECK(eventually([&] { return server.counters().active == 0; }));
 }
 
-TEST_CASE("oneway calls that wait when their client leaves are executed") {
-  Provider provider;
-  PlayedParticipant& participant = provider.participant;
+TEST_CASE_METHOD(Provider, "oneway calls that wait when their client leaves are executed") {
   const Guid client = Guid::random();
   participant.request(client, open_request(client));
   REQUIRE(eventually([&] { return participant.answers(client); }));
   participant.match(client, true);
   std::promise<void> free;
-  REQUIRE(provider.executor.post([until = free.get_future().share()] { until.wait(); }));
+  REQUIRE(executor.post([until = free.get_future().share()] { until.wait(); }));
   for (std::uint64_t i = 1; i <= 3; ++i) participant.request(client, oneway_request(client, i));
-  REQUIRE(provider.server.counters().active == 3);
+  REQUIRE(server.counters().active == 3);
   participant.match_request_writer(client, false);
   participant.match(client, false);
-  REQUIRE(eventually([&] { return provider.server.counters().clients == 0; }));
+  REQUIRE(eventually([&] { return server.counters().clients == 0; }));
   free.set_value();
-  CHECK(eventually([&] { return provider.service->noted() == 3; }));
+  CHECK(eventually([&] { return service->noted() == 3; }));
 }
 
-TEST_CASE("a client that leaves before its reader was found keeps no session for long") {
-  Provider provider;
-  PlayedParticipant& participant = provider.participant;
+TEST_CASE_METHOD(Provider,
+                 "a client that leaves before its reader was found keeps no session for long") {
   const Guid client = Guid::random();
   participant.request(client, open_request(client));
   REQUIRE(eventually([&] { return participant.answers(client); }));
-  REQUIRE(provider.server.counters().clients == 1);
+  REQUIRE(server.counters().clients == 1);
   participant.match_request_writer(client, false);
   // Half as long as it would be waited for otherwise.
-  CHECK(eventually([&] { return provider.server.counters().clients == 0; }, 5s));
+  CHECK(eventually([&] { return server.counters().clients == 0; }, 5s));
 }
 
-TEST_CASE(
+TEST_CASE_METHOD(
+    Provider,
     "who comes back to a session that has ended is told so again and again, as it may miss it") {
-  Provider provider;
-  PlayedParticipant& participant = provider.participant;
-  rpc::DdsServer& server = provider.server;
   const Guid client = Guid::random();
   participant.request(client, open_request(client));
   REQUIRE(eventually([&] { return participant.answers(client); }));
@@ -271,10 +263,8 @@ TEST_CASE(
   CHECK(eventually([&] { return server.counters().clients == 0; }));
 }
 
-TEST_CASE("of the clients that have left, the one that left longest ago is forgotten first") {
-  Provider provider;
-  PlayedParticipant& participant = provider.participant;
-  rpc::DdsServer& server = provider.server;
+TEST_CASE_METHOD(
+    Provider, "of the clients that have left, the one that left longest ago is forgotten first") {
   const auto come_and_go = [&](const Guid& client) {
     participant.request(client, open_request(client));
     REQUIRE(eventually([&] { return participant.answers(client); }));

@@ -165,19 +165,16 @@ void check_that_it_waits(Valve& valve, End end) {
 
 }  // namespace
 
-TEST_CASE("a server that ends waits for who is inside one of its writers") {
-  Pair pair;
-  pair.serving.valve.set(Valve::Mode::Holding);
-  auto call = pair.echo().async_echo("x");
-  check_that_it_waits(pair.serving.valve, [&] { pair.server.reset(); });
+TEST_CASE_METHOD(Pair, "a server that ends waits for who is inside one of its writers") {
+  serving.valve.set(Valve::Mode::Holding);
+  auto call = echo().async_echo("x");
+  check_that_it_waits(serving.valve, [&] { server.reset(); });
 }
 
-TEST_CASE("a connection that ends waits for who is inside its writer") {
-  Pair pair;
-  pair.calling.valve.set(Valve::Mode::Holding);
-  auto calling =
-      std::async(std::launch::async, [&] { CHECK_THROWS_AS(pair.echo().echo("x"), Error); });
-  check_that_it_waits(pair.calling.valve, [&] { pair.channel->disconnect(); });
+TEST_CASE_METHOD(Pair, "a connection that ends waits for who is inside its writer") {
+  calling.valve.set(Valve::Mode::Holding);
+  auto caller = std::async(std::launch::async, [&] { CHECK_THROWS_AS(echo().echo("x"), Error); });
+  check_that_it_waits(calling.valve, [&] { channel->disconnect(); });
 }
 
 TEST_CASE("a journal that ends waits for who is inside its writer") {
@@ -196,64 +193,64 @@ TEST_CASE("a journal that ends waits for who is inside its writer") {
   check_that_it_waits(participant.valve, [&] { journal.close(); });
 }
 
-TEST_CASE("answers for which there is no room arrive once there is some, within their deadlines") {
-  Pair pair;
-  pair.serving.valve.set(Valve::Mode::Full);
+TEST_CASE_METHOD(
+    Pair, "answers for which there is no room arrive once there is some, within their deadlines") {
+  serving.valve.set(Valve::Mode::Full);
   std::vector<Call<std::string>> calls;
-  for (int i = 0; i < 50; ++i) calls.push_back(pair.echo().async_echo(std::to_string(i)));
-  auto numbers = pair.echo().count_up(5, -1);
-  REQUIRE(eventually([&] { return pair.implementation->stream_ended.load(); }));
-  REQUIRE(pair.serving.valve.refused() > 0);
-  pair.serving.valve.set(Valve::Mode::Open);
+  for (int i = 0; i < 50; ++i) calls.push_back(echo().async_echo(std::to_string(i)));
+  auto numbers = echo().count_up(5, -1);
+  REQUIRE(eventually([&] { return implementation->stream_ended.load(); }));
+  REQUIRE(serving.valve.refused() > 0);
+  serving.valve.set(Valve::Mode::Open);
   for (int i = 0; i < 50; ++i) {
     REQUIRE(eventually([&] { return calls[static_cast<std::size_t>(i)].ready(); }));
     CHECK(calls[static_cast<std::size_t>(i)].get() == std::to_string(i));
   }
   for (int i = 0; i < 5; ++i) CHECK(numbers.next() == i);
   CHECK(numbers.next() == std::nullopt);
-  CHECK(pair.server->counters().lost == 0);
-  CHECK(pair.echo().echo("again") == "again");
+  CHECK(server->counters().lost == 0);
+  CHECK(echo().echo("again") == "again");
 }
 
-TEST_CASE("a caller that waits for its answer waits for room, too; one that does not is told") {
-  Pair pair;
-  pair.calling.valve.set(Valve::Mode::Full);
-  auto asked = pair.echo().async_echo("y");
+TEST_CASE_METHOD(
+    Pair, "a caller that waits for its answer waits for room, too; one that does not is told") {
+  calling.valve.set(Valve::Mode::Full);
+  auto asked = echo().async_echo("y");
   CHECK_THROWS_AS(asked.get(), Overloaded);
-  auto calling = std::async(std::launch::async, [&] { return pair.echo().echo("x"); });
-  REQUIRE(eventually([&] { return pair.calling.valve.refused() > 3; }));
-  pair.calling.valve.set(Valve::Mode::Open);
-  CHECK(calling.get() == "x");
-  CHECK(pair.implementation->calls == 1);
+  auto caller = std::async(std::launch::async, [&] { return echo().echo("x"); });
+  REQUIRE(eventually([&] { return calling.valve.refused() > 3; }));
+  calling.valve.set(Valve::Mode::Open);
+  CHECK(caller.get() == "x");
+  CHECK(implementation->calls == 1);
 }
 
-TEST_CASE("a call for which there is no room until its deadline is refused, and not executed") {
-  Pair pair;
-  pair.calling.valve.set(Valve::Mode::Full);
-  CHECK_THROWS_AS(pair.echo(300ms).echo("x"), Overloaded);
-  CHECK(pair.calling.valve.refused() > 1);
-  pair.calling.valve.set(Valve::Mode::Open);
-  CHECK(pair.echo().echo("y") == "y");
-  CHECK(pair.implementation->calls == 1);
+TEST_CASE_METHOD(
+    Pair, "a call for which there is no room until its deadline is refused, and not executed") {
+  calling.valve.set(Valve::Mode::Full);
+  CHECK_THROWS_AS(echo(300ms).echo("x"), Overloaded);
+  CHECK(calling.valve.refused() > 1);
+  calling.valve.set(Valve::Mode::Open);
+  CHECK(echo().echo("y") == "y");
+  CHECK(implementation->calls == 1);
 }
 
-TEST_CASE("an answer for which there is no room until its deadline is given up, and counted") {
-  Pair pair;
-  pair.serving.valve.set(Valve::Mode::Full);
-  CHECK_THROWS_AS(pair.echo(200ms).echo("x"), TimedOut);
-  CHECK(eventually([&] { return pair.server->counters().lost == 1; }));
-  pair.serving.valve.set(Valve::Mode::Open);
-  CHECK(pair.echo().echo("y") == "y");
+TEST_CASE_METHOD(
+    Pair, "an answer for which there is no room until its deadline is given up, and counted") {
+  serving.valve.set(Valve::Mode::Full);
+  CHECK_THROWS_AS(echo(200ms).echo("x"), TimedOut);
+  CHECK(eventually([&] { return server->counters().lost == 1; }));
+  serving.valve.set(Valve::Mode::Open);
+  CHECK(echo().echo("y") == "y");
 }
 
-TEST_CASE("what waits for room is bounded: a client may have half of it, and the rest is counted") {
-  Pair pair;
-  pair.serving.valve.set(Valve::Mode::Full);
+TEST_CASE_METHOD(
+    Pair, "what waits for room is bounded: a client may have half of it, and the rest is counted") {
+  serving.valve.set(Valve::Mode::Full);
   constexpr std::size_t kSize = 16 << 20;
   constexpr std::size_t kFit = rpc::DdsServer::kMaxUnsent / 2 / kSize;
   const std::vector<std::uint8_t> content(kSize);
   std::vector<Call<std::vector<std::uint8_t>>> calls;
-  for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(pair.echo().async_echo_octets(content));
-  CHECK(eventually([&] { return pair.server->counters().lost == 1; }));
-  CHECK(pair.implementation->calls == kFit + 1);
+  for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(echo().async_echo_octets(content));
+  CHECK(eventually([&] { return server->counters().lost == 1; }));
+  CHECK(implementation->calls == kFit + 1);
 }

@@ -141,7 +141,7 @@ auto as_another_user(Action action) {
   return [action] { return setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99; };
 }
 
-bool hung_upbool hung_up(const FileDescriptor& socket) {
+bool hung_up(const FileDescriptor& socket) {
   char octet;
   return eventually([&] {
     const auto size = recv(socket.get(), &octet, 1, MSG_DONTWAIT);

@@ -29,7 +29,7 @@ namespace {
 /// Two participants on a network whose time stands still, and callbacks that run when the test says
 /// so.
 struct Sea {
-  Publisher<Rudder> rudder(const TopicQos& qos = {}) { return {*ship, "rudder", qos}; }
+  Publisher<Rudder> helm(const TopicQos& qos = {}) { return {*ship, "rudder", qos}; }
 
   Subscription<Rudder> watch_rudder(const TopicQos& qos = {}, SubscriptionOptions options = {}) {
     const auto note = [this](const Rudder& value) { angles.push_back(value.angle_deg); };
@@ -48,34 +48,32 @@ using Angles = std::vector<double>;
 
 }  // namespace
 
-TEST_CASE("published values reach the callback in order, on the executor and nowhere else") {
-  Sea sea;
-  auto rudder = sea.rudder();
-  const auto watch = sea.watch_rudder();
+TEST_CASE_METHOD(Sea,
+                 "published values reach the callback in order, on the executor and nowhere else") {
+  auto rudder = helm();
+  const auto watch = watch_rudder();
   CHECK(rudder.subscribers() == 1);
   CHECK(watch.publishers() == 1);
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
-  CHECK(sea.angles.empty());
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{1, 2, 3});
+  CHECK(angles.empty());
+  executor.run_all();
+  CHECK(angles == Angles{1, 2, 3});
   CHECK(rudder.counters().published == 3);
   CHECK(watch.counters().received == 3);
 }
 
-TEST_CASE("a long row of values is handed over whole, in several turns") {
-  Sea sea;
-  auto rudder = sea.rudder();
-  const auto watch = sea.watch_rudder();
+TEST_CASE_METHOD(Sea, "a long row of values is handed over whole, in several turns") {
+  auto rudder = helm();
+  const auto watch = watch_rudder();
   for (int i = 0; i < 500; ++i) rudder.publish({"helm", static_cast<double>(i)});
-  CHECK(sea.executor.run_all() > 2);
-  REQUIRE(sea.angles.size() == 500);
-  CHECK(sea.angles.back() == 499);
+  CHECK(executor.run_all() > 2);
+  REQUIRE(angles.size() == 500);
+  CHECK(angles.back() == 499);
 }
 
-TEST_CASE("without a callback values wait until they are taken") {
-  Sea sea;
-  auto rudder = sea.rudder();
-  Subscription<Rudder> watch(*sea.shore, sea.executor, "rudder", {}, nullptr);
+TEST_CASE_METHOD(Sea, "without a callback values wait until they are taken") {
+  auto rudder = helm();
+  Subscription<Rudder> watch(*shore, executor, "rudder", {}, nullptr);
   CHECK_FALSE(watch.take());
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
   CHECK(watch.take().value().angle_deg == 1);
@@ -84,26 +82,25 @@ TEST_CASE("without a callback values wait until they are taken") {
   CHECK(watch.counters().received == 3);
 }
 
-TEST_CASE("who has a callback cannot take values, and is told so") {
-  Sea sea;
-  auto rudder = sea.rudder();
-  auto watch = sea.watch_rudder();
+TEST_CASE_METHOD(Sea, "who has a callback cannot take values, and is told so") {
+  auto rudder = helm();
+  auto watch = watch_rudder();
   rudder.publish({"helm", 1});
   CHECK_THROWS_AS(watch.take(), InvalidArgument);
   CHECK_THROWS_WITH(watch.latest(),
                     "topic 'rudder': a subscription with a callback has no values to take; they "
                     "go to the callback: subscribe without one, to poll");
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{1});
+  executor.run_all();
+  CHECK(angles == Angles{1});
 }
 
-TEST_CASE("of values that are too large to be sent best effort the publisher tells once") {
-  Sea sea;
+TEST_CASE_METHOD(Sea,
+                 "of values that are too large to be sent best effort the publisher tells once") {
   const Log log;
   const std::string large((1 << 20) + 1, 'x');
-  Publisher<Depth> reliable(*sea.ship, "depth", {});
+  Publisher<Depth> reliable(*ship, "depth", {});
   reliable.publish({1, 1, large});
-  Publisher<Depth> sensor(*sea.ship, "depth", TopicQos::sensor());
+  Publisher<Depth> sensor(*ship, "depth", TopicQos::sensor());
   sensor.publish({1, 1, "small"});
   CHECK(log.text().empty());
   for (int i = 0; i < 3; ++i) sensor.publish({1, 1, large});
@@ -112,15 +109,15 @@ TEST_CASE("of values that are too large to be sent best effort the publisher tel
   CHECK(log.count("published best effort") == 1);
 }
 
-TEST_CASE("a slow subscriber loses its own oldest values, counted, and holds up nobody") {
-  Sea sea;
+TEST_CASE_METHOD(Sea,
+                 "a slow subscriber loses its own oldest values, counted, and holds up nobody") {
   TopicQos qos;
   qos.max_waiting = 10;
-  auto rudder = sea.rudder(qos);
-  const auto slow = sea.watch_rudder(qos);
+  auto rudder = helm(qos);
+  const auto slow = watch_rudder(qos);
   ManualExecutor prompt_executor;
   int prompt_values = 0;
-  const Subscription<Rudder> prompt(*sea.shore, prompt_executor, "rudder", qos,
+  const Subscription<Rudder> prompt(*shore, prompt_executor, "rudder", qos,
                                     [&](const Rudder&) { ++prompt_values; });
   for (int i = 0; i < 100; ++i) {
     rudder.publish({"helm", static_cast<double>(i)});
@@ -128,32 +125,32 @@ TEST_CASE("a slow subscriber loses its own oldest values, counted, and holds up 
   }
   CHECK(prompt_values == 100);
   CHECK(prompt.counters().dropped == 0);
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{90, 91, 92, 93, 94, 95, 96, 97, 98, 99});
+  executor.run_all();
+  CHECK(angles == Angles{90, 91, 92, 93, 94, 95, 96, 97, 98, 99});
   CHECK(slow.counters().dropped == 90);
   CHECK(slow.counters().received == 10);
 }
 
-TEST_CASE("a sensor's subscriber finds the newest four values, and none that is too old") {
-  Sea sea;
-  auto rudder = sea.rudder(TopicQos::sensor(100ms));
-  const auto watch = sea.watch_rudder(TopicQos::sensor());
+TEST_CASE_METHOD(Sea,
+                 "a sensor's subscriber finds the newest four values, and none that is too old") {
+  auto rudder = helm(TopicQos::sensor(100ms));
+  const auto watch = watch_rudder(TopicQos::sensor());
   for (int i = 1; i <= 6; ++i) {
     rudder.publish({"log", static_cast<double>(i)});
-    sea.clock.advance(30ms);
+    clock.advance(30ms);
   }
   // 6 is 30 ms old, 5 is 60, 4 is 90, 3 is 120.
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{4, 5, 6});
+  executor.run_all();
+  CHECK(angles == Angles{4, 5, 6});
   CHECK(watch.counters().dropped == 2);
   CHECK(watch.counters().expired == 1);
 }
 
-TEST_CASE("an entity's options may change what the code asks for: here, a late joiner is told") {
-  Sea sea;
+TEST_CASE_METHOD(
+    Sea, "an entity's options may change what the code asks for: here, a late joiner is told") {
   EntityOptions options;
   options.name = "ship";
-  options.vendor = sea.network.vendor();
+  options.vendor = network.vendor();
   options.adjust_topic = [](const std::string& topic, TopicQos& qos) {
     if (topic == "rudder") qos = TopicQos::state();
   };
@@ -170,49 +167,48 @@ TEST_CASE("an entity's options may change what the code asks for: here, a late j
   CHECK_FALSE(too_late.latest());
 }
 
-TEST_CASE("of two commands the stronger is heard, and the weaker again once the stronger is late") {
-  Sea sea;
-  const auto watch = sea.watch_rudder(TopicQos::command(0, 50ms));
-  Publisher<Rudder> autopilot(*sea.ship, "rudder", TopicQos::command(1, 50ms));
-  auto other_ship = sea.network.vendor()->create_participant({});
+TEST_CASE_METHOD(
+    Sea, "of two commands the stronger is heard, and the weaker again once the stronger is late") {
+  const auto watch = watch_rudder(TopicQos::command(0, 50ms));
+  Publisher<Rudder> autopilot(*ship, "rudder", TopicQos::command(1, 50ms));
+  auto other_ship = network.vendor()->create_participant({});
   Publisher<Rudder> skipper(*other_ship, "rudder", TopicQos::command(2, 50ms));
   autopilot.publish({"autopilot", 1});
   skipper.publish({"skipper", 2});
   autopilot.publish({"autopilot", 3});
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{2});  // depth 1: 2 took the place of 1
-  sea.clock.advance(100ms);
+  executor.run_all();
+  CHECK(angles == Angles{2});  // depth 1: 2 took the place of 1
+  clock.advance(100ms);
   CHECK(skipper.counters().missed_deadlines == 1);
   CHECK(watch.counters().missed_deadlines == 1);
   autopilot.publish({"autopilot", 4});
-  sea.executor.run_all();
+  executor.run_all();
   skipper.publish({"skipper", 5});
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{2, 4, 5});
+  executor.run_all();
+  CHECK(angles == Angles{2, 4, 5});
 }
 
-TEST_CASE("a missed deadline is told on the executor, with the key") {
-  Sea sea;
+TEST_CASE_METHOD(Sea, "a missed deadline is told on the executor, with the key") {
   TopicQos qos;
   qos.deadline = 100ms;
-  Publisher<Depth> depths(*sea.ship, "depth", qos);
+  Publisher<Depth> depths(*ship, "depth", qos);
   std::vector<Guid> missed;
   SubscriptionOptions options;
   options.on_deadline_missed = [&](const Guid& key) { missed.push_back(key); };
   const Subscription<Depth> watch(
-      *sea.shore, sea.executor, "depth", qos, [](const Depth&) {}, options);
+      *shore, executor, "depth", qos, [](const Depth&) {}, options);
   depths.publish({7, 12.5, ""});
-  sea.executor.run_all();
-  sea.clock.advance(100ms);
+  executor.run_all();
+  clock.advance(100ms);
   CHECK(missed.empty());
-  sea.executor.run_all();
+  executor.run_all();
   CHECK(missed == std::vector{key_hash(Depth{7, 0, ""})});
   CHECK(watch.counters().missed_deadlines == 1);
 }
 
-TEST_CASE("who comes late is given the last state of each key, but not what was disposed") {
-  Sea sea;
-  Publisher<Depth> depths(*sea.ship, "depth", TopicQos::state());
+TEST_CASE_METHOD(Sea,
+                 "who comes late is given the last state of each key, but not what was disposed") {
+  Publisher<Depth> depths(*ship, "depth", TopicQos::state());
   for (const std::int32_t sensor : {1, 2, 3}) {
     depths.publish({sensor, 1, "old"});
     depths.publish({sensor, 2, "new"});
@@ -223,27 +219,27 @@ TEST_CASE("who comes late is given the last state of each key, but not what was 
   SubscriptionOptions options;
   options.on_disposed = [&](const Guid& key) { disposed.push_back(key); };
   const Subscription<Depth> late(
-      *sea.shore, sea.executor, "depth", TopicQos::state(),
+      *shore, executor, "depth", TopicQos::state(),
       [&](const Depth& value) { values.push_back(value); }, options);
-  sea.executor.run_all();
+  executor.run_all();
   CHECK(values == std::vector<Depth>{{1, 2, "new"}, {3, 2, "new"}});
   depths.dispose({3, 0, ""});
-  sea.executor.run_all();
+  executor.run_all();
   CHECK(disposed == std::vector{key_hash(Depth{3, 0, ""})});
   CHECK(depths.counters().published == 8);
 }
 
-TEST_CASE("a sample that is no such value is counted, reported once, and stops nothing") {
-  Sea sea;
+TEST_CASE_METHOD(Sea,
+                 "a sample that is no such value is counted, reported once, and stops nothing") {
   const Log log;
-  const auto watch = sea.watch_rudder();
-  const auto writer = sea.ship->create_writer({"rudder", "streams::Rudder", false}, {});
+  const auto watch = watch_rudder();
+  const auto writer = ship->create_writer({"rudder", "streams::Rudder", false}, {});
   const Bytes no_rudder = idl::encode_message(streams::Sail{{}});
   writer->write(no_rudder);
   writer->write(no_rudder);
   writer->write(idl::encode_message(Rudder{"helm", 5}));
-  sea.executor.run_all();
-  CHECK(sea.angles == Angles{5});
+  executor.run_all();
+  CHECK(angles == Angles{5});
   CHECK(watch.counters().malformed == 2);
   CHECK(watch.counters().received == 1);
   CHECK(log.count("\n") == 1);
@@ -251,21 +247,21 @@ TEST_CASE("a sample that is no such value is counted, reported once, and stops n
              Contains("'rudder'") && Contains("streams::Rudder") && Contains("same IDL"));
 }
 
-TEST_CASE("a callback that throws is reported once, whatever it throws, and the next value comes") {
-  Sea sea;
+TEST_CASE_METHOD(
+    Sea, "a callback that throws is reported once, whatever it throws, and the next value comes") {
   const Log log;
-  auto rudder = sea.rudder();
+  auto rudder = helm();
   const bool standard = GENERATE(true, false);
   int calls = 0;
-  const Subscription<Rudder> watch(*sea.shore, sea.executor, "rudder", {}, [&](const Rudder&) {
+  const Subscription<Rudder> watch(*shore, executor, "rudder", {}, [&](const Rudder&) {
     ++calls;
     if (standard) throw std::runtime_error("aground");
     throw 42;
   });
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
-  sea.executor.run_all();
+  executor.run_all();
   rudder.publish({"helm", 4});
-  sea.executor.run_all();
+  executor.run_all();
   CHECK(calls == 4);
   CHECK(log.count("\n") == 1);
   CHECK_THAT(log.text(),
@@ -273,13 +269,13 @@ TEST_CASE("a callback that throws is reported once, whatever it throws, and the 
                  Contains(standard ? "aground" : "something that is no std::exception"));
 }
 
-TEST_CASE("what is told of keys may throw anything, too, and the executor's thread goes on") {
-  Sea sea;
+TEST_CASE_METHOD(
+    Sea, "what is told of keys may throw anything, too, and the executor's thread goes on") {
   const Log log;
   TopicQos qos;
   qos.deadline = 100ms;
   ThreadExecutor executor("topics");
-  Publisher<Depth> depths(*sea.ship, "depth", qos);
+  Publisher<Depth> depths(*ship, "depth", qos);
   std::atomic<int> told = 0;
   SubscriptionOptions options;
   options.executor = &executor;
@@ -289,9 +285,9 @@ TEST_CASE("what is told of keys may throw anything, too, and the executor's thre
   };
   options.on_disposed = options.on_deadline_missed;
   const Subscription<Depth> watch(
-      *sea.shore, sea.executor, "depth", qos, [](const Depth&) { throw 42; }, options);
+      *shore, this->executor, "depth", qos, [](const Depth&) { throw 42; }, options);
   depths.publish({7, 12.5, ""});
-  sea.clock.advance(100ms);
+  clock.advance(100ms);
   CHECK(eventually([&] { return told == 1; }));
   depths.dispose({7, 0, ""});
   CHECK(eventually([&] { return told == 2; }));
@@ -299,26 +295,25 @@ TEST_CASE("what is told of keys may throw anything, too, and the executor's thre
   CHECK(log.count("\n") == 1);
 }
 
-TEST_CASE("no callback runs once the subscription has gone") {
-  Sea sea;
-  auto rudder = sea.rudder();
+TEST_CASE_METHOD(Sea, "no callback runs once the subscription has gone") {
+  auto rudder = helm();
   {
-    const auto watch = sea.watch_rudder();
+    const auto watch = watch_rudder();
     rudder.publish({"helm", 1});
   }
-  sea.executor.run_all();
-  CHECK(sea.angles.empty());
+  executor.run_all();
+  CHECK(angles.empty());
   CHECK(rudder.subscribers() == 0);
 }
 
-TEST_CASE("a callback that does not return is told once, when a further value has come") {
-  Sea sea;
+TEST_CASE_METHOD(Sea,
+                 "a callback that does not return is told once, when a further value has come") {
   const Log log;
-  auto rudder = sea.rudder();
+  auto rudder = helm();
   ThreadExecutor executor("topics");
   std::atomic<bool> inside = false;
   std::atomic<bool> may_return = false;
-  const Subscription<Rudder> watch(*sea.shore, executor, "rudder", {}, [&](const Rudder&) {
+  const Subscription<Rudder> watch(*shore, executor, "rudder", {}, [&](const Rudder&) {
     inside = true;
     eventually([&] { return may_return.load(); });
   });
@@ -336,15 +331,15 @@ TEST_CASE("a callback that does not return is told once, when a further value ha
   may_return = true;
 }
 
-TEST_CASE("who ends a subscription whose callback does not return is told what it waits for") {
-  Sea sea;
+TEST_CASE_METHOD(
+    Sea, "who ends a subscription whose callback does not return is told what it waits for") {
   const Log log;
-  auto rudder = sea.rudder();
+  auto rudder = helm();
   ThreadExecutor executor("topics");
   std::atomic<bool> inside = false;
   std::atomic<bool> may_return = false;
   auto watch = std::make_unique<Subscription<Rudder>>(
-      *sea.shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
+      *shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
         inside = true;
         eventually([&] { return may_return.load(); });
       });
@@ -360,28 +355,27 @@ TEST_CASE("who ends a subscription whose callback does not return is told what i
   ends.join();
 }
 
-TEST_CASE("a callback may not destroy its own subscription: that is told, and it is the last") {
-  Sea sea;
+TEST_CASE_METHOD(
+    Sea, "a callback may not destroy its own subscription: that is told, and it is the last") {
   const Log log;
-  auto rudder = sea.rudder();
+  auto rudder = helm();
   int calls = 0;
   std::optional<Subscription<Rudder>> watch;
-  watch.emplace(*sea.shore, sea.executor, "rudder", TopicQos{}, [&](const Rudder&) {
+  watch.emplace(*shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
     ++calls;
     watch.reset();
   });
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
-  sea.executor.run_all();
+  executor.run_all();
   CHECK(calls == 1);
   CHECK(rudder.subscribers() == 0);
   CHECK(log.count("topic 'rudder': a callback destroys its own subscription") == 1);
 }
 
-TEST_CASE("profiles that do not fit are named in the log of both sides") {
-  Sea sea;
+TEST_CASE_METHOD(Sea, "profiles that do not fit are named in the log of both sides") {
   const Log log;
-  auto rudder = sea.rudder(TopicQos::sensor());
-  const auto watch = sea.watch_rudder(TopicQos::state());
+  auto rudder = helm(TopicQos::sensor());
+  const auto watch = watch_rudder(TopicQos::state());
   CHECK(rudder.subscribers() == 0);
   CHECK(log.count("\n") == 2);
   for (const char* part : {"'rudder'", "best effort", "reliable"}) {
@@ -390,17 +384,16 @@ TEST_CASE("profiles that do not fit are named in the log of both sides") {
   }
 }
 
-TEST_CASE("a topic belongs to its systems") {
-  Sea sea;
+TEST_CASE_METHOD(Sea, "a topic belongs to its systems") {
   TopicQos own;
   own.systems = {"uav-1"};
   TopicQos other;
   other.systems = {"uav-2"};
   TopicQos both;
   both.systems = {"uav-1", "uav-2"};
-  auto rudder = sea.rudder(own);
-  const auto watch = sea.watch_rudder(other);
+  auto rudder = helm(own);
+  const auto watch = watch_rudder(other);
   CHECK(rudder.subscribers() == 0);
-  const auto station = sea.watch_rudder(both);
+  const auto station = watch_rudder(both);
   CHECK(rudder.subscribers() == 1);
 }
