@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -101,7 +103,9 @@ class ThreadExecutor final : public Executor {
   std::shared_ptr<State> state_;
 };
 
-/// An executor without a thread, for tests: tasks run in run_all(). Its queue is unbounded.
+/// An executor without a thread: tasks run on the threads that call run_all() or run_until(). For
+/// tests, and for a program with a loop of its own: a subscription whose SubscriptionOptions name
+/// it wakes no other thread on the way to that loop. Its queue is unbounded. Thread-safe.
 class ManualExecutor final : public Executor {
  public:
   bool post(Action task) override;
@@ -110,9 +114,16 @@ class ManualExecutor final : public Executor {
   /// Runs queued tasks, and those that they queue, until none is left; returns how many ran.
   std::size_t run_all();
 
+  /// Runs tasks as they come until `done()`, which is asked at first and after tasks have run, here
+  /// or on another thread; false if it was not done by `until`. What `done()` depends on changes in
+  /// tasks alone: post an empty one to have it asked.
+  bool run_until(std::chrono::steady_clock::time_point until, const std::function<bool()>& done);
+
  private:
   std::mutex mutex_;
+  std::condition_variable changed_;
   std::deque<Action> tasks_;
+  std::size_t ran_ = 0;  // tasks, ever
 };
 
 }  // namespace skein

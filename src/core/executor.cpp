@@ -213,8 +213,11 @@ bool ThreadExecutor::enqueue(Action& task, std::size_t capacity) {
 }
 
 bool ManualExecutor::post(Action task) {
-  std::lock_guard lock(mutex_);
-  tasks_.push_back(std::move(task));
+  {
+    std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+  }
+  changed_.notify_all();
   return true;
 }
 
@@ -231,7 +234,24 @@ std::size_t ManualExecutor::run_all() {
     lock.lock();
     ++count;
   }
+  if (count == 0) return 0;
+  ran_ += count;
+  changed_.notify_all();
   return count;
+}
+
+bool ManualExecutor::run_until(std::chrono::steady_clock::time_point until,
+                               const std::function<bool()>& done) {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const std::size_t ran = ran_;
+    lock.unlock();
+    const std::size_t here = run_all();
+    if (done()) return true;
+    lock.lock();
+    const auto asked_again = [&] { return !tasks_.empty() || ran_ != ran + here; };
+    if (!changed_.wait_until(lock, until, asked_again)) return false;
+  }
 }
 
 }  // namespace skein

@@ -225,3 +225,31 @@ TEST_CASE("a manual executor runs its tasks, and what they queue, when told") {
   CHECK(executor.run_all() == 2);
   CHECK(ran == 2);
 }
+
+TEST_CASE("a manual executor runs tasks as they come, until what they do is done") {
+  ManualExecutor executor;
+  std::atomic<int> ran = 0;
+  const auto three = [&] { return ran == 3; };
+  const auto begun = std::chrono::steady_clock::now();
+  SECTION("its own thread runs them") {
+    executor.post([&] { ++ran; });
+    std::jthread other([&] {
+      while (ran == 0) std::this_thread::yield();
+      executor.post([&] { ++ran; });
+      executor.post([&] { ++ran; });
+    });
+    CHECK(executor.run_until(begun + 1min, three));
+  }
+  SECTION("those that other threads have run count") {
+    std::jthread other([&] {
+      for (int i = 0; i < 3; ++i) executor.post([&] { ++ran; });
+      CHECK(executor.run_until(begun + 1min, three));
+    });
+    CHECK(executor.run_until(begun + 1min, three));
+  }
+  SECTION("it ends in time without them") {
+    executor.post([&] { ++ran; });
+    CHECK_FALSE(executor.run_until(begun + 1ms, three));
+    CHECK(ran == 1);
+  }
+}

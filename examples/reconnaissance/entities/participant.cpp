@@ -36,8 +36,8 @@ Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
       work_(std::move(work)),
       told_{entity.options().name, new_life(), period_of(rate_hz), -1, false},
       time_(entity.subscription<recon::MissionTime>(
-          time_topic(told_.period_ticks), skein::TopicQos::state(),
-          [this](const recon::MissionTime& time) { hear(time); })) {}
+          time_topic(told_.period_ticks), time_qos(),
+          [this](const recon::MissionTime& time) { hear(time); }, {.executor = &hearing_})) {}
 
 Participant::~Participant() {
   if (!thread_.joinable()) return;
@@ -60,17 +60,15 @@ void Participant::start() {
 }
 
 void Participant::hear(const recon::MissionTime& time) {
-  {
-    std::lock_guard lock(mutex_);
-    if (!run_) run_ = time.run;
-    if (*run_ != time.run) return;  // of another simulator, whose time is not this one's
-    begun_ = std::max(begun_, static_cast<Tick>(time.tick));
-  }
-  changed_.notify_all();
+  std::lock_guard lock(mutex_);
+  if (!run_) run_ = time.run;
+  if (*run_ != time.run) return;  // of another simulator, whose time is not this one's
+  begun_ = std::max(begun_, static_cast<Tick>(time.tick));
 }
 
 void Participant::take_part(const std::stop_token& stop) {
   pthread_setname_np(pthread_self(), "mission-time");
+  const std::stop_callback stops(stop, [this] { hearing_.post([] {}); });
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (begun_ > present_) {
@@ -78,7 +76,12 @@ void Participant::take_part(const std::stop_token& stop) {
       continue;
     }
     acknowledge(lock);
-    changed_.wait_until(lock, stop, tell_again_, [&] { return begun_ > present_; });
+    lock.unlock();
+    hearing_.run_until(tell_again_, [&] {
+      std::lock_guard looks(mutex_);
+      return begun_ > present_ || stop.stop_requested();
+    });
+    lock.lock();
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "clock/ticks.hpp"
 #include "skein/entity.hpp"
+#include "skein/executor.hpp"
 #include "time.idl.hpp"
 
 namespace reconnaissance {
@@ -47,8 +47,8 @@ class Participant {
   recon::Acknowledgment told_;
   std::optional<skein::Publisher<recon::Acknowledgment>> acknowledgments_;
 
+  skein::ManualExecutor hearing_;  // of the thread that takes part
   mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
   std::optional<std::uint64_t> run_;
   Tick begun_ = -1;    // by the time's keeper
   Tick present_ = -1;  // that has begun here

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <condition_variable>
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -9,6 +10,7 @@
 
 #include "clock/ticks.hpp"
 #include "skein/entity.hpp"
+#include "skein/executor.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -40,32 +42,19 @@ class Stream {
 
   Stream(skein::Entity& entity, const StreamTopic& topic, const skein::TopicQos& qos = stream_qos())
       : period_(topic.period),
-        subscription_(entity.subscription<T>(topic.name, qos, [this](const T& sample) {
-          {
-            std::lock_guard lock(mutex_);
-            samples_.push_back(sample);
-            if (samples_.size() > kKept) samples_.pop_front();
-          }
-          arrived_.notify_all();
-        })) {}
+        subscription_(entity.subscription<T>(topic.name, for_reading(qos),
+                                             [this](const T& sample) { keep(sample); },
+                                             {.executor = &reading_})) {}
 
   /// The sample of that tick, or of the last before at which there is one. Waits for it while
   /// somebody publishes, `patience` at most and once; then it is counted as lost, and the newest
   /// from before stands in for it, if there is any.
   std::optional<T> at(Tick tick, skein::Duration patience = kPatience) {
     if (tick < 0) return std::nullopt;
-    std::unique_lock lock(mutex_);
+    reading_.run_all();
     const Tick wanted = tick - tick % period_;
-    const auto is_here = [&] { return !samples_.empty() && samples_.back().tick >= wanted; };
-    if (!is_here() && wanted > in_vain_) {
-      lock.unlock();
-      const bool hopeless = subscription_.publishers() == 0;
-      lock.lock();
-      if (!arrived_.wait_for(lock, hopeless ? skein::Duration{} : patience, is_here)) {
-        ++lost_;
-        in_vain_ = wanted;
-      }
-    }
+    if (is_to_come(wanted)) await(wanted, patience);
+    std::lock_guard lock(mutex_);
     for (auto sample = samples_.rbegin(); sample != samples_.rend(); ++sample)
       if (sample->tick <= tick) return *sample;
     return std::nullopt;
@@ -85,7 +74,8 @@ class Stream {
   }
 
   /// The newest that has arrived.
-  std::optional<T> latest() const {
+  std::optional<T> latest() {
+    reading_.run_all();
     std::lock_guard lock(mutex_);
     return samples_.empty() ? std::nullopt : std::optional(samples_.back());
   }
@@ -98,11 +88,37 @@ class Stream {
 
  private:
   // Those of a second where there are ten, and of who is a little ahead.
-  static constexpr std::size_t kKept = 16;
+  static constexpr std::uint32_t kKept = 16;
+
+  /// Samples wait in the subscription until somebody reads here.
+  static skein::TopicQos for_reading(skein::TopicQos qos) {
+    if (qos.history_depth) qos.history_depth = std::max(*qos.history_depth, kKept);
+    return qos;
+  }
+
+  void keep(const T& sample) {
+    std::lock_guard lock(mutex_);
+    samples_.push_back(sample);
+    if (samples_.size() > kKept) samples_.pop_front();
+  }
+
+  bool is_to_come(Tick wanted) const {
+    std::lock_guard lock(mutex_);
+    return (samples_.empty() || samples_.back().tick < wanted) && wanted > in_vain_;
+  }
+
+  void await(Tick wanted, skein::Duration patience) {
+    const bool hopeless = subscription_.publishers() == 0;
+    const auto until = std::chrono::steady_clock::now() + (hopeless ? skein::Duration{} : patience);
+    if (reading_.run_until(until, [&] { return !is_to_come(wanted); })) return;
+    std::lock_guard lock(mutex_);
+    ++lost_;
+    in_vain_ = wanted;
+  }
 
   int period_;
+  skein::ManualExecutor reading_;  // so that a sample wakes the thread that waits, and no other
   mutable std::mutex mutex_;
-  std::condition_variable arrived_;
   std::deque<T> samples_;
   std::uint64_t lost_ = 0;
   Tick in_vain_ = -1;  // the last that was waited for and did not come

@@ -33,6 +33,12 @@ skein::TopicQos acknowledgment_qos() {
   return qos;
 }
 
+skein::TopicQos time_qos() {
+  skein::TopicQos qos = skein::TopicQos::state();
+  qos.history_depth = 8;  // a tick of another run is not to take the place of one of this run
+  return qos;
+}
+
 TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time,
                        const std::vector<std::string>& systems)
     : entity_(entity),
@@ -41,7 +47,8 @@ TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times
       pace_(times_real_time),
       acknowledgments_(entity.subscription<recon::Acknowledgment>(
           kAcknowledgments, in_systems(systems, acknowledgment_qos()),
-          [this](const recon::Acknowledgment& acknowledgment) { hear(acknowledgment); })) {
+          [this](const recon::Acknowledgment& acknowledgment) { hear(acknowledgment); },
+          {.executor = &hearing_})) {
   // Who is late gets the last one, without which it could not acknowledge it.
   for (const int period : kPeriods) {
     time_.emplace(period, entity.publisher<recon::MissionTime>(
@@ -50,14 +57,20 @@ TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times
 }
 
 std::optional<Tick> TimeKeeper::await_next(const std::stop_token& stop) {
+  const std::stop_callback stops(stop, [this] { hearing_.post([] {}); });
+  hearing_.run_all();
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     const skein::Instant now = entity_.clock().now();
     const auto when = ready();
     if (when && *when <= now) return lock_step_.tick() + 1;
     const skein::Instant look = now + kLook;
-    changed_.wait_until(lock, stop, when ? std::min(*when, look) : look,
-                        [&] { return ready() != when; });
+    lock.unlock();
+    hearing_.run_until(when ? std::min(*when, look) : look, [&] {
+      std::lock_guard looks(mutex_);
+      return ready() != when || stop.stop_requested();
+    });
+    lock.lock();
     if (!ready()) drop_the_lost(lock);
   }
   return std::nullopt;
@@ -102,16 +115,13 @@ void TimeKeeper::drop_the_lost(std::unique_lock<std::mutex>& lock) {
 }
 
 void TimeKeeper::hear(const recon::Acknowledgment& acknowledgment) {
-  {
-    std::lock_guard lock(mutex_);
-    lock_step_.hear({.participant = acknowledgment.participant,
-                     .life = acknowledgment.life,
-                     .period = acknowledgment.period_ticks,
-                     .done = acknowledgment.tick,
-                     .leaves = acknowledgment.leaves},
-                    entity_.clock().now());
-  }
-  changed_.notify_all();
+  std::lock_guard lock(mutex_);
+  lock_step_.hear({.participant = acknowledgment.participant,
+                   .life = acknowledgment.life,
+                   .period = acknowledgment.period_ticks,
+                   .done = acknowledgment.tick,
+                   .leaves = acknowledgment.leaves},
+                  entity_.clock().now());
 }
 
 Tick TimeKeeper::tick() const {
@@ -157,7 +167,7 @@ void TimeKeeper::change(const std::function<void(Pace&)>& change) {
     std::lock_guard lock(mutex_);
     change(pace_);
   }
-  changed_.notify_all();
+  hearing_.post([] {});
 }
 
 }  // namespace reconnaissance

@@ -19,6 +19,8 @@ namespace reconnaissance {
 std::string time_topic(int period);
 inline constexpr const char* kAcknowledgments = "mission/acknowledgment";
 skein::TopicQos acknowledgment_qos();
+/// Of who hears the time: late ones get the last tick.
+skein::TopicQos time_qos();
 
 /// Makes the mission's time: publishes a tick when all that were due at the one before have
 /// acknowledged it. There is a topic for each rate, so that who takes part once a second is not
@@ -61,8 +63,8 @@ class TimeKeeper {
   std::uint64_t run_;
   std::map<int, skein::Publisher<recon::MissionTime>> time_;  // by period
 
+  skein::ManualExecutor hearing_;  // of the thread that awaits ticks
   mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
   LockStep lock_step_;
   Pace pace_;
   skein::Instant rate_since_{};
