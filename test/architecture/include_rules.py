@@ -51,7 +51,7 @@ BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
     "core": "abi action box bytes call_memory channel loan_memory operation pending_reply representation version",
-    "idl": "argument cdr codec declared_exception filled json json_codec key_hash lendable make_type_support malformed_sample plain_layout print"
+    "idl": "argument cdr codec declared_exception filled json json_codec key_hash lendable make_type_support malformed_sample plain_layout"
            " service_reference type_support union_access unknown_operation wide_text",
     "dds": "qos",
     "topics": "topic_type",
