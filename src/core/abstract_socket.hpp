@@ -40,14 +40,14 @@ inline bool listen_at(const FileDescriptor& socket, const std::string& name,
          listen(socket.get(), backlog) == 0;
 }
 
-// Whoever waits at a listening socket costs nothing. So nobody is let in for a while after somebody
+// A client that waits at a listening socket costs nothing. So none is let in for a while after one
 // was turned away, and after the kernel had no descriptor.
 inline constexpr std::chrono::milliseconds kAfterRefusal{10};
 inline constexpr std::chrono::milliseconds kAfterShortage{100};
 /// Others have their turn then.
 inline constexpr std::size_t kAcceptedInARow = 16;
 
-/// Lets in those who wait, `most` at most. False if the kernel has no descriptor for the next one.
+/// Lets in waiting clients, `most` at most. False if the kernel has no descriptor for the next one.
 template <class Take>
 bool let_in(int listening, std::size_t most, const Take& take) {
   for (; most > 0; --most) {
@@ -71,7 +71,7 @@ inline Reached connect_to(const FileDescriptor& socket, const std::string& name)
   return errno == ECONNREFUSED ? Reached::Nobody : Reached::Unknown;
 }
 
-/// Who is at the other end, by the kernel's word.
+/// The process at the other end, by the kernel's word.
 inline std::optional<ucred> other_end(const FileDescriptor& socket) {
   ucred owner{};
   socklen_t size = sizeof owner;

@@ -45,13 +45,13 @@ class WatchedThread {
   std::atomic<std::uint64_t> steps_{0};  // odd: within a piece
 };
 
-/// Finds out who has stalled, by looking twice a second whether a thread is still within the piece
+/// Finds stalled threads, by looking twice a second whether a thread is still within the piece
 /// of work that it was in: threads need no clock. What counts is looks, not time, so that a process
 /// that was stopped, and a clock that has jumped, look like nobody's stall. Thread-safe.
 class StallWatch {
  public:
   static constexpr std::chrono::milliseconds kPeriod{500};
-  /// Who is in the same piece so many looks after it was first seen in it has stalled.
+  /// A thread that is in the same piece so many looks after the first has stalled.
   static constexpr int kLooks = 2;
   /// So long nothing further is told of a thread that was told of: a minute.
   static constexpr int kQuietLooks = 120;

@@ -43,7 +43,7 @@ std::string name_of(const profile::MissionProfile& mission, const std::string& h
          (number == 0 ? "" : "-" + std::to_string(number));
 }
 
-/// Who listens there, once `client` is connected to it; nothing where nobody does any more.
+/// The process that listens there, once `client` is connected to it; nothing if none does.
 std::optional<ucred> holder_of(const std::string& name, const FileDescriptor& client) {
   return connect_to(client, name) == Reached::Yes ? other_end(client) : std::nullopt;
 }

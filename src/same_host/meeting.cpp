@@ -161,7 +161,7 @@ struct Meeting::State {
         std::lock_guard lock(mutex);
         if (stopping) return;
         ++wake_ups;
-        // Those who are let in come last: who has spoken leaves his place to them.
+        // New clients come last: a client that has spoken leaves its place to them.
         const auto listening = std::stable_partition(events, events + count, [&](const auto& each) {
           return !offers.contains(each.data.u64);
         });
