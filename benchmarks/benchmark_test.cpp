@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "../test/tools/places.hpp"
-#include "../test/tools/shell.hpp"
 #include "harness/comparison.hpp"
 #include "harness/goals.hpp"
+#include "test/tools/places.hpp"
+#include "test/tools/shell.hpp"
 
 using Catch::Contains;
 using nlohmann::json;

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "../test/tools/places.hpp"
 #include "calls/configuration.hpp"
+#include "test/tools/places.hpp"
 
 using namespace skein::benchmarks;
 using skein::test::built_file;

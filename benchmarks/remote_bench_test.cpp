@@ -5,8 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "../test/tools/child_process.hpp"
-#include "../test/tools/network_space.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/network_space.hpp"
 
 using namespace skein::test;
 

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "brokerless_discovery/process_watch.hpp"
-#include "core/interface_name.hpp"
-#include "dds/options_check.hpp"
+#include "core/system/interface_name.hpp"
+#include "dds/port/options_check.hpp"
 #include "skein/discovery.idl.hpp"
 
 namespace skein::brokerless_discovery {

@@ -4,7 +4,7 @@
 
 #include "broker_state.hpp"
 #include "core/clock_wait.hpp"
-#include "core/sole_owner.hpp"
+#include "core/threads/sole_owner.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 

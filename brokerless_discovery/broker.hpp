@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "brokerless_discovery/table.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "skein/clock.hpp"
 #include "skein/executor.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "brokerless_discovery/process_watch.hpp"
-#include "core/abstract_socket.hpp"
+#include "core/system/abstract_socket.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

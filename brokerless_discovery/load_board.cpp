@@ -6,7 +6,7 @@
 
 #include "brokerless_discovery/admission.hpp"
 #include "core/log.hpp"
-#include "core/sole_owner.hpp"
+#include "core/threads/sole_owner.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"

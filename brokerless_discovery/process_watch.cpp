@@ -17,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/abstract_socket.hpp"
-#include "core/stall_watch.hpp"
-#include "core/start_thread.hpp"
+#include "core/system/abstract_socket.hpp"
+#include "core/threads/stall_watch.hpp"
+#include "core/threads/start_thread.hpp"
 #include "skein/error.hpp"
 
 namespace skein::brokerless_discovery {

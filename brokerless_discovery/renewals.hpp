@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-#include "../src/core/recent_set.hpp"
+#include "core/recent_set.hpp"
 #include "skein/clock.hpp"
 #include "skein/guid.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "brokerless_discovery/versions.hpp"
-#include "core/interface_name.hpp"
 #include "core/suggestion.hpp"
+#include "core/system/interface_name.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
 

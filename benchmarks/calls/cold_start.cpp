@@ -1,7 +1,7 @@
 #include <map>
 
 #include "calls/benchmarks.hpp"
-#include "harness/turns.hpp"
+#include "command/bench/random_turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

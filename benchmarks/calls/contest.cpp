@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "harness/turns.hpp"
+#include "command/bench/random_turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "calls/benchmarks.hpp"
+#include "command/bench/random_turns.hpp"
 #include "harness/goals.hpp"
 #include "harness/private_network.hpp"
-#include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "calls/benchmarks.hpp"
+#include "command/bench/random_turns.hpp"
 #include "harness/goals.hpp"
-#include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "calls/benchmarks.hpp"
+#include "command/bench/random_turns.hpp"
 #include "harness/goals.hpp"
-#include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

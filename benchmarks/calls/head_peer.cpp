@@ -5,7 +5,7 @@
 #include "calls/alone.hpp"
 #include "calls/plain_echo.hpp"
 #include "calls/skein_peer.hpp"
-#include "rpc/local_channel.hpp"
+#include "rpc/client/local_channel.hpp"
 #include "skein/head.hpp"
 
 namespace skein::benchmarks {

@@ -5,8 +5,8 @@
 
 #include "calls/benchmarks.hpp"
 #include "calls/flock.hpp"
+#include "command/bench/random_turns.hpp"
 #include "harness/loopback_traffic.hpp"
-#include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

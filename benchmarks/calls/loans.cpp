@@ -2,8 +2,8 @@
 #include <string>
 
 #include "calls/benchmarks.hpp"
+#include "command/bench/random_turns.hpp"
 #include "harness/goals.hpp"
-#include "harness/turns.hpp"
 
 namespace skein::benchmarks {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "skein/entity.hpp"
 
 namespace skein::benchmarks {

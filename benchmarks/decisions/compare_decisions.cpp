@@ -2,11 +2,11 @@
 
 #include <functional>
 
+#include "command/bench/random_turns.hpp"
 #include "data_files.hpp"
 #include "decisions/decision_table.hpp"
 #include "decisions/scores.hpp"
 #include "harness/goals.hpp"
-#include "harness/turns.hpp"
 #include "navigation/route_checker/route_checker.hpp"
 
 namespace skein::benchmarks {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "grids/grid_contest.hpp"
+#include "command/bench/grid_contest.hpp"
 #include "grids/made_maps.hpp"
 
 namespace skein::benchmarks {

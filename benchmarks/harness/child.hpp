@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "../test/tools/child_process.hpp"
 #include "harness/skipped.hpp"
 #include "skein/clock.hpp"
+#include "test/tools/child_process.hpp"
 
 namespace skein::benchmarks {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "command/bench/statistics.hpp"
 #include "harness/absence.hpp"
-#include "harness/statistics.hpp"
 
 namespace skein::benchmarks {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "../test/tools/network_space.hpp"
+#include "test/tools/network_space.hpp"
 
 namespace skein::benchmarks {
 

@@ -9,8 +9,8 @@
 
 #include "calls/skein_peer.hpp"
 #include "echo.idl.hpp"
-#include "entity/topic_tap.hpp"
 #include "harness/peer.hpp"
+#include "introspection/topic_tap.hpp"
 #include "recording/recorder.hpp"
 #include "skein/error.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/writer.hpp"
+#include "recording/mcap/writer.hpp"
 
 // How much a recording takes in: the median of five runs, from the first message until all is with
 // the kernel. recording_rate [FOLDER]

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "../test/tools/shell.hpp"
 #include "data_files.hpp"
 #include "skein/error.hpp"
+#include "test/tools/shell.hpp"
 
 namespace skein::benchmarks::selection {
 

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "../test/tools/temporary_folder.hpp"
 #include "selection/replay.hpp"
 #include "skein/error.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 using namespace skein::benchmarks::selection;
 using Catch::Contains;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "entity/service_history.hpp"
+#include "selection/service_history.hpp"
 #include "skein/head_options.hpp"
 
 namespace skein::benchmarks::selection {

@@ -49,7 +49,7 @@ def main():
     here = pathlib.Path(__file__).resolve().parent
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=20, help="how many, from 1")
-    parser.add_argument("--profile", default=here.parent.parent / "mission_profiles" / "reconnaissance.xml")
+    parser.add_argument("--profile", default=here.parent.parent / "mission_profiles" / "reconnaissance" / "reconnaissance.xml")
     parser.add_argument("--skein", default="skein", help="the program, by default as PATH has it")
     options, arguments = parser.parse_known_args()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="reconnaissance-"))

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "ad_manager.idl.hpp"
-#include "core/whole_file.hpp"
+#include "core/system/whole_file.hpp"
 #include "flight_controller.idl.hpp"
 #include "mission_text.hpp"
 #include "navigation/route_checker/route_checker.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "onlooker.hpp"
+#include "command/look/onlooker.hpp"
 
 /// The subcommands of `skein`: what the command line (the folder `line`) tells each, and the
 /// function that runs it. It returns the exit code; line/main.cpp has one for each exception.

@@ -6,8 +6,8 @@
 #include <thread>
 #include <unordered_map>
 
-#include "core/stall_watch.hpp"
-#include "core/start_thread.hpp"
+#include "core/threads/stall_watch.hpp"
+#include "core/threads/start_thread.hpp"
 #include "skein/detail/call_memory.hpp"
 
 namespace skein {

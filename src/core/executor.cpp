@@ -9,11 +9,11 @@
 #include <thread>
 #include <utility>
 
-#include "core/idle_work.hpp"
-#include "core/leave_behind.hpp"
-#include "core/stall_watch.hpp"
-#include "core/start_thread.hpp"
-#include "core/thread_settings.hpp"
+#include "core/threads/idle_work.hpp"
+#include "core/threads/leave_behind.hpp"
+#include "core/threads/stall_watch.hpp"
+#include "core/threads/start_thread.hpp"
+#include "core/threads/thread_settings.hpp"
 #include "skein/detail/call_memory.hpp"
 
 namespace skein {

@@ -11,7 +11,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "core/file_descriptor.hpp"
+#include "core/system/file_descriptor.hpp"
 #include "skein/error.hpp"
 
 namespace skein {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/clock_wait.hpp"
-#include "core/run_user_code.hpp"
-#include "core/shared_object.hpp"
+#include "core/system/shared_object.hpp"
+#include "core/threads/run_user_code.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/selection.hpp"

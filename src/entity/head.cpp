@@ -5,12 +5,12 @@
 
 #include "core/log.hpp"
 #include "core/wall_clock.hpp"
-#include "dds/port.hpp"
-#include "decision_record.hpp"
+#include "dds/port/port.hpp"
 #include "head_run.hpp"
 #include "head_session.hpp"
-#include "rpc/local_directory.hpp"
-#include "rpc/service.hpp"
+#include "rpc/service/local_directory.hpp"
+#include "rpc/service/service.hpp"
+#include "selection/decision_record.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
 

@@ -10,7 +10,7 @@
 #include "core/log.hpp"
 #include "core/suggestion.hpp"
 #include "head_state.hpp"
-#include "rpc/local_directory.hpp"
+#include "rpc/service/local_directory.hpp"
 #include "skein/constraint.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"

@@ -4,10 +4,10 @@
 #include <set>
 #include <string_view>
 
-#include "decision_record.hpp"
-#include "rpc/local_directory.hpp"
+#include "rpc/service/local_directory.hpp"
+#include "selection/decision_record.hpp"
+#include "selection/slice.hpp"
 #include "skein/error.hpp"
-#include "slice.hpp"
 
 namespace skein {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/whole_file.hpp"
+#include "core/system/whole_file.hpp"
 #include "head_session.hpp"
-#include "rpc/local_directory.hpp"
-#include "service_history.hpp"
+#include "rpc/service/local_directory.hpp"
+#include "selection/service_history.hpp"
 #include "skein/call_context.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"

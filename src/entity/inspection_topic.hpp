@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "rpc/introspection_topic.hpp"
+#include "rpc/service/introspection_topic.hpp"
 #include "skein/inspection.idl.hpp"
 
 namespace skein::introspection {

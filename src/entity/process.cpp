@@ -1,7 +1,7 @@
 #include "skein/process.hpp"
 
 #include "brokerless_discovery/process_watch.hpp"
-#include "rpc/local_directory.hpp"
+#include "rpc/service/local_directory.hpp"
 
 namespace skein {
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/host.hpp"
+#include "core/system/host.hpp"
 #include "core/wall_clock.hpp"
 
 namespace skein::introspection {

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <vector>
 
-#include "dds/port.hpp"
-#include "rpc/introspection_topic.hpp"
+#include "dds/port/port.hpp"
+#include "rpc/service/introspection_topic.hpp"
 #include "skein/clock.hpp"
 #include "skein/executor.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/reader.hpp"
+#include "recording/mcap/reader.hpp"
 #include "skein/clock.hpp"
 
 namespace skein {

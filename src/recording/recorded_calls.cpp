@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/interface_name.hpp"
 #include "core/log.hpp"
-#include "idl/parameter_struct.hpp"
-#include "rpc/call_recorder.hpp"
+#include "core/system/interface_name.hpp"
+#include "idl/types/parameter_struct.hpp"
+#include "rpc/service/call_recorder.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "recording/recorded_types.hpp"
 #include "skein/introspection.idl.hpp"
 

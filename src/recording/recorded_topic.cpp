@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "entity/topic_tap.hpp"
+#include "introspection/topic_tap.hpp"
 
 namespace skein::recording {
 

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "skein/inspector.hpp"
 
 namespace skein::recording {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "recording/recording_idl.hpp"
+#include "recording/viewers/recording_idl.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"

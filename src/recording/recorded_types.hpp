@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "recording/writer.hpp"
+#include "recording/mcap/writer.hpp"
 #include "skein/types.idl.hpp"
 
 namespace skein::recording {

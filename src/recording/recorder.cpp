@@ -9,11 +9,11 @@
 
 #include "core/log.hpp"
 #include "core/wall_clock.hpp"
-#include "entity/topic_witness.hpp"
+#include "introspection/topic_witness.hpp"
 #include "recording/recorded_calls.hpp"
 #include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
-#include "rpc/introspection_topic.hpp"
+#include "rpc/service/introspection_topic.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/json.hpp"
 #include "skein/entity.hpp"

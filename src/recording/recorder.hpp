@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/writer.hpp"
+#include "recording/mcap/writer.hpp"
 #include "skein/clock.hpp"
 
 namespace skein {

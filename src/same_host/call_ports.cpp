@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "dds/sample_format.hpp"
+#include "dds/port/sample_format.hpp"
 #include "skein/error.hpp"
 
 namespace skein::same_host {

@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "core/recent_set.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "meeting.hpp"
 #include "receiver.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "dds/largest_sample.hpp"
+#include "dds/port/largest_sample.hpp"
 
 namespace skein::same_host {
 namespace {

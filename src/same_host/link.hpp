@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "core/file_descriptor.hpp"
+#include "core/system/file_descriptor.hpp"
 #include "loans.hpp"
 #include "ring.hpp"
 #include "shared_memory.hpp"

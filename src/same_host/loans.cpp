@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "core/abstract_socket.hpp"
 #include "core/log.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "pass_descriptor.hpp"
 #include "skein/error.hpp"
 

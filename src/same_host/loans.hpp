@@ -9,9 +9,9 @@
 #include <span>
 #include <utility>
 
-#include "core/file_descriptor.hpp"
-#include "dds/largest_sample.hpp"
-#include "dds/port.hpp"
+#include "core/system/file_descriptor.hpp"
+#include "dds/port/largest_sample.hpp"
+#include "dds/port/port.hpp"
 #include "futex.hpp"
 #include "ring.hpp"
 #include "shared_memory.hpp"

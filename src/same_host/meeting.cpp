@@ -15,11 +15,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/abstract_socket.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
 #include "core/recent_set.hpp"
-#include "core/start_thread.hpp"
+#include "core/system/abstract_socket.hpp"
+#include "core/threads/start_thread.hpp"
 #include "pass_descriptor.hpp"
 #include "skein/error.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "core/file_descriptor.hpp"
+#include "core/system/file_descriptor.hpp"
 
 /// Packets of a Unix socket, with which a descriptor may go. Neither function waits.
 namespace skein::same_host {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/start_thread.hpp"
+#include "core/threads/start_thread.hpp"
 
 namespace skein::same_host {
 

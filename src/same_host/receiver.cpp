@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/start_thread.hpp"
+#include "core/threads/start_thread.hpp"
 
 namespace skein::same_host {
 namespace {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "dds/largest_sample.hpp"
-#include "dds/port.hpp"
+#include "dds/port/largest_sample.hpp"
+#include "dds/port/port.hpp"
 #include "futex.hpp"
 #include "lead.hpp"
 #include "link.hpp"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/file_descriptor.hpp"
+#include "core/system/file_descriptor.hpp"
 
 namespace skein::same_host {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/detail/malformed_sample.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "idl/encode_value.hpp"
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "idl/growing_members.hpp"
-#include "idl/type_text.hpp"
+#include "idl/types/growing_members.hpp"
+#include "idl/types/type_text.hpp"
 #include "skein/detail/topic_type.hpp"
 #include "skein/topic_qos.hpp"
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <optional>
 
-#include "view/frame.hpp"
+#include "view/socket_frame.hpp"
 
 namespace skein::view {
 

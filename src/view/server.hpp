@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "view/graph.hpp"
+#include "view/connection_graph.hpp"
 
 /// Shows a mission to Lichtblick, Foxglove and whoever else speaks foxglove.websocket.v1.
 namespace skein::view {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "view/frame.hpp"
-#include "view/graph.hpp"
+#include "view/connection_graph.hpp"
+#include "view/socket_frame.hpp"
 
 /// What the server sends, by the protocol foxglove.websocket.v1.
 namespace skein::view {

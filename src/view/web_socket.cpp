@@ -16,7 +16,7 @@
 
 #include "core/log.hpp"
 #include "core/printable.hpp"
-#include "core/start_thread.hpp"
+#include "core/threads/start_thread.hpp"
 #include "skein/error.hpp"
 
 // No other unit includes Boost.Beast, which takes long to compile.

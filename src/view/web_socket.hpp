@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "view/frame.hpp"
 #include "view/gate.hpp"
+#include "view/socket_frame.hpp"
 
 /// WebSockets, without the library that makes them.
 namespace skein::view {

@@ -139,7 +139,7 @@ class PublicHeaders(TreeTest):
 
 
 class Budget(TreeTest):
-    CEILINGS = {"words of documents": 3, "users' headers": 1, "sources in the fullest folder": 2,
+    CEILINGS = {"words of documents": 3, "users' headers": 1, "sources in the fullest folder": 1, "names that sources of two folders share": 0,
                 "pronouns in 1,000 words of comments": 500}
 
     def setUp(self):
@@ -155,7 +155,7 @@ class Budget(TreeTest):
 
     def test_each_figure_above_its_ceiling_is_found(self):
         for path, text, figure in (("GUIDE.md", "more", "words of documents: 4"), ("include/skein/stream.hpp", "", "users' headers: 2"),
-                                   ("src/a/b.cpp", "", "fullest folder: 3"), ("src/b/b.cpp", "// what where", "comments: 750.0")):
+                                   ("src/a/b.cpp", "", "fullest folder: 2"), ("src/b/a.hpp", "", "share: 1"), ("src/b/b.cpp", "// what where", "comments: 750.0")):
             whole = self.write(path, text)
             self.assertFinds(budget_rules.budget(self.tree), figure)
             os.remove(whole)
@@ -181,7 +181,7 @@ class MissionLines(TreeTest):
 
 
 class TestFloors(TreeTest):
-    AREAS = "set(areas core:0 rpc:3)\nif(x)\n  list(APPEND areas profile:7)\nendif()\n"
+    AREAS = "set(areas core:0 rpc:3)\nif(x)\n  list(APPEND areas mission/profile:7)\nendif()\n"
 
     def test_tests_that_use_a_higher_floor_than_their_folder_has_are_found(self):
         self.write("test/CMakeLists.txt", self.AREAS)
@@ -194,16 +194,16 @@ class TestFloors(TreeTest):
 
     def test_tests_on_their_floor_are_fine(self):
         self.write("test/CMakeLists.txt", self.AREAS)
-        self.write("src/profile/check.hpp", "")
-        self.write("test/profile/x.cpp", '#include "profile/check.hpp"\n#include "skein/entity.hpp"\n')
+        self.write("src/mission/check/profile_check.hpp", "")
+        self.write("test/mission/profile/x.cpp", '#include "mission/check/profile_check.hpp"\n#include "skein/entity.hpp"\n')
         self.assertFindsNothing(include_rules.test_floors(self.tree))
 
 
 class Floors(TreeTest):
     def test_an_include_up_a_floor_is_found(self):
-        self.write("src/rpc/wire.hpp", "")
-        self.write("src/core/call.cpp", '#include "rpc/wire.hpp"\n')
-        self.assertFinds(include_rules.floors(self.tree), "src/core/call.cpp:1", "core (floor 0)", "rpc (floor 3)")
+        self.write("src/rpc/wire/wire.hpp", "")
+        self.write("src/core/call.cpp", '#include "rpc/wire/wire.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "src/core/call.cpp:1", "core (floor 0)", "rpc/wire (floor 3)")
 
     def test_an_include_up_a_floor_by_a_relative_path_is_found(self):
         self.write("src/entity/head.hpp", "")
@@ -211,11 +211,11 @@ class Floors(TreeTest):
         self.assertFinds(include_rules.floors(self.tree), "connector (floor 5)", "entity (floor 6)")
 
     def test_an_include_up_a_floor_by_a_public_header_is_found(self):
-        self.write("src/rpc/x.cpp", '#include "skein/detail/history.hpp"\n')
-        self.assertFinds(include_rules.floors(self.tree), "rpc (floor 3)", "entity (floor 6)")
+        self.write("src/rpc/wire/x.cpp", '#include "skein/detail/history.hpp"\n')
+        self.assertFinds(include_rules.floors(self.tree), "rpc/wire (floor 3)", "selection (floor 3.5)")
 
     def test_a_generated_header_has_the_floor_of_its_idl(self):
-        self.write("src/rpc/x.cpp", '#include "skein/discovery.idl.hpp"\n')
+        self.write("src/rpc/wire/x.cpp", '#include "skein/discovery.idl.hpp"\n')
         self.assertFinds(include_rules.floors(self.tree), "brokerless_discovery (floor 4)")
 
     def test_a_public_header_that_needs_an_internal_one_is_found(self):
@@ -229,8 +229,8 @@ class Floors(TreeTest):
         self.assertFinds(include_rules.floors(self.tree), "dds/cyclonedds")
 
     def test_neighbours_that_know_each_other_are_found(self):
-        self.write("src/launch/peer.hpp", "")
-        self.write("src/fusion/x.cpp", '#include "launch/peer.hpp"\n')
+        self.write("src/mission/xml/words.hpp", "")
+        self.write("src/fusion/x.cpp", '#include "mission/xml/words.hpp"\n')
         self.assertFinds(include_rules.floors(self.tree), "fusion (floor 7)")
 
     def test_a_folder_without_a_floor_is_found(self):
@@ -238,10 +238,10 @@ class Floors(TreeTest):
         self.assertFinds(include_rules.floors(self.tree), "stands on no floor")
 
     def test_downwards_is_allowed(self):
-        self.write("src/dds/port.hpp", "")
-        self.write("src/profile/check.hpp", "")
-        self.write("brokerless_discovery/x.cpp", '#include "dds/port.hpp"\n#include "skein/discovery.idl.hpp"\n')
-        self.write("src/launch/x.cpp", '#include "profile/check.hpp"\n#include "launch.hpp"\n#include <vector>\n')
+        self.write("src/dds/port/port.hpp", "")
+        self.write("src/mission/profile/variables.hpp", "")
+        self.write("brokerless_discovery/x.cpp", '#include "dds/port/port.hpp"\n#include "skein/discovery.idl.hpp"\n')
+        self.write("src/mission/peer/x.cpp", '#include "mission/profile/variables.hpp"\n#include "launch.hpp"\n#include <vector>\n')
         self.assertFindsNothing(include_rules.floors(self.tree))
 
 

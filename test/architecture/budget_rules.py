@@ -19,6 +19,7 @@ def figures(tree):
         "words of documents": sum(len(tree.text(path).split()) for path in tree.files((".md",))),
         "users' headers": sum(1 for path in tree.files((".hpp",), "include/skein") if os.path.dirname(path) == "include/skein"),
         "sources in the fullest folder": max(_sources(tree).values(), default=0),
+        "names that sources of two folders share": _shared_names(tree),
         "pronouns in 1,000 words of comments": _pronouns(tree),
     }
 
@@ -52,7 +53,16 @@ def mission_lines(tree, build):
 
 def _sources(tree):
     return collections.Counter(
-        os.path.dirname(path) for folder in ("src", "test") for path in tree.files((".hpp", ".cpp"), folder))
+        os.path.dirname(path) for folder in ("src", "test") for path in tree.files((".cpp", ".c"), folder))
+
+
+def _shared_names(tree):
+    """How many names sources of two folders have: who looks for one finds the other."""
+    places = collections.defaultdict(set)
+    for folder in ("src", "brokerless_discovery"):
+        for path in tree.files((".hpp", ".cpp", ".h", ".c"), folder):
+            places[os.path.splitext(os.path.basename(path))[0]].add(os.path.dirname(path))
+    return sum(1 for folders in places.values() if len(folders) > 1)
 
 
 def _pronouns(tree):

@@ -5,43 +5,41 @@ import re
 
 from source_tree import SOURCES, within
 
-# The floors of ARCHITECTURE.md. Each may use those below it.
-FLOORS = {
-    "core": 0,
-    "idl": 1,
-    "dds": 2,
-    "same_host": 2.5,
-    "rpc": 3,
-    "topics": 3,
-    "brokerless_discovery": 4,
-    "connector": 5,
-    "entity": 6,
-    "profile": 7,
-    "launch": 7,
-    "recording": 7,
-    "fusion": 7,
-    "view": 7,
-    "navigation": 7,
-    "navigation/grid": 1.5,
-    "navigation/terrain": 7.1,
-    "navigation/threats": 7.2,
-    "navigation/planners": 7.3,
-    "navigation/routes": 7.4,
-    "navigation/route_checker": 7.4,
-    "navigation/components": 7.5,
-    "command": 8,
-    "all of the library": 8,
-    "Asio": 0.5,
-}
+_ARCHITECTURE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "ARCHITECTURE.md")
+_ROW = re.compile(r"^\| (\d[\d.]*) \|[^|]*\|([^|]*)\|", re.MULTILINE)
+_PLACE = re.compile(r"`([\w/]+)`(?: (\d[\d.]*))?")
+
+
+def _read_floors(text):
+    """The floors of ARCHITECTURE.md's table. A folder may have a number of its own; `/x` lies beside the last one of another form."""
+    found = {}
+    for floor, places in _ROW.findall(text):
+        beside = ""
+        for place, own in _PLACE.findall(places):
+            if place.startswith("/"):
+                place = beside + place
+            else:
+                place = place.removeprefix("src/")
+                beside = place.split("/")[0]
+            found[place] = float(own or floor)
+    return found
+
+
+with open(_ARCHITECTURE, encoding="utf-8") as stream:
+    # Each folder may use those below it.
+    FLOORS = {**_read_floors(stream.read()), "all of the library": 8, "Asio": 0.5}
 # What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
 USERS_HEADERS = {
     "core": "call call_context clock error executor guid stream wait_for_signal",
     "idl": "describe loaned",
-    "dds": "loopback vendor",
+    "dds/port": "loopback vendor",
     "topics": "publisher subscription topic_qos",
     "brokerless_discovery": "constraint",
     "connector": "connector gather",
-    "entity": "component_registry decision dynamic entity evaluation head head_options inspector parameters process selection synthesis task",
+    "selection": "decision evaluation selection synthesis task",
+    "entity": "component_registry entity head head_options parameters process",
+    "introspection": "inspector",
+    "dynamic": "dynamic",
     "fusion": "fusion",
     "all of the library": "skein",
     "Asio": "asio",
@@ -53,9 +51,9 @@ DETAIL_HEADERS = {
     "core": "abi action box bytes call_memory channel loan_memory operation pending_reply representation version",
     "idl": "argument cdr codec declared_exception filled json json_codec key_hash lendable make_type_support malformed_sample plain_layout"
            " service_reference type_support union_access unknown_operation wide_text",
-    "dds": "qos",
+    "dds/port": "qos",
     "topics": "topic_type",
-    "entity": "circuit_breaker history task_run",
+    "selection": "circuit_breaker history task_run",
 }
 _FLOOR_OF_HEADER = {
     f"skein/{folder}{name}.hpp": floor
@@ -63,38 +61,36 @@ _FLOOR_OF_HEADER = {
     for floor, names in headers.items()
     for name in names.split()
 }
-# Each back end's folder in src/dds, which only knows what is below.
-BACK_END = 2.5
 # Neighbours on one floor do not know each other, but for these.
-NEIGHBOURS = {("launch", "profile")}
+NEIGHBOURS = {("mission/profile", "mission/component")}
 # Headers that are generated, by the floor of their IDL; all of idl/navigation are of `navigation`.
-GENERATED = {"skein/types.idl.hpp": "idl", "skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc",
-             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "launch", "skein/live_parameters.idl.hpp": "launch"}
+GENERATED = {"skein/types.idl.hpp": "idl", "skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc/wire",
+             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "mission/process", "skein/live_parameters.idl.hpp": "mission/process"}
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from
 # outside, are built on the vendors' own headers.
-_OUTSIDE = ["benchmarks/raw", "test/foreign", "test/conformance"]
+_OUTSIDE = ["benchmarks/raw", "test/foreign", "test/dds"]
 HOMES = {
     "Fast DDS": (r"(fastdds|fastrtps)/", ["src/dds/fastdds", *_OUTSIDE]),
     "Cyclone DDS": (r"dds/(dds\.h|ddsc/|ddsi/|ddsrt/)", ["src/dds/cyclonedds", "test/idl", *_OUTSIDE]),
     "Fast CDR": (r"fastcdr/", _OUTSIDE),
     "OMPL": (r"ompl/", ["src/navigation/planners"]),
     "Eigen": (r"(Eigen|eigen3|unsupported/Eigen)/", ["src/fusion", "test/fusion", "examples/reconnaissance"]),
-    "pugixml": (r"pugixml", ["src/profile", "test"]),
+    "pugixml": (r"pugixml", ["src/mission/xml", "src/mission/component", "test"]),
     "JSON": (r"nlohmann/", ["src/idl", "src/command", "src/view", "src/navigation/routes", "test", "benchmarks",
                              "examples/reconnaissance/report/report.cpp", "examples/reconnaissance/test"]),
-    "zstd": (r"zstd\.h", ["src/recording/compression.cpp"]),
-    "libdeflate": (r"libdeflate\.h", ["src/recording/compression.cpp"]),
+    "zstd": (r"zstd\.h", ["src/recording/mcap/compression.cpp"]),
+    "libdeflate": (r"libdeflate\.h", ["src/recording/mcap/compression.cpp"]),
     "Boost.Asio and Boost.Beast": (r"boost/(asio|beast)", ["src/view/web_socket.cpp"]),
     "Asio": (r"asio(\.hpp|/)", ["include/skein/asio.hpp", "test/connector"]),
-    "the command line": (r"CLI/", ["src/command/line", "src/command/grid/main.cpp", "test/command", "benchmarks"]),
+    "the command line": (r"CLI/", ["src/command/line", "src/command/bench/skein_grid.cpp", "test/command", "benchmarks"]),
 }
 # The headers of ours that precompiled headers may bring: nobody else includes them.
 PRECOMPILED = {"core/standard_library.hpp": "src/core/standard_library.hpp", "tools/precompiled.hpp": "test/tools/precompiled.hpp"}
 _AREAS = re.compile(r"(?:set\(areas|list\(APPEND areas)([^)]*)\)")
 _PRECOMPILES = re.compile(r"\btarget_precompile_headers\s*\(([^)]*)\)")
-# What libskein must not link: modules bring it, or plugins.
-LOADED_LIBRARIES = r"lib(fastrtps|fastdds|ddsc|ompl)"
+# What libskein must not link: modules bring it, or plugins, or libskein_mission.
+LOADED_LIBRARIES = r"lib(fastrtps|fastdds|ddsc|ompl|pugixml)"
 
 
 def homes(tree):
@@ -154,18 +150,21 @@ def floors(tree):
             for line, included, quoted in tree.includes(path):
                 used = _module_of_include(tree, path, included, quoted)
                 if used and not _may_use(user, used):
-                    yield f"{path}:{line}: {user} (floor {floor_of(user)}) includes {included} of {used} (floor {floor_of(used)})"
+                    yield f"{path}:{line}: {user} (floor {floor_of(user):g}) includes {included} of {used} (floor {floor_of(used):g})"
                 if top == "include/skein" and quoted and not included.startswith("skein/"):
                     yield f"{path}:{line}: includes {included}, which is not installed"
 
 
 def test_floors(tree):
     """A folder of tests that uses a higher floor than test/CMakeLists.txt says: a change there would not run it."""
-    declared = dict(re.findall(r"\b(\w+):(\d)\b", "".join(_AREAS.findall(tree.text("test/CMakeLists.txt")))))
+    declared = dict(re.findall(r"([\w/]+):(\d)\b", "".join(_AREAS.findall(tree.text("test/CMakeLists.txt")))))
     if not declared:
         yield "test/CMakeLists.txt: names no folder with its floor"
     for area, floor in declared.items():
+        apart = [f"test/{other}" for other in declared if other.startswith(area + "/")]
         for path in tree.files(SOURCES, f"test/{area}"):
+            if within(path, apart):
+                continue
             for line, included, quoted in tree.includes(path):
                 used = _module_of_include(tree, path, included, quoted)
                 if used and int(floor_of(used)) > int(floor):
@@ -177,8 +176,8 @@ def _may_use(user, used):
 
 
 def floor_of(module):
-    """The number of a module's floor; those of back ends and of navigation's parts lie between two whole ones."""
-    return BACK_END if module.startswith("dds/") else FLOORS[module]
+    """The number of a module's floor, which may lie between two whole ones."""
+    return FLOORS[module]
 
 
 def module_of(path):
@@ -186,8 +185,6 @@ def module_of(path):
     if path.startswith("include/"):
         return floor_of_header(path.removeprefix("include/"))
     parts = path.removeprefix("src/").split("/")
-    if parts[0] == "dds" and len(parts) > 2:
-        return "/".join(parts[:2])
     for length in (2, 1):
         name = "/".join(parts[:length])
         if len(parts) > length and name in FLOORS:

@@ -11,17 +11,17 @@ _SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b|\
 # The only tests that sleep, and why.
 SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
-    "test/launch/shell_mission.hpp": "looks again at a condition",
+    "test/mission/supervise/shell_mission.hpp": "looks again at a condition",
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
-    "test/conformance/fastdds_forgetting_test.cpp": "the age of what is requested: Fast DDS sends nothing again that it has just sent",
-    "test/conformance/suite_lifetime.cpp": "the pace of a writer that never rests",
-    "test/faults/churn.hpp": "how long participants and endpoints live, which is what the churn varies",
-    "test/faults/death_test.cpp": "an operation that takes its time until it is let go",
-    "test/mission/planner_process.cpp": "a planner that is slower than it declares",
-    "test/faults/first_call_test.cpp": "the offset between two starts, which is what the test varies",
+    "test/dds/fastdds/fastdds_forgetting_test.cpp": "the age of what is requested: Fast DDS sends nothing again that it has just sent",
+    "test/dds/conformance/suite_lifetime.cpp": "the pace of a writer that never rests",
+    "test/faults/load/churn.hpp": "how long participants and endpoints live, which is what the churn varies",
+    "test/faults/deaths/death_test.cpp": "an operation that takes its time until it is let go",
+    "test/navigation/components/planner_process.cpp": "a planner that is slower than it declares",
+    "test/faults/deaths/first_call_test.cpp": "the offset between two starts, which is what the test varies",
     "test/faults/processes.hpp": "how long a fault lasts, which is what the tests vary",
-    "test/faults/tally_client.cpp": "the pace of a client that never rests",
-    "test/faults/tally_peer.cpp": "an operation that takes its time",
+    "test/faults/matrix/tally_client.cpp": "the pace of a client that never rests",
+    "test/faults/matrix/tally_peer.cpp": "an operation that takes its time",
 }
 
 # Which code of a text must stand, as it is, in files of which folders.

@@ -4,12 +4,12 @@
 #include <condition_variable>
 #include <thread>
 
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/process_watch.hpp"
 #include "descriptions.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;

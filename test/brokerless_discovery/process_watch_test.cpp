@@ -16,9 +16,9 @@
 #include <memory>
 #include <vector>
 
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/kill_process.hpp"
-#include "core/abstract_socket.hpp"
+#include "core/system/abstract_socket.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein::brokerless_discovery;
 using skein::connect_to;

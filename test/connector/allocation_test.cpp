@@ -6,7 +6,7 @@
 #include <functional>
 #include <new>
 
-#include "../connector/echo_service.hpp"
+#include "echo_service.hpp"
 #include "skein/entity.hpp"
 #include "skein/loopback.hpp"
 

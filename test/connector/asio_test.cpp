@@ -5,9 +5,9 @@
 #include <future>
 #include <thread>
 
-#include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

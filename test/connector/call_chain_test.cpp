@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "../tools/child_process.hpp"
-#include "../tools/places.hpp"
 #include "pairing.hpp"
 #include "relay_service.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/places.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,14 +1,14 @@
-#include "rpc/call_journal.hpp"
+#include "rpc/service/call_journal.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
 #include "echo_pair.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "../tools/eventually.hpp"
-#include "../tools/invariant.hpp"
-#include "../tools/log.hpp"
 #include "echo_pair.hpp"
 #include "pairing.hpp"
-#include "rpc/dds_channel.hpp"
+#include "rpc/client/dds_channel.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/invariant.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

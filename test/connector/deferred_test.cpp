@@ -5,14 +5,14 @@
 #include <future>
 #include <thread>
 
-#include "../tools/eventually.hpp"
-#include "../tools/invariant.hpp"
-#include "../tools/log.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/loopback.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/invariant.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

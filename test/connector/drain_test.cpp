@@ -4,14 +4,14 @@
 #include <future>
 #include <thread>
 
-#include "../tools/eventually.hpp"
-#include "../tools/invariant.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "many_clients.hpp"
 #include "pairing.hpp"
 #include "skein/head.hpp"
 #include "skein/loopback.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/invariant.hpp"
 
 using namespace skein;
 using namespace skein::test;

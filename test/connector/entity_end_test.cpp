@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <future>
 
-#include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "skein/loopback.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

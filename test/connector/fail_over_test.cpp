@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_pair.hpp"
 #include "pairing.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,9 +1,9 @@
-#include "failover_channel.hpp"
+#include "connector/failover_channel.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "../brokerless_discovery/descriptions.hpp"
 #include "fake_provider.hpp"
+#include "test/brokerless_discovery/descriptions.hpp"
 
 using namespace skein;
 using namespace skein::connector;

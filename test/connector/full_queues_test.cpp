@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <future>
 
-#include "../tools/eventually.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
-#include "rpc/dds_channel.hpp"
+#include "rpc/client/dds_channel.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -3,10 +3,10 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 
-#include "../tools/eventually.hpp"
-#include "../tools/threads.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/threads.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "fake_provider.hpp"
 #include "pairing.hpp"
 #include "skein/gather.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,11 +1,11 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
 #include "skein/process.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

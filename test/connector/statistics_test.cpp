@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_pair.hpp"
 #include "entity/statistics_topic.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

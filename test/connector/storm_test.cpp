@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "../tools/eventually.hpp"
-#include "../tools/invariant.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
 #include "many_clients.hpp"
 #include "pairing.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/invariant.hpp"
 
 using namespace skein;
 using namespace skein::test;

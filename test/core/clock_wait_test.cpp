@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "../tools/eventually.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
-#include "../tools/eventually.hpp"
-#include "core/idle_work.hpp"
+#include "core/threads/idle_work.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

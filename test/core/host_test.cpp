@@ -1,4 +1,4 @@
-#include "core/host.hpp"
+#include "core/system/host.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/thread_settings.hpp"
+#include "core/threads/thread_settings.hpp"
 
 namespace {
 

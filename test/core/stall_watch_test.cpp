@@ -1,4 +1,4 @@
-#include "core/stall_watch.hpp"
+#include "core/threads/stall_watch.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-#include "core/thread_settings.hpp"
+#include "core/threads/thread_settings.hpp"
 
 #include <pthread.h>
 #include <sched.h>
@@ -9,10 +9,10 @@
 #include <catch2/catch.hpp>
 #include <future>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using skein::test::Log;

@@ -11,8 +11,8 @@
 #include <mutex>
 #include <thread>
 
-#include "../tools/eventually.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using skein::test::eventually;

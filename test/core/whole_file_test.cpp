@@ -1,4 +1,4 @@
-#include "core/whole_file.hpp"
+#include "core/system/whole_file.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,8 +11,8 @@
 #include <functional>
 #include <utility>
 
-#include "../tools/temporary_folder.hpp"
 #include "skein/error.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 using namespace skein;
 using Catch::Contains;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "../tools/log.hpp"
 #include "office.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "../tools/invariant.hpp"
 #include "office.hpp"
+#include "test/tools/invariant.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -3,12 +3,12 @@
 #include <catch2/catch.hpp>
 #include <future>
 
-#include "../tools/eventually.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
 #include "skein/process.hpp"
 #include "skein/selection.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

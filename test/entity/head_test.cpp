@@ -1,13 +1,13 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "../tools/describe.hpp"
-#include "../tools/log.hpp"
 #include "office.hpp"
-#include "rpc/dds_server.hpp"
+#include "rpc/server/dds_server.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/tools/describe.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::test;

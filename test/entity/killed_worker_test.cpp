@@ -2,9 +2,9 @@
 #include <csignal>
 #include <thread>
 
-#include "../tools/child_process.hpp"
-#include "../tools/places.hpp"
 #include "office.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/places.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -8,11 +8,11 @@
 #include <thread>
 #include <vector>
 
-#include "../connector/pairing.hpp"
-#include "../tools/eventually.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "scripted_worker.hpp"
 #include "skein/discovery.idl.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/eventually.hpp"
 
 namespace skein::test {
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <mutex>
 
-#include "../tools/log.hpp"
-#include "../tools/places.hpp"
 #include "office.hpp"
-#include "rpc/introspection_topic.hpp"
+#include "rpc/service/introspection_topic.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/tools/log.hpp"
+#include "test/tools/places.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "../connector/echo_service.hpp"
-#include "../tools/describe.hpp"
 #include "brokerless_discovery/broker.hpp"
-#include "rpc/dds_server.hpp"
+#include "rpc/server/dds_server.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "test/connector/echo_service.hpp"
+#include "test/tools/describe.hpp"
 
 namespace skein::test {
 

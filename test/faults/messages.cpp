@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "../connector/echo_service.hpp"
 #include "skein/detail/operation.hpp"
+#include "test/connector/echo_service.hpp"
 
 namespace skein::test {
 namespace {

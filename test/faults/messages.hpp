@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rpc/wire.hpp"
+#include "rpc/wire/wire.hpp"
 #include "skein/detail/bytes.hpp"
 
 namespace skein::test {

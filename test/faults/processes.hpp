@@ -5,9 +5,9 @@
 #include <thread>
 #include <vector>
 
-#include "../connector/pairing.hpp"
-#include "../tools/child_process.hpp"
-#include "../tools/eventually.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/eventually.hpp"
 
 namespace skein::test {
 

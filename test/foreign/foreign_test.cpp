@@ -2,10 +2,10 @@
 #include <cstdlib>
 #include <thread>
 
-#include "../connector/pairing.hpp"
-#include "../tools/child_process.hpp"
-#include "../tools/eventually.hpp"
 #include "lookout_service.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "../connector/pairing.hpp"
-#include "../tools/child_process.hpp"
-#include "../tools/eventually.hpp"
 #include "lookout.idl.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 
-#include "../tools/eventually.hpp"
 #include "site.hpp"
 #include "skein/error.hpp"
 #include "skein/gather.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace std::chrono_literals;
 using skein::test::eventually;

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "../tools/eventually.hpp"
 #include "site.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace std::chrono_literals;
 using skein::test::eventually;

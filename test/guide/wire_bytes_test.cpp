@@ -2,11 +2,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "../tools/places.hpp"
-#include "dds/sample_format.hpp"
+#include "dds/port/sample_format.hpp"
 #include "greeter.idl.hpp"
-#include "rpc/reply_encoding.hpp"
-#include "rpc/wire.hpp"
+#include "rpc/wire/reply_encoding.hpp"
+#include "rpc/wire/wire.hpp"
+#include "test/tools/places.hpp"
 
 using namespace std::chrono_literals;
 using skein::rpc::wire::RequestId;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "idl/description_limits.hpp"
-#include "idl/dynamic_type.hpp"
+#include "idl/types/description_limits.hpp"
+#include "idl/types/dynamic_type.hpp"
 #include "planner.idl.hpp"
 #include "skein/describe.hpp"
 #include "skein/error.hpp"

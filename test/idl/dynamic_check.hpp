@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
-#include "idl/dynamic_codec.hpp"
-#include "idl/dynamic_support.hpp"
+#include "idl/types/dynamic_codec.hpp"
+#include "idl/types/dynamic_support.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 

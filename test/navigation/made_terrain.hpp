@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "../tools/temporary_folder.hpp"
 #include "navigation/terrain/terrain.hpp"
 #include "navigation/terrain/terrain_provider.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 namespace skein::navigation::testing {
 

@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "../tools/seed.hpp"
-#include "recording/chunk_reader.hpp"
-#include "recording/compression.hpp"
-#include "recording/record_writer.hpp"
+#include "recording/mcap/chunk_reader.hpp"
+#include "recording/mcap/compression.hpp"
+#include "recording/mcap/record_writer.hpp"
 #include "recordings.hpp"
 #include "skein/error.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein;
 using namespace skein::recording;

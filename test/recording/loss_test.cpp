@@ -7,11 +7,11 @@
 #include <csignal>
 #include <random>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
-#include "recording/chunk_queue.hpp"
+#include "recording/mcap/chunk_queue.hpp"
 #include "recordings.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::recording;

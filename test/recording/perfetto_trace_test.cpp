@@ -1,14 +1,14 @@
-#include "recording/perfetto_trace.hpp"
+#include "recording/viewers/perfetto_trace.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "../tools/temporary_folder.hpp"
 #include "recordings.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 using namespace skein;
 using namespace skein::introspection;

@@ -3,10 +3,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "../entity/surveyor.hpp"
-#include "../tools/eventually.hpp"
+#include "recording/mcap/reader.hpp"
 #include "recording/player.hpp"
-#include "recording/reader.hpp"
 #include "recording/recorded_calls.hpp"
 #include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
@@ -16,6 +14,8 @@
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
+#include "test/dynamic/surveyor.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,4 +1,4 @@
-#include "recording/recording_idl.hpp"
+#include "recording/viewers/recording_idl.hpp"
 
 #include <catch2/catch.hpp>
 

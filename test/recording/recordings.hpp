@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "../tools/temporary_folder.hpp"
-#include "recording/reader.hpp"
-#include "recording/writer.hpp"
+#include "recording/mcap/reader.hpp"
+#include "recording/mcap/writer.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 namespace skein::test {
 

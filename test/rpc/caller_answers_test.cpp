@@ -1,4 +1,4 @@
-#include "rpc/caller_answers.hpp"
+#include "rpc/client/caller_answers.hpp"
 
 #include <catch2/catch.hpp>
 #include <functional>

@@ -1,11 +1,11 @@
-#include "rpc/fair_queue.hpp"
+#include "rpc/service/fair_queue.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "../connector/echo_service.hpp"
-#include "rpc/service.hpp"
+#include "rpc/service/service.hpp"
 #include "skein/error.hpp"
+#include "test/connector/echo_service.hpp"
 
 using namespace skein;
 using rpc::FairQueue;

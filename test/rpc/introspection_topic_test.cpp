@@ -1,4 +1,4 @@
-#include "rpc/introspection_topic.hpp"
+#include "rpc/service/introspection_topic.hpp"
 
 #include <catch2/catch.hpp>
 #include <future>
@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "../tools/log.hpp"
-#include "rpc/batch_publisher.hpp"
-#include "rpc/call_recorder.hpp"
+#include "rpc/service/batch_publisher.hpp"
+#include "rpc/service/call_recorder.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/loopback.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

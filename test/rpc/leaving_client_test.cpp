@@ -4,10 +4,10 @@
 #include <map>
 #include <thread>
 
-#include "../connector/echo_service.hpp"
-#include "../tools/eventually.hpp"
-#include "rpc/dds_server.hpp"
-#include "rpc/wire.hpp"
+#include "rpc/server/dds_server.hpp"
+#include "rpc/wire/wire.hpp"
+#include "test/connector/echo_service.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

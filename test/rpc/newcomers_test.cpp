@@ -1,4 +1,4 @@
-#include "newcomers.hpp"
+#include "rpc/server/newcomers.hpp"
 
 #include <catch2/catch.hpp>
 

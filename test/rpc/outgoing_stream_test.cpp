@@ -1,4 +1,4 @@
-#include "rpc/outgoing_stream.hpp"
+#include "rpc/service/outgoing_stream.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "rpc/service.hpp"
+#include "rpc/service/service.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -9,9 +9,9 @@
 #include <string>
 #include <thread>
 
-#include "../connector/echo_service.hpp"
-#include "rpc/reception.hpp"
+#include "rpc/service/reception.hpp"
 #include "skein/error.hpp"
+#include "test/connector/echo_service.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

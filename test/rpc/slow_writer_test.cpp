@@ -4,14 +4,14 @@
 #include <future>
 #include <mutex>
 
-#include "../connector/echo_service.hpp"
-#include "../tools/eventually.hpp"
-#include "rpc/call_journal.hpp"
-#include "rpc/dds_channel.hpp"
-#include "rpc/dds_server.hpp"
+#include "rpc/client/dds_channel.hpp"
+#include "rpc/server/dds_server.hpp"
+#include "rpc/service/call_journal.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/loopback.hpp"
+#include "test/connector/echo_service.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,4 +1,4 @@
-#include "transit_delay.hpp"
+#include "rpc/wire/transit_delay.hpp"
 
 #include <catch2/catch.hpp>
 

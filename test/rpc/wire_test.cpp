@@ -1,4 +1,4 @@
-#include "rpc/wire.hpp"
+#include "rpc/wire/wire.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstring>

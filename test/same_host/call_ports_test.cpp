@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "../tools/eventually.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

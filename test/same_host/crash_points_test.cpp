@@ -24,12 +24,12 @@
 #include <thread>
 #include <vector>
 
-#include "../tools/eventually.hpp"
-#include "../tools/invariant.hpp"
-#include "../tools/prepare.hpp"
-#include "../tools/seed.hpp"
 #include "same_host/call_ports.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/invariant.hpp"
+#include "test/tools/prepare.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

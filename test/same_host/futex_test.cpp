@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "../tools/eventually.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "../tools/eventually.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein::same_host;
 using skein::test::eventually;

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "core/abstract_socket.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "same_host/link.hpp"
 
 namespace skein::test {

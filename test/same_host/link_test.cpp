@@ -6,9 +6,9 @@
 #include <initializer_list>
 #include <vector>
 
-#include "../tools/eventually.hpp"
-#include "../tools/one_core.hpp"
 #include "link_pair.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/one_core.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "../tools/eventually.hpp"
 #include "same_host/link.hpp"
 #include "same_host/meeting.hpp"
 #include "same_host/pass_descriptor.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
-#include "../tools/threads.hpp"
-#include "core/abstract_socket.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
+#include "test/tools/threads.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

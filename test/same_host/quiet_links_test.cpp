@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "../tools/eventually.hpp"
-#include "../tools/threads.hpp"
 #include "link_pair.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/threads.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

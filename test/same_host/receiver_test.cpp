@@ -10,12 +10,12 @@
 #include <thread>
 #include <vector>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
-#include "../tools/one_core.hpp"
-#include "core/abstract_socket.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "link_pair.hpp"
 #include "same_host/meeting.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
+#include "test/tools/one_core.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "../tools/one_core.hpp"
 #include "same_host/shared_memory.hpp"
+#include "test/tools/one_core.hpp"
 
 using namespace skein;
 using namespace skein::same_host;

@@ -5,9 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -15,6 +13,8 @@
 #include "skein/publisher.hpp"
 #include "skein/subscription.hpp"
 #include "streams.idl.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <future>
 
-#include "../connector/pairing.hpp"
-#include "../tools/eventually.hpp"
 #include "heard.hpp"
 #include "streams.idl.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

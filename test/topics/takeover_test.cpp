@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "../connector/pairing.hpp"
-#include "../tools/child_process.hpp"
-#include "../tools/eventually.hpp"
 #include "heard.hpp"
 #include "streams.idl.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/child_process.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::test;

@@ -1,8 +1,8 @@
-#include "dds/type_version.hpp"
+#include "dds/port/type_version.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "dds/compatibility.hpp"
+#include "dds/port/compatibility.hpp"
 
 using namespace skein;
 using namespace skein::dds;

@@ -1,14 +1,14 @@
 #include <catch2/catch.hpp>
 
-#include "../connector/pairing.hpp"
-#include "../tools/eventually.hpp"
-#include "../tools/log.hpp"
-#include "../topics/heard.hpp"
 #include "brokerless_discovery/broker.hpp"
 #include "sea_1.idl.hpp"
 #include "sea_2.idl.hpp"
 #include "sea_3.idl.hpp"
 #include "skein/describe.hpp"
+#include "test/connector/pairing.hpp"
+#include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
+#include "test/topics/heard.hpp"
 
 using namespace skein;
 using namespace skein::test;

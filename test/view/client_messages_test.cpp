@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "../tools/seed.hpp"
 #include "skein/error.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein::view;
 using Catch::Matchers::Contains;

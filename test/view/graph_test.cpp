@@ -1,6 +1,6 @@
-#include "view/graph.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "view/connection_graph.hpp"
 
 using namespace skein::view;
 

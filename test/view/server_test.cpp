@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "../tools/eventually.hpp"
 #include "skein/error.hpp"
+#include "test/tools/eventually.hpp"
 #include "web_client.hpp"
 
 using namespace skein;

@@ -9,7 +9,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "../tools/eventually.hpp"
+#include "test/tools/eventually.hpp"
 
 namespace skein::test {
 namespace {

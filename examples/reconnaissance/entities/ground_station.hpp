@@ -15,7 +15,7 @@
 #include "mission.idl.hpp"
 #include "mission/places.hpp"
 #include "mission/verdict.hpp"
-#include "recorder.hpp"
+#include "mission_recorder.hpp"
 #include "scoring.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"

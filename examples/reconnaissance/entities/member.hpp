@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mission.idl.hpp"
-#include "participant.hpp"
+#include "mission_participant.hpp"
 #include "skein/parameters.hpp"
 
 namespace reconnaissance {

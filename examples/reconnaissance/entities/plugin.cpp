@@ -12,7 +12,7 @@
 #include "flight_models.hpp"
 #include "flight_simulator.hpp"
 #include "mission_manager.hpp"
-#include "navigator.hpp"
+#include "mission_navigator.hpp"
 #include "nhp.hpp"
 #include "object_tracker.hpp"
 #include "pursuit.hpp"

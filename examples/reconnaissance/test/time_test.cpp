@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "entities/participant.hpp"
+#include "entities/mission_participant.hpp"
 #include "entities/stream.hpp"
 #include "entities/time_keeper.hpp"
 #include "flight.idl.hpp"

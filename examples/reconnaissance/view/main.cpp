@@ -13,7 +13,7 @@
 
 #include "entities/convert.hpp"
 #include "entities/in_system.hpp"
-#include "entities/recorder.hpp"
+#include "entities/mission_recorder.hpp"
 #include "entities/stream.hpp"
 #include "entities/topics.hpp"
 #include "skein/entity.hpp"

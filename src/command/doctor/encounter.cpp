@@ -8,8 +8,8 @@
 
 #include "bench.idl.hpp"
 #include "brokerless_discovery/broker.hpp"
-#include "command/topic_survey.hpp"
-#include "dds/vendor_names.hpp"
+#include "command/look/topic_survey.hpp"
+#include "dds/port/vendor_names.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "command/domain_picture.hpp"
-#include "command/interruption.hpp"
-#include "command/onlooker.hpp"
-#include "command/topic_findings.hpp"
-#include "profile/mission_profile.hpp"
+#include "command/look/domain_picture.hpp"
+#include "command/look/onlooker.hpp"
+#include "command/look/topic_findings.hpp"
+#include "command/print/interruption.hpp"
+#include "mission/profile/mission_profile.hpp"
 #include "symptom.hpp"
 
 namespace skein::command::doctor {

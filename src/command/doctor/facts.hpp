@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/network_interface.hpp"
+#include "core/system/network_interface.hpp"
 
 /// What `skein doctor` knows of a machine: plain values, so that each conclusion can be tested with
 /// a machine that does not exist. A fact that could not be read is nullopt.

@@ -5,7 +5,7 @@
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
-#include "dds/options_check.hpp"
+#include "dds/port/options_check.hpp"
 #include "diagnosis.hpp"
 
 namespace skein::command::doctor {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "dds/vendor_names.hpp"
-#include "launch/launch_plan.hpp"
+#include "dds/port/vendor_names.hpp"
+#include "mission/supervise/launch_plan.hpp"
 
 namespace skein::command::doctor {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "facts.hpp"
-#include "profile/mission_profile.hpp"
+#include "mission/profile/mission_profile.hpp"
 
 namespace skein::command::doctor {
 

@@ -16,10 +16,10 @@
 #include <memory>
 #include <sstream>
 
-#include "core/file_descriptor.hpp"
-#include "dds/options_check.hpp"
-#include "dds/vendor_names.hpp"
-#include "launch/mission_claim.hpp"
+#include "core/system/file_descriptor.hpp"
+#include "dds/port/options_check.hpp"
+#include "dds/port/vendor_names.hpp"
+#include "mission/supervise/mission_claim.hpp"
 #include "skein/error.hpp"
 #include "skein/vendor.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "command/json_output.hpp"
-#include "command/wrapped.hpp"
+#include "command/print/json_output.hpp"
+#include "command/print/wrapped.hpp"
 #include "core/printable.hpp"
 
 namespace skein::command::doctor {

@@ -6,14 +6,14 @@
 #include <list>
 #include <sstream>
 
-#include "command/wrapped.hpp"
+#include "command/print/wrapped.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
-#include "dds/options_check.hpp"
-#include "dds/vendor_names.hpp"
+#include "dds/port/options_check.hpp"
+#include "dds/port/vendor_names.hpp"
 #include "help.hpp"
-#include "profile/dictionary.hpp"
-#include "profile/mission_profile.hpp"
+#include "mission/component/dictionary.hpp"
+#include "mission/profile/mission_profile.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {

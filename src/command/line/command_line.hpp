@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "command/onlooker.hpp"
-#include "launch/exit_codes.hpp"
+#include "command/look/onlooker.hpp"
+#include "mission/process/exit_codes.hpp"
 
 // What the command line of `skein` is made of. Only this folder includes CLI11, which takes long to
 // compile. Help, manual pages and completion are made from the same CLI::App.

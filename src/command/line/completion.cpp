@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "command_line.hpp"
-#include "core/network_interface.hpp"
+#include "core/system/network_interface.hpp"
 #include "help.hpp"
 
 namespace skein::command {

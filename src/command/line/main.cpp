@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "command/interruption.hpp"
+#include "command/print/interruption.hpp"
 #include "command_line.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
-#include "core/whole_file.hpp"
+#include "core/system/whole_file.hpp"
 #include "familiar_names.hpp"
-#include "launch/address_space.hpp"
-#include "launch/exit_codes.hpp"
-#include "profile/finding.hpp"
+#include "mission/process/address_space.hpp"
+#include "mission/process/exit_codes.hpp"
+#include "mission/xml/finding.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {

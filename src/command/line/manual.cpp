@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "command/wrapped.hpp"
+#include "command/print/wrapped.hpp"
 #include "command_line.hpp"
 #include "help.hpp"
 

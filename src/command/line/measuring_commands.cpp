@@ -1,6 +1,6 @@
 #include "command/commands.hpp"
 #include "command_line.hpp"
-#include "dds/vendor_names.hpp"
+#include "dds/port/vendor_names.hpp"
 
 // What measures calls.
 namespace skein::command {

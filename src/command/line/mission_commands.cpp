@@ -2,8 +2,8 @@
 
 #include "command/commands.hpp"
 #include "command_line.hpp"
-#include "launch/exit_codes.hpp"
-#include "profile/mission_profile.hpp"
+#include "mission/process/exit_codes.hpp"
+#include "mission/profile/mission_profile.hpp"
 
 // What checks missions and flies them.
 namespace skein::command {

@@ -5,7 +5,7 @@
 #include "command/commands.hpp"
 #include "command_line.hpp"
 #include "completion.hpp"
-#include "core/whole_file.hpp"
+#include "core/system/whole_file.hpp"
 #include "manual.hpp"
 
 // Completion and manual pages, both made from the command line itself.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "command/figures.hpp"
+#include "command/print/figures.hpp"
 #include "core/printable.hpp"
 
 namespace skein::command::top {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "command/figures.hpp"
-#include "command/local_time.hpp"
+#include "command/print/figures.hpp"
+#include "command/print/local_time.hpp"
 
 namespace skein::command::top {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "command/domain_picture.hpp"
+#include "command/look/domain_picture.hpp"
 #include "frame.hpp"
 #include "skein/introspection.idl.hpp"
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/stall_watch.hpp"
-#include "core/start_thread.hpp"
-#include "identity.hpp"
+#include "core/threads/stall_watch.hpp"
+#include "core/threads/start_thread.hpp"
+#include "cyclone_identity.hpp"
 #include "proxy_leases.h"
 
 namespace skein::dds::cyclonedds {

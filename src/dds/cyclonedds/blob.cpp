@@ -7,8 +7,8 @@
 #include <new>
 #include <random>
 
-#include "../sample_format.hpp"
 #include "blob_memory.hpp"
+#include "dds/port/sample_format.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

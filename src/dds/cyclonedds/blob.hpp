@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../options_check.hpp"
+#include "dds/port/options_check.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 
 namespace skein::dds::cyclonedds {
 

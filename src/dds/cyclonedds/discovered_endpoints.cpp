@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "../type_version.hpp"
-#include "identity.hpp"
+#include "cyclone_identity.hpp"
+#include "dds/port/type_version.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "../endpoints.hpp"
-#include "entity.hpp"
+#include "cyclone_entity.hpp"
+#include "dds/port/endpoints.hpp"
 
 namespace skein::dds::cyclonedds {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "identity.hpp"
+#include "cyclone_identity.hpp"
 
 namespace skein::dds::cyclonedds {
 namespace {

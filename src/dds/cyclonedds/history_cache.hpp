@@ -3,9 +3,9 @@
 #include <dds/dds.h>
 #include <dds/ddsc/dds_rhc.h>
 
-#include "../endpoints.hpp"
-#include "../receive_queue.hpp"
 #include "blob.hpp"
+#include "dds/port/endpoints.hpp"
+#include "dds/port/receive_queue.hpp"
 
 namespace skein::dds::cyclonedds {
 

@@ -11,9 +11,9 @@
 #include <shared_mutex>
 #include <unordered_map>
 
-#include "../options_check.hpp"
-#include "connections.h"
-#include "core/file_descriptor.hpp"
+#include "core/system/file_descriptor.hpp"
+#include "cyclone_connections.h"
+#include "dds/port/options_check.hpp"
 #include "skein/error.hpp"
 
 namespace skein::dds::cyclonedds {

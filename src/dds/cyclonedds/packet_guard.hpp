@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "../rtps_guard.hpp"
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
+#include "dds/rtps/rtps_guard.hpp"
 
 struct ddsi_domaingv;
 struct ddsi_tran_conn;

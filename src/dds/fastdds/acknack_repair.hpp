@@ -5,7 +5,7 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "../rtps_message.hpp"
+#include "dds/rtps/rtps_message.hpp"
 
 namespace skein::dds::fastdds {
 

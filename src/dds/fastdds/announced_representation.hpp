@@ -2,7 +2,7 @@
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 
-#include "../rtps_message.hpp"
+#include "dds/rtps/rtps_message.hpp"
 #include "skein/detail/qos.hpp"
 
 /// Fast DDS 2.9 reads the data representation that others announce and never announces its own: to

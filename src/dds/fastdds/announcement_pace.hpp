@@ -8,7 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "../rtps_message.hpp"
+#include "dds/rtps/rtps_message.hpp"
 
 namespace skein::dds::fastdds {
 

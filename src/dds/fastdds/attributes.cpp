@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <random>
 
-#include "../options_check.hpp"
-#include "../type_version.hpp"
 #include "announced_representation.hpp"
-#include "core/host.hpp"
-#include "shared_memory.hpp"
+#include "core/system/host.hpp"
+#include "dds/port/options_check.hpp"
+#include "dds/port/type_version.hpp"
+#include "fast_shared_memory.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

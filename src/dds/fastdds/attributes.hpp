@@ -12,7 +12,7 @@
 
 #include <memory>
 
-#include "../endpoints.hpp"
+#include "dds/port/endpoints.hpp"
 #include "transport.hpp"
 
 /// Our options and QoS in Fast DDS's terms; where a value is not its default, the reason stands

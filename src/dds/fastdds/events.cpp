@@ -2,8 +2,8 @@
 
 #include <pthread.h>
 
-#include "core/stall_watch.hpp"
-#include "core/start_thread.hpp"
+#include "core/threads/stall_watch.hpp"
+#include "core/threads/start_thread.hpp"
 
 namespace skein::dds::fastdds {
 

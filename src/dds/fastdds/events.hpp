@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "dds/port.hpp"
+#include "dds/port/port.hpp"
 #include "skein/guid.hpp"
 
 namespace skein::dds::fastdds {

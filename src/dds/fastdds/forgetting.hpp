@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "../rtps_message.hpp"
+#include "dds/rtps/rtps_message.hpp"
 
 /// The parts of RTPS by which Fast DDS is kept from a deadlock when it forgets a participant.
 ///

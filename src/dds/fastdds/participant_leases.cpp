@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "../rtps_message.hpp"
+#include "dds/rtps/rtps_message.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

@@ -8,9 +8,9 @@
 #include <memory>
 #include <mutex>
 
-#include "../rtps_guard.hpp"
 #include "acknack_repair.hpp"
 #include "announcement_pace.hpp"
+#include "dds/rtps/rtps_guard.hpp"
 #include "forgetting.hpp"
 #include "liveliness_tracker.hpp"
 #include "suspend_detector.hpp"

@@ -1,7 +1,7 @@
 #include "entities.hpp"
 
-#include "../options_check.hpp"
-#include "../sample_format.hpp"
+#include "dds/port/options_check.hpp"
+#include "dds/port/sample_format.hpp"
 
 namespace skein::dds::loopback {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../vendor_names.hpp"
+#include "dds/port/vendor_names.hpp"
 #include "hub.hpp"
 
 namespace skein::dds::loopback {

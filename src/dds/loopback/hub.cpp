@@ -1,6 +1,6 @@
 #include "hub.hpp"
 
-#include "../sample_format.hpp"
+#include "dds/port/sample_format.hpp"
 
 namespace skein::dds::loopback {
 namespace {

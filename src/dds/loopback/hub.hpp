@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "../deadline_watch.hpp"
-#include "../keyed_queue.hpp"
-#include "../receive_queue.hpp"
-#include "../topic_table.hpp"
+#include "dds/port/deadline_watch.hpp"
+#include "dds/port/keyed_queue.hpp"
+#include "dds/port/receive_queue.hpp"
+#include "dds/port/topic_table.hpp"
 #include "skein/detail/action.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/loopback.hpp"

@@ -1,4 +1,4 @@
-#include "../compatibility.hpp"
+#include "dds/port/compatibility.hpp"
 #include "hub.hpp"
 
 namespace skein::dds::loopback {

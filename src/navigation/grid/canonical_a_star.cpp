@@ -2,9 +2,9 @@
 #include <bit>
 
 #include "bucket_queue.hpp"
+#include "grid_algorithms.hpp"
 #include "landmarks.hpp"
 #include "numbering.hpp"
-#include "planners.hpp"
 #include "pruning.hpp"
 #include "regions.hpp"
 #include "zeroed_array.hpp"

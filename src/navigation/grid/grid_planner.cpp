@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/suggestion.hpp"
-#include "planners.hpp"
+#include "grid_algorithms.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation::grid {

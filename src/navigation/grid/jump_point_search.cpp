@@ -3,8 +3,8 @@
 
 #include "bit_rows.hpp"
 #include "bucket_queue.hpp"
+#include "grid_algorithms.hpp"
 #include "moves.hpp"
-#include "planners.hpp"
 #include "regions.hpp"
 #include "zeroed_array.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bucket_queue.hpp"
+#include "grid_algorithms.hpp"
 #include "moves.hpp"
-#include "planners.hpp"
 #include "sight.hpp"
 #include "zeroed_array.hpp"
 

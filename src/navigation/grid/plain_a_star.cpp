@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid_algorithms.hpp"
 #include "moves.hpp"
 #include "navigation/grid/graph_search.hpp"
-#include "planners.hpp"
 
 namespace skein::navigation::grid {
 namespace {

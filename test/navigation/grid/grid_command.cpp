@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tools/places.hpp"
-#include "tools/shell.hpp"
-#include "tools/temporary_folder.hpp"
+#include "test/tools/places.hpp"
+#include "test/tools/shell.hpp"
+#include "test/tools/temporary_folder.hpp"
 
 using Catch::Contains;
 

@@ -1,6 +1,6 @@
 #include "exactness.hpp"
 #include "skein/error.hpp"
-#include "tools/seed.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein;
 using namespace skein::navigation::grid;

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "reference.hpp"
-#include "tools/seed.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein;
 using namespace skein::navigation::grid;

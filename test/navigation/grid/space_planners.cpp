@@ -1,5 +1,5 @@
 #include "exactness.hpp"
-#include "tools/seed.hpp"
+#include "test/tools/seed.hpp"
 
 using namespace skein;
 using namespace skein::navigation::grid;

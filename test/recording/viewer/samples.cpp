@@ -1,4 +1,4 @@
-#include "../../idl/samples.hpp"
+#include "test/idl/samples.hpp"
 
 #include <cstdio>
 #include <iostream>
@@ -8,8 +8,8 @@
 #include "names.idl.hpp"
 #include "nested.idl.hpp"
 #include "planner.idl.hpp"
-#include "recording/recording_idl.hpp"
-#include "recording/writer.hpp"
+#include "recording/mcap/writer.hpp"
+#include "recording/viewers/recording_idl.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"

@@ -1,0 +1,102 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "command/commands.hpp"
+#include "command/print/json_output.hpp"
+#include "command/print/value_lines.hpp"
+#include "skein/dynamic.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "topic_survey.hpp"
+
+namespace skein::command {
+namespace {
+
+constexpr std::chrono::seconds kDeliveryPatience{5};
+constexpr double kSubscribersPeriod_s = 0.01;
+
+std::size_t subscribers_of(const KnownTopic& topic) {
+  std::size_t count = 0;
+  for (const auto& endpoint : topic.endpoints) count += endpoint.told.publishes ? 0 : 1;
+  return count;
+}
+
+void await_subscribers(const DynamicPublisher& publisher, std::size_t expected, double seconds,
+                       const Interruption& interruption) {
+  for (double waited = 0; publisher.subscribers() < expected && waited < seconds;
+       waited += kSubscribersPeriod_s) {
+    if (interruption.wait(kSubscribersPeriod_s)) {
+      throw Interrupted("interrupted before it published", interruption.signal());
+    }
+  }
+}
+
+struct Outcome {
+  std::uint64_t published = 0;
+  bool done = false;  ///< Nothing that was asked for is missing.
+};
+
+Outcome publish_lines(DynamicPublisher& publisher, const PublishArguments& arguments,
+                      const Interruption& interruption) {
+  ValueLines lines(interruption);
+  Outcome outcome;
+  while (arguments.count == 0 || outcome.published < arguments.count) {
+    const auto value = lines.next();
+    if (!value) return {outcome.published, interruption.signal() == 0};
+    publisher.publish(*value);
+    ++outcome.published;
+    if (arguments.rate > 0 && interruption.wait(1 / arguments.rate)) return outcome;
+  }
+  return {outcome.published, true};
+}
+
+Outcome publish_value(DynamicPublisher& publisher, const PublishArguments& arguments,
+                      const Interruption& interruption) {
+  const bool endless = arguments.count == 0 && arguments.rate > 0;
+  const std::uint64_t count = arguments.count > 0 ? arguments.count : 1;
+  Outcome outcome;
+  while (!interruption.came()) {
+    publisher.publish(arguments.value);
+    ++outcome.published;
+    if (!endless && outcome.published == count) return {count, true};
+    if (arguments.rate > 0 && interruption.wait(1 / arguments.rate)) break;
+  }
+  return {outcome.published, endless};
+}
+
+void print_published(std::uint64_t published, std::size_t subscribers, bool acknowledged,
+                     bool json) {
+  if (json) {
+    print_json(
+        {{"published", published}, {"subscribers", subscribers}, {"acknowledged", acknowledged}},
+        false);
+    return;
+  }
+  std::printf("published %llu %s to %zu %s\n", static_cast<unsigned long long>(published),
+              published == 1 ? "value" : "values", subscribers,
+              subscribers == 1 ? "subscriber" : "subscribers");
+}
+
+}  // namespace
+
+int publish(const PublishArguments& arguments) {
+  const Interruption interruption;
+  Entity entity = join(arguments, "publish");
+  Inspector inspector(entity);
+  const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
+  DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic, false),
+                             topic.writing_qos());
+  await_subscribers(publisher, subscribers_of(topic), arguments.wait, interruption);
+  const Outcome outcome = arguments.value == "-"
+                              ? publish_lines(publisher, arguments, interruption)
+                              : publish_value(publisher, arguments, interruption);
+  const bool acknowledged = publisher.wait_for_acknowledgments(kDeliveryPatience);
+  print_published(outcome.published, publisher.subscribers(), acknowledged, arguments.json);
+  if (!outcome.done) {
+    throw Interrupted("interrupted before all was published", interruption.signal());
+  }
+  if (!acknowledged) throw TimedOut("not all subscribers have acknowledged what was published");
+  return 0;
+}
+
+}  // namespace skein::command

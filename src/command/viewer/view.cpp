@@ -1,0 +1,68 @@
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "brokerless_discovery/broker.hpp"
+#include "command/commands.hpp"
+#include "command/print/interruption.hpp"
+#include "service_feed.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/entity.hpp"
+#include "skein/inspector.hpp"
+#include "skein/introspection.idl.hpp"
+#include "topic_feed.hpp"
+#include "view/server.hpp"
+
+namespace skein::command {
+namespace {
+
+constexpr double kPeriodSeconds = 1;
+/// For the answers of all entities.
+constexpr std::chrono::seconds kTopicsWithin{1};
+
+view::Options server_options(const ViewArguments& arguments) {
+  view::Options options;
+  options.name = "skein, domain " + std::to_string(arguments.watched_domain());
+  options.port = arguments.port;
+  options.token = arguments.token.empty() ? view::random_token() : arguments.token;
+  options.origins = arguments.origins;
+  return options;
+}
+
+void add_services(view::Graph& graph, const brokerless_discovery::Broker& broker) {
+  for (const auto& service : broker.all()) {
+    graph.providers[service->service].insert(service->system + '/' + service->entity);
+  }
+}
+
+}  // namespace
+
+int serve_view(const ViewArguments& arguments) {
+  const Interruption interruption;
+  Entity entity = join(arguments, "view");
+  Inspector inspector(entity);
+  view::Server server(server_options(arguments));
+  ServiceFeed services(server, entity, inspector);
+  TopicFeed topics(server, entity.participant(), inspector);
+  topics.show(introspection::kCalls);
+  topics.show(introspection::kDecisions);
+  topics.show(introspection::kStatistics);
+  std::printf(
+      "Open this in Lichtblick or Foxglove, as a connection of the kind 'Foxglove WebSocket'. "
+      "Whoever knows it may look.\n%s\n",
+      server.url().c_str());
+  std::fflush(stdout);
+  do {
+    if (server.clients() == 0) continue;  // nobody is asked while nobody looks
+    const auto entities = inspector.ask_all(inspection::Subject::Topics, kTopicsWithin);
+    topics.update(entities);
+    if (arguments.calls) services.update();
+    view::Graph graph;
+    add_topics(graph, entities);
+    add_services(graph, entity.broker());
+    server.set_graph(std::move(graph));
+  } while (!interruption.wait(kPeriodSeconds));
+  return 0;
+}
+
+}  // namespace skein::command

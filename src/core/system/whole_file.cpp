@@ -1,0 +1,116 @@
+#include "whole_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+
+#include "core/printable.hpp"
+#include "file_descriptor.hpp"
+
+namespace skein {
+namespace {
+
+constexpr ::mode_t kByUmask = 0666;
+constexpr ::mode_t kPermissions = 07777;
+
+/// A file that is being written, in place of another in the end.
+class Draft {
+ public:
+  Draft(const std::string& what, const std::filesystem::path& file)
+      : what_(what), file_(file), target_(target_of(file)) {
+    struct ::stat old {};
+    if (::stat(target_.c_str(), &old) == 0) old_mode_ = old.st_mode;
+    path_ = is_direct() ? target_ : std::filesystem::path(target_.string() + ".new");
+  }
+  ~Draft() {
+    if (descriptor_ && !is_direct() && !in_place_) ::unlink(path_.c_str());
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  /// Whether there is something that no file can take the place of.
+  bool is_direct() const { return old_mode_ && !S_ISREG(*old_mode_); }
+
+  void open() {
+    const int how = is_direct() ? O_WRONLY : O_WRONLY | O_CREAT | O_TRUNC;
+    descriptor_ = FileDescriptor(::open(path_.c_str(), how | O_CLOEXEC | O_NOCTTY, kByUmask));
+    if (!descriptor_) refuse();
+    if (old_mode_ && !is_direct()) ::fchmod(descriptor_.get(), *old_mode_ & kPermissions);
+  }
+
+  /// What cannot be opened without somebody noticing is only asked whether it could be.
+  void try_to_open() {
+    if (!is_direct()) return open();
+    if (S_ISDIR(*old_mode_)) errno = EISDIR;
+    if (S_ISDIR(*old_mode_) || ::access(path_.c_str(), W_OK) != 0) refuse();
+  }
+
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const auto count = ::write(descriptor_.get(), content.data(), content.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) fail("writing");
+      content.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+  void put_in_place() {
+    if (is_direct()) return;
+    if (::fsync(descriptor_.get()) != 0) fail("bringing to the disk");
+    if (::rename(path_.c_str(), target_.c_str()) != 0) fail("renaming");
+    in_place_ = true;
+    // Its name is brought to the disk, too, where the file system can.
+    const auto parent = target_.parent_path();
+    const FileDescriptor folder(
+        ::open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder) ::fsync(folder.get());
+  }
+
+ private:
+  static std::filesystem::path target_of(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto target = std::filesystem::canonical(file, error);
+    return error ? file : target;
+  }
+
+  std::string told(const std::string& step) const {
+    const std::string reason = std::generic_category().message(errno);
+    return what_ + " '" + printable(file_.string()) + "' cannot be written: " + step + " '" +
+           printable(path_.string()) + "': " + reason;
+  }
+
+  [[noreturn]] void refuse() const {
+    throw InvalidArgument(told("opening") + "; name a file in a folder that may be written to");
+  }
+  [[noreturn]] void fail(const char* step) const { throw WriteFailed(told(step)); }
+
+  const std::string& what_;
+  const std::filesystem::path& file_;
+  const std::filesystem::path target_;
+  std::optional<::mode_t> old_mode_;
+  std::filesystem::path path_;
+  bool in_place_ = false;
+  FileDescriptor descriptor_;
+};
+
+}  // namespace
+
+void write_whole_file(const std::string& what, const std::filesystem::path& file,
+                      std::string_view content) {
+  Draft draft(what, file);
+  draft.open();
+  draft.write(content);
+  draft.put_in_place();
+}
+
+void try_whole_file(const std::string& what, const std::filesystem::path& file) {
+  Draft draft(what, file);
+  draft.try_to_open();
+}
+
+}  // namespace skein

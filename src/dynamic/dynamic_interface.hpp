@@ -1,0 +1,62 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "idl/types/dynamic_support.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/discovery.idl.hpp"
+#include "skein/types.idl.hpp"
+
+namespace skein {
+
+/// An exception of an interface that is known by its description alone.
+struct DynamicExceptionSupport : idl::DynamicSupport {
+  explicit DynamicExceptionSupport(const idl::DynamicType& type);
+
+  ExceptionInfo info;
+};
+
+/// What generated code would say of an interface, made of what its provider says. In and out
+/// structs are idl::DynamicValue.
+class DynamicInterface {
+ public:
+  /// Throws InvalidArgument where the types do not hold the interface, or make no sense.
+  DynamicInterface(const discovery::ServiceDescription& service, types::TypeSystem known);
+  DynamicInterface(const DynamicInterface&) = delete;
+  DynamicInterface& operator=(const DynamicInterface&) = delete;
+
+  const InterfaceInfo& info() const noexcept { return info_; }
+  const types::TypeSystem& types() const noexcept { return types_.described(); }
+
+  /// Throws InvalidArgument with the most similar name where there is none.
+  const OperationInfo& operation(const std::string& name) const;
+  /// The same, described.
+  const types::Operation& described(const std::string& name) const;
+
+ private:
+  void add_operations(const types::Interface& interface,
+                      const discovery::ServiceDescription& service);
+  void add_operation(const types::Interface& interface, const types::Operation& described,
+                     const discovery::OperationDigest& digest);
+  const ExceptionInfo* exception(const std::string& name);
+  std::vector<std::string> names() const;
+
+  const std::string name_;
+  idl::DynamicTypes types_;
+  std::deque<idl::DynamicSupport> supports_;
+  std::deque<DynamicExceptionSupport> exceptions_;
+  std::deque<std::vector<const ExceptionInfo*>> raises_;
+  std::vector<OperationInfo> operations_;
+  std::vector<const types::Operation*> described_;  // of the same
+  std::vector<GrowingMember> growing_;
+  InterfaceInfo info_{};
+};
+
+/// The interface of a provider. Each version is made once and kept until the process ends, as
+/// generated code is: connections, calls and errors refer to it. Throws as DynamicInterface().
+const DynamicInterface& dynamic_interface(const discovery::ServiceDescription& service,
+                                          types::TypeSystem known);
+
+}  // namespace skein

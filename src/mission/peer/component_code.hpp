@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "loaded_plugins.hpp"
+#include "mission/profile/mission_profile.hpp"
+
+namespace skein::launch {
+
+/// Why a process would not run any code of its component, or not the code that its profile asks
+/// for; and what to write instead.
+struct CodeLack {
+  std::string problem;
+  std::string remedy;
+};
+
+/// What is missing in `plugins`, which are those of the peer and of the CSPs in its process: a
+/// Body, if the component implements an interface; an activity, if it implements none; with
+/// role="mission" a mission will do, too. Nothing if they have it. The component has been read.
+std::optional<CodeLack> find_lack(const profile::PeerProfile& peer, const LoadedPlugins& plugins);
+
+/// The same of a CSP, which is to be registered as one.
+std::optional<CodeLack> find_lack(const profile::CspProfile& csp, const LoadedPlugins& plugins);
+
+/// What the description declares against what its code implements: an error for each interface that
+/// one of the two lacks.
+std::vector<profile::Finding> compare(const profile::ComponentDescription& component,
+                                      const InterfaceInfo& code);
+
+}  // namespace skein::launch

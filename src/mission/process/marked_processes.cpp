@@ -1,0 +1,120 @@
+#include "marked_processes.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <random>
+
+#include "core/system/file_descriptor.hpp"
+
+namespace skein::launch {
+namespace {
+
+// Who starts processes faster than they are killed is left to the next caller.
+constexpr int kMostPasses = 200;
+constexpr std::size_t kLongestMark = 64;
+
+/// What getdents64(2) fills in; the C library does not declare it.
+struct DirectoryEntry {
+  std::uint64_t inode;
+  std::int64_t offset;
+  unsigned short length;
+  unsigned char type;
+  char name[1];
+};
+
+pid_t number_of(const char* name) {
+  pid_t number = 0;
+  for (; *name != '\0'; ++name) {
+    if (*name < '0' || *name > '9') return 0;
+    number = 10 * number + (*name - '0');
+  }
+  return number;
+}
+
+/// Reads piece by piece; the end of one piece is searched together with the next.
+bool holds(int file, std::string_view mark) {
+  std::array<char, 4096> text;
+  std::size_t kept = 0;
+  while (true) {
+    const auto size = ::read(file, text.data() + kept, text.size() - kept);
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return false;
+    const std::size_t all = kept + static_cast<std::size_t>(size);
+    if (::memmem(text.data(), all, mark.data(), mark.size()) != nullptr) return true;
+    kept = std::min(all, mark.size() - 1);
+    std::memmove(text.data(), text.data() + all - kept, kept);
+  }
+}
+
+/// The descriptor is opened before the environment is read, so that it is that process which dies,
+/// and no other that has got its number meanwhile.
+bool kill_if_marked(pid_t number, std::string_view mark) {
+  const FileDescriptor process(static_cast<int>(::syscall(SYS_pidfd_open, number, 0)));
+  if (!process) return false;
+  std::array<char, 32> path;
+  std::snprintf(path.data(), path.size(), "/proc/%d/environ", number);
+  const FileDescriptor environment(::open(path.data(), O_RDONLY | O_CLOEXEC));
+  if (!environment || !holds(environment.get(), mark)) return false;
+  return ::syscall(SYS_pidfd_send_signal, process.get(), SIGKILL, nullptr, 0) == 0;
+}
+
+struct Killed {
+  std::array<pid_t, 1024> processes;
+  std::size_t count = 0;
+
+  void add(pid_t process) {
+    const auto end = processes.begin() + count;
+    if (count < processes.size() && std::find(processes.begin(), end, process) == end)
+      processes[count++] = process;
+  }
+};
+
+/// One look at all processes; whether there was one to kill.
+bool kill_all_marked(std::string_view mark, Killed& killed) {
+  const FileDescriptor folder(::open("/proc", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  alignas(DirectoryEntry) std::array<char, 16 * 1024> entries;
+  bool found = false;
+  while (true) {
+    const auto size = ::syscall(SYS_getdents64, folder.get(), entries.data(), entries.size());
+    if (size <= 0) return found;
+    for (long at = 0; at < size;) {
+      const auto* entry = reinterpret_cast<const DirectoryEntry*>(entries.data() + at);
+      at += entry->length;
+      const pid_t process = number_of(entry->name);
+      if (process <= 0 || process == ::getpid() || !kill_if_marked(process, mark)) continue;
+      killed.add(process);
+      found = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::string make_mark() {
+  std::random_device random;
+  std::array<char, kLongestMark> text;
+  std::snprintf(text.data(), text.size(), "%d-%08x%08x%08x", ::getpid(), random(), random(),
+                random());
+  return text.data();
+}
+
+void kill_marked_processes(std::string_view mark) noexcept {
+  Killed killed;
+  for (int pass = 0; pass < kMostPasses && kill_all_marked(mark, killed); ++pass) {
+  }
+  for (std::size_t i = 0; i < killed.count; ++i) {
+    while (::waitpid(killed.processes[i], nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+}
+
+}  // namespace skein::launch

@@ -1,0 +1,48 @@
+#include "request_server.hpp"
+
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+
+#include "core/system/abstract_socket.hpp"
+
+namespace skein::launch {
+
+void RequestServer::add_to(std::vector<pollfd>& watched) const {
+  watched.push_back({listener_, POLLIN, 0});
+  for (const Client& client : clients_) watched.push_back({client.socket.get(), POLLIN, 0});
+}
+
+void RequestServer::take_clients() {
+  if (listener_ < 0) return;
+  let_in(listener_, kAcceptedInARow, [&](FileDescriptor socket) {
+    const auto owner = other_end(socket);
+    if (!owner || (owner->uid != ::getuid() && owner->uid != 0)) return;
+    if (clients_.size() == kMostClients) clients_.pop_front();
+    clients_.push_back({std::move(socket), ""});
+  });
+}
+
+bool RequestServer::is_done(Client& client) const {
+  std::array<char, kLongestRequest> text;
+  const auto size = ::read(client.socket.get(), text.data(), text.size());
+  if (size < 0) return errno != EAGAIN && errno != EINTR;
+  client.request.append(text.data(), static_cast<std::size_t>(size));
+  const auto end = client.request.find('\n');
+  const bool complete = end != std::string::npos;
+  if (!complete && size > 0 && client.request.size() <= kLongestRequest) return false;
+  if (!complete || end > kLongestRequest) return true;
+  const std::string answer = answer_(std::string_view(client.request).substr(0, end));
+  // A client that does not read gets what its socket holds.
+  [[maybe_unused]] const auto sent =
+      ::send(client.socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
+  return true;
+}
+
+void RequestServer::serve() {
+  take_clients();
+  std::erase_if(clients_, [&](Client& client) { return is_done(client); });
+}
+
+}  // namespace skein::launch

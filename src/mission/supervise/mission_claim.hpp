@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/system/file_descriptor.hpp"
+#include "mission/profile/mission_profile.hpp"
+
+namespace skein::launch {
+
+/// How a launcher's answer begins.
+inline constexpr std::string_view kAccepted = "ok ";
+inline constexpr std::string_view kRefused = "no ";
+
+/// Asks the launcher that flies this mission as that host one thing (see Supervisor) and gives its
+/// answer. Throws Unavailable where no launcher of this user does, where it does not answer within
+/// some seconds, and with its reason where it refuses.
+std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
+                         const std::string& request);
+
+struct LauncherAnswer {
+  std::string text;
+  std::string failure;  ///< Why there is none: it does not answer, or refuses.
+};
+
+/// Asks all launchers of this user and network namespace; one that does not answer takes some
+/// seconds.
+std::vector<LauncherAnswer> ask_launchers(const std::string& request);
+
+/// Keeps other launchers of this user and network namespace from flying the same mission (name,
+/// domain and systems) as the same host, while it lives. Released with the process, however it
+/// ends. At its socket, which is in the abstract namespace, requests to the launcher come in.
+class MissionClaim {
+ public:
+  /// Throws InvalidArgument, which names the other launcher's process, where it is taken;
+  /// Unavailable where the system refuses a socket. `host`: as for is_here().
+  MissionClaim(const profile::MissionProfile& mission, const std::string& host);
+
+  /// A non-blocking socket that listens; -1 where other users' processes have taken all its names.
+  int requests() const noexcept { return socket_.get(); }
+
+ private:
+  FileDescriptor socket_;
+};
+
+/// The domain of the mission that the holder of a socket flies, by the socket's name as
+/// /proc/net/unix shows it; nothing for another socket.
+std::optional<std::uint32_t> claimed_domain(std::string_view socket);
+
+}  // namespace skein::launch

@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "dds/port/sample_format.hpp"
+#include "dds_channel_state.hpp"
+#include "idl/encode_value.hpp"
+#include "idl/left_out.hpp"
+#include "rpc/wire/common.hpp"
+#include "skein/error.hpp"
+#include "skein/introspection.idl.hpp"
+
+namespace skein::rpc {
+
+void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  try {
+    start_here(call, in);
+  } catch (...) {
+    call->fail(std::current_exception());
+  }
+}
+
+void DdsChannel::State::call(const OperationInfo& operation, const void* in, void* out,
+                             const CallTime& time) {
+  const auto call = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
+  start_here(call, in);
+  call->wait();
+  if (auto error = call->take_error()) std::rethrow_exception(std::move(error));
+}
+
+void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+  if (options.spin.count() > 0) call->set_spin(options.spin);
+  bool sent = false;
+  Entered entered;
+  try {
+    entered = enter(call);
+  } catch (const NotSent&) {
+    throw;
+  } catch (...) {
+    call->fail(std::current_exception());
+    return;
+  }
+  const std::uint64_t number = entered.number;
+  call->attempt([&] {
+    send(*entered.writer, *call, number, in);
+    sent = true;
+  });
+  if (!sent || call->operation().oneway) remove(number);
+  if (!sent || !call->operation().oneway || !call->claim()) return;
+  note_end(number, call->operation(), nullptr);
+  call->finish();
+}
+
+// The call is known before its request leaves: a reply may be here before write() returns.
+DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call) {
+  std::unique_lock lock(mutex);
+  if (phase == Phase::Lost) throw NotSent("no connection to " + options.peer + ": " + lost_how);
+  if (phase != Phase::Open)
+    throw Unavailable("no connection to " + options.peer +
+                      ": it was disconnected, or the entity that had connected has ended");
+  if (entries.size() >= options.calls_in_flight) {
+    throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
+                     " already wait for their answers; the call was not sent");
+  }
+  const std::uint64_t number = ++last_number;
+  entries.emplace(number, call);
+  const TimerId outdated = look_at(call->deadline());
+  if (!call->blocking()) {
+    call->set_canceller([state = weak_from_this(), number] {
+      if (const auto self = state.lock()) self->abandon(number);
+    });
+  }
+  if (call->operation().stream) {
+    static_cast<PendingStream&>(*call).set_granter(
+        [state = weak_from_this(), number](std::uint32_t count) {
+          if (const auto self = state.lock()) self->grant(number, count);
+        });
+  }
+  if (answers && !call->operation().oneway) await_answer(*call);
+  Entered entered{number, requests};
+  lock.unlock();
+  if (outdated != 0) clock.cancel(outdated);  // unlocked: it may be running
+  return entered;
+}
+
+// Under the lock.
+void DdsChannel::State::await_answer(PendingCall& call) const {
+  if (call.blocking() && entries.size() == 1) answers->expect();
+  call.set_answers(answers);
+}
+
+// Before a request waits for room. The other side may wait, too, until somebody has taken answers
+// to earlier ones, and nobody does who is here.
+void DdsChannel::State::on_full() {
+  std::lock_guard lock(mutex);
+  if (answers && entries.size() > 1) answers->hand_over();
+}
+
+// Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any
+// more.
+TimerId DdsChannel::State::look_at(Instant deadline) {
+  if (deadline >= timer_due) return 0;
+  timer_due = deadline;
+  return std::exchange(timer, clock.call_at(deadline, [state = weak_from_this()] {
+    if (const auto self = state.lock()) self->expire_due();
+  }));
+}
+
+void DdsChannel::State::expire_due() {
+  std::vector<std::uint64_t> due;
+  {
+    std::lock_guard lock(mutex);
+    const Instant now = clock.now();
+    timer = 0;
+    timer_due = Instant::max();
+    Instant next = Instant::max();
+    for (const auto& [number, call] : entries) {
+      if (call->deadline() <= now) {
+        due.push_back(number);
+      } else {
+        next = std::min(next, call->deadline());
+      }
+    }
+    look_at(next);
+  }
+  for (const std::uint64_t number : due) expire(number);
+}
+
+// A caller that waits for the answer also waits for room, as long as it has time; others are told.
+// The writer itself waits before it throws: tries are counted, for a clock that may stand still.
+// The last one is over before the deadline is: what was not sent does not end as TimedOut.
+template <class Write>
+auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
+  const Duration a_try = dds::Qos().max_blocking;
+  for (std::optional<Duration> left;; *left -= a_try) {
+    try {
+      return write();
+    } catch (const Overloaded&) {
+      if (!call.blocking()) throw;
+      if (!left) left = call.deadline() - clock.now();  // asked for where there is need alone
+      if (*left <= a_try || !is_open()) throw;
+    }
+  }
+}
+
+void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
+                             const void* in) {
+  thread_local Bytes message;
+  std::shared_ptr<LoanMemory> lent;
+  std::size_t position = 0;
+  {
+    idl::LeavingOut leaving_out;
+    put_request(message, call, number, in);
+    lent = leaving_out.memory();
+    position = leaving_out.position();
+  }
+  if (options.journal) {
+    options.journal->note(introspection::CallStep::Sent, client, number, address.service,
+                          call.operation());
+  }
+  const bool sent =
+      lent && in_time(call, [&] { return writer.write_lending(message, lent, position); });
+  if (lent && !sent) put_request(message, call, number, in);
+  if (!sent) in_time(call, [&] { return writer.write(message); });
+  if (message.capacity() > kKeptCapacity) message = Bytes();
+}
+
+void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
+                                    const void* in) const {
+  wire::begin_request(message, {client, number}, call.operation().hash, address.representation);
+  idl::encode_value(*call.operation().in, in, message);
+  if (message.size() > dds::kLargestSample) {
+    const std::size_t size = std::exchange(message, Bytes()).size();
+    dds::check_size(size, "the request of " + quoted(call.operation()));
+  }
+  const Instant now = clock.now();
+  wire::append_trailer(
+      message, wire::RequestTrailer{call.deadline() - now,
+                                    0,
+                                    call.blocking() ? inherited_chain() : std::vector<Guid>(),
+                                    {},
+                                    call.operation().stream ? PendingStream::kWindow : 0,
+                                    now.time_since_epoch()});
+}
+
+bool DdsChannel::State::is_open() const { return phase == Phase::Open; }
+
+// The call, which is not known by its number any more; a stream stays known until its last reply.
+std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Keep keep) {
+  std::lock_guard lock(mutex);
+  const auto found = entries.find(number);
+  if (found == entries.end()) return nullptr;
+  if (keep == Keep::Streams && found->second->operation().stream) return found->second;
+  auto call = std::move(found->second);
+  entries.erase(found);
+  if (retiring && entries.empty() && phase == Phase::Open) part_later();
+  return call;
+}
+
+void DdsChannel::State::expire(std::uint64_t number) {
+  const auto call = remove(number);
+  if (!call || !call->claim()) return;
+  std::string hint;
+  {
+    std::lock_guard lock(mutex);
+    hint = what_came_malformed();
+  }
+  auto error = std::make_exception_ptr(
+      TimedOut(options.peer + " did not answer " + quoted(call->operation()) +
+               " before its deadline; whether it ran is unknown" + hint + kMoreTime));
+  note_end(number, call->operation(), error);
+  call->finish(std::move(error));
+  tell_server(number);
+}
+
+void DdsChannel::State::abandon(std::uint64_t number) {
+  const auto call = remove(number);
+  if (!call) return;
+  note_end(number, call->operation(),
+           std::make_exception_ptr(Cancelled("its caller waits no longer")));
+  tell_server(number);
+}
+
+void DdsChannel::State::tell_server(std::uint64_t number) {
+  std::lock_guard lock(mutex);  // once closed, `control` may be gone
+  if (phase != Phase::Open) return;
+  control.post([state = weak_from_this(), number] {
+    const auto self = state.lock();
+    if (!self) return;
+    try {
+      self->send_reserved(wire::kCancel, {.target = number});
+    } catch (const Error&) {
+      // The server will find the call expired; cancelling early is a courtesy.
+    }
+  });
+}
+
+// On the thread that takes the results: one that is held up here takes none anyway.
+void DdsChannel::State::grant(std::uint64_t number, std::uint32_t count) {
+  try {
+    send_reserved(wire::kCredit, {.target = number, .credit = count});
+  } catch (const Unavailable&) {
+    // The connection has just ended: whoever tells of that ends the stream, as Disconnected.
+  }
+}
+
+// About a call; nothing is to be said to a server that is gone.
+void DdsChannel::State::send_reserved(std::uint32_t operation,
+                                      const wire::RequestTrailer& trailer) {
+  std::shared_ptr<dds::Writer> writer;
+  {
+    std::lock_guard lock(mutex);
+    if (phase != Phase::Open) return;
+    writer = requests;
+  }
+  Bytes message;
+  wire::begin_request(message, {client, 0}, operation, address.representation);
+  wire::append_default_branch(message);
+  wire::append_trailer(message, trailer);
+  writer->write(message);
+}
+
+void DdsChannel::State::note_end(std::uint64_t number, const OperationInfo& operation,
+                                 const std::exception_ptr& error) {
+  if (options.journal)
+    options.journal->note_end(false, client, number, address.service, operation, error);
+}
+
+}  // namespace skein::rpc

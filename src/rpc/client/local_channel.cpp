@@ -1,0 +1,284 @@
+#include "rpc/client/local_channel.hpp"
+
+#include <algorithm>
+
+#include "rpc/service/call_journal.hpp"
+#include "rpc/wire/common.hpp"
+#include "rpc/wire/conversion.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
+#include "skein/stream.hpp"
+
+namespace skein::rpc {
+
+/// An invocation that knows its caller.
+struct QueuedCall final : Invocation {
+  QueuedCall(std::shared_ptr<PendingCall> call_, std::shared_ptr<Clock> clock_,
+             std::shared_ptr<CallJournal> journal_, std::string_view service_)
+      : call(std::move(call_)),
+        clock(std::move(clock_)),
+        journal(std::move(journal_)),
+        service(service_) {}
+
+  void end(const void* out, std::exception_ptr error) {
+    clock->cancel(timer);
+    if (!call->claim()) return;
+    try {
+      if (!error && out) convert(*operation->out, out, *call->operation().out, call->out());
+      if (!served_as_called()) error = convert(error, call->operation());
+    } catch (...) {
+      error = std::current_exception();
+    }
+    note_end(error);
+    call->finish(std::move(error));
+  }
+
+  /// Ends it for the caller, and tells the implementation.
+  void give_up(std::exception_ptr error) {
+    if (!call->claim()) return;
+    cancel();
+    note_end(error);
+    call->finish(std::move(error));
+  }
+
+  /// Its caller has ended it.
+  void abandon() {
+    cancel();
+    note_end(std::make_exception_ptr(Cancelled("its caller waits no longer")));
+  }
+
+  void note_end(const std::exception_ptr& error) const {
+    if (journal) journal->note_end(false, connection, number, service, call->operation(), error);
+  }
+
+  bool served_as_called() const { return operation == &call->operation(); }
+
+  const std::shared_ptr<PendingCall> call;
+  const std::shared_ptr<Clock> clock;
+  const std::shared_ptr<CallJournal> journal;
+  const std::string_view service;
+  std::atomic<TimerId> timer{0};
+};
+
+namespace {
+
+[[noreturn]] void refuse_closed(const std::string& peer) {
+  throw Unavailable("no connection to " + peer +
+                    ": it was disconnected, or the entity that had connected has ended");
+}
+
+std::exception_ptr too_late(const std::string& peer, const OperationInfo& operation) {
+  return std::make_exception_ptr(
+      TimedOut(peer + " did not answer " + quoted(operation) + " before its deadline" + kMoreTime));
+}
+
+void connect_stream(Invocation& invocation, const std::shared_ptr<PendingCall>& call,
+                    Clock& clock) {
+  const auto stream = std::static_pointer_cast<PendingStream>(call);
+  const TypeSupport& type = *call->operation().out;
+  invocation.stream = std::make_shared<OutgoingStream>(
+      *invocation.operation, clock, call->deadline(), PendingStream::kWindow,
+      [stream, &type, &served = *invocation.operation->out](const void* out, std::uint64_t) {
+        PendingStream::Item item(type.make(), type.destroy);
+        convert(served, out, type, item.get());
+        stream->deliver(std::move(item));
+      });
+  stream->set_granter([outgoing = std::weak_ptr(invocation.stream)](std::uint32_t count) {
+    if (const auto alive = outgoing.lock()) alive->grant(count);
+  });
+}
+
+/// The service's own operation where the caller's may be of another version, with other C++ types.
+const OperationInfo& served_operation(const Service& service, const OperationInfo& called) {
+  const OperationInfo* served = service.interface_info().find_operation(called.hash);
+  if (!served) {
+    throw Unimplemented(std::string(service.interface_info().name) + " has no operation " +
+                        quoted(called));
+  }
+  return served->in == called.in && served->out == called.out ? called : *served;
+}
+
+}  // namespace
+
+std::shared_ptr<LocalChannel> LocalChannel::open(const std::weak_ptr<Service>& service,
+                                                 std::shared_ptr<Clock> clock,
+                                                 std::shared_ptr<Executor> continuations,
+                                                 const std::string& strategy,
+                                                 std::shared_ptr<CallJournal> journal) {
+  std::shared_ptr<LocalChannel> channel(
+      new LocalChannel(service, std::move(clock), std::move(continuations), std::move(journal)));
+  const auto target = service.lock();
+  if (!target) throw Unavailable("the service has been withdrawn");
+  channel->peer_ = std::make_shared<std::string>(std::string(target->interface_info().name) +
+                                                 " in this process");
+  channel->leaving_ = target->leaving();
+  channel->session_ = target->open({Guid{}, strategy});
+  return channel;
+}
+
+LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock> clock,
+                           std::shared_ptr<Executor> continuations,
+                           std::shared_ptr<CallJournal> journal)
+    : service_(std::move(service)),
+      clock_(std::move(clock)),
+      continuations_(std::move(continuations)),
+      journal_(std::move(journal)) {}
+
+std::shared_ptr<Service> LocalChannel::service() const {
+  auto service = service_.lock();
+  if (service && !closed_) return service;
+  if (service) refuse_closed(*peer_);
+  throw NotSent("no connection to " + *peer_ + ": it was withdrawn");
+}
+
+std::optional<ConnectionInfo> LocalChannel::info() const {
+  const auto service = service_.lock();
+  if (!service || closed_) return std::nullopt;
+  std::lock_guard lock(mutex_);
+  const auto pending = std::ranges::count_if(queued_, [](const std::weak_ptr<QueuedCall>& weak) {
+    const auto queued = weak.lock();
+    return queued && !queued->call->finished();
+  });
+  return ConnectionInfo{std::string(service->interface_info().name),
+                        service->id(),
+                        "process",
+                        "",
+                        static_cast<std::size_t>(pending),
+                        calls_.load(std::memory_order_relaxed)};
+}
+
+void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+  call->attempt([&] { start_here(call, in); });
+}
+
+void LocalChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+  try {
+    enqueue(*service(), call, in);
+  } catch (const NotSent&) {
+    throw;
+  } catch (...) {
+    call->fail(std::current_exception());
+  }
+}
+
+void LocalChannel::call(const OperationInfo& operation, const void* in, void* out,
+                        const CallTime& time) {
+  const auto target = service();
+  if (target->thread() == CallThread::Own || &served_operation(*target, operation) != &operation) {
+    return Channel::call(operation, in, out, time);
+  }
+  Invocation frame;
+  frame.connection = id_;
+  frame.number = next_number();
+  frame.begun = time.begin;
+  frame.deadline = time.deadline;
+  frame.outer = CallContext::current();
+  frame.session =
+      std::shared_ptr<Session>(std::shared_ptr<void>(), session_.get());  // owned by this
+  const auto note_end = [&](const std::exception_ptr& error) {
+    if (!journal_) return;
+    journal_->note_end(false, id_, frame.number, target->interface_info().name, operation, error);
+  };
+  note_begin(*target, operation, frame.number);
+  try {
+    target->call_here(operation, in, out, frame);
+  } catch (...) {
+    note_end(std::current_exception());
+    throw;
+  }
+  note_end(nullptr);
+}
+
+std::uint64_t LocalChannel::next_number() noexcept {
+  return calls_.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+void LocalChannel::note_begin(const Service& service, const OperationInfo& operation,
+                              std::uint64_t number) const {
+  if (!journal_) return;
+  journal_->note(introspection::CallStep::Sent, id_, number, service.interface_info().name,
+                 operation);
+}
+
+void LocalChannel::disconnect() {
+  for (const auto& queued : close()) queued->call->cancel();
+}
+
+void LocalChannel::lose(const std::string& how) {
+  for (const auto& queued : close()) {
+    queued->give_up(std::make_exception_ptr(
+        Disconnected("the connection to " + *peer_ + " is gone (" + how + "); whether " +
+                     quoted(queued->call->operation()) + " ran is unknown")));
+  }
+}
+
+// The calls that have not ended.
+std::vector<std::shared_ptr<QueuedCall>> LocalChannel::close() {
+  std::vector<std::weak_ptr<QueuedCall>> queued;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    queued.swap(queued_);
+  }
+  std::vector<std::shared_ptr<QueuedCall>> calls;
+  for (const auto& weak : queued) {
+    if (auto call = weak.lock()) calls.push_back(std::move(call));
+  }
+  return calls;
+}
+
+// Until disconnect() may have to end it.
+void LocalChannel::remember(const std::shared_ptr<QueuedCall>& call) {
+  std::lock_guard lock(mutex_);
+  if (closed_) refuse_closed(*peer_);
+  if (queued_.size() >= look_at_) {
+    std::erase_if(queued_, [](const std::weak_ptr<QueuedCall>& weak) {
+      const auto queued = weak.lock();
+      return !queued || queued->call->finished();
+    });
+    look_at_ = std::max<std::size_t>(16, 2 * queued_.size());
+  }
+  queued_.push_back(call);
+}
+
+void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
+                           const void* in) {
+  const std::uint64_t number = next_number();
+  const OperationInfo& operation = served_operation(service, call->operation());
+  const auto invocation =
+      make_shared_in_call_memory<QueuedCall>(call, clock_, journal_, service.interface_info().name);
+  invocation->operation = &operation;
+  invocation->connection = id_;
+  invocation->number = number;
+  invocation->in = {operation.in->make(), operation.in->destroy};
+  convert(*call->operation().in, in, *operation.in, invocation->in.get());
+  invocation->deadline = call->deadline();
+  invocation->session = session_;
+  if (call->blocking()) invocation->chain = inherited_chain();
+  invocation->respond = [self = invocation.get()](const void* out, std::exception_ptr error) {
+    self->end(out, std::move(error));
+  };
+  if (operation.stream) connect_stream(*invocation, call, *clock_);
+  note_begin(service, call->operation(), number);
+  call->set_canceller([invocation] { invocation->abandon(); });
+  try {
+    remember(invocation);
+    invocation->timer = clock_->call_at(call->deadline(), [invocation, peer = peer_] {
+      invocation->give_up(too_late(*peer, *invocation->operation));
+    });
+    service.submit(invocation);
+  } catch (const NotSent&) {
+    clock_->cancel(invocation->timer);
+    call->set_canceller(nullptr);
+    invocation->note_end(std::current_exception());
+    throw;
+  } catch (...) {
+    clock_->cancel(invocation->timer);
+    invocation->give_up(std::current_exception());
+  }
+  if (!operation.oneway || !call->claim()) return;
+  invocation->note_end(nullptr);
+  call->finish();
+}
+
+}  // namespace skein::rpc

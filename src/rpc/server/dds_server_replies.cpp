@@ -1,0 +1,228 @@
+#include <optional>
+#include <utility>
+
+#include "core/log.hpp"
+#include "dds_server_state.hpp"
+#include "rpc/wire/common.hpp"
+#include "rpc/wire/reply_encoding.hpp"
+#include "skein/error.hpp"
+
+namespace skein::rpc {
+namespace {
+
+// How many refusals may wait to be written to a client: no client that waits for them has more
+// calls on its way (DdsChannel::Options::calls_in_flight).
+constexpr std::size_t kMaxRefusals = 4096;
+// How long a refusal is worth sending; what the call's deadline is may be unknown.
+constexpr std::chrono::seconds kRefusalPatience{10};
+// How soon replies that found no room are tried again: no vendor tells when there is some.
+constexpr std::chrono::milliseconds kRetryInterval{5};
+// How much is written then before an acknowledgment is waited for again: as much as any writer
+// takes without blocking `control`.
+constexpr std::size_t kRetrySize = 256 << 10;
+
+}  // namespace
+
+// Vendor threads never write: the refusal leaves from `control`, by one task for all that wait,
+// which finds room there whatever else does.
+void DdsServer::State::refuse(const std::shared_ptr<Client>& client, const RequestId& id,
+                              ErrorCode code, std::string text) {
+  {
+    std::lock_guard lock(mutex);
+    ++counters.refused;
+    if (client->refusals.size() >= kMaxRefusals) client->refusals.pop_front();
+    client->refusals.push_back({id, code, std::move(text)});
+    if (std::exchange(client->refusing, true)) return;
+  }
+  control.post_or_run([state = weak_from_this(), client] {
+    if (const auto self = state.lock()) self->write_refusals(client);
+  });
+}
+
+void DdsServer::State::write_refusals(const std::shared_ptr<Client>& client) {
+  std::deque<Refusal> refusals;
+  {
+    std::lock_guard lock(mutex);
+    refusals.swap(client->refusals);
+    client->refusing = false;
+  }
+  for (const auto& [id, code, text] : refusals) {
+    Bytes message;
+    if (code == ErrorCode::Unimplemented) {
+      wire::begin_reply(message, id, wire::RemoteException::UnknownOperation, 0,
+                        address.representation);
+      wire::append_default_branch(message);
+      wire::append_trailer(message, wire::ReplyTrailer{code, text});
+    } else {
+      encode_error(message, address.representation, id, code, text);
+    }
+    write(client, writer_of(*client), message, clock.now() + kRefusalPatience);
+  }
+}
+
+void DdsServer::State::respond(Request& request, const void* out, const std::exception_ptr& error) {
+  const OperationInfo& operation = *request.operation;
+  const auto writer = forget(request);
+  if (operation.oneway) return;
+  thread_local Bytes message;
+  if (out || error) {
+    encode_outcome(message, address.representation, request.id, operation, out, error);
+  } else {
+    encode_end(message, address.representation, request.id, operation, request.stream->sent());
+  }
+  write(request.client, writer, message, request.deadline);
+  if (message.capacity() > kKeptCapacity) message = Bytes();
+}
+
+void DdsServer::State::send_item(const std::shared_ptr<Client>& client, const RequestId& id,
+                                 const OperationInfo& operation, const void* out,
+                                 std::uint64_t position, Instant deadline) {
+  thread_local Bytes message;
+  encode_item(message, address.representation, id, operation, out, position);
+  const bool sent = write(client, writer_of(*client), message, deadline);
+  if (message.capacity() > kKeptCapacity) message = Bytes();
+  if (!sent) throw Overloaded("the caller of " + quoted(operation) + " takes no replies");
+}
+
+// The call is over. Returns who writes to its client, or null.
+std::shared_ptr<dds::Writer> DdsServer::State::forget(const Request& request) {
+  std::shared_ptr<dds::Writer> writer;
+  {
+    std::lock_guard lock(mutex);
+    active.erase(request.id);
+    writer = request.client->writer;
+    if (leaving) less_to_do.notify_all();
+  }
+  if (options.on_load) options.on_load();
+  return writer;
+}
+
+std::shared_ptr<dds::Writer> DdsServer::State::writer_of(const Client& client) const {
+  std::lock_guard lock(mutex);
+  return client.writer;
+}
+
+// False where the reply was lost. A client that stopped reading holds up this thread once, and not
+// with each reply: what comes after the one that found no room waits behind it.
+bool DdsServer::State::write(const std::shared_ptr<Client>& client,
+                             const std::shared_ptr<dds::Writer>& writer, Bytes& message,
+                             Instant deadline) {
+  if (!writer) return false;
+  if (client->stalled) return keep_unsent(client, message, deadline);
+  try {
+    writer->write(message);
+    return true;
+  } catch (const Overloaded&) {
+    return keep_unsent(client, message, deadline);
+  } catch (const Error& error) {
+    std::lock_guard lock(mutex);
+    note_lost(1, error.what());
+    return false;
+  }
+}
+
+bool DdsServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes& message,
+                                   Instant deadline) {
+  const std::size_t size = message.size();
+  {
+    std::lock_guard lock(mutex);
+    if (!client->writer) return false;
+    if (client->unsent_size + size > kMaxUnsent - unsent_size) {
+      note_lost(1, std::to_string(unsent_size) + " octets wait already for clients that take none");
+      return false;
+    }
+    client->unsent.push_back({std::move(message), deadline});
+    count_unsent(*client, size);
+    client->stalled = true;
+    if (std::exchange(client->retrying, true)) return true;
+  }
+  retry_later(client);
+  return true;
+}
+
+// The client is not kept: the last to let go of it must not be the clock's thread.
+void DdsServer::State::retry_later(const std::shared_ptr<Client>& client) {
+  const TimerId timer =
+      clock.call_after(kRetryInterval, [state = weak_from_this(), weak = std::weak_ptr(client)] {
+        const auto self = state.lock();
+        if (!self) return;
+        self->control.post_or_run([state, weak] {
+          const auto self = state.lock();
+          const auto client = weak.lock();
+          if (self && client) self->send_unsent(client);
+        });
+      });
+  std::lock_guard lock(mutex);
+  client->retry = timer;
+}
+
+// In their order, once all that was written before has been acknowledged.
+void DdsServer::State::send_unsent(const std::shared_ptr<Client>& client) {
+  for (std::size_t written = 0; written < kRetrySize;) {
+    auto next = next_unsent(*client);
+    if (!next) return;
+    if (!try_to_send(*client, *next, written == 0)) {
+      std::lock_guard lock(mutex);
+      if (!client->writer) return;
+      client->unsent.push_front(std::move(*next));
+      count_unsent(*client, client->unsent.front().message.size());
+      break;
+    }
+    written += next->message.size();
+  }
+  retry_later(client);
+}
+
+// Nothing, and replies go straight to the writer again, where none waits any more.
+std::optional<DdsServer::State::Unsent> DdsServer::State::next_unsent(Client& client) {
+  std::lock_guard lock(mutex);
+  const Instant now = clock.now();
+  const auto late = std::erase_if(client.unsent, [&](const Unsent& each) {
+    if (each.deadline > now) return false;
+    discount_unsent(client, each.message.size());
+    return true;
+  });
+  if (late > 0) note_lost(late, "the client took none before the call's deadline");
+  if (client.unsent.empty()) {
+    client.stalled = client.retrying = false;
+    return std::nullopt;
+  }
+  std::optional<Unsent> next(std::move(client.unsent.front()));
+  client.unsent.pop_front();
+  discount_unsent(client, next->message.size());
+  return next;
+}
+
+bool DdsServer::State::try_to_send(Client& client, const Unsent& reply, bool await_room) {
+  using namespace std::chrono_literals;
+  const auto writer = writer_of(client);
+  if (!writer) return true;
+  try {
+    if (await_room && !writer->wait_for_acknowledgments(0ms)) return false;
+    writer->write(reply.message);
+  } catch (const Overloaded&) {
+    return false;
+  } catch (const Error& error) {
+    std::lock_guard lock(mutex);
+    note_lost(1, error.what());
+  }
+  return true;
+}
+
+// These under the lock.
+void DdsServer::State::count_unsent(Client& client, std::size_t size) {
+  client.unsent_size += size;
+  unsent_size += size;
+}
+
+void DdsServer::State::discount_unsent(Client& client, std::size_t size) {
+  client.unsent_size -= size;
+  unsent_size -= size;
+}
+
+void DdsServer::State::note_lost(std::uint64_t count, const std::string& why) {
+  if (counters.lost == 0) log(LogLevel::Warning, address.service, "a reply was lost: " + why);
+  counters.lost += count;
+}
+
+}  // namespace skein::rpc

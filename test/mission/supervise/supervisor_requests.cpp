@@ -1,0 +1,211 @@
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cerrno>
+#include <future>
+
+#include "core/system/file_descriptor.hpp"
+#include "mission/supervise/mission_claim.hpp"
+#include "shell_mission.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+#include "skein/mission_status.idl.hpp"
+#include "test/tools/eventually.hpp"
+
+using namespace skein;
+using namespace skein::launch;
+using namespace std::chrono_literals;
+using Catch::Contains;
+
+namespace {
+
+/// A mission that its launcher runs in another thread, until this object goes.
+class RunningMission {
+ public:
+  explicit RunningMission(std::vector<ChildPlan> children) : recorded_(std::move(children)) {
+    mission_.name = "requests of process " + std::to_string(::getpid());
+    claim_.emplace(mission_, "");
+    auto options = recorded_.options();
+    options.requests = claim_->requests();
+    supervisor_.emplace(recorded_.plan, options);
+    result_ = std::async(std::launch::async, [&] { return supervisor_->run(); });
+  }
+  ~RunningMission() { supervisor_->request_stop(); }
+  RunningMission(const RunningMission&) = delete;
+  RunningMission& operator=(const RunningMission&) = delete;
+
+  std::string ask(const std::string& request) const { return ask_launcher(mission_, "", request); }
+  ProcessStatus status(std::size_t process) const {
+    return idl::from_json<MissionStatus>(ask("status")).processes.at(process);
+  }
+  bool becomes(std::size_t process, const std::string& state) const {
+    return test::eventually([&] { return status(process).state == state; });
+  }
+  const profile::MissionProfile& mission() const { return mission_; }
+  int listener() const { return claim_->requests(); }
+
+ private:
+  profile::MissionProfile mission_;
+  RecordedMission recorded_;
+  std::optional<MissionClaim> claim_;
+  std::optional<Supervisor> supervisor_;
+  std::future<LaunchResult> result_;
+};
+
+ChildPlan failing_child() {
+  auto child = shell_child("a", "exit 3");
+  child.rules.on_loss = profile::LossPolicy::Degrade;
+  child.rules.restart.policy = profile::RestartPolicy::OnFailure;
+  child.rules.restart.max_restarts = 2;
+  return child;
+}
+
+}  // namespace
+
+TEST_CASE("A launcher tells what it knows of each process") {
+  RunningMission mission(
+      {shell_child("a", kWait), failing_child(), shell_child("c", "kill -STOP $$")});
+  REQUIRE(mission.becomes(0, "ready"));
+  REQUIRE(mission.becomes(1, "lost"));
+  const auto status = idl::from_json<MissionStatus>(mission.ask("status"));
+  CHECK(status.mission == "m");
+  CHECK(status.launcher == static_cast<std::uint32_t>(::getpid()));
+  CHECK(status.degraded);
+  CHECK(status.ending.empty());
+  REQUIRE(status.processes.size() == 3);
+  CHECK(status.processes[0].name == "a");
+  CHECK(exists(static_cast<pid_t>(status.processes[0].pid)));
+  CHECK(status.processes[0].uptime > 0);
+  CHECK(status.processes[1].pid == 0);
+  CHECK(status.processes[1].restarts == 2);
+  CHECK(status.processes[1].last_exit == "with exit code 3");
+  CHECK(status.processes[1].reason == "a ended with exit code 3, given up after 2 restarts");
+  CHECK(status.processes[2].state == "starting");
+}
+
+TEST_CASE("A process that was given up is started anew on request, with all of its restarts") {
+  RunningMission mission({shell_child("b", kWait), failing_child()});
+  REQUIRE(mission.becomes(1, "lost"));
+  CHECK(mission.ask("restart a") == "a is started anew");
+  REQUIRE(mission.becomes(1, "lost"));
+  CHECK(mission.status(1).restarts == 2);
+}
+
+TEST_CASE("A running process is replaced on request, whatever its rules of restart are") {
+  RunningMission mission({shell_child("a", kWait)});
+  REQUIRE(mission.becomes(0, "ready"));
+  const auto before = mission.status(0).pid;
+  CHECK(mission.ask("restart a") == "a is started anew");
+  CHECK(test::eventually([&] {
+    const auto now = mission.status(0);
+    return now.state == "ready" && now.pid != before;
+  }));
+  CHECK_THAT(mission.status(0).last_exit, Contains("by signal"));
+}
+
+TEST_CASE("What a launcher cannot do it refuses with the reason") {
+  auto late = shell_child("late", kWait);
+  late.layer = 1;
+  late.after = {{"M/I", {"navigator"}}};
+  RunningMission mission({shell_child("navigator", "kill -STOP $$"), late});
+  REQUIRE(mission.becomes(0, "starting"));
+  CHECK_THROWS_WITH(mission.ask("restart navigatro"),
+                    Contains("the mission has no process 'navigatro' here (did you mean "
+                             "'navigator'?); it has navigator, late"));
+  CHECK_THROWS_WITH(mission.ask("restart late"), Contains("late was not started yet"));
+  CHECK_THROWS_WITH(mission.ask("dance"), Contains("does not know this request"));
+}
+
+TEST_CASE("Clients that say nothing, too much, or go away do not keep others from being answered") {
+  RunningMission mission({shell_child("a", kWait)});
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(mission.listener(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  const auto connect = [&] {
+    FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    REQUIRE(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0);
+    return client;
+  };
+  std::vector<FileDescriptor> silent;
+  for (int i = 0; i < 20; ++i) silent.push_back(connect());
+  connect().reset();
+  const auto talkative = connect();
+  const std::string much(100'000, 'x');
+  ::send(talkative.get(), much.data(), much.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  CHECK_THAT(mission.ask("status"), Contains("\"a\""));
+  char answer = 0;
+  CHECK(::read(talkative.get(), &answer, 1) <= 0);  // it was sent away
+}
+
+TEST_CASE("A launcher that has no room for further clients is known all the same") {
+  profile::MissionProfile mission;
+  mission.name = "asked too much of process " + std::to_string(::getpid());
+  const MissionClaim claim(mission, "");
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  std::vector<FileDescriptor> waiting;
+  do {
+    waiting.emplace_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  } while (::connect(waiting.back().get(), reinterpret_cast<const sockaddr*>(&address), size) == 0);
+  REQUIRE(errno == EAGAIN);
+  CHECK_THROWS_WITH(MissionClaim(mission, ""),
+                    Contains("by process " + std::to_string(::getpid())));
+}
+
+TEST_CASE("Another user's process that takes a launcher's name keeps no mission from flying") {
+  if (::getuid() != 0) {
+    WARN("not tested: only root can be another user");
+    return;
+  }
+  profile::MissionProfile mission;
+  mission.name = "wanted by process " + std::to_string(::getpid());
+  const std::string name = [&] {
+    const MissionClaim claim(mission, "");
+    sockaddr_un address{};
+    socklen_t size = sizeof address;
+    ::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size);
+    return std::string(reinterpret_cast<const char*>(&address), size);
+  }();
+  const bool listens = GENERATE(false, true);
+  CAPTURE(listens);
+  int done[2];
+  int end[2];
+  REQUIRE((::pipe2(done, O_CLOEXEC) == 0 && ::pipe2(end, O_CLOEXEC) == 0));
+  const pid_t stranger = ::fork();
+  if (stranger == 0) {
+    constexpr uid_t kNobody = 65534;
+    ::close(end[1]);
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    const auto* address = reinterpret_cast<const sockaddr*>(name.data());
+    const bool taken = ::setuid(kNobody) == 0 &&
+                       ::bind(socket, address, static_cast<socklen_t>(name.size())) == 0 &&
+                       (!listens || ::listen(socket, 0) == 0);
+    char byte = taken ? 1 : 0;
+    if (::write(done[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) >= 0) ::_exit(0);
+    ::_exit(1);
+  }
+  ::close(end[0]);
+  char taken = 0;
+  REQUIRE(::read(done[0], &taken, 1) == 1);
+  REQUIRE(taken == 1);
+  {
+    const MissionClaim claim(mission, "");
+    CHECK(claim.requests() >= 0);
+    CHECK_THROWS_WITH(MissionClaim(mission, ""),
+                      Contains("by process " + std::to_string(::getpid())));
+  }
+  for (const int each : {done[0], done[1], end[1]}) ::close(each);
+  ::waitpid(stranger, nullptr, 0);
+}
+
+TEST_CASE("Without a launcher there is nobody to ask, and what to do is said") {
+  profile::MissionProfile mission;
+  mission.name = "nobody flies this";
+  CHECK_THROWS_WITH(ask_launcher(mission, "", "status"),
+                    Contains("the mission 'nobody flies this' is not flown here on domain 0; start "
+                             "it by skein launch"));
+}
