@@ -1,10 +1,6 @@
 #include "head_state.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "core/log.hpp"
@@ -13,7 +9,6 @@
 #include "rpc/service/local_directory.hpp"
 #include "selection/service_history.hpp"
 #include "skein/call_context.hpp"
-#include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -28,19 +23,12 @@ constexpr std::chrono::seconds kWatchPeriod{1};
 
 const std::string kOverdue = " has not returned from a request whose time is over";
 
-/// Who wrote it before was killed, say.
-bool ends_in_mid_line(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  return file && file.tellg() > 0 && file.seekg(-1, std::ios::end).get() != '\n';
-}
-
 }  // namespace
 
 Head::State::State(const Parts& parts_, HeadOptions options_)
     : parts(parts_),
       options(std::move(options_)),
+      decision_log(parts.entity, options.log),
       publisher(parts.participant, parts.control, introspection::kDecisions) {
   for (const auto& strategy : options.strategies) strategies.add(strategy);
   strategies.make(options.strategy);
@@ -49,14 +37,6 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
     try_whole_file("the Head's history", options.history);
   }
   history.learn();
-  if (options.log.empty()) return;
-  log_file.open(options.log, std::ios::app | std::ios::binary);
-  if (!log_file) {
-    throw InvalidArgument("the Head of " + parts.entity + " cannot write its decisions to '" +
-                          options.log + "': " + std::generic_category().message(errno) +
-                          "; name a file in a folder that may be written to");
-  }
-  if (ends_in_mid_line(options.log)) log_file << std::endl;
 }
 
 Head::State::~State() {
@@ -252,7 +232,7 @@ void Head::State::conclude(Decision&& record, Decision* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
                                     [](const auto& attempt) { return attempt.explores; });
   const bool read = publisher.on();
-  const bool told = read || !options.log.empty();
+  const bool told = read || decision_log.on();
   std::optional<Decision> copy;
   std::optional<Decision> dropped;  // outside the lock
   {
@@ -269,31 +249,8 @@ void Head::State::conclude(Decision&& record, Decision* wanted) {
     }
   }
   if (read) publisher.publish(*copy);
-  if (!options.log.empty()) write_log(*copy);
+  if (decision_log.on()) decision_log.write(*copy);
   if (wanted) *wanted = std::move(*copy);
-}
-
-void Head::State::write_log(const Decision& record) {
-  const std::string line = idl::to_json(record);
-  std::lock_guard lock(log_mutex);
-  errno = 0;
-  // Of a decision that was lost, a part may stand there.
-  log_file << (log_lost > 0 ? "\n" : "") << line << std::endl;
-  if (log_file) {
-    if (log_lost > 0) {
-      log(LogLevel::Warning, parts.entity,
-          "decisions are written to '" + options.log + "' again; " + std::to_string(log_lost) +
-              " are not in it");
-    }
-    log_lost = 0;
-    return;
-  }
-  log_file.clear();
-  if (++log_lost > 1) return;
-  log(LogLevel::Warning, parts.entity,
-      "a decision could not be written to '" + options.log +
-          "': " + std::generic_category().message(errno) +
-          "; it is lost, and so is each further one until this is mended");
 }
 
 }  // namespace skein

@@ -2,7 +2,6 @@
 
 #include <deque>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
@@ -10,6 +9,7 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "core/recent_set.hpp"
+#include "decision_log.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "rpc/service/service.hpp"
 #include "selection/wire_values.hpp"
@@ -130,9 +130,7 @@ struct Head::State {
   std::uint64_t last_run = 0;
   std::uint64_t last_decision = 0;
   std::deque<introspection::Decision> decisions;
-  std::mutex log_mutex;
-  std::ofstream log_file;
-  std::uint64_t log_lost = 0;  // since one was written last
+  entity::DecisionLog decision_log;
   introspection::Publisher<introspection::Decision> publisher;
   bool learns = false;
   std::unique_ptr<ThreadExecutor> learner;  // once there is something to learn; ends first
@@ -153,7 +151,6 @@ struct Head::State {
   void arm_watch_timer(Instant next_end);
   void look_at_watches();
   void tell(std::string_view interface, const std::string& csp, const std::string& text);
-  void write_log(const introspection::Decision& record);
 };
 
 template <class Decide>

@@ -1,0 +1,60 @@
+#include "decision_log.hpp"
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "core/log.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+
+namespace skein::entity {
+namespace {
+
+/// If whoever wrote it before was killed, say.
+bool ends_in_mid_line(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  return file && file.tellg() > 0 && file.seekg(-1, std::ios::end).get() != '\n';
+}
+
+}  // namespace
+
+DecisionLog::DecisionLog(std::string entity, std::string path)
+    : entity_(std::move(entity)), path_(std::move(path)) {
+  if (!on()) return;
+  file_.open(path_, std::ios::app | std::ios::binary);
+  if (!file_) {
+    throw InvalidArgument("the Head of " + entity_ + " cannot write its decisions to '" + path_ +
+                          "': " + std::generic_category().message(errno) +
+                          "; name a file in a folder that may be written to");
+  }
+  if (ends_in_mid_line(path_)) file_ << std::endl;
+}
+
+void DecisionLog::write(const introspection::Decision& decision) {
+  const std::string line = idl::to_json(decision);
+  std::lock_guard lock(mutex_);
+  errno = 0;
+  // Of a decision that was lost, a part may stand there.
+  file_ << (lost_ > 0 ? "\n" : "") << line << std::endl;
+  if (file_) {
+    if (lost_ > 0) {
+      log(LogLevel::Warning, entity_,
+          "decisions are written to '" + path_ + "' again; " + std::to_string(lost_) +
+              " are not in it");
+    }
+    lost_ = 0;
+    return;
+  }
+  file_.clear();
+  if (++lost_ > 1) return;
+  log(LogLevel::Warning, entity_,
+      "a decision could not be written to '" + path_ +
+          "': " + std::generic_category().message(errno) +
+          "; it is lost, and so is each further one until this is mended");
+}
+
+}  // namespace skein::entity
