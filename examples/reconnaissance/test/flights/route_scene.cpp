@@ -15,7 +15,7 @@ int main(int, char** arguments) {
   testing::Demo demo;
   demo.problem.no_fly_zones[0].name = "</text><script>alert(1)</script>&";
   demo.problem.missile_sites.push_back({"Sierra", {20'000, 15'000}, 20, 4000, 0.02});
-  const auto route = make_a_star(demo.terrains)->plan(demo.problem);
+  const auto route = demo.plan("AStar");
   std::vector<PicturedRoute> routes{{"first", route}, {"second", route}, {"third", route}};
   routes[2].route.waypoints[3].north_m = std::nan("");
   std::ofstream(std::string(arguments[1]) + "/routes.html")
