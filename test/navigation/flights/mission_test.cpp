@@ -20,11 +20,11 @@ const std::filesystem::path kMission =
 const std::filesystem::path kTestProfiles = project_file("test/navigation/flights/profiles");
 
 /// What is shown does not depend on how fast this machine plans.
-const std::vector<std::string> kPatience{"--set", "ground_station.Time limit=10 s"};
+const std::vector<std::string> kTimeToThink{"--set", "ground_station.Time limit=10 s"};
 
 /// The mission, flown once for all that is looked at.
 const MissionRun& flown() {
-  static const MissionRun run(kMission, kPatience);
+  static const MissionRun run(kMission, kTimeToThink);
   return run;
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("the example's text tells of a flight like this one") {
 
 TEST_CASE(
     "a planner that lies about a cut corner is found out, and the next best answers in its place") {
-  const MissionRun run(kTestProfiles / "lying_planner.xml", kPatience);
+  const MissionRun run(kTestProfiles / "lying_planner.xml", kTimeToThink);
   INFO(run.output());
   CHECK(run.exit_code() == 0);
   CHECK_THAT(run.output(), Contains("1. ShortCut has the best declared quality (0.99)"));
@@ -118,7 +118,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a navigator that passes on a route through a no-fly zone fails the mission") {
-  const MissionRun run(kTestProfiles / "lying_navigator.xml", kPatience);
+  const MissionRun run(kTestProfiles / "lying_navigator.xml", kTimeToThink);
   INFO(run.output());
   CHECK(run.exit_code() == 1);
   CHECK_THAT(run.output(), Contains("check INVALID (no-fly zone)"));
