@@ -8,7 +8,7 @@
 # before. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
 # The same in Skein's own tree and in an installed package.
-get_filename_component(SKEIN_IDL_ROOT "${PROJECT_SOURCE_DIR}/idl" ABSOLUTE)
+get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 # The system's Python, which has its packages, whatever else comes first in PATH.
 find_program(SKEIN_IDL_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH DOC "Python with the package lark (Debian: python3-lark)")
 

@@ -156,6 +156,9 @@ Completion completion_of(const CLI::App& app, std::vector<std::string> words) {
   } else if (arguments.size() < places.size()) {
     add_values(*places[arguments.size()], completion);
   }
+  // fish would take the letters of a word in any place, even those of its meaning.
+  std::erase_if(completion.lines,
+                [&](const std::string& line) { return line[0] != ':' && !line.starts_with(last); });
   return completion;
 }
 

@@ -45,7 +45,7 @@ std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
 
 namespace {
 
-void print_as_json(const std::vector<profile::Finding>& findings) {
+void print_findings(const std::vector<profile::Finding>& findings) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& finding : findings) {
     list.push_back({{"file", finding.where.file},
@@ -64,7 +64,7 @@ int check(const CheckArguments& arguments) {
   const auto findings = findings_of(arguments);
   const int result = profile::has_errors(findings) ? launch::kConfigurationError : 0;
   if (arguments.json) {
-    print_as_json(findings);
+    print_findings(findings);
     return result;
   }
   std::fputs(profile::to_text(findings).c_str(), stderr);

@@ -73,10 +73,12 @@ class InShell(unittest.TestCase):
         (pathlib.Path(self.place.name) / "mission.xml").touch()
         (pathlib.Path(self.place.name) / "logs").mkdir()
 
+    def environment(self):
+        path = f"{self.before}{COMMAND.parent}:{os.environ['PATH']}"
+        return {**os.environ, "HOME": self.place.name, "TERM": "dumb", "LC_ALL": "C.UTF-8", "PATH": path}
+
     def run_shell(self, *words):
-        environment = {**os.environ, "HOME": self.place.name, "TERM": "dumb", "LC_ALL": "C.UTF-8"}
-        environment["PATH"] = f"{self.before}{COMMAND.parent}:{environment['PATH']}"
-        done = subprocess.run(words, cwd=self.place.name, env=environment, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(words, cwd=self.place.name, env=self.environment(), capture_output=True, text=True, timeout=60)
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
         return done.stdout
@@ -197,7 +199,7 @@ class Zsh(InShell):
         pid, terminal = pty.fork()
         if pid == 0:
             os.chdir(self.place.name)
-            os.execvpe("zsh", ["zsh", "-f", "-i"], {**os.environ, "HOME": self.place.name, "TERM": "dumb"})
+            os.execvpe("zsh", ["zsh", "-f", "-i"], self.environment())
         try:
             setup = f"PS1=; fpath=({FOLDER / 'completion'} $fpath); autoload -Uz compinit; compinit -u -D;"
             setup += " show() { print -r -- \"<$BUFFER>\" }; zle -N show; bindkey ^T show; print rea''dy"
