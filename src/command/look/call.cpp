@@ -95,7 +95,7 @@ std::string needs_of(const types::Operation& operation, const std::string& value
 /// shell.
 void demand_arguments(const types::Operation& operation, const std::string& values) {
   if (accepted_parameters(operation).empty()) {
-    if (values.empty() || values == "{}") return;
+    if (values.find_first_not_of(" \t\r\n{}") == std::string::npos) return;
     throw InvalidArgument(operation.name + " takes no arguments; leave out '" + values + "'");
   }
   try {
