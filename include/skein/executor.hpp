@@ -60,8 +60,8 @@ class IdleWork;
 /// is a strand: no two tasks run at once.
 class ThreadExecutor final : public Executor {
  public:
-  /// How long its tasks take. Of one of the Short ones that takes a second the log tells, with the
-  /// thread's stack, while there is a Process.
+  /// How long its tasks take. If one of the Short ones takes a second, the log tells, with a `gdb`
+  /// command, while there is a Process.
   enum class Tasks { Any, Short };
 
   /// `name` is the threads' name in a debugger (15 characters are kept). Throws InvalidArgument for

@@ -80,7 +80,7 @@ TEST_CASE(
 
 TEST_CASE("Whether a file can be written is tried without a trace") {
   const TemporaryFolder folder;
-  const auto file = folder.path() / "route.svg";
+  const auto file = folder.path() / "route.html";
   try_whole_file("the picture", file);
   CHECK(files_in(folder) == 0);
   write_whole_file("the picture", file, "old");

@@ -46,21 +46,21 @@ TEST_CASE("a value of a dependency that is not declared does not matter") {
 
 TEST_CASE("a value is read by its type, and converted where nothing is lost") {
   const ParameterValues values{
-      {"Speed", 62.5}, {"Seed", 7}, {"Patience", 1500ms}, {"Loud", true}, {"Picture", "route.svg"}};
+      {"Speed", 62.5}, {"Seed", 7}, {"Patience", 1500ms}, {"Loud", true}, {"Picture", "route.html"}};
   CHECK(values.get<double>("Speed") == 62.5);
   CHECK(values.get<std::uint32_t>("Seed") == 7);
   CHECK(values.get<double>("Seed") == 7);
   CHECK(values.get<std::chrono::milliseconds>("Patience") == 1500ms);
   CHECK(values.get<std::chrono::seconds>("Patience") == 1s);
   CHECK(values.get<bool>("Loud"));
-  CHECK(values.get<std::string>("Picture") == "route.svg");
+  CHECK(values.get<std::string>("Picture") == "route.html");
   CHECK(values.find<double>("Climb") == std::nullopt);
 }
 
 TEST_CASE("a value of another type, of another size, or none, is refused by the parameter's name") {
   const ParameterValues values{{"Speed", 62.5},
                                {"Seed", 70'000},
-                               {"Picture", "route.svg"},
+                               {"Picture", "route.html"},
                                {"Patience", 1500ms},
                                {"Loud", true}};
   CHECK_THROWS_WITH(values.get<std::uint32_t>("Speed"),
@@ -71,7 +71,7 @@ TEST_CASE("a value of another type, of another size, or none, is refused by the 
                                       "fit into the integer type that the code asks for"));
   CHECK_THROWS_WITH(
       values.find<double>("Picture"),
-      Catch::Contains("as a number, and by the dictionary it is a text, 'route.svg'"));
+      Catch::Contains("as a number, and by the dictionary it is a text, 'route.html'"));
   CHECK_THROWS_WITH(values.find<std::chrono::milliseconds>("Seed"),
                     Catch::Contains("as a duration, and by the dictionary it is an integer"));
   CHECK_THROWS_WITH(values.find<std::string>("Patience"),

@@ -575,21 +575,21 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     }));
   }
   SECTION("export") {
-    Command text({"export", file, "--perfetto", shelf / "a.pftrace"});
-    Command json({"export", file, "--perfetto", shelf / "b.pftrace", "--json"});
+    Command text({"export", file, "--perfetto", shelf / "a.json"});
+    Command json({"export", file, "--perfetto", shelf / "b.json", "--json"});
     CHECK(text.code() == 0);
-    CHECK_THAT(text.printed(), Contains("a.pftrace: ") && Contains(" events of calls, 0 dec"));
+    CHECK_THAT(text.printed(), Contains("a.json: ") && Contains(" events of calls, 0 dec"));
     CHECK(json.code() == 0);
-    CHECK(json.json()["file"] == shelf / "b.pftrace");
+    CHECK(json.json()["file"] == shelf / "b.json");
     CHECK(json.json()["events"] > 0);
     CHECK(json.json()["malformed"] == 0);
-    CHECK(text_of(shelf / "a.pftrace") == text_of(shelf / "b.pftrace"));
+    CHECK(text_of(shelf / "a.json") == text_of(shelf / "b.json"));
     // What is there stays, be it the recording itself.
     const std::string before = text_of(file);
     Command itself({"export", file, "--perfetto", file});
     CHECK(itself.code() == 74);
     CHECK(text_of(file) == before);
-    CHECK(Command({"export", file, "--perfetto", shelf / "a.pftrace"}).code() == 74);
+    CHECK(Command({"export", file, "--perfetto", shelf / "a.json"}).code() == 74);
   }
   SECTION("replay") {
     Field other(vendor);

@@ -1,7 +1,8 @@
+#include "mission/check/profile_check.hpp"
+
 #include <catch2/catch.hpp>
 
-#include "mission/check/profile_check.hpp"
-#include "profile_folder.hpp"
+#include "test/mission/profile/profile_folder.hpp"
 
 using namespace skein::profile;
 
