@@ -114,8 +114,8 @@ class ManualExecutor final : public Executor {
   /// Runs queued tasks, and those that they queue, until none is left; returns how many ran.
   std::size_t run_all();
 
-  /// Runs tasks as they come until `done()`, which is asked at first and after tasks have run, here
-  /// or on another thread; false if it was not done by `until`. What `done()` depends on changes in
+  /// Runs tasks as they come until `done()`, which is asked after those that wait have run, here or
+  /// on another thread; false if it was not done by `until`. What `done()` depends on changes in
   /// tasks alone: post an empty one to have it asked.
   bool run_until(std::chrono::steady_clock::time_point until, const std::function<bool()>& done);
 

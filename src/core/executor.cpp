@@ -213,11 +213,9 @@ bool ThreadExecutor::enqueue(Action& task, std::size_t capacity) {
 }
 
 bool ManualExecutor::post(Action task) {
-  {
-    std::lock_guard lock(mutex_);
-    tasks_.push_back(std::move(task));
-  }
-  changed_.notify_all();
+  std::lock_guard lock(mutex_);
+  tasks_.push_back(std::move(task));
+  changed_.notify_all();  // under the lock: whoever sees the task may end the executor
   return true;
 }
 
@@ -244,13 +242,19 @@ bool ManualExecutor::run_until(std::chrono::steady_clock::time_point until,
                                const std::function<bool()>& done) {
   std::unique_lock lock(mutex_);
   for (;;) {
+    std::deque<Action> waiting;  // not those that they queue, which may never end
+    waiting.swap(tasks_);
+    lock.unlock();
+    for (Action& task : waiting) task();
+    lock.lock();
+    ran_ += waiting.size();
+    if (!waiting.empty()) changed_.notify_all();
     const std::size_t ran = ran_;
     lock.unlock();
-    const std::size_t here = run_all();
     if (done()) return true;
     lock.lock();
-    const auto asked_again = [&] { return !tasks_.empty() || ran_ != ran + here; };
-    if (!changed_.wait_until(lock, until, asked_again)) return false;
+    if (std::chrono::steady_clock::now() >= until) return false;
+    changed_.wait_until(lock, until, [&] { return !tasks_.empty() || ran_ != ran; });
   }
 }
 

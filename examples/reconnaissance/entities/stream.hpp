@@ -51,7 +51,7 @@ class Stream {
   /// from before stands in for it, if there is any.
   std::optional<T> at(Tick tick, skein::Duration patience = kPatience) {
     if (tick < 0) return std::nullopt;
-    reading_.run_all();
+    read();
     const Tick wanted = tick - tick % period_;
     if (is_to_come(wanted)) await(wanted, patience);
     std::lock_guard lock(mutex_);
@@ -75,7 +75,7 @@ class Stream {
 
   /// The newest that has arrived.
   std::optional<T> latest() {
-    reading_.run_all();
+    read();
     std::lock_guard lock(mutex_);
     return samples_.empty() ? std::nullopt : std::optional(samples_.back());
   }
@@ -94,6 +94,10 @@ class Stream {
   static skein::TopicQos for_reading(skein::TopicQos qos) {
     if (qos.history_depth) qos.history_depth = std::max(*qos.history_depth, kKept);
     return qos;
+  }
+
+  void read() {
+    reading_.run_until({}, [] { return true; });
   }
 
   void keep(const T& sample) {

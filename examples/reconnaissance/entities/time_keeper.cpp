@@ -35,7 +35,7 @@ skein::TopicQos acknowledgment_qos() {
 
 skein::TopicQos time_qos() {
   skein::TopicQos qos = skein::TopicQos::state();
-  qos.history_depth = 8;  // a tick of another run is not to take the place of one of this run
+  qos.history_depth = 1024;  // ticks of another run are not to take the place of one of this run
   return qos;
 }
 
@@ -58,7 +58,7 @@ TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times
 
 std::optional<Tick> TimeKeeper::await_next(const std::stop_token& stop) {
   const std::stop_callback stops(stop, [this] { hearing_.post([] {}); });
-  hearing_.run_all();
+  hearing_.run_until({}, [] { return true; });
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     const skein::Instant now = entity_.clock().now();

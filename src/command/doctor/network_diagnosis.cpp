@@ -195,7 +195,7 @@ Symptom firewall(const Purpose& purpose, const Facts& facts) {
   constexpr const char* kAbout = "firewall";
   if (!facts.firewall) {
     return {Severity::Note, kAbout, "the firewall's rules cannot be read",
-            "nft list ruleset needs root", "sudo skein doctor"};
+            "nft list ruleset needs root, and the package nftables", "sudo skein doctor"};
   }
   std::istringstream lines(*facts.firewall);
   for (std::string line; std::getline(lines, line);) {
@@ -208,7 +208,7 @@ Symptom firewall(const Purpose& purpose, const Facts& facts) {
                 std::to_string(ports.first) + "-" + std::to_string(ports.last) +
                 " on lo and on the interfaces of the mission"};
   }
-  return {Severity::Fine, kAbout, "no rule drops packets", "", ""};
+  return {Severity::Fine, kAbout, "no rule of nftables drops packets", "", ""};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
@@ -95,7 +96,9 @@ std::string needs_of(const types::Operation& operation, const std::string& value
 /// shell.
 void demand_arguments(const types::Operation& operation, const std::string& values) {
   if (accepted_parameters(operation).empty()) {
-    if (values.find_first_not_of(" \t\r\n{}") == std::string::npos) return;
+    std::string said = values;
+    std::erase_if(said, [](unsigned char c) { return std::isspace(c); });
+    if (said.empty() || said == "{}") return;
     throw InvalidArgument(operation.name + " takes no arguments; leave out '" + values + "'");
   }
   try {

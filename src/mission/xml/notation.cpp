@@ -4,7 +4,9 @@
 #include <map>
 #include <pugixml.hpp>
 #include <set>
+#include <string>
 
+#include "skein/error.hpp"
 #include "words.hpp"
 
 namespace skein::profile {
@@ -19,7 +21,10 @@ namespace {
 /// As much of an XML schema as notations are made of.
 class Schema {
  public:
-  explicit Schema(const char* text) { document_.load_string(text); }
+  explicit Schema(const char* text) {
+    const pugi::xml_parse_result parsed = document_.load_string(text);
+    if (!parsed) throw Internal(std::string("a schema of profiles: ") + parsed.description());
+  }
 
   /// Of an element at its top. Refers to this object.
   Notation element(const char* name) const { return notation_of(named("xs:element", name)); }

@@ -44,7 +44,10 @@ class IdlWriter {
  public:
   explicit IdlWriter(const DynamicType& root) : root_(root) {
     const auto parts = parts_of(root);
-    for (const DynamicType* part : parts) names_.of_type(*part->declaration);
+    std::vector<const DynamicType*> in_order(parts.begin(), parts.end());
+    std::ranges::sort(in_order, {},
+                      [](const DynamicType* part) { return part->declaration->name; });
+    for (const DynamicType* part : in_order) names_.of_type(*part->declaration);
     check_recursion(parts);
   }
 
