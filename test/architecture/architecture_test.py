@@ -324,7 +324,7 @@ class Links(TreeTest):
     def test_a_file_that_a_profile_names_and_that_is_not_there_is_found(self):
         self.write("examples/01/mission.xml", '<mission dictionary="../b.xml">\n<peer component="a.xml"/><peer component="${x}.xml"/>\n')
         self.write("examples/b.xml", "<dictionary/>")
-        self.write("test/guide/mission.xml", '<mission dictionary="nowhere.xml"/>')
+        self.write("test/mission/profile/mission.xml", '<mission dictionary="nowhere.xml"/>')
         self.assertFinds(text_rules.links(self.tree), "examples/01/mission.xml:2", "a.xml")
         self.write("examples/01/a.xml", "<component/>")
         self.assertFindsNothing(text_rules.links(self.tree))

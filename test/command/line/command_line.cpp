@@ -277,9 +277,8 @@ TEST_CASE("what a domain is asked for to complete a command line is told by the 
 TEST_CASE("a value that is glued to its option is completed with it") {
   const CommandLineRun line;
   using Lines = std::vector<std::string>;
-  CHECK(completion_of(line.app, {"completion", "b"}).lines == Lines{"bash", "zsh", "fish"});
-  CHECK(completion_of(line.app, {"graph", "--format=m"}).lines ==
-        Lines{"--format=dot", "--format=mermaid", "--format=json"});
+  CHECK(completion_of(line.app, {"completion", "b"}).lines == Lines{"bash"});
+  CHECK(completion_of(line.app, {"graph", "--format=m"}).lines == Lines{"--format=mermaid"});
   CHECK(completion_of(line.app, {"graph", "--profile=m"}).lines.empty());
 }
 
