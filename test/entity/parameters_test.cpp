@@ -45,8 +45,11 @@ TEST_CASE("a value of a dependency that is not declared does not matter") {
 }
 
 TEST_CASE("a value is read by its type, and converted where nothing is lost") {
-  const ParameterValues values{
-      {"Speed", 62.5}, {"Seed", 7}, {"Patience", 1500ms}, {"Loud", true}, {"Picture", "route.html"}};
+  const ParameterValues values{{"Speed", 62.5},
+                               {"Seed", 7},
+                               {"Patience", 1500ms},
+                               {"Loud", true},
+                               {"Picture", "route.html"}};
   CHECK(values.get<double>("Speed") == 62.5);
   CHECK(values.get<std::uint32_t>("Seed") == 7);
   CHECK(values.get<double>("Seed") == 7);

@@ -1,7 +1,7 @@
 // How lines become those of a terminal.
-#include <catch2/catch.hpp>
-
 #include "command/print/wrapped.hpp"
+
+#include <catch2/catch.hpp>
 
 using skein::command::folded;
 
