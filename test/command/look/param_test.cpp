@@ -26,10 +26,14 @@ Words on_domain(Words words, const std::string& vendor) {
   return words;
 }
 
-Said say(const Words& words, const std::string& vendor) {
-  CommandRun run(on_domain(words, vendor));
+Said say_as_it_is(const Words& words) {
+  CommandRun run(words);
   const int code = run.wait();
   return {run.output(), code};
+}
+
+Said say(const Words& words, const std::string& vendor) {
+  return say_as_it_is(on_domain(words, vendor));
 }
 
 pid_t process_of(const std::string& entity, const std::string& vendor) {
@@ -115,20 +119,24 @@ TEST_CASE("a parameter that may change is listed, read, and set while its peer r
 TEST_CASE("completion is told the names that a domain has now") {
   on_one_vendor([](const std::string& vendor) {
     const Patrol patrol(vendor);
-    const auto completed = [&](Words words, const std::string& names) {
-      CAPTURE(words);
-      words.insert(words.begin(), "complete");
+    const auto completed = [&](const Words& typed, const std::string& names,
+                               const Words& last = {""}) {
+      CAPTURE(typed, last);
+      Words words{"complete", "--"};
+      words.insert(words.end(), typed.begin(), typed.end());
+      words = on_domain(words, vendor);
+      words.insert(words.end(), last.begin(), last.end());
       Said said;  // it listens for a short time
-      CHECK(eventually([&] { return said = say(words, vendor), said.text == names; }));
+      CHECK(eventually([&] { return said = say_as_it_is(words), said.text == names; }));
       CHECK(said.code == 0);
     };
-    completed({"topic", "echo", "--json"}, "pose\n");
-    completed({"topic", "record", "--topics"}, "pose\n");
-    completed({"entity", "param", "get"}, "beacon\n");
-    completed({"parameter", "param", "get", "beacon"}, "Period\n");
-    completed({"parameter", "param", "get", "beacon", "--within", "500ms"}, "Period\n");
-    completed({"service", "call"}, "");
-    completed({"name", "describe"}, "pose\n");
+    completed({"echo", "--json"}, "pose\n");
+    completed({"record"}, "pose\n", {"--topics", ""});
+    completed({"param", "get"}, "beacon\n");
+    completed({"param", "get", "beacon"}, "Period\n");
+    completed({"param", "get", "beacon", "--within", "500ms"}, "Period\n");
+    completed({"call"}, "");
+    completed({"describe"}, "pose\n");
   });
 }
 
