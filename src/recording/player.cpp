@@ -8,7 +8,7 @@
 
 #include "core/suggestion.hpp"
 #include "recording/recorded_types.hpp"
-#include "skein/detail/codec.hpp"
+#include "recording/recorded_values.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -34,9 +34,7 @@ std::vector<std::string> split(const std::string& text) {
 
 /// Whether it holds values of a topic that entities have, and whose types were told.
 bool is_topic(const Reader& recording, const Channel& channel) {
-  if (!channel.metadata.contains("systems") || !channel.metadata.contains("type")) return false;
-  const auto attachments = recording.attachments();
-  return std::ranges::count(attachments, types_attachment(value_of(channel, "type"))) > 0;
+  return is_of_topic(channel) && has_types(recording, value_of(channel, "type"));
 }
 
 /// Nothing if it says none, or no number.
@@ -59,11 +57,6 @@ TopicQos qos_of(const Channel& channel) {
   qos.systems = split(value_of(channel, "systems"));
   if (qos.systems.empty()) qos.systems = {""};
   return qos;
-}
-
-types::TypeSystem types_of(const Reader& recording, const std::string& type) {
-  const std::string told = recording.attachment(types_attachment(type)).data;
-  return idl::decode_message<types::TypeSystem>(std::as_bytes(std::span(told)));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "recording/recorded_types.hpp"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/log.hpp"
@@ -11,6 +13,15 @@
 namespace skein::recording {
 
 std::string types_attachment(const std::string& type) { return "types/" + type; }
+
+bool has_types(const Reader& recording, const std::string& type) {
+  return std::ranges::count(recording.attachments(), types_attachment(type)) > 0;
+}
+
+types::TypeSystem types_of(const Reader& recording, const std::string& type) {
+  const std::string told = recording.attachment(types_attachment(type)).data;
+  return idl::decode_message<types::TypeSystem>(std::as_bytes(std::span(told)));
+}
 
 std::uint16_t RecordedTypes::add_channel(const std::string& topic, const std::string& type,
                                          const types::TypeSystem& known,

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "recording/mcap/reader.hpp"
 #include "recording/mcap/writer.hpp"
 #include "skein/types.idl.hpp"
 
@@ -12,6 +13,11 @@ namespace skein::recording {
 
 /// The name of the attachment with the types of a channel: a types::TypeSystem in CDR.
 std::string types_attachment(const std::string& type);
+
+/// Whether the recording holds it.
+bool has_types(const Reader& recording, const std::string& type);
+/// What it holds. Throws InvalidArgument if it is not there, or damaged.
+types::TypeSystem types_of(const Reader& recording, const std::string& type);
 
 /// The types of a recording: as schemas for viewers, as IDL for people, and as they were told for
 /// replays. Thread-safe.

@@ -81,16 +81,37 @@ void add_info(CLI::App& app, int& result) {
 }
 
 void add_export(CLI::App& app, int& result) {
-  auto& command = add_command(app, "export", "Write a recording for other viewers",
-                              {{"skein export flight.mcap --perfetto flight.json",
-                                "Calls and decisions of all peers, for https://ui.perfetto.dev"}});
+  auto& command = add_command(
+      app, "export",
+      "Write a recording for other programs\n\n"
+      "Tables have a row for each value: the time in seconds since 1970, then a column for each "
+      "member, as PlotJuggler, pandas and spreadsheets read them. An array of more than 16 "
+      "elements is one column of JSON.",
+      {{"skein export flight.mcap --csv tables", "A table for each topic: tables/pose.csv, ..."},
+       {"skein export flight.mcap --lines values.jsonl --topics pose,track",
+        "JSON, a value a line"},
+       {"skein export flight.mcap --perfetto flight.json",
+        "Calls and decisions of all peers, for https://ui.perfetto.dev"}});
   auto& arguments = arguments_of(command, export_recording, result);
   command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
-  command
-      .add_option("--perfetto", arguments.perfetto,
-                  "The file for a trace that Perfetto opens; default: none, which is refused")
-      ->type_name(kFile)
-      ->required();
+  auto* csv =
+      command.add_option("--csv", arguments.csv,
+                         "The folder for a table of each topic, made if need be; default: none");
+  auto* lines = command.add_option(
+      "--lines", arguments.lines,
+      "The file for all values, those of calls, too, as lines of JSON with topic and time; "
+      "default: none");
+  auto* perfetto = command.add_option("--perfetto", arguments.perfetto,
+                                      "The file for a trace for Perfetto; default: none");
+  csv->excludes(lines)->excludes(perfetto)->type_name(kFile);
+  lines->excludes(perfetto)->type_name(kFile);
+  perfetto->type_name(kFile);
+  command.parse_complete_callback([csv, lines, perfetto] {
+    if (csv->count() + lines->count() + perfetto->count() == 0)
+      throw CLI::RequiredError("One of --csv, --lines and --perfetto");
+  });
+  add_topic_filter(command, arguments.topics, "NAMES");  // those of FILE, not of a domain
+  command.get_option("--topics")->excludes(perfetto);
   add_json(command, arguments.json, "what was written");
   add_exit_codes(command);
 }

@@ -148,9 +148,14 @@ void add_echo(CLI::App& app, int& result) {
                               "Print the values of a topic as they come\n\n"
                               "Exit code 1: fewer values came than --count says.",
                               {{"skein echo pose --domain 42", "JSON, until Ctrl-C"},
-                               {"skein echo pose --count 1 --json", "One value, in one line"}});
+                               {"skein echo pose --count 1 --json", "One value, in one line"},
+                               {"skein echo pose --file flight.mcap", "What was recorded"}});
   auto& arguments = arguments_of(command, echo, result);
   add_topic(command, arguments);
+  command
+      .add_option("--file", arguments.file,
+                  "A recording whose values are printed; default: look at the domain")
+      ->type_name(kFile);
   add_topic_watching(command, arguments, "End after so many values; default: no limit");
   add_exit_codes(command);
 }

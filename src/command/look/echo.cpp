@@ -6,12 +6,15 @@
 #include "command/commands.hpp"
 #include "command/print/json_text.hpp"
 #include "core/printable.hpp"
+#include "recording/recorded_values.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "topic_survey.hpp"
 
 namespace skein::command {
 namespace {
+
+constexpr std::size_t kLongestReason = 4096;
 
 /// Until its time is over or it is interrupted; tells where nobody publishes any more.
 void watch_topic(const DynamicSubscription& subscription, const KnownTopic& topic, double seconds,
@@ -29,9 +32,41 @@ void watch_topic(const DynamicSubscription& subscription, const KnownTopic& topi
   }
 }
 
+void print_value(const std::string& json, bool one_line) {
+  std::printf("%s\n%s", json_text(json, !one_line).c_str(), one_line ? "" : "---\n");
+  std::fflush(stdout);
+}
+
+int came_fewer(std::uint64_t printed, std::uint64_t wanted) {
+  std::fprintf(stderr, "skein: %llu of %llu values came\n",
+               static_cast<unsigned long long>(printed), static_cast<unsigned long long>(wanted));
+  return 1;
+}
+
+int echo_recording(const TopicArguments& arguments) {
+  const Interruption interruption;
+  const recording::Reader reader(arguments.file);
+  std::uint64_t printed = 0;
+  const auto unread = recording::for_each_value(
+      reader, {arguments.topic}, [&](const recording::RecordedValue& value) {
+        print_value(value.json, arguments.json);
+        return ++printed != arguments.count && !interruption.came();
+      });
+  if (interruption.signal() != 0) {
+    throw Interrupted("interrupted: " + std::to_string(printed) + " values were printed",
+                      interruption.signal());
+  }
+  if (unread.count > 0) {
+    std::fprintf(stderr, "skein: %s\n",
+                 printable(recording::to_text(unread), kLongestReason).c_str());
+  }
+  return printed < arguments.count ? came_fewer(printed, arguments.count) : 0;
+}
+
 }  // namespace
 
 int echo(const TopicArguments& arguments) {
+  if (!arguments.file.empty()) return echo_recording(arguments);
   const Interruption interruption;
   Entity entity = join(arguments, "echo");
   Inspector inspector(entity);
@@ -42,10 +77,7 @@ int echo(const TopicArguments& arguments) {
                                          topic.reading_qos(), [&](const std::string& json) {
                                            if (arguments.count > 0 && printed == arguments.count)
                                              return;
-                                           std::printf("%s\n%s",
-                                                       json_text(json, !arguments.json).c_str(),
-                                                       arguments.json ? "" : "---\n");
-                                           std::fflush(stdout);
+                                           print_value(json, arguments.json);
                                            if (++printed == arguments.count) interruption.end();
                                          });
   watch_topic(subscription, topic, arguments.seconds, interruption);
@@ -59,8 +91,7 @@ int echo(const TopicArguments& arguments) {
   const std::string came =
       std::to_string(printed) + " of " + std::to_string(arguments.count) + " values came";
   if (interruption.signal() != 0) throw Interrupted("interrupted: " + came, interruption.signal());
-  std::fprintf(stderr, "skein: %s\n", came.c_str());
-  return 1;
+  return came_fewer(printed, arguments.count);
 }
 
 }  // namespace skein::command
