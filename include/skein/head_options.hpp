@@ -23,7 +23,8 @@ struct HeadOptions {
   std::vector<std::shared_ptr<const SelectionStrategy>> strategies{};
   /// File of the history: read at the start if it exists, written at the end. Empty: none.
   std::string history{};
-  /// File to which each decision is appended as a line of JSON. Empty: none.
+  /// File to which each decision is appended as a line of JSON; at 64 MiB `x.jsonl` becomes
+  /// `x.1.jsonl`, in place of an earlier one. Empty: none.
   std::string log{};
   /// Share of decisions in which `learned` may try a CSP only to learn about it.
   double exploration = 0.02;

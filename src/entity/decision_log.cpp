@@ -22,8 +22,8 @@ bool ends_in_mid_line(const std::string& path) {
 
 }  // namespace
 
-DecisionLog::DecisionLog(std::string entity, std::string path)
-    : entity_(std::move(entity)), path_(std::move(path)) {
+DecisionLog::DecisionLog(std::string entity, std::string path, std::uintmax_t full)
+    : entity_(std::move(entity)), path_(std::move(path)), full_(full) {
   if (!on()) return;
   file_.open(path_, std::ios::app | std::ios::binary);
   if (!file_) {
@@ -34,9 +34,24 @@ DecisionLog::DecisionLog(std::string entity, std::string path)
   if (ends_in_mid_line(path_)) file_ << std::endl;
 }
 
+/// Where the file cannot be renamed, it grows on.
+void DecisionLog::make_room(std::size_t size) {
+  std::error_code failed;
+  const std::uintmax_t now = std::filesystem::file_size(path_, failed);
+  if (failed || now == 0 || now + size <= full_) return;
+  const std::filesystem::path path(path_);
+  auto earlier = path;
+  earlier.replace_filename(path.stem().string() + ".1" + path.extension().string());
+  std::filesystem::rename(path, earlier, failed);
+  if (failed) return;
+  file_.close();
+  file_.open(path_, std::ios::app | std::ios::binary);
+}
+
 void DecisionLog::write(const introspection::Decision& decision) {
   const std::string line = idl::to_json(decision);
   std::lock_guard lock(mutex_);
+  make_room(line.size());
   errno = 0;
   // Of a decision that was lost, a part may stand there.
   file_ << (lost_ > 0 ? "\n" : "") << line << std::endl;

@@ -4,10 +4,12 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <mutex>
 
+#include "entity/decision_log.hpp"
 #include "office.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/detail/type_support.hpp"
@@ -192,6 +194,22 @@ TEST_CASE("a log that ends in the middle of a line is continued on a line of its
   const Lines lines = log.lines();
   REQUIRE(lines.size() == 2);
   CHECK(idl::from_json<Decision>(lines[1]) == mixed.office.owner->head().decisions().back());
+}
+
+TEST_CASE("a full log makes room for what follows, and is kept under another name") {
+  const File log("full.jsonl");
+  const File earlier("full.1.jsonl");
+  Decision decision;
+  decision.request = std::string(400, 'r');
+  entity::DecisionLog file("crew/owner", log.path, 4000);
+  for (decision.number = 1; decision.number <= 12; ++decision.number) file.write(decision);
+  const Lines now = log.lines();
+  const Lines before = earlier.lines();
+  REQUIRE(!before.empty());
+  REQUIRE(!now.empty());
+  CHECK(std::filesystem::file_size(earlier.path) <= 4000);
+  CHECK(idl::from_json<Decision>(now.back()).number == 12);
+  CHECK(idl::from_json<Decision>(before.back()).number + now.size() == 12);
 }
 
 TEST_CASE("that a log is not written any more is told once, not for each decision") {
