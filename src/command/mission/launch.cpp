@@ -13,6 +13,7 @@
 #include "mission/hosts/attended_run.hpp"
 #include "mission/peer/peer.hpp"
 #include "mission/process/address_space.hpp"
+#include "mission/process/crash_report.hpp"
 #include "mission/process/exit_codes.hpp"
 #include "mission/supervise/environment_record.hpp"
 #include "mission/supervise/mission_claim.hpp"
@@ -71,7 +72,8 @@ std::optional<launch::MissionLog> make_log(const LaunchArguments& arguments,
 launch::SupervisorOptions told_by(const std::shared_ptr<Narrator>& narrator,
                                   const std::shared_ptr<Journal>& journal) {
   launch::SupervisorOptions options;
-  options.on_output = [narrator, journal](std::string_view child, std::string_view line) {
+  options.on_output = [narrator, journal](std::string_view child, std::string_view text) {
+    const std::string line = launch::with_readable_symbols(text);
     journal->add_line(child, line);
     narrator->tell_line(child, line);
   };

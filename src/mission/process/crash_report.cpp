@@ -1,5 +1,7 @@
 #include "crash_report.hpp"
 
+#include <cxxabi.h>
+#include <execinfo.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -7,6 +9,7 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "mission/process/exit_codes.hpp"
@@ -46,6 +49,13 @@ void say(std::string_view text) {
       ::write(STDERR_FILENO, line.view().data(), line.view().size());
 }
 
+/// Without names for people: to make these takes memory.
+void tell_stack() {
+  std::array<void*, 64> frames{};
+  const int count = ::backtrace(frames.data(), static_cast<int>(frames.size()));
+  ::backtrace_symbols_fd(frames.data(), count, STDERR_FILENO);
+}
+
 void tell_death(int signal, siginfo_t* cause, void*) {
   PlainText text;
   text.add("dies of signal ");
@@ -63,6 +73,7 @@ void tell_death(int signal, siginfo_t* cause, void*) {
     text.add(step.view());
   }
   say(text.view());
+  tell_stack();
   const auto number = std::ranges::find(kDeadly, signal) - kDeadly.begin();
   ::sigaction(signal, &before[static_cast<std::size_t>(number)], nullptr);
   if (cause->si_code <= 0) ::raise(signal);  // otherwise the same instruction fails once more
@@ -90,7 +101,21 @@ StartStep::~StartStep() {
   report_waiting("");
 }
 
+std::string with_readable_symbols(std::string_view line) {
+  const auto begin = line.find("(_Z");
+  const auto end = line.find('+', begin);
+  if (begin == std::string_view::npos || end == std::string_view::npos) return std::string(line);
+  const std::string symbol(line.substr(begin + 1, end - begin - 1));
+  int status = 0;
+  const std::unique_ptr<char, void (*)(void*)> name(
+      abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), std::free);
+  if (!name) return std::string(line);
+  return std::string(line.substr(0, begin + 1)).append(name.get()).append(line.substr(end));
+}
+
 void report_crashes() {
+  void* frame = nullptr;
+  ::backtrace(&frame, 1);  // loads what it needs, which a signal handler must not
   struct sigaction action {};
   action.sa_sigaction = tell_death;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace skein::launch {
 
@@ -17,8 +18,12 @@ class StartStep {
 };
 
 /// From now on, when code in this process makes it die of a signal, the process tells on stderr,
-/// and the launcher, in which thread, or in which StartStep; then it dies as it would have. One
-/// that ends by exit() within a StartStep says so, too, and ends with kStartFailed.
+/// and the launcher, in which thread, or in which StartStep, and writes the thread's stack to
+/// stderr; then it dies as it would have. One that ends by exit() within a StartStep says so, too,
+/// and ends with kStartFailed.
 void report_crashes();
+
+/// A line of that stack with the C++ name of its function; another line unchanged.
+std::string with_readable_symbols(std::string_view line);
 
 }  // namespace skein::launch

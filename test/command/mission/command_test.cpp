@@ -282,15 +282,17 @@ TEST_CASE("of a process that dies or hangs the launcher says what it did") {
   CHECK_THAT(run.output(), Contains(told));
 }
 
-TEST_CASE("of a ready process that dies the launcher says in which thread") {
+TEST_CASE("of a ready process that dies the launcher says in which thread, and its stack") {
   if (!installed("fastdds")) return;
   const Errand errand;
   CommandRun run({"launch", errand.profile("", kOffice)});
   REQUIRE(run.writes("all 1 processes are ready"));
   CommandRun call({"call", "Desk", "ask", "\"die\"", "--domain", "48"});
   CHECK(run.wait() == 70);
-  CHECK_THAT(run.output(), Contains("office | skein: dies of signal 6 in its thread 'office'\n") &&
-                               Contains("(last it said: dies of signal 6 in its thread 'office')"));
+  CHECK_THAT(run.output(),
+             Contains("office | skein: dies of signal 6 in its thread 'office'\n") &&
+                 Contains("(last it said: dies of signal 6 in its thread 'office')") &&
+                 Contains("(abort+0x") && Contains("skein::rpc::Service::"));
 }
 
 TEST_CASE("a parameter that is set, and that no code has asked for, is told at the end") {
@@ -314,8 +316,10 @@ TEST_CASE("two peers of one name each warn of the other, and the doctor of both"
   const std::string profile = errand.profile("", kOffice);
   CommandRun first({"peer", profile, "office"});
   CommandRun second({"peer", profile, "office"});
-  CHECK(first.writes("process " + std::to_string(second.pid()) + " runs a peer of the same name"));
-  CHECK(second.writes("process " + std::to_string(first.pid()) + " runs a peer of the same name"));
+  CHECK(
+      first.writes("process " + std::to_string(second.pid()) + " runs an entity of the same name"));
+  CHECK(
+      second.writes("process " + std::to_string(first.pid()) + " runs an entity of the same name"));
   CommandRun doctor({"doctor", profile});
   CHECK(doctor.wait() >= 1);
   CHECK_THAT(doctor.output(), Contains("2 peers are called uav-1/office"));
