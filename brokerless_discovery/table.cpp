@@ -266,7 +266,8 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
              scoped_interface_name(wanted);
     }
     return who + " offers another version of it: " + differing +
-           "; build both sides from the same IDL";
+           "; build both sides from the same IDL (`skein describe " +
+           scoped_interface_name(description.service) + "` prints the provider's)";
   }
   for (const Constraint& constraint : query.constraints) {
     if (!meets(description, constraint))

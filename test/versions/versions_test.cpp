@@ -239,7 +239,8 @@ TEST_CASE("any other change is refused when connecting, with the operation or me
              Catch::Contains("operation 'lean_deg' is missing there"));
   // Another parameter.
   const std::string of_paint = "operation 'paint' has another signature there (";
-  CHECK_THAT(refusal<old::Mast>(std::make_shared<PaintedMast>()), Catch::Contains(of_paint));
+  CHECK_THAT(refusal<old::Mast>(std::make_shared<PaintedMast>()),
+             Catch::Contains(of_paint) && Catch::Contains("`skein describe sea::Mast` prints"));
   CHECK_THAT(refusal<grown::Mast>(std::make_shared<OldMast>()), Catch::Contains(of_paint));
   // An enumerator more: whoever does not know it has no value for it.
   const std::string of_colour = "operation 'colour' has another signature there (";
