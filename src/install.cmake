@@ -22,6 +22,7 @@ foreach(target skein_idl skein_broker skein_rpc skein_entity skein_navigation_id
   install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.idl.hpp")
 endforeach()
 
+install(FILES ${PROJECT_SOURCE_DIR}/src/dds/valgrind.supp DESTINATION ${CMAKE_INSTALL_DATADIR}/skein)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/idl/navigation DESTINATION ${CMAKE_INSTALL_DATADIR}/skein/idl)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/mission_profiles DESTINATION ${CMAKE_INSTALL_DATADIR}/skein PATTERN README.md EXCLUDE)
 
