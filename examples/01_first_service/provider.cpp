@@ -2,7 +2,7 @@
 
 #include "greeter.idl.hpp"
 #include "skein/entity.hpp"
-#include "skein/wait_for_signal.hpp"
+#include "skein/process.hpp"
 
 class Greeter : public greeting::IGreeter {
   std::string greet(const std::string& name) override { return "Hello, " + name + "!"; }

@@ -6,7 +6,7 @@
 #include "boat.idl.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
-#include "skein/wait_for_signal.hpp"
+#include "skein/process.hpp"
 
 int main(int argc, char** argv) {
   using namespace std::chrono_literals;

@@ -21,6 +21,7 @@
 #include "skein/head_options.hpp"
 #include "skein/inspector.hpp"
 #include "skein/loaned.hpp"
+#include "skein/log.hpp"
 #include "skein/loopback.hpp"
 #include "skein/parameters.hpp"
 #include "skein/process.hpp"
@@ -32,4 +33,3 @@
 #include "skein/task.hpp"
 #include "skein/topic_qos.hpp"
 #include "skein/vendor.hpp"
-#include "skein/wait_for_signal.hpp"

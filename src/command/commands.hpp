@@ -52,6 +52,16 @@ struct CallsArguments : Onlooker {
 /// `skein calls`: what happens to each call on a domain, live.
 int show_calls(const CallsArguments& arguments);
 
+struct LogArguments : Onlooker {
+  std::string entity;           ///< NAME or SYSTEM/NAME; empty: all.
+  std::string level = "debug";  ///< The least that is shown.
+  double seconds = 0;           ///< 0: until interrupted.
+  bool json = false;
+};
+
+/// `skein log`: what the entities of a domain log, the latest lines first.
+int show_log(const LogArguments& arguments);
+
 struct MissionArguments {
   std::string profile;
   std::vector<std::string> settings;
@@ -240,6 +250,7 @@ int list_topics(const TopicsArguments& arguments);
 
 struct TopicArguments : Onlooker {
   std::string topic;
+  std::string file;    ///< echo: a recording, in place of the domain.
   double wait = 5;     ///< Until the topic is there.
   double seconds = 0;  ///< 0: until interrupted.
   std::uint64_t count = 0;
@@ -313,13 +324,17 @@ struct InfoArguments {
 /// `skein info FILE`: what a recording has. 1 if it holds no messages.
 int show_recording(const InfoArguments& arguments);
 
+/// One of the three outputs is named.
 struct ExportArguments {
   std::string file;
-  std::string perfetto;
+  std::string csv;       ///< A folder.
+  std::string lines;     ///< A file.
+  std::string perfetto;  ///< A file.
+  std::vector<std::string> topics;
   bool json = false;
 };
 
-/// `skein export FILE --perfetto OUTPUT`: a recording for other viewers.
+/// `skein export FILE`: a recording for other programs.
 int export_recording(const ExportArguments& arguments);
 
 }  // namespace skein::command

@@ -1,18 +1,31 @@
 #pragma once
 
-#include <functional>
-#include <string_view>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "skein/log.hpp"
 
 namespace skein {
 
-enum class LogLevel { Debug, Info, Warning, Error };
+/// A line that this process has logged. Numbers begin at 1 and have no gaps.
+struct LoggedLine {
+  std::uint64_t number;
+  LogLevel level;
+  std::string place;
+  std::string text;
+  std::uint64_t time;  ///< In nanoseconds since 1970.
+};
 
-/// Where the library's messages go. The default writes warnings and errors to standard error, one
-/// line each. Thread-safe; `sink` is called from any thread, vendors' included, and must not block.
-void set_log_sink(
-    std::function<void(LogLevel, std::string_view place, std::string_view text)> sink);
+/// What this process has logged after the line `number`, of the latest kKeptLines.
+std::vector<LoggedLine> logged_after(std::uint64_t number);
 
-/// Writes one message; `place` names the part of the library (`dds/cyclonedds`, `broker`).
-void log(LogLevel level, std::string_view place, std::string_view text);
+inline constexpr std::size_t kKeptLines = 256;
+
+/// `warning`: as SKEIN_LOG and `skein log --level` have it.
+const char* in_words(LogLevel level) noexcept;
+
+/// The default sink, without the time: for a process whose launcher writes that before each line.
+void write_without_time(const LogLine& line);
 
 }  // namespace skein

@@ -1,5 +1,7 @@
 #include "skein/entity.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cmath>
 #include <map>
@@ -19,8 +21,9 @@
 #include "dds/port/port.hpp"
 #include "dds/port/vendor_names.hpp"
 #include "entity/inspection_topic.hpp"
+#include "entity/namesakes.hpp"
+#include "entity/periodic_topic.hpp"
 #include "entity/self_report.hpp"
-#include "entity/statistics_topic.hpp"
 #include "rpc/server/dds_server.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/local_directory.hpp"
@@ -42,6 +45,9 @@ using brokerless_discovery::ServiceDescription;
 
 // A CSP that does not return within this time of the entity's end is left behind.
 constexpr std::chrono::milliseconds kStopPatience{2000};
+
+constexpr std::chrono::milliseconds kStatisticsInterval{1000};
+constexpr std::chrono::milliseconds kLogInterval{200};
 
 ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider,
                             const ServiceOptions& options) {
@@ -233,8 +239,13 @@ struct Entity::State {
   std::unique_ptr<ThreadExecutor> topics;  // once there is a subscription
   std::map<Guid, std::unique_ptr<Provided>> provided;
   std::vector<std::shared_ptr<rpc::Service>> hung;  // Bodies that were withdrawn meanwhile
+  entity::Namesakes namesakes{options.system, options.name,
+                              brokerless_discovery::ProcessWatch::host(),
+                              static_cast<std::uint32_t>(::getpid())};
   // These go first: they ask all that stands above.
-  std::optional<introspection::StatisticsTopic> statistics_topic;
+  Broker::Registration namesake_watch;
+  std::optional<introspection::PeriodicTopic<introspection::ServiceStatistics>> statistics_topic;
+  std::optional<introspection::PeriodicTopic<introspection::LogLine>> log_topic;
   std::optional<introspection::Answerer> answerer;
 
   /// What makes no progress, in words; empty where everything does.
@@ -323,8 +334,16 @@ struct Entity::State {
 
 Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move(options))) {
   State& state = *state_;
+  state.namesake_watch =
+      state.broker.observe([&state, id = id()](const brokerless_discovery::Change& change) {
+        const std::string text = state.namesakes.look_at(change);
+        if (!text.empty()) log(LogLevel::Warning, id, text);
+      });
   state.statistics_topic.emplace(*state.participant, state.process->clock(), state.control,
-                                 [&state] { return state.statistics(); });
+                                 introspection::kStatistics, kStatisticsInterval,
+                                 [&state](bool) { return state.statistics(); });
+  state.log_topic.emplace(*state.participant, state.process->clock(), state.control,
+                          introspection::kLog, kLogInterval, introspection::LogReport(id()));
   state.answerer.emplace(
       *state.participant, state.control, id(),
       [&state](const inspection::Question& question, inspection::Answer& answer) {

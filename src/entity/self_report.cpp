@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "core/log.hpp"
 #include "core/system/host.hpp"
 #include "core/wall_clock.hpp"
 
@@ -107,6 +108,21 @@ inspection::Connection report_of(const ConnectionInfo& connection) {
           connection.not_faster,
           static_cast<std::uint32_t>(connection.pending),
           connection.calls};
+}
+
+std::vector<LogLine> LogReport::operator()(bool anew) {
+  if (anew) {
+    told_ = 0;
+    return {};  // the new reader may not have heard of this writer yet: it has until the next time
+  }
+  std::vector<LogLine> lines;
+  for (LoggedLine& line : logged_after(told_)) {
+    told_ = line.number;
+    lines.push_back({entity_, name_of_this_host(), static_cast<std::uint32_t>(::getpid()),
+                     line.number, static_cast<Severity>(line.level), std::move(line.place),
+                     std::move(line.text), line.time});
+  }
+  return lines;
 }
 
 }  // namespace skein::introspection

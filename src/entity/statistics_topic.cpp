@@ -1,7 +1,7 @@
 #include "entity/statistics_topic.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <mutex>
 #include <tuple>
 #include <utility>
 
@@ -10,45 +10,6 @@
 #include "skein/introspection.idl.hpp"
 
 namespace skein::introspection {
-namespace {
-
-constexpr std::chrono::seconds kInterval{1};
-
-}  // namespace
-
-StatisticsTopic::StatisticsTopic(dds::Participant& participant, Clock& clock, Executor& control,
-                                 Source source)
-    : clock_(clock), source_(std::move(source)), publisher_(participant, control, kStatistics) {
-  publisher_.when_read([this] { begin(); });
-}
-
-StatisticsTopic::~StatisticsTopic() {
-  TimerId timer;
-  {
-    std::lock_guard lock(mutex_);
-    closed_ = true;
-    timer = timer_;
-  }
-  clock_.cancel(timer);
-}
-
-void StatisticsTopic::begin() {
-  {
-    std::lock_guard lock(mutex_);
-    if (std::exchange(ticking_, true)) return;  // the last reader's timer is still set
-  }
-  tick();
-}
-
-void StatisticsTopic::tick() {
-  {
-    std::lock_guard lock(mutex_);
-    ticking_ = publisher_.on() && !closed_;
-    if (!ticking_) return;
-    timer_ = clock_.call_after(kInterval, [this] { publisher_.post([this] { tick(); }); });
-  }
-  for (ServiceStatistics& statistics : source_()) publisher_.publish(std::move(statistics));
-}
 
 struct StatisticsReader::State {
   explicit State(dds::Participant& participant)

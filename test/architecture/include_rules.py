@@ -30,7 +30,7 @@ with open(_ARCHITECTURE, encoding="utf-8") as stream:
     FLOORS = {**_read_floors(stream.read()), "all of the library": 8, "Asio": 0.5}
 # What a user's program includes: skein/NAME.hpp, by the floor that it belongs to.
 USERS_HEADERS = {
-    "core": "call call_context clock error executor guid stream wait_for_signal",
+    "core": "call call_context clock error executor guid log stream",
     "idl": "describe loaned",
     "dds/port": "loopback vendor",
     "topics": "publisher subscription topic_qos",

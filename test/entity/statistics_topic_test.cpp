@@ -5,14 +5,15 @@
 #include <optional>
 #include <vector>
 
+#include "entity/periodic_topic.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/loopback.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
+using introspection::PeriodicTopic;
 using introspection::ServiceStatistics;
 using introspection::StatisticsReader;
-using introspection::StatisticsTopic;
 
 namespace {
 
@@ -26,7 +27,8 @@ struct World {
   /// What has happened since is done.
   void settle() { pass(Duration::zero()); }
 
-  std::vector<ServiceStatistics> tell() {
+  std::vector<ServiceStatistics> tell(bool anew) {
+    begun += anew ? 1 : 0;
     ServiceStatistics statistics;
     statistics.provider = near->guid().bytes;
     statistics.waiting = ++asked;
@@ -39,8 +41,11 @@ struct World {
   std::unique_ptr<dds::Participant> near = network.vendor()->create_participant({});
   std::unique_ptr<dds::Participant> far = network.vendor()->create_participant({});
   std::uint32_t asked = 0;
-  std::optional<StatisticsTopic> topic{std::in_place, *near, clock, control,
-                                       [this] { return tell(); }};
+  int begun = 0;  // how often a reader was told to be the first
+  std::optional<PeriodicTopic<ServiceStatistics>> topic{
+      std::in_place, *near, clock, control, introspection::kStatistics, 1000ms, [this](bool anew) {
+        return tell(anew);
+      }};
   std::optional<StatisticsReader> reader;
 };
 
@@ -70,9 +75,11 @@ TEST_CASE_METHOD(World, "nobody is asked for statistics that nobody reads any mo
   pass(1s);
   pass(10s);
   CHECK(asked == 1);
+  CHECK(begun == 1);
   reader.emplace(*far);
   settle();
   CHECK(asked == 2);
+  CHECK(begun == 2);
 }
 
 TEST_CASE_METHOD(World, "statistics keep their pace for a reader that comes right after another") {

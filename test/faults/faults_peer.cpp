@@ -29,9 +29,10 @@ class KeptLog {
  public:
   explicit KeptLog(const PeerArguments& arguments) {
     if (!arguments.contains("keep_log")) return;
-    set_log_sink([lines = lines_](LogLevel, std::string_view place, std::string_view text) {
+    set_log_sink([lines = lines_](const LogLine& line) {
       std::lock_guard lock(lines->mutex);
-      if (lines->text.size() < kMax) lines->text.append(place).append(": ").append(text) += "; ";
+      if (lines->text.size() >= kMax) return;
+      lines->text.append(line.place).append(": ").append(line.text) += "; ";
     });
   }
 

@@ -1,9 +1,13 @@
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <iostream>
+#include <sstream>
 #include <thread>
 
 #include "navigator.hpp"
 #include "site.hpp"
+#include "skein/log.hpp"
 
 using namespace std::chrono_literals;
 
@@ -19,6 +23,21 @@ struct NotingSurveyor : Surveyor {
 };
 
 }  // namespace
+
+TEST_CASE("a sink hands the lines of the log to another logger") {
+  std::ostringstream journal;
+  std::streambuf* const before = std::cerr.rdbuf(journal.rdbuf());
+  skein::set_log_sink([](const skein::LogLine& line) {
+    constexpr std::array kPriority{"<7>", "<6>", "<4>", "<3>"};  // of sd-daemon(3)
+    std::cerr << kPriority[static_cast<std::size_t>(line.level)] << line.place << ": " << line.text
+              << std::endl;
+  });
+  skein::log(skein::LogLevel::Info, "survey", "begins");
+  skein::log(skein::LogLevel::Error, "survey", "ends");
+  skein::set_log_sink({});
+  std::cerr.rdbuf(before);
+  CHECK(journal.str() == "<6>survey: begins\n<3>survey: ends\n");
+}
 
 TEST_CASE("a service declares on which thread its calls run") {
   Site site;

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/log.hpp"
+#include "skein/log.hpp"
 
 namespace skein::test {
 
@@ -12,9 +12,9 @@ namespace skein::test {
 class Log {
  public:
   Log() {
-    set_log_sink([this](LogLevel, std::string_view place, std::string_view text) {
+    set_log_sink([this](const LogLine& line) {
       std::lock_guard lock(mutex_);
-      text_.append(place).append(": ").append(text).append("\n");
+      text_.append(line.place).append(": ").append(line.text).append("\n");
     });
   }
   ~Log() { set_log_sink({}); }

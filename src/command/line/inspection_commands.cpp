@@ -28,6 +28,28 @@ void add_calls(CLI::App& app, int& result) {
   add_exit_codes(command);
 }
 
+void add_log(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "log",
+      "Show what the entities of a domain log, live\n\n"
+      "First come the latest lines that each process has logged before, at most 256. What a "
+      "process logs at all, it decides itself: see SKEIN_LOG in the guide.",
+      {{"skein log --domain 47", "All lines, until Ctrl-C"},
+       {"skein log --entity navigator --level warning", "Warnings and errors of one process"}});
+  auto& arguments = arguments_of(command, show_log, result);
+  add_onlooker(command, arguments);
+  add_entity(command, arguments.entity, "Lines of this entity's process:");
+  command
+      .add_option("--level", arguments.level,
+                  "The least that is shown: debug, info, warning, error")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}).description(""))
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  add_watching(command, arguments.seconds);
+  add_json(command, arguments.json, "each line a line");
+  add_exit_codes(command);
+}
+
 void add_decisions(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "decisions",
@@ -165,6 +187,7 @@ void add_inspection_commands(CLI::App& app, int& result) {
   add_calls(app, result);
   add_decisions(app, result);
   add_graph(app, result);
+  add_log(app, result);
   add_peers(app, result);
   add_services(app, result);
   add_top(app, result);

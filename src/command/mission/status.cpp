@@ -43,7 +43,9 @@ void print_status(const launch::ProcessStatus& process) {
   std::string line = "  " + printable(process.name) + ": " + printable(process.state);
   if (process.pid != 0)
     line += ", process " + std::to_string(process.pid) + " for " + seconds(process.uptime);
-  if (process.restarts > 0) line += ", restarted " + std::to_string(process.restarts) + " times";
+  if (process.restarts > 0)
+    line += ", restarted " +
+            (process.restarts == 1 ? "once" : std::to_string(process.restarts) + " times");
   if (!process.last_exit.empty()) line += ", last ended " + printable(process.last_exit);
   if (!process.reason.empty()) line += "; " + printable(process.reason, process.reason.size());
   std::printf("%s\n", line.c_str());

@@ -13,10 +13,8 @@ namespace {
 
 void tell_of_stall(const std::string& name, pid_t thread) {
   log(LogLevel::Warning, "watchdog",
-      "the thread '" + name + "' (" + std::to_string(thread) +
-          ") has not come to the end of one piece of work for more than a second, and all that it "
-          "has to do waits; `gdb -p " +
-          std::to_string(thread) + " -batch -ex bt` shows where it is");
+      "'" + name + "' has been in one piece of work for over 1 s, and others wait: `gdb -p " +
+          std::to_string(thread) + " -batch -ex bt` shows where");
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <stop_token>
 #include <thread>
 
-#include "brokerless_discovery/process_watch.hpp"
 #include "component_code.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
@@ -34,10 +33,9 @@
 #include "mission/process/wake_up.hpp"
 #include "mission/supervise/child_state.hpp"
 #include "mission/supervise/launch_plan.hpp"
-#include "namesakes.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
-#include "skein/wait_for_signal.hpp"
+#include "skein/process.hpp"
 #include "used_topics.hpp"
 
 namespace skein::launch {
@@ -388,13 +386,6 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   self = &entity;
   const auto watch_csps = entity.broker().observe(
       [&](const brokerless_discovery::Change& change) { end_stopped_csp(entity, peer, change); });
-  Namesakes namesakes(peer.system, peer.name, brokerless_discovery::ProcessWatch::host(),
-                      static_cast<std::uint32_t>(::getpid()));
-  const auto watch_namesakes =
-      entity.broker().observe([&](const brokerless_discovery::Change& change) {
-        const std::string text = namesakes.look_at(change);
-        if (!text.empty()) log(LogLevel::Warning, entity.id(), text);
-      });
   const auto parameters = parameters_of(entity, mission.dictionary);
   const ParameterValues values = parameters->values_of("", peer.parameters);
   for (const CspProfile& csp : peer.csps) {
@@ -458,6 +449,7 @@ int run_process(const MissionProfile& mission, const std::string& process,
                 ComponentRegistry& registry) {
   const auto begun = std::chrono::steady_clock::now();
   report_crashes();
+  set_log_sink(write_without_time);
   demand_address_space();
   const std::size_t slash = process.find('/');
   const PeerProfile* peer = mission.find_peer(process.substr(0, slash));

@@ -62,14 +62,11 @@ void AnyPublisher::on_reader(bool matched) {
   std::lock_guard lock(mutex_);
   readers_ += matched ? 1 : -1;
   update();
+  if (matched && writer_ && begin_) hand_to_control(begin_);
 }
 
 // Under the lock, after each change of readers_ or writer_.
-void AnyPublisher::update() {
-  const bool on = writer_ && readers_ > 0;
-  const bool was_on = on_.exchange(on);
-  if (on && !was_on && begin_) hand_to_control(begin_);
-}
+void AnyPublisher::update() { on_ = writer_ && readers_ > 0; }
 
 // Under the lock, and before it is closed: then `control` and writers_ may be gone. One task of a
 // kind at a time, so that a full queue may take it: a clock's turn that is lost would not come

@@ -23,6 +23,7 @@ namespace skein::introspection {
 struct CallEvents;
 struct CallRecords;
 struct Decision;
+struct LogLine;
 struct ServiceStatistics;
 
 /// One of these topics, without its type. The texts are literals.
@@ -46,6 +47,8 @@ inline constexpr Topic<CallRecords> kCallRecords{
     {"skein/call_records", "skein::introspection::CallRecords", false, 256, true}};
 inline constexpr Topic<Decision> kDecisions{
     {"skein/decisions", "skein::introspection::Decision", false, 64}};
+inline constexpr Topic<LogLine> kLog{
+    {"skein/log", "skein::introspection::LogLine", false, 256, true}};
 inline constexpr Topic<ServiceStatistics> kStatistics{
     {"skein/statistics", "skein::introspection::ServiceStatistics", true, 1}};
 
@@ -61,8 +64,8 @@ class AnyPublisher {
   /// Whether somebody reads; false once it is closed. The look at a flag.
   bool on() const noexcept { return on_.load(std::memory_order_relaxed); }
 
-  /// From now on `begin` is posted each time that somebody reads after nobody did, and now where
-  /// somebody does already.
+  /// From now on `begin` is posted each time that a reader comes, and now if one is there
+  /// already.
   void when_read(std::function<void()> begin);
 
   /// Runs the task on `control`, however full that is, unless close() has been called by then. Not

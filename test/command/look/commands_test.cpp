@@ -11,6 +11,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "core/system/file_descriptor.hpp"
@@ -147,6 +148,51 @@ std::string any_vendor() { return GENERATE(as<std::string>(), "fastdds", "cyclon
 const std::string kOneVendor = "cyclonedds";
 
 }  // namespace
+
+TEST_CASE("two programs with an entity of one name are both warned") {
+  const std::string vendor = any_vendor();
+  if (!installed(vendor)) return;
+  const Field field(vendor);
+  ChildProcess second("station_process", {.arguments = {vendor, std::to_string(field.domain())}});
+  second.expect("ready");
+  Command log = field.start({"log", "--json"});
+  const std::string warning = " runs an entity of the same name: ";
+  REQUIRE(eventually([&] {
+    std::set<int> warned;
+    for (const Json& line : log.json_lines()) {
+      if (line["text"].get<std::string>().find(warning) != std::string::npos)
+        warned.insert(line["pid"].get<int>());
+    }
+    return warned.size() == 2;
+  }));
+  log.signal(SIGINT);
+  CHECK(log.code() == 0);
+}
+
+TEST_CASE("log shows what a process has logged before, and what it logs from then on") {
+  const std::string vendor = any_vendor();
+  if (!installed(vendor)) return;
+  const Field field(vendor);
+  const auto greet = [&](const std::string& name) {
+    Command call = field.start({"call", "ISurveyor", "greet", '"' + name + '"', "--wait", "20"});
+    CHECK(call.code() == 0);
+  };
+  greet("early");
+  Command log = field.start({"log", "--entity", "station"});
+  REQUIRE(log.prints("field/station info: greeter: greets early\n"));
+  greet("late");
+  REQUIRE(log.prints("field/station info: greeter: greets late\n"));
+  Command errors = field.start({"log", "--level", "error", "--for", "2"});
+  Command json = field.start({"log", "--json"});
+  REQUIRE(json.prints("greets late"));
+  CHECK(json.json_lines().front()["level"] == "Info");
+  CHECK(errors.code() == 0);
+  CHECK(errors.printed().empty());
+  log.signal(SIGINT);
+  CHECK(log.code() == 0);
+  const std::string all = log.printed();
+  CHECK(all.find("greets early") == all.rfind("greets early"));
+}
 
 TEST_CASE("call prints what an operation returns") {
   const std::string vendor = kOneVendor;
@@ -590,6 +636,44 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK(itself.code() == 74);
     CHECK(text_of(file) == before);
     CHECK(Command({"export", file, "--perfetto", shelf / "a.json"}).code() == 74);
+  }
+  SECTION("export as tables") {
+    Command tables({"export", file, "--csv", shelf / "tables", "--json"});
+    CHECK(tables.code() == 0);
+    CHECK(tables.json()["tables"].size() == 2);
+    std::istringstream rows(text_of(shelf / "tables/plot.csv"));
+    std::string head, row;
+    std::getline(rows, head);
+    std::getline(rows, row);
+    CHECK(head == "time,kind,corners[0].x,corners[0].y,corners[1].x,corners[1].y\r");
+    CHECK_THAT(row, Catch::EndsWith(",Wood,1,2,3,4\r"));
+    Command again({"export", file, "--csv", shelf / "tables"});
+    CHECK(again.code() == 74);
+    CHECK_THAT(again.said(), Contains(".csv' is there already"));
+  }
+  SECTION("export as lines") {
+    Command lines({"export", file, "--lines", shelf / "a.jsonl", "--topics", "plot"});
+    CHECK(lines.code() == 0);
+    std::istringstream text(text_of(shelf / "a.jsonl"));
+    std::string line;
+    std::getline(text, line);
+    const Json first = Json::parse(line);
+    CHECK(first["topic"] == "plot");
+    CHECK(first["value"] == Json::parse(kPlot));
+    CHECK(first["time_ns"] > 0);
+  }
+  SECTION("export to nothing") {
+    Command nowhere({"export", file});
+    CHECK(nowhere.code() == 64);
+    CHECK_THAT(nowhere.said(), Contains("--csv, --lines and --perfetto"));
+  }
+  SECTION("echo") {
+    Command echo({"echo", "plot", "--file", file, "--count", "2", "--json"});
+    CHECK(echo.code() == 0);
+    CHECK(echo.json_lines() == std::vector<Json>(2, Json::parse(kPlot)));
+    Command wrong({"echo", "plt", "--file", file});
+    CHECK(wrong.code() == 78);
+    CHECK_THAT(wrong.said(), Contains("no topic 'plt' (did you mean 'plot'?)"));
   }
   SECTION("replay") {
     Field other(vendor);

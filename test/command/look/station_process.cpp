@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "skein/entity.hpp"
+#include "skein/log.hpp"
 #include "test/dynamic/surveyor.hpp"
 
 using namespace skein;
@@ -25,6 +26,7 @@ void say(const std::string& line) {
 class Station final : public test::Surveyor {
  public:
   std::string greet(const std::string& name) override {
+    log(LogLevel::Info, "greeter", "greets " + name);
     if (name != "forever") return Surveyor::greet(name);
     say("inside");
     for (;;) pause();

@@ -1,4 +1,4 @@
-#include "mission/peer/namesakes.hpp"
+#include "entity/namesakes.hpp"
 
 #include <unistd.h>
 
@@ -7,9 +7,9 @@
 #include "skein/discovery.idl.hpp"
 
 using namespace skein;
-using namespace skein::launch;
 using brokerless_discovery::Change;
 using Catch::Contains;
+using skein::entity::Namesakes;
 
 namespace {
 
@@ -30,16 +30,16 @@ const pid_t kOther = getppid();
 
 }  // namespace
 
-TEST_CASE("A peer of the same name in another process is told once") {
+TEST_CASE("An entity of the same name in another process is told once") {
   Namesakes namesakes("boat", "tide", "here", static_cast<std::uint32_t>(getpid()));
   CHECK(namesakes.look_at(added(service_of("here", getpid()))).empty());
   CHECK_THAT(namesakes.look_at(added(service_of("here", kOther))),
-             Contains("process " + std::to_string(kOther) + " runs a peer of the same name"));
+             Contains("process " + std::to_string(kOther) + " runs an entity of the same name"));
   CHECK(namesakes.look_at(added(service_of("here", kOther))).empty());
   CHECK_THAT(namesakes.look_at(added(service_of("there", getpid()))), Contains("on another host"));
 }
 
-TEST_CASE("Who has another name, belongs to another, goes or is dead is no namesake") {
+TEST_CASE("An entity that has another name, is managed, goes or is dead is no namesake") {
   Namesakes namesakes("boat", "tide", "here", static_cast<std::uint32_t>(getpid()));
   auto service = service_of("here", kOther);
   SECTION("another system") { service.system = "port"; }

@@ -7,10 +7,10 @@
 
 #include "brokerless_discovery/table.hpp"
 
-namespace skein::launch {
+namespace skein::entity {
 
-/// Notices other processes that run a peer of the same name: callers are then served by either.
-/// Not thread-safe.
+/// Notices entities of the same name in other processes: callers are then served by either. Not
+/// thread-safe.
 class Namesakes {
  public:
   /// `process`: this one's number on `host`, which is ServiceDescription::host.
@@ -32,4 +32,4 @@ class Namesakes {
   std::set<std::pair<std::string, std::uint32_t>> told_;
 };
 
-}  // namespace skein::launch
+}  // namespace skein::entity

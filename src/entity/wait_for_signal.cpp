@@ -1,5 +1,3 @@
-#include "skein/wait_for_signal.hpp"
-
 #include <pthread.h>
 #include <semaphore.h>
 
@@ -9,6 +7,7 @@
 
 #include "core/system/ending_signals.hpp"
 #include "skein/error.hpp"
+#include "skein/process.hpp"
 
 namespace skein {
 namespace {

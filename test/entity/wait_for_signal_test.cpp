@@ -1,5 +1,3 @@
-#include "skein/wait_for_signal.hpp"
-
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
@@ -12,6 +10,7 @@
 #include <thread>
 
 #include "skein/error.hpp"
+#include "skein/process.hpp"
 #include "test/tools/eventually.hpp"
 
 using namespace skein;

@@ -6,7 +6,7 @@
 #include "core/system/interface_name.hpp"
 #include "skein/discovery.idl.hpp"
 
-namespace skein::launch {
+namespace skein::entity {
 namespace {
 
 /// What a process has left behind is known for a while after its end.
@@ -25,8 +25,8 @@ std::string Namesakes::look_at(const brokerless_discovery::Change& change) {
   if (!is_namesake || (here && (service.pid == process_ || !lives(service.pid)))) return {};
   if (!told_.insert({service.host, service.pid}).second) return {};
   return "process " + std::to_string(service.pid) + (here ? "" : " on another host") +
-         " runs a peer of the same name: callers are served by either of them; end one, or give it "
-         "another name or system";
+         " runs an entity of the same name: callers are served by either of them; end one, or give "
+         "it another name or system";
 }
 
-}  // namespace skein::launch
+}  // namespace skein::entity
