@@ -23,6 +23,17 @@ void add(EarthLine& line, EarthPosition position) {
   if (line.empty() || !same(line.back(), position)) line.push_back(position);
 }
 
+/// Its longitude is the one nearest to its neighbour's.
+void go_to(EarthLine& line, const EarthFrame& frame, const GroundPoint& point, double altitude_m) {
+  const EarthPlace place = frame.to_earth(point);
+  EarthPosition position{place.longitude_deg, place.latitude_deg, altitude_m};
+  if (!line.empty()) {
+    const double before = line.back().longitude_deg;
+    position.longitude_deg = before + std::remainder(place.longitude_deg - before, 360);
+  }
+  add(line, position);
+}
+
 EarthPosition earth_between(const EarthPosition& a, const EarthPosition& b, double share) {
   return {std::lerp(a.longitude_deg, b.longitude_deg, share),
           std::lerp(a.latitude_deg, b.latitude_deg, share),
@@ -126,24 +137,25 @@ const EarthFrame& frame_of(const Terrain& terrain) {
 
 EarthLine along(const EarthFrame& frame, std::span<const AE_navigator::Position> points) {
   EarthLine line;
-  const auto go_to = [&](const AE_navigator::Position& point) {
-    const EarthPlace place = frame.to_earth(on_map(point));
-    EarthPosition position{place.longitude_deg, place.latitude_deg, point.altitude_m};
-    if (!line.empty()) {
-      const double before = line.back().longitude_deg;
-      position.longitude_deg = before + std::remainder(place.longitude_deg - before, 360);
-    }
-    add(line, position);
+  const auto pass = [&](const AE_navigator::Position& point) {
+    go_to(line, frame, on_map(point), point.altitude_m);
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const AE_navigator::Position& from = points[i == 0 ? 0 : i - 1];
     const double length_m = distance_m(on_map(from), on_map(points[i]));
     const int pieces = std::max(1, static_cast<int>(std::ceil(length_m / kPiece_m)));
     for (int piece = 1; piece < pieces; ++piece) {
-      go_to(navigation::between(from, points[i], static_cast<double>(piece) / pieces));
+      pass(navigation::between(from, points[i], static_cast<double>(piece) / pieces));
     }
-    go_to(points[i]);
+    pass(points[i]);
   }
+  return line;
+}
+
+EarthLine between_corners(const EarthFrame& frame,
+                          std::span<const AE_navigator::GroundPoint> corners) {
+  EarthLine line;
+  for (const auto& corner : corners) go_to(line, frame, corner, 0);
   return line;
 }
 

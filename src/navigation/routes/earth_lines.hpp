@@ -26,6 +26,10 @@ const EarthFrame& frame_of(const Terrain& terrain);
 /// The straight edges between these points, with a position every 2 km at most.
 EarthLine along(const EarthFrame& frame, std::span<const AE_navigator::Position> points);
 
+/// The corners alone.
+EarthLine between_corners(const EarthFrame& frame,
+                          std::span<const AE_navigator::GroundPoint> corners);
+
 /// The line's parts on either side of the antimeridian, with longitudes from -180 to 180.
 std::vector<EarthLine> cut_line(const EarthLine& line);
 

@@ -29,10 +29,18 @@ Json place(const EarthFrame& frame, const GroundPoint& point) {
   return Json::array({rounded(there.latitude_deg), rounded(there.longitude_deg)});
 }
 
+/// One polygon, or its parts on either side of the antimeridian: an autopilot compares longitudes
+/// as plain numbers.
 void add_polygon(Json& polygons, const EarthFrame& frame, const std::vector<GroundPoint>& corners) {
-  Json outline = Json::array();
-  for (const GroundPoint& corner : corners) outline.push_back(place(frame, corner));
-  polygons.push_back({{"inclusion", false}, {"polygon", std::move(outline)}, {"version", 1}});
+  for (EarthLine& ring : cut_outline(between_corners(frame, corners))) {
+    ring.pop_back();
+    if (ring.size() < 3) continue;
+    Json outline = Json::array();
+    for (const EarthPosition& corner : ring) {
+      outline.push_back({rounded(corner.latitude_deg), rounded(corner.longitude_deg)});
+    }
+    polygons.push_back({{"inclusion", false}, {"polygon", std::move(outline)}, {"version", 1}});
+  }
 }
 
 void fence_zone(Json& fence, const EarthFrame& frame, const NoFlyZone& zone) {

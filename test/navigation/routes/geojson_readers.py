@@ -11,6 +11,7 @@ import unittest
 try:
     import geojson
     import shapely.geometry
+    import shapely.ops
     import shapely.validation
 except ImportError as missing:
     print(f"skipped: {missing}; Debian has python3-geojson and python3-shapely")
@@ -66,6 +67,22 @@ class Readers(unittest.TestCase):
                 self.assertLess(east - west, 1)
                 self.assertTrue(-180 <= west and east <= 180)
         self.assertEqual(2, crossing)  # Fork and the route
+
+    def test_a_fence_at_the_antimeridian_is_the_zone_and_not_a_belt_around_the_earth(self):
+        """An autopilot compares longitudes as plain numbers, and so does shapely."""
+        zones = {feature["properties"]["name"]: shapely.geometry.shape(feature["geometry"]) for feature in self.features("fiji")}
+        for name in ("fiji.plan", "fiji_read.plan"):
+            fence = json.loads(self.texts[name])["geoFence"]
+            polygons = [shapely.geometry.Polygon([(longitude, latitude) for latitude, longitude in polygon["polygon"]])
+                        for polygon in fence["polygons"]]
+            for polygon in polygons:
+                self.assertTrue(polygon.is_valid, shapely.validation.explain_validity(polygon))
+                west, _, east, _ = polygon.bounds
+                self.assertLess(east - west, 1, name)
+            # Sides that are straight in metres bend by some 30 m between corners that are 30 km apart.
+            closed = shapely.ops.unary_union(polygons)
+            for zone in ("Fork", "Town"):
+                self.assertLess(zones[zone].difference(closed).area, 1e-3 * zones[zone].area, f"{zone} in {name}")
 
     def test_a_plan_has_all_that_its_format_asks_for(self):
         def has(what, fields):
