@@ -14,6 +14,9 @@
 // nothing across the antimeridian, where geometries are cut in two.
 namespace skein::navigation {
 
+/// The property `kind` of a zone.
+inline constexpr const char* kZoneKind = "no_fly_zone";
+
 /// Zones, sites and routes as one FeatureCollection; the property `kind` says what each feature is:
 /// `no_fly_zone`, `radar_site`, `missile_site` or `route`.
 ///
@@ -31,15 +34,16 @@ std::string to_geojson(const Terrain& terrain, const AE_navigator::Problem& prob
 ///
 /// A Polygon is a zone, a Point one with a radius of `margin_m`, a LineString a corridor of
 /// `margin_m` on both sides, and each part of a MultiPolygon or MultiLineString a zone of its own.
-/// Properties: `name`; `floor_m` and `ceiling_m` above the geoid, without which a zone reaches from
-/// below all ground to 20 km; `margin_m`, needed by points and lines. Features with another `kind`
-/// than `no_fly_zone` are passed over.
+/// A position that is given twice in a row counts once. A `crs` may name WGS-84. Properties:
+/// `name`; `floor_m` and `ceiling_m` above the geoid, without which a zone reaches from below all
+/// ground to 20 km; `margin_m`, needed by points and lines. Features with another `kind` than
+/// `no_fly_zone` are passed over.
 ///
 /// Throws InvalidArgument with the place in the text (line and column, or a JSON pointer such as
 /// /features/2/geometry/coordinates/0/3) where it is not JSON or not such GeoJSON, an outline is
-/// not closed, has a hole, crosses itself or more corners than a Problem takes, a place is not on
-/// the earth or more than 1000 km from the terrain; and for a terrain that lies nowhere on the
-/// earth.
+/// not closed, encloses nothing, has a hole, crosses itself or has more corners than a Problem
+/// takes, a place is not on the earth or more than 1000 km from the terrain; and for a terrain that
+/// lies nowhere on the earth.
 std::vector<AE_navigator::NoFlyZone> zones_from_geojson(std::string_view text,
                                                         const std::string& source,
                                                         const Terrain& terrain);

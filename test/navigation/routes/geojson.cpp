@@ -173,6 +173,55 @@ TEST_CASE("What crosses the antimeridian is cut there, whole and on the right si
   CHECK_FALSE(is_closed(61000, 45000));
 }
 
+TEST_CASE("GeoJSON is read as QGIS and ogr2ogr write it") {
+  const Terrain terrain = level(51.5, 6.5);
+  const auto read = [&](const std::string& head, const std::string& ring) {
+    return refusal(R"({"type": "FeatureCollection", "name": "zones", "bbox": [6, 51, 7, 52], )" +
+                       head + R"("features": [{"type": "Feature", "id": 7, "bbox": [6, 51, 7, 52],
+                       "properties": {"fid": 1, "name": null}, "geometry": {"type": "Polygon",
+                       "coordinates": [[)" +
+                       ring + "]]}}]}",
+                   terrain);
+  };
+  const std::string triangle = "[6.4,51.4,0],[6.6,51.4,12.5],[6.6,51.6,0],[6.4,51.4,0]";
+  const auto named = [&](const std::string& name) {
+    return read(R"("crs": {"type": "name", "properties": {"name": ")" + name + "\"}}, ", triangle);
+  };
+  CHECK(read("", triangle) == "accepted");
+  CHECK(read("\"crs\": null, ", triangle) == "accepted");
+  for (const char* name :
+       {"urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:OGC::CRS84", "OGC:CRS84", "EPSG:4326",
+        "urn:ogc:def:crs:EPSG::4326", "http://www.opengis.net/def/crs/OGC/1.3/CRS84"}) {
+    CAPTURE(name);
+    CHECK(named(name) == "accepted");
+  }
+  CHECK_THAT(named("urn:ogc:def:crs:EPSG::25832"),
+             Contains("/crs: is \"urn:ogc:def:crs:EPSG::25832\"") && Contains("ogr2ogr -t_srs"));
+  CHECK_THAT(named("urn:ogc:def:crs:EPSG::14326"), Contains("/crs: is "));
+  CHECK_THAT(read(R"("crs": {"type": "link", "properties": {"href": "x"}}, )", triangle),
+             Contains("/crs: names no reference system"));
+  // ogr2ogr rounds to seven places, which makes neighbours one.
+  CHECK(read("", "[6.4,51.4],[6.4,51.4],[6.6,51.4],[6.6,51.6],[6.6,51.6],[6.4,51.4],[6.4,51.4]") ==
+        "accepted");
+}
+
+TEST_CASE("A zone that would protect nothing is refused") {
+  const Terrain terrain = level(51.5, 6.5);
+  const auto read = [&](const std::string& type, const std::string& coordinates) {
+    return refusal(
+        R"({"type": "Feature", "properties": {"margin_m": 500}, "geometry": {"type": ")" + type +
+            R"(", "coordinates": )" + coordinates + "}}",
+        terrain);
+  };
+  const auto is_nothing = Contains("/geometry/coordinates/0: encloses nothing");
+  CHECK_THAT(read("Polygon", "[[[6.4,51.4],[6.4,51.4],[6.4,51.4],[6.4,51.4]]]"), is_nothing);
+  CHECK_THAT(read("Polygon", "[[[6.4,51.4],[6.5,51.5],[6.6,51.6],[6.4,51.4]]]"), is_nothing);
+  for (const char* type : {"MultiPolygon", "MultiLineString", "MultiPoint"}) {
+    CHECK_THAT(read(type, "[]"), Contains("/geometry: has no parts"));
+  }
+  CHECK(read("LineString", "[[6.4,51.4],[6.4,51.4]]") == "accepted");
+}
+
 TEST_CASE("GeoJSON that is no zone is refused with its place and the reason") {
   const Terrain terrain = level(51.5, 6.5);
   const std::string good =
@@ -199,7 +248,7 @@ TEST_CASE("GeoJSON that is no zone is refused with its place and the reason") {
   CHECK_THAT(with("\"Feature\",", "\"Polygon\","), Contains("/features/0: is a 'Polygon'"));
   CHECK_THAT(
       with("{\"type\": \"FeatureCollection\",", "{\"crs\": {}, \"type\": \"FeatureCollection\","),
-      Contains("/crs: ") && Contains("WGS-84"));
+      Contains("/crs: names no reference system") && Contains("WGS-84"));
   CHECK_THAT(with("\"properties\": null", "\"properties\": 7"),
              Contains("/features/0/properties: "));
   CHECK_THAT(with("\"properties\": null", "\"properties\": {\"floor_m\": \"low\"}"),
