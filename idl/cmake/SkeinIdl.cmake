@@ -7,14 +7,15 @@
 # compiled with the same. Outputs are made anew when the file, what it includes, or the compiler changes. A file that another rule makes is named to CMake
 # before. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
-# The same in Skein's own tree and in an installed package.
+# The same in Skein's own tree, in an installed package, and in a project that adds the tree by FetchContent or add_subdirectory.
 get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 # The system's Python, which has its packages, whatever else comes first in PATH.
 find_program(SKEIN_IDL_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH DOC "Python with the package lark (Debian: python3-lark)")
 
 function(skein_add_idl)
   cmake_parse_arguments(PARSE_ARGV 0 IDL "" "TARGET;NAMESPACE" "FILES;INCLUDES")
-  if(IDL_UNPARSED_ARGUMENTS OR NOT IDL_TARGET OR NOT IDL_FILES)
+  # By DEFINED: as values, names like `n`, `no` and `off` are false.
+  if(DEFINED IDL_UNPARSED_ARGUMENTS OR NOT DEFINED IDL_TARGET OR NOT DEFINED IDL_FILES)
     message(FATAL_ERROR "skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name]): wrong arguments '${ARGN}'")
   endif()
   if(TARGET ${IDL_TARGET}_generated)
@@ -22,11 +23,13 @@ function(skein_add_idl)
   endif()
   _skein_idl_check_target(${IDL_TARGET})
   _skein_idl_require_lark()
+  # Of this file, not of the caller's scope: a project that adds Skein by add_subdirectory has no variable of Skein's.
+  cmake_path(SET compiler NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../compiler")
   set(directory ${CMAKE_CURRENT_BINARY_DIR}/${IDL_TARGET}.idl)
   set(outputs)
   set(includes)
   set(flags)
-  if(IDL_NAMESPACE)
+  if(DEFINED IDL_NAMESPACE)
     list(APPEND flags --namespace ${IDL_NAMESPACE})
   endif()
   foreach(folder IN LISTS IDL_INCLUDES)
@@ -43,8 +46,8 @@ function(skein_add_idl)
     get_filename_component(folder ${output} DIRECTORY)
     file(MAKE_DIRECTORY ${folder})
     add_custom_command(
-      OUTPUT ${output}.hpp ${output}.cpp ${flattened}
-      COMMAND ${SKEIN_IDL_PYTHON} -B ${SKEIN_IDL_ROOT}/compiler ${flags} --out ${directory} --depfile ${output}.d ${path}
+      OUTPUT ${flattened} ${output}.hpp ${output}.cpp  # the first is always written; the others, if they differ
+      COMMAND ${SKEIN_IDL_PYTHON} -B ${compiler} ${flags} --out ${directory} --depfile ${output}.d ${path}
       DEPENDS ${path}
       DEPFILE ${output}.d
       COMMENT "IDL ${name}"
@@ -71,7 +74,7 @@ function(_skein_idl_check_target target)
   get_target_property(type ${target} TYPE)
   get_target_property(alias ${target} ALIASED_TARGET)
   get_target_property(imported ${target} IMPORTED)
-  if(alias OR imported OR type STREQUAL INTERFACE_LIBRARY OR type STREQUAL UTILITY)
+  if(NOT alias STREQUAL "alias-NOTFOUND" OR imported OR type STREQUAL INTERFACE_LIBRARY OR type STREQUAL UTILITY)
     message(FATAL_ERROR "skein_add_idl: the generated code is compiled for its target, and '${target}' has no code of its own; "
       "name a target that has, as add_library(NAME STATIC), and link it to '${target}'")
   endif()

@@ -58,15 +58,14 @@ class Compilation:
             announced=self._built.announced(),
         )
         base = os.path.join(folder, name)
-        outputs = {
+        outputs = {  # in the order of skein_add_idl, which make and ninja ask for
+            base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
             base + ".hpp": output.header(file),
             base + ".cpp": output.source(file),
-            base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
         }
         os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
         for path, lines in outputs.items():
-            with open(path, "w", encoding="utf-8") as stream:
-                stream.write("\n".join(lines).rstrip("\n") + "\n")
+            _write(path, "\n".join(lines).rstrip("\n") + "\n")
         if depfile:
             self._write_depfile(depfile, outputs)
 
@@ -98,6 +97,21 @@ class Compilation:
         targets = " ".join(_escaped(os.path.abspath(name)) for name in outputs)
         with open(depfile, "w", encoding="utf-8") as stream:
             stream.write(targets + ":" + "".join(f" \\\n  {_escaped(name)}" for name in inputs) + "\n")
+
+
+def _write(path, text):
+    """C++ that is as it was keeps its time, so that nothing is compiled anew; the flattened file shows that it was looked at."""
+    if path.endswith(".dds.idl") or not _holds(path, text):
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(text)
+
+
+def _holds(path, text):
+    try:
+        with open(path, encoding="utf-8") as stream:
+            return stream.read() == text
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def _escaped(name):

@@ -77,6 +77,49 @@ class BuildTest(unittest.TestCase):
             stream.write("# changed\n")
         self.assertIn("IDL main.idl", self.generate())
 
+    def test_what_a_change_of_the_compiler_leaves_as_it_was_is_not_compiled_anew(self):
+        shutil.copytree(f"{ROOT}/idl", f"{self.folder}/share/skein/idl")
+        self.configure(f"{self.folder}/share/skein/idl")
+        self.generate()
+        source = os.path.join(self.folder, "build/types.idl/main.idl.cpp")
+        before = os.stat(source).st_mtime_ns
+        with open(f"{self.folder}/share/skein/idl/compiler/back_end/cpp.py", "a", encoding="utf-8") as stream:
+            stream.write("# changed\n")
+        self.generate()
+        self.assertEqual(before, os.stat(source).st_mtime_ns)
+        self.assertIn("no work to do", self.generate())
+
+    def test_a_project_that_adds_this_tree_builds_the_library_and_nothing_else(self):
+        for name in ("ompl", "pugixml", "CLI11", "Boost", "Eigen3"):
+            self.write(f"without/{name}Config.cmake", f'message(FATAL_ERROR "{name} is not needed")\n')
+        self.write("CMakeLists.txt", f"""
+cmake_minimum_required(VERSION 3.25)
+project(consumer LANGUAGES C CXX)
+set(CMAKE_PREFIX_PATH ${{CMAKE_CURRENT_SOURCE_DIR}}/without)
+add_subdirectory({ROOT} skein)
+add_library(types OBJECT)
+skein_add_idl(TARGET types FILES idl/main.idl idl/geo/point.idl INCLUDES idl)
+target_link_libraries(types PUBLIC skein::skein)
+""")
+        self.run_tool(CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja")
+        self.generate()
+        self.assertIn("struct Point", self.generated("geo/point.idl.hpp"))
+        steps = self.run_tool(CMAKE, "--build", f"{self.folder}/build", "--", "-n")
+        self.assertIn("libskein.so", steps)
+        for part in ("src/navigation", "src/mission", "src/command", "src/recording", "src/view", "src/fusion", "examples", "test/"):
+            self.assertNotIn(f"skein/{part}", steps)
+
+    def test_a_target_may_have_a_name_that_is_false_as_a_value(self):
+        for name in ("n", "no", "off"):
+            self.write("CMakeLists.txt", PROJECT.format(idl=f"{ROOT}/idl") + f"add_library({name} OBJECT)\n"
+                       f"skein_add_idl(TARGET {name} FILES idl/main.idl INCLUDES idl NAMESPACE {name})\n")  # fmt: skip
+            self.run_tool(CMAKE, "-S", self.folder, "-B", f"{self.folder}/build", "-G", "Ninja")
+            self.run_tool(CMAKE, "--build", f"{self.folder}/build", "--target", f"{name}.idl/main.idl.hpp")
+            with open(f"{self.folder}/build/{name}.idl/main.idl.hpp", encoding="utf-8") as stream:
+                self.assertIn(f"namespace {name}", stream.read())
+        self.assert_refused("add_library(n OBJECT)\nadd_library(other ALIAS n)\nskein_add_idl(TARGET other FILES idl/main.idl)",
+                            "'other' has no code of its own")
+
     def test_a_second_call_for_one_target_is_told_what_to_write(self):
         self.assert_refused("skein_add_idl(TARGET types FILES idl/main.idl)",
                             "the target 'types' has its IDL from an earlier call; name all of its files in one call, behind FILES")
