@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "core/system/file_descriptor.hpp"
+#include "core/system/held_signal.hpp"
 #include "skein/error.hpp"
 
 namespace skein {
@@ -40,7 +41,8 @@ Registry& registry() {
 std::shared_ptr<LoanMemory> LoanMemory::make(std::size_t size) {
   FileDescriptor descriptor(memfd_create("skein-loan", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!descriptor) refuse_for("memfd_create", size);
-  if (ftruncate(descriptor.get(), static_cast<off_t>(size)) != 0) refuse_for("ftruncate", size);
+  const auto grow = [&] { return ftruncate(descriptor.get(), static_cast<off_t>(size)); };
+  if (within_file_size(grow) != 0) refuse_for("ftruncate", size);
   void* const data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor.get(), 0);
   if (data == MAP_FAILED) refuse_for("mmap", size);
   // Whoever maps it from now on can read alone.

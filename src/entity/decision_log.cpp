@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/log.hpp"
+#include "core/system/held_signal.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 
@@ -31,6 +32,7 @@ DecisionLog::DecisionLog(std::string entity, std::string path, std::uintmax_t fu
                           "': " + std::generic_category().message(errno) +
                           "; name a file in a folder that may be written to");
   }
+  const HeldSignal held(SIGXFSZ);
   if (ends_in_mid_line(path_)) file_ << std::endl;
 }
 
@@ -51,6 +53,7 @@ void DecisionLog::make_room(std::size_t size) {
 void DecisionLog::write(const introspection::Decision& decision) {
   const std::string line = idl::to_json(decision);
   std::lock_guard lock(mutex_);
+  const HeldSignal held(SIGXFSZ);
   make_room(line.size());
   errno = 0;
   // Of a decision that was lost, a part may stand there.

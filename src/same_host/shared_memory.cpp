@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/system/held_signal.hpp"
 #include "skein/error.hpp"
 
 namespace skein::same_host {
@@ -45,7 +46,8 @@ std::size_t checked_size(const FileDescriptor& descriptor, int wanted) {
 SharedMemory SharedMemory::make(std::size_t size) {
   FileDescriptor descriptor(memfd_create("skein", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!descriptor) refuse_for("memfd_create");
-  if (ftruncate(descriptor.get(), static_cast<off_t>(size)) != 0) refuse_for("ftruncate");
+  const auto grow = [&] { return ftruncate(descriptor.get(), static_cast<off_t>(size)); };
+  if (within_file_size(grow) != 0) refuse_for("ftruncate");
   if (fcntl(descriptor.get(), F_ADD_SEALS, kSizeSeals | F_SEAL_SEAL) != 0)
     refuse_for("F_ADD_SEALS");
   return {std::move(descriptor), size, PROT_READ | PROT_WRITE};

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "skein/error.hpp"
+#include "test/tools/size_limit.hpp"
 #include "test/tools/temporary_folder.hpp"
 
 using namespace skein;
@@ -104,4 +105,15 @@ TEST_CASE("A file is written through a link to it, and a device directly") {
   CHECK(content_of(file) == "new");
   write_whole_file("the picture", "/dev/null", "new");
   CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("A file beyond the limit of sizes is told, ends nobody and leaves the old one") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "history";
+  write_whole_file("the history", file, "old");
+  {
+    const test::SizeLimit limit(4);
+    CHECK_THROWS_WITH(write_whole_file("the history", file, "longer"), Contains("File too large"));
+  }
+  CHECK(content_of(file) == "old");
 }

@@ -1,10 +1,8 @@
 #include <sched.h>
 #include <sys/mount.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
-#include <csignal>
 #include <random>
 
 #include "recording/mcap/chunk_queue.hpp"
@@ -12,6 +10,7 @@
 #include "skein/error.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/log.hpp"
+#include "test/tools/size_limit.hpp"
 
 using namespace skein;
 using namespace skein::recording;
@@ -56,24 +55,6 @@ int end_of(pid_t child) {
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
-
-/// Files of this process may not become larger.
-class SizeLimit {
- public:
-  explicit SizeLimit(rlim_t size) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{size, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~SizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 }  // namespace
 
@@ -149,7 +130,7 @@ TEST_CASE("where files may not grow, that is said at once, and what stands there
   const test::Log log;
   const std::string path = folder / "a.mcap";
   const std::string data = noise(10'000);
-  const SizeLimit limit(100'000);
+  const test::SizeLimit limit(100'000);
   WriterOptions options;
   options.chunk_size = 10'000;
   Writer writer(path, options);

@@ -20,10 +20,12 @@
 #include "same_host/pass_descriptor.hpp"
 #include "skein/error.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/size_limit.hpp"
 
 using namespace skein;
 using namespace skein::same_host;
 using skein::test::eventually;
+using skein::test::SizeLimit;
 
 namespace {
 
@@ -136,6 +138,15 @@ TEST_CASE("what was not sent, or is never taken, is not read") {
     lent.reset();
     CHECK_FALSE(memory->is_read());
   }
+}
+
+TEST_CASE("memory beyond the limit of files' sizes is refused, and ends nobody") {
+  const SizeLimit limit(4096);
+  CHECK_THROWS_WITH(LoanMemory::make(8192), Catch::Contains("File too large"));
+  CHECK_THROWS_WITH(SharedMemory::make(8192), Catch::Contains("File too large"));
+  sigset_t pending;
+  sigpending(&pending);
+  CHECK_FALSE(sigismember(&pending, SIGXFSZ));
 }
 
 TEST_CASE("a provider that was killed reads nothing any more") {

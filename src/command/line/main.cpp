@@ -192,6 +192,7 @@ int with_output_checked(int code) {
 }  // namespace skein::command
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, which is told in words
   CLI::App app;
   int result = 0;
   skein::command::make_command_line(app, result);

@@ -11,6 +11,7 @@
 
 #include "core/printable.hpp"
 #include "file_descriptor.hpp"
+#include "held_signal.hpp"
 
 namespace skein {
 namespace {
@@ -52,7 +53,8 @@ class Draft {
 
   void write(std::string_view content) {
     while (!content.empty()) {
-      const auto count = ::write(descriptor_.get(), content.data(), content.size());
+      const auto count = within_file_size(
+          [&] { return ::write(descriptor_.get(), content.data(), content.size()); });
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) fail("writing");
       content.remove_prefix(static_cast<std::size_t>(count));

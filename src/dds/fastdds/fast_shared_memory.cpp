@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/system/held_signal.hpp"
+
 namespace skein::dds::fastdds {
 namespace {
 
@@ -31,7 +33,8 @@ SegmentsTurn::SegmentsTurn(bool needed) {
 std::optional<std::string> lacks_room_for_segments() {
   const FileDescriptor file(::open(kFolder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
   if (!file) return kFolder + " takes no files" + in_brackets(errno);
-  const int error = ::posix_fallocate(file.get(), 0, kSegmentsInAll);
+  const int error =
+      within_file_size([&] { return ::posix_fallocate(file.get(), 0, kSegmentsInAll); });
   if (error == 0) return std::nullopt;
   return kFolder + " has no " + std::to_string(kSegmentsInAll >> 20) + " MiB left" +
          in_brackets(error);

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/system/held_signal.hpp"
+
 namespace skein::launch {
 namespace {
 
@@ -29,6 +31,7 @@ int ready_descriptor() noexcept {
 // stopped does not read, and must not stop this process, too.
 void write_text(int descriptor, std::string_view text) noexcept {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+  const HeldSignal held(SIGPIPE);
   [[maybe_unused]] const auto written = ::write(descriptor, text.data(), text.size());
 }
 

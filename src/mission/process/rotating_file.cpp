@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "core/system/held_signal.hpp"
+
 namespace skein::launch {
 
 RotatingFile::RotatingFile(std::filesystem::path file, const Limits& limits)
@@ -42,7 +44,8 @@ bool RotatingFile::write(std::string_view line) {
   const bool full = size_ > 0 && size_ + text.size() > limits_.size;
   if ((!descriptor_ || full) && !rotate()) return false;
   for (std::string_view rest = text; !rest.empty();) {
-    const auto written = ::write(descriptor_.get(), rest.data(), rest.size());
+    const auto written =
+        within_file_size([&] { return ::write(descriptor_.get(), rest.data(), rest.size()); });
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return false;
     rest.remove_prefix(static_cast<std::size_t>(written));

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/system/held_signal.hpp"
 #include "core/system/whole_file.hpp"
 #include "skein/error.hpp"
 
@@ -37,7 +38,8 @@ OutputFile::OutputFile(std::string path)
 
 void OutputFile::append(std::span<const std::byte> piece) {
   for (std::size_t written = 0; written < piece.size();) {
-    const auto count = ::write(file_.get(), piece.data() + written, piece.size() - written);
+    const auto count = within_file_size(
+        [&] { return ::write(file_.get(), piece.data() + written, piece.size() - written); });
     if (count > 0) {
       written += static_cast<std::size_t>(count);
     } else if (count == 0 || errno != EINTR) {

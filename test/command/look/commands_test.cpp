@@ -750,7 +750,6 @@ TEST_CASE("a recording on a full disk fails, and says what is in the file") {
   const CommandOptions disk{.prepare = [] {
     constexpr rlim_t kSpace = 12'288;  // what every recording has, and a few values
     const rlimit limit{kSpace, kSpace};
-    signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &limit);
   }};
   Command text = field.start({"record", "--output", shelf / "text.mcap"}, disk);
@@ -770,7 +769,6 @@ TEST_CASE("a recording that cannot even begin is told as output that was lost") 
   const Field field(vendor);
   Command record = field.start({"record", "--output", shelf / "none.mcap"}, {.prepare = [] {
                                  const rlimit limit{4, 4};
-                                 signal(SIGXFSZ, SIG_IGN);
                                  setrlimit(RLIMIT_FSIZE, &limit);
                                }});
   CHECK(record.code() == 74);  // what it says ends, as all its files, after four bytes

@@ -1,6 +1,7 @@
 #include "mission/supervise/mission_log.hpp"
 
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -8,6 +9,7 @@
 
 #include "mission/supervise/environment_record.hpp"
 #include "test/mission/profile/profile_folder.hpp"
+#include "test/tools/size_limit.hpp"
 
 using namespace skein::launch;
 
@@ -92,6 +94,15 @@ TEST_CASE("A log that cannot be written says so once, and later lines are tried 
   std::filesystem::create_directory(folder.path() / "logs" / "processes");
   CHECK(log.add_line("a", "kept"));
   CHECK_THAT(text_of(folder.path() / "logs" / "processes" / "a.log"), Catch::Contains(" kept\n"));
+}
+
+TEST_CASE("A log that may not grow says so, and ends nobody") {
+  TemporaryFolder folder;
+  RotatingFile log(folder.path() / "a.log", {.size = 1000, .files = 2});
+  const skein::test::SizeLimit limit(8);
+  REQUIRE(log.write("first"));
+  CHECK_FALSE(log.write("second"));
+  CHECK(errno == EFBIG);
 }
 
 TEST_CASE("A log that cannot begin its next file keeps those that it has, and goes on later") {
