@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <optional>
 
 #include "core/printable.hpp"
+#include "mission/process/become_program.hpp"
 #include "mission/process/line_splitter.hpp"
 #include "mission/process/pipe.hpp"
 #include "mission/process/ready.hpp"
@@ -42,24 +42,16 @@ Ssh start_ssh(const SshAttendance& attendance) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  const pid_t parent = ::getpid();
+  const std::array descriptors{input.read_end.get(), output.write_end.get(),
+                               errors.write_end.get()};
+  const Launchpad pad{arguments.data(), environ, descriptors, ::getpid()};
   const pid_t id = ::fork();
   if (id < 0) throw_system_error("a process");
   if (id == 0) {
-    ::setpgid(0, 0);
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(kSshFailed);
-    sigset_t none;
-    sigemptyset(&none);
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    ::signal(SIGPIPE, SIG_DFL);
-    ::dup2(input.read_end.get(), STDIN_FILENO);
-    ::dup2(output.write_end.get(), STDOUT_FILENO);
-    ::dup2(errors.write_end.get(), STDERR_FILENO);
-    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
-    ::execvp(arguments[0], arguments.data());
-    const std::string reason = std::string("ssh: ") + std::strerror(errno) + "\n";
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, reason.data(), reason.size());
+    const char* const call = become_program(pad);
+    const std::string reason = std::string("ssh: ") + call + ": " + std::strerror(errno) + "\n";
+    [[maybe_unused]] const auto written =
+        ::write(errors.write_end.get(), reason.data(), reason.size());
     ::_exit(kSshFailed);
   }
   return {id, std::move(input.write_end), std::move(output.read_end), std::move(errors.read_end)};

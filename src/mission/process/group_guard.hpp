@@ -14,6 +14,7 @@ namespace skein::launch {
 /// have started.
 class GroupGuard {
  public:
+  /// Throws SystemError if there can be no guard.
   GroupGuard();
   GroupGuard(const GroupGuard&) = delete;
   GroupGuard& operator=(const GroupGuard&) = delete;
@@ -29,6 +30,7 @@ class GroupGuard {
 
  private:
   void send(pid_t message) noexcept;
+  void end() noexcept;
 
   const std::string mark_;
   std::size_t marks_ = 0;

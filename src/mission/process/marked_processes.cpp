@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <random>
 
 #include "core/system/file_descriptor.hpp"
+#include "numbered_entries.hpp"
 
 namespace skein::launch {
 namespace {
@@ -21,24 +21,6 @@ namespace {
 // Who starts processes faster than they are killed is left to the next caller.
 constexpr int kMostPasses = 200;
 constexpr std::size_t kLongestMark = 64;
-
-/// What getdents64(2) fills in; the C library does not declare it.
-struct DirectoryEntry {
-  std::uint64_t inode;
-  std::int64_t offset;
-  unsigned short length;
-  unsigned char type;
-  char name[1];
-};
-
-pid_t number_of(const char* name) {
-  pid_t number = 0;
-  for (; *name != '\0'; ++name) {
-    if (*name < '0' || *name > '9') return 0;
-    number = 10 * number + (*name - '0');
-  }
-  return number;
-}
 
 /// Reads piece by piece; the end of one piece is searched together with the next.
 bool holds(int file, std::string_view mark) {
@@ -80,21 +62,13 @@ struct Killed {
 
 /// One look at all processes; whether there was one to kill.
 bool kill_all_marked(std::string_view mark, Killed& killed) {
-  const FileDescriptor folder(::open("/proc", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  alignas(DirectoryEntry) std::array<char, 16 * 1024> entries;
   bool found = false;
-  while (true) {
-    const auto size = ::syscall(SYS_getdents64, folder.get(), entries.data(), entries.size());
-    if (size <= 0) return found;
-    for (long at = 0; at < size;) {
-      const auto* entry = reinterpret_cast<const DirectoryEntry*>(entries.data() + at);
-      at += entry->length;
-      const pid_t process = number_of(entry->name);
-      if (process <= 0 || process == ::getpid() || !kill_if_marked(process, mark)) continue;
-      killed.add(process);
-      found = true;
-    }
-  }
+  for_each_number_in("/proc", [&](pid_t process, int) {
+    if (process == ::getpid() || !kill_if_marked(process, mark)) return;
+    killed.add(process);
+    found = true;
+  });
+  return found;
 }
 
 }  // namespace

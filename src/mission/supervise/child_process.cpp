@@ -1,7 +1,6 @@
 #include "child_process.hpp"
 
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
@@ -12,6 +11,7 @@
 #include <cstring>
 #include <vector>
 
+#include "mission/process/become_program.hpp"
 #include "mission/process/marked_processes.hpp"
 #include "mission/process/pipe.hpp"
 #include "mission/process/ready.hpp"
@@ -60,35 +60,26 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// What the child needs between fork and exec, where nothing may be allocated.
-struct Launchpad {
-  char* const* arguments;
-  char* const* environment;
-  int null_input;
-  int output;
-  int readiness;
-  int failure;
-  pid_t launcher;
+/// What the child tells before it ends, if it cannot become the program. Parent and child are one
+/// image, so that the text lies at the same place.
+struct Refusal {
+  int reason = 0;
+  const char* call = nullptr;
 };
 
-[[noreturn]] void execute(const Launchpad& pad, GroupGuard& guard) {
-  ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != pad.launcher) ::_exit(kCannotExecute);  // it died before the line above
+[[noreturn]] void execute(const Launchpad& pad, int failure, GroupGuard& guard) {
   guard.add(::getpid());
-  for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
-  sigset_t none;
-  sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::dup2(pad.null_input, STDIN_FILENO);
-  ::dup2(pad.output, STDOUT_FILENO);
-  ::dup2(pad.output, STDERR_FILENO);
-  ::dup2(pad.readiness, kReadyDescriptor);
-  ::close_range(kFirstPipeEnd, ~0U, CLOSE_RANGE_CLOEXEC);
-  ::execvpe(pad.arguments[0], pad.arguments, pad.environment);
-  const int reason = errno;
-  [[maybe_unused]] const auto written = ::write(pad.failure, &reason, sizeof reason);
+  const char* const call = become_program(pad);
+  const Refusal refusal{errno, call};
+  [[maybe_unused]] const auto written = ::write(failure, &refusal, sizeof refusal);
   ::_exit(kCannotExecute);
+}
+
+[[noreturn]] void refuse(const std::string& program, const Refusal& refusal) {
+  const std::string how = refusal.call == std::string_view("execve")
+                              ? "cannot execute " + program
+                              : "cannot start " + program + ": " + refusal.call;
+  throw SystemError(how, refusal.reason);
 }
 
 }  // namespace
@@ -109,32 +100,31 @@ void ChildProcess::start(const ChildPlan& plan) {
   auto output = make_pipe();
   auto readiness = make_pipe();
   auto failure = make_pipe();
-  const FileDescriptor null_input(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const FileDescriptor opened(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  if (!opened) throw SystemError("cannot open /dev/null", errno);
+  const FileDescriptor null_input(::fcntl(opened.get(), F_DUPFD_CLOEXEC, kFirstPipeEnd));
   if (!null_input) throw SystemError("cannot open /dev/null", errno);
   auto arguments = plan.argv;
   auto environment = environment_of(plan, mark_);
   const auto argument_pointers = pointers_to(arguments);
   const auto environment_pointers = pointers_to(environment);
-  const Launchpad pad{argument_pointers.data(),
-                      environment_pointers.data(),
-                      null_input.get(),
-                      output.write_end.get(),
-                      readiness.write_end.get(),
-                      failure.write_end.get(),
+  std::array<int, kReadyDescriptor + 1> descriptors;
+  descriptors.fill(output.write_end.get());
+  descriptors[STDIN_FILENO] = null_input.get();
+  descriptors[kReadyDescriptor] = readiness.write_end.get();
+  const Launchpad pad{argument_pointers.data(), environment_pointers.data(), descriptors,
                       ::getpid()};
   id_ = ::fork();
   if (id_ < 0) throw_system_error("a process");
-  if (id_ == 0) execute(pad, guard_);
+  if (id_ == 0) execute(pad, failure.write_end.get(), guard_);
   ::setpgid(id_, id_);  // The child does the same; whoever comes first, the group is there now.
   failure.write_end.reset();
-  int reason = 0;
-  ssize_t size = 0;
-  do {
-    size = ::read(failure.read_end.get(), &reason, sizeof reason);
-  } while (size < 0 && errno == EINTR);
-  if (size > 0) {
+  Refusal refusal;
+  while (::read(failure.read_end.get(), &refusal, sizeof refusal) < 0 && errno == EINTR) {
+  }
+  if (refusal.call != nullptr) {
     end_group();
-    throw SystemError("cannot execute " + plan.argv[0], reason);
+    refuse(plan.argv[0], refusal);
   }
   end_ = FileDescriptor(open_process(id_));
   if (!end_) {

@@ -3,13 +3,17 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <csignal>
+#include <functional>
 
 #include "shell_mission.hpp"
 #include "test/tools/places.hpp"
+#include "test/tools/refuse_system_call.hpp"
 #include "test/tools/temporary_folder.hpp"
 
 using skein::test::built_program;
+using skein::test::refuse_system_call;
 
 namespace {
 
@@ -18,8 +22,9 @@ namespace {
 /// this constructor returns.
 class LauncherProcess {
  public:
-  explicit LauncherProcess(const std::string& preamble = "", const char* stop_timeout_ms = "500",
-                           int ignored_signal = 0) {
+  explicit LauncherProcess(
+      const std::string& preamble = "", const char* stop_timeout_ms = "500",
+      const std::function<void()>& prepare = [] {}) {
     folder_.write("pids", "");
     const std::string pids = (folder_.path() / "pids").string();
     const std::string script = preamble + "echo $$ >> " + pids + "; (" + preamble +
@@ -30,7 +35,7 @@ class LauncherProcess {
     const std::string helper = built_program("launch_helper");
     id_ = ::fork();
     if (id_ == 0) {
-      if (ignored_signal != 0) ::signal(ignored_signal, SIG_IGN);
+      prepare();
       const int nowhere = ::open("/dev/null", O_WRONLY);
       ::dup2(nowhere, 1);
       ::dup2(nowhere, 2);
@@ -51,7 +56,7 @@ class LauncherProcess {
   /// Waits for the end of the launcher; its status as wait(2) tells it.
   int wait() {
     int status = 0;
-    ::waitpid(id_, &status, 0);
+    REQUIRE(wait_until([&] { return ::waitpid(id_, &status, WNOHANG) == id_; }));
     id_ = -1;
     return status;
   }
@@ -88,7 +93,7 @@ TEST_CASE("A signal to the launcher ends the mission in order, and the exit code
 
 TEST_CASE("A launcher that was started with a signal ignored, as by nohup or `&`, goes on") {
   const int signal = GENERATE(SIGHUP, SIGINT);
-  LauncherProcess launcher("", "500", signal);
+  LauncherProcess launcher("", "500", [&] { ::signal(signal, SIG_IGN); });
   launcher.send(signal);
   launcher.send(SIGTERM);
   const int status = launcher.wait();
@@ -127,5 +132,17 @@ TEST_CASE(
   LauncherProcess launcher;
   launcher.send(SIGKILL);
   CHECK(WIFSIGNALED(launcher.wait()));
+  CHECK(wait_until([&] { return launcher.all_gone(); }));
+}
+
+TEST_CASE("A launcher ends with all of its processes where close_range is refused") {
+  // By a kernel before 5.9, or by a container's filter.
+  const int error = GENERATE(ENOSYS, EPERM);
+  const int signal = GENERATE(SIGTERM, SIGKILL);
+  CAPTURE(error, signal);
+  LauncherProcess launcher("", "500", [&] { refuse_system_call(SYS_close_range, error); });
+  launcher.send(signal);
+  const int status = launcher.wait();
+  if (signal == SIGTERM) CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGTERM));
   CHECK(wait_until([&] { return launcher.all_gone(); }));
 }
