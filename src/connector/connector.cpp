@@ -28,6 +28,7 @@ using brokerless_discovery::ServiceDescription;
 using brokerless_discovery::Table;
 using connector::Connections;
 using connector::FailoverChannel;
+using connector::NoProvider;
 using connector::ProviderConnection;
 using connector::ProviderQuery;
 
@@ -173,6 +174,17 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
   return open(parts.participant, std::move(options));
 }
 
+ProviderConnection await_connection(const brokerless_discovery::Broker& broker, const Query& query,
+                                    Instant deadline, const FailoverChannel::Connect& connect) {
+  for (;;) {
+    broker.await_service(query, deadline);
+    try {
+      return connect({deadline});
+    } catch (const NoProvider&) {  // it has just gone
+    }
+  }
+}
+
 }  // namespace
 
 Connector::Connector(const Parts& parts)
@@ -241,14 +253,20 @@ Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& opt
 std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
   if (options.foreign) return open_foreign(interface, options);
-  const auto connect = [connector = *this, query = query(interface, options),
+  const Connections::Opening opening(*connections_);
+  const Query query = this->query(interface, options);
+  const auto connect = [connector = *this, query,
                         strategy = options.strategy](const ProviderQuery& wanted) {
     return connector.open_next(query, strategy, wanted);
   };
-  const Instant deadline = parts_.clock->now() + options.timeout;
-  const auto channel =
-      std::make_shared<FailoverChannel>(connect({deadline}), connect, options.hedge_after);
+  const auto channel = std::make_shared<FailoverChannel>(
+      await_connection(parts_.broker, query, parts_.clock->now() + options.timeout, connect),
+      connect, options.hedge_after);
   connections_->add(channel);
+  channel->attach(std::make_shared<brokerless_discovery::Broker::Registration>(
+      parts_.broker.observe([weak = std::weak_ptr(channel)](const Change&) {
+        if (const auto follows = weak.lock()) follows->on_change();
+      })));
   return channel;
 }
 
@@ -324,9 +342,10 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
       connections_->pause(*parts_.clock,
                           std::min(wanted.deadline, parts_.clock->now() + kRetryPause));
     }
-    auto providers = wanted.wait ? parts_.broker.await_service(query, wanted.deadline)
-                                 : parts_.broker.find_service(query);
+    auto providers = parts_.broker.find_service(query);
+    if (providers.empty()) throw NoProvider(parts_.broker.explain(query));
     arrange(providers, wanted, query, parts_.loads);
+    if (providers.empty()) throw NoProvider("no other provider of " + query.name + " is available");
     // Who is asked for by its identity has all of the time.
     const bool may_try_another = query.provider.is_nil() && (wanted.wait || providers.size() > 1);
     const Instant now = parts_.clock->now();
@@ -346,8 +365,7 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
       }
     }
   } while (wanted.wait && !overloaded && left() > Duration::zero() && !connections_->closed());
-  if (failure) std::rethrow_exception(failure);
-  throw Unavailable("no other provider of " + query.name + " is available");
+  std::rethrow_exception(failure);
 }
 
 }  // namespace skein

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/clock_wait.hpp"
 #include "retrying_call.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/error.hpp"
@@ -35,6 +36,8 @@ FailoverChannel::FailoverChannel(ProviderConnection first, Connect connect,
       continuations_(first.channel->continuations()),
       main_(std::move(first)) {}
 
+FailoverChannel::~FailoverChannel() { close(); }
+
 void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   const OperationInfo& operation = call->operation();
   if (operation.idempotent && !operation.oneway) {
@@ -50,16 +53,7 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
     if (sent(*channel, call, in)) return;
   }
   // The caller does not wait, and connecting does: the request moves to a copy and another thread.
-  const auto copy = copy_of(*operation.in, in);
-  const bool posted = continuations_.post([self = shared_from_this(), call, copy, wanted] {
-    call->attempt([&] {
-      while (!self->sent(*self->acquire(wanted).channel, call, copy.get())) {
-      }
-    });
-  });
-  if (!posted) {
-    call->fail(std::make_exception_ptr(Overloaded("too many calls wait for a new provider")));
-  }
+  call->attempt([&] { WaitingCall::start(shared_from_this(), call, in); });
 }
 
 void FailoverChannel::call(const OperationInfo& operation, const void* in, void* out,
@@ -109,6 +103,11 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
   for (;;) {
     try {
       connection = acquire(retries.wanted());
+    } catch (const NoProvider&) {
+      if (!error) throw;
+      retries.not_made();
+      error = waited_in_vain(error, std::current_exception());
+      break;
     } catch (...) {
       if (!error) throw;
       retries.not_made();
@@ -123,7 +122,7 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
     } catch (...) {
       error = std::current_exception();
     }
-    if (!retries.admit(error, connection->provider, clock_.now())) break;
+    if (!retries.admit(error, {connection->provider, connection->channel}, clock_.now())) break;
   }
   std::rethrow_exception(std::move(error));
 }
@@ -147,11 +146,67 @@ void FailoverChannel::lose(const std::string& how) {
 }
 
 std::vector<ProviderConnection> FailoverChannel::close() {
-  std::lock_guard lock(mutex_);
-  closed_ = true;
-  std::vector<ProviderConnection> connections = others_;
-  connections.push_back(main_);
+  std::shared_ptr<void> companion;
+  std::vector<std::weak_ptr<WaitingCall>> waiting;
+  std::vector<ProviderConnection> connections;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    companion.swap(companion_);
+    waiting.swap(waiting_);
+    connections = others_;
+    connections.push_back(main_);
+    changed_.notify_all();
+  }
+  tell(std::move(waiting));
   return connections;
+}
+
+void FailoverChannel::attach(std::shared_ptr<void> companion) {
+  std::lock_guard lock(mutex_);
+  if (!closed_) companion_.swap(companion);
+}
+
+void FailoverChannel::on_change() {
+  std::vector<std::weak_ptr<WaitingCall>> waiting;
+  {
+    std::lock_guard lock(mutex_);
+    ++changes_;
+    waiting.swap(waiting_);
+    changed_.notify_all();
+  }
+  tell(std::move(waiting));
+}
+
+std::uint64_t FailoverChannel::changes() const {
+  std::lock_guard lock(mutex_);
+  return changes_;
+}
+
+bool FailoverChannel::tell_of_change(std::uint64_t seen, std::weak_ptr<WaitingCall> call) {
+  {
+    std::lock_guard lock(mutex_);
+    if (closed_) return false;
+    if (changes_ == seen) {
+      if (waiting_.size() >= look_at_) {
+        std::erase_if(waiting_, [](const auto& weak) { return weak.expired(); });
+        look_at_ = std::max<std::size_t>(16, 2 * waiting_.size());
+      }
+      waiting_.push_back(std::move(call));
+      return true;
+    }
+  }
+  tell({std::move(call)});
+  return true;
+}
+
+// They were admitted when they began.
+void FailoverChannel::tell(std::vector<std::weak_ptr<WaitingCall>> calls) {
+  for (std::weak_ptr<WaitingCall>& call : calls) {
+    continuations_.post_or_run([weak = std::move(call)] {
+      if (const auto waiting = weak.lock()) waiting->look();
+    });
+  }
 }
 
 std::optional<ProviderConnection> FailoverChannel::ready(const ProviderQuery& wanted) {
@@ -174,6 +229,34 @@ std::optional<ProviderConnection> FailoverChannel::ready(const ProviderQuery& wa
 }
 
 ProviderConnection FailoverChannel::acquire(const ProviderQuery& wanted) {
+  for (;;) {
+    const std::uint64_t seen = changes();
+    std::exception_ptr lack;
+    try {
+      return acquire_now(wanted);
+    } catch (const NoProvider&) {
+      lack = std::current_exception();
+    }
+    if (await_change(seen, wanted.deadline)) continue;
+    refuse_if_closed();
+    std::rethrow_exception(std::move(lack));
+  }
+}
+
+void FailoverChannel::refuse_if_closed() const {
+  if (is_closed())
+    throw Unavailable("no new connection: it was disconnected, or this side's entity has ended");
+}
+
+// False where the deadline came first, or the connection has ended.
+bool FailoverChannel::await_change(std::uint64_t seen, Instant deadline) {
+  std::unique_lock lock(mutex_);
+  return wait_until(clock_, deadline, lock, changed_,
+                    [&] { return closed_ || changes_ != seen; }) &&
+         !closed_;
+}
+
+ProviderConnection FailoverChannel::acquire_now(ProviderQuery wanted) {
   if (auto connection = ready(wanted)) return *connection;
   std::lock_guard one_at_a_time(connecting_);
   if (auto connection = ready(wanted)) return *connection;
@@ -183,13 +266,16 @@ ProviderConnection FailoverChannel::acquire(const ProviderQuery& wanted) {
   }();
   // A suspect provider is better than none, but not worth waiting for another.
   const bool fall_back = main.channel->connected() && !contains(wanted.excluded, main.provider);
-  ProviderQuery next = wanted;
-  if (fall_back) next.wait = false;
-  if (!main.channel->connected()) next.last.push_back(main.provider);
+  if (fall_back) wanted.wait = false;
+  if (!main.channel->connected()) wanted.last.push_back(main.provider);
   try {
-    ProviderConnection connection = connect_(next);
+    ProviderConnection connection = connect_(wanted);
     keep(connection);
     return connection;
+  } catch (const NoProvider& lack) {
+    if (fall_back) return main;
+    if (wanted.wait) throw;
+    throw Unavailable(lack.what());
   } catch (const Error& error) {
     if (!fall_back || !is_refusal(error.code())) throw;
     return main;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -14,6 +16,8 @@
 
 namespace skein::connector {
 
+class WaitingCall;
+
 /// A connection that outlives its provider: `connect` is asked for a new connection when the
 /// present one is found lost, or when its provider is suspect; a suspect provider has calls only
 /// where no other is available. A call to an idempotent operation whose provider is lost or refuses
@@ -21,15 +25,20 @@ namespace skein::connector {
 /// provider died ends as Disconnected; it is not repeated, since whether it ran is unknown. One
 /// that was not sent, as its connection had ended, is made elsewhere, whatever it does.
 ///
+/// Where no provider stands, calls and repeats wait for one until their deadlines. A provider that
+/// has refused a call and still stands is not waited for: its word is the answer.
+///
 /// What that costs an idempotent call whose caller does not wait: one more object, and a copy of
 /// its in struct.
 class FailoverChannel final : public Channel, public std::enable_shared_from_this<FailoverChannel> {
  public:
-  /// Blocks until the deadline at most; throws Unavailable, or why the last one refused.
+  /// Blocks while it connects, until the deadline at most. Throws NoProvider, which may change, or
+  /// why the last one refused.
   using Connect = std::function<ProviderConnection(const ProviderQuery& wanted)>;
 
   FailoverChannel(ProviderConnection first, Connect connect,
                   std::optional<Duration> hedge_after = std::nullopt);
+  ~FailoverChannel() override;
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   void call(const OperationInfo& operation, const void* in, void* out,
@@ -41,6 +50,22 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   void disconnect() override;
   void lose(const std::string& how) override;
 
+  /// Keeps something until the connection ends.
+  void attach(std::shared_ptr<void> companion);
+
+  /// Other providers stand than before: calls that wait for one look again. Does not block.
+  void on_change();
+
+  /// How often that was so.
+  std::uint64_t changes() const;
+
+  /// Lets the call look again at the first change after `seen`, or when the connection ends. False
+  /// if it has ended.
+  bool tell_of_change(std::uint64_t seen, std::weak_ptr<WaitingCall> call);
+
+  /// Throws Unavailable if the connection has ended for good.
+  void refuse_if_closed() const;
+
   /// Of all its calls to idempotent operations.
   const std::shared_ptr<RetryBudget>& budget() const noexcept { return budget_; }
 
@@ -50,8 +75,11 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   /// A connection to a trusted provider that stands now, or nothing.
   std::optional<ProviderConnection> ready(const ProviderQuery& wanted);
 
-  /// A connection, newly opened where none stands; a suspect one where that cannot be had. Blocks;
-  /// throws what `connect` throws.
+  /// A connection, newly opened where none stands; a suspect one where that cannot be had. Blocks
+  /// while it connects, and throws what `connect` throws: NoProvider only where waiting helps.
+  ProviderConnection acquire_now(ProviderQuery wanted);
+
+  /// As acquire_now(), but waits for a provider until the deadline.
   ProviderConnection acquire(const ProviderQuery& wanted);
 
   /// Starts the call there. Returns false, with the call as it was, where that connection has ended
@@ -63,7 +91,9 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   bool is_closed() const;
   void call_idempotent(const OperationInfo& operation, const void* in, void* out,
                        const CallTime& time);
+  bool await_change(std::uint64_t seen, Instant deadline);
   void keep(const ProviderConnection& connection);
+  void tell(std::vector<std::weak_ptr<WaitingCall>> calls);
   std::vector<ProviderConnection> close();
 
   Connect connect_;
@@ -76,6 +106,12 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   ProviderConnection main_;                 // where calls go as long as it stands
   std::vector<ProviderConnection> others_;  // opened for calls that the main one failed
   bool closed_ = false;
+  std::uint64_t changes_ = 0;
+  std::condition_variable changed_;
+  std::vector<std::weak_ptr<WaitingCall>>
+      waiting_;  // and those that have ended since the last look
+  std::size_t look_at_ = 16;
+  std::shared_ptr<void> companion_;
 };
 
 /// A copy that lives as long as the pointer.

@@ -6,6 +6,7 @@
 
 #include "skein/clock.hpp"
 #include "skein/detail/channel.hpp"
+#include "skein/error.hpp"
 #include "skein/guid.hpp"
 
 namespace skein::connector {
@@ -25,7 +26,14 @@ struct ProviderQuery {
   Instant deadline;
   std::vector<Guid> last{};      ///< Only where no other answers.
   std::vector<Guid> excluded{};  ///< In no case.
-  bool wait = true;              ///< Until a provider appears; otherwise only those that stand now.
+  /// Until a provider appears, and takes the connection; otherwise each that stands is asked once.
+  bool wait = true;
+};
+
+/// No provider stands that may be asked: who may wait waits until that changes.
+class NoProvider : public Unavailable {
+ public:
+  using Unavailable::Unavailable;
 };
 
 }  // namespace skein::connector

@@ -1,15 +1,14 @@
 #include "retries.hpp"
 
-#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "skein/error.hpp"
 
 namespace skein::connector {
 namespace {
 
-// A request that kills whoever executes it must not kill them all.
-constexpr int kMaxFailures = 4;
+constexpr std::size_t kMaxFailures = 4;
 
 std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
   try {
@@ -23,26 +22,59 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
 
 }  // namespace
 
-bool Retries::admit(const std::exception_ptr& error, const Guid& provider, Instant now,
-                    bool others_run) {
+bool Retries::admit(std::exception_ptr& error, const Asked& failed, Instant now, bool others_run) {
   const auto code = code_of(error);
   if (!code) return false;
   const bool refused = is_refusal(*code);
   if (!refused && *code != ErrorCode::Disconnected) return false;
-  wanted_.wait = false;
-  const bool lost_before =
-      std::find(wanted_.last.begin(), wanted_.last.end(), provider) != wanted_.last.end();
-  (refused || lost_before ? wanted_.excluded : wanted_.last).push_back(provider);
-  if (++failures_ >= kMaxFailures || now >= wanted_.deadline) return false;
+  failed_.push_back({failed, refused});
+  if (failed_.size() >= kMaxFailures || now >= deadline_) return false;
   if (others_run) return true;
+  if (!refused) return admit_loss(error);
   if (repeats_ == 0 && *code != ErrorCode::Overloaded) {
     budget_->owe();
   } else if (!budget_->take()) {
     return false;
   }
   ++repeats_;
-  if (refused) ++refused_;
+  ++refused_;
   return true;
+}
+
+// Whether the provider died of the request, or before it came, nobody can know.
+bool Retries::admit_loss(std::exception_ptr& error) {
+  if (std::exchange(lost_, true)) {
+    error = with_words(error,
+                       "; it was lost with its provider for the second time, so that it is not "
+                       "repeated again: the request itself may be the cause");
+    return false;
+  }
+  budget_->owe();
+  ++repeats_;
+  return true;
+}
+
+ProviderQuery Retries::wanted() const {
+  ProviderQuery wanted{deadline_};
+  for (const Failed& failed : failed_) {
+    const auto channel = failed.asked.channel.lock();
+    const bool stands = channel && channel->connected();
+    (failed.refused || stands ? wanted.excluded : wanted.last).push_back(failed.asked.provider);
+    if (stands) wanted.wait = false;
+  }
+  return wanted;
+}
+
+std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words) {
+  try {
+    try {
+      std::rethrow_exception(error);
+    } catch (const Error& failure) {
+      throw_error(failure.code(), failure.what() + words);
+    }
+  } catch (...) {
+    return std::current_exception();
+  }
 }
 
 }  // namespace skein::connector

@@ -3,29 +3,36 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "provider_connection.hpp"
 #include "retry_budget.hpp"
 
 namespace skein::connector {
 
+/// By whom a call was tried.
+struct Asked {
+  Guid provider;
+  std::weak_ptr<Channel> channel;
+};
+
 /// How often, and by whom, one call to an idempotent operation may still be tried. admit() and
 /// wanted() are called by one thread at a time.
 class Retries {
  public:
-  Retries(Instant deadline, std::shared_ptr<RetryBudget> budget) : budget_(std::move(budget)) {
-    wanted_.deadline = deadline;
+  Retries(Instant deadline, std::shared_ptr<RetryBudget> budget)
+      : deadline_(deadline), budget_(std::move(budget)) {
     budget_->earn();
   }
 
-  /// Whether another provider may do what `provider` failed to do; one does already where
-  /// `others_run`. Notes who failed: who refused is not asked again; who was lost may be, once
-  /// more, where nobody else is available. What was lost with a provider, or refused as that was
-  /// about to go, is repeated once in any case; what a full one refused, and all further repeats,
-  /// within the budget.
-  bool admit(const std::exception_ptr& error, const Guid& provider, Instant now,
-             bool others_run = false);
+  /// Whether another provider may do what that one failed to do; one does already where
+  /// `others_run`. What was lost with a provider is repeated once in any case, and never again:
+  /// the request itself may be what ended them, and `error` says so then. What a provider refused
+  /// as it was about to go is repeated once in any case, too; what a full one refused, and all
+  /// further repeats, within the budget.
+  bool admit(std::exception_ptr& error, const Asked& failed, Instant now, bool others_run = false);
 
   /// Whether it may be made at a second provider while the first one has it.
   bool hedge() noexcept { return budget_->take(); }
@@ -37,15 +44,29 @@ class Retries {
     if (refused_ > 0) budget_->give_back(refused_.exchange(0));
   }
 
-  /// Who is to be asked next; before the first failure, anybody who comes.
-  const ProviderQuery& wanted() const noexcept { return wanted_; }
+  /// Who is to be asked next; before the first failure, anybody who comes. A provider that refused,
+  /// or whose connection stands, so that it answered with the failure itself, is not asked again,
+  /// and as long as one stands nobody is waited for. One that was lost may be asked where nobody
+  /// else is available.
+  ProviderQuery wanted() const;
 
  private:
+  struct Failed {
+    Asked asked;
+    bool refused;
+  };
+
+  bool admit_loss(std::exception_ptr& error);
+
+  const Instant deadline_;
   std::shared_ptr<RetryBudget> budget_;
-  ProviderQuery wanted_;
-  int failures_ = 0;
+  std::vector<Failed> failed_;
+  bool lost_ = false;  // and repeated
   int repeats_ = 0;
   std::atomic<int> refused_{0};  // and paid for
 };
+
+/// The same error with more words; what is no Error stays as it is.
+std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words);
 
 }  // namespace skein::connector

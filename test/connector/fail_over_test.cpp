@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <future>
 #include <thread>
 
 #include "brokerless_discovery/broker.hpp"
@@ -102,6 +103,28 @@ TEST_CASE("an idempotent call on its way when its provider leaves is answered by
     CHECK(call.get() == "second");
   }
   CHECK(trio.second_service->calls == 1);
+}
+
+TEST_CASE("an idempotent call on its way when its only provider leaves waits for the next one",
+          "[wire]") {
+  EchoPair<EndlessEcho> pair(make_server("first"), make_client());
+  const auto started = std::make_shared<EchoService>("second");
+  const auto ask = [&, asynchronous = GENERATE(true, false)] {
+    auto echo = pair.echo->within(10min);
+    return asynchronous ? echo.async_who(0).get() : echo.who(0);
+  };
+  auto answer = std::async(std::launch::async, ask);
+  REQUIRE(eventually([&] { return pair.service->inside == 1; }));
+  pair.server.reset();
+  REQUIRE(eventually([&] { return !pair.echo->channel()->connected(); }));
+  SECTION("which holds up no caller with less time") {
+    CHECK_THROWS_AS(pair.echo->within(50ms).who(0), Unavailable);
+    CHECK_THROWS_AS(pair.echo->within(50ms).async_who(0).get(), Unavailable);
+    CHECK_THROWS_AS(pair.echo->within(50ms).async_echo("x").get(), Unavailable);
+  }
+  const auto second = make_server("second");
+  second->provide<LouderEcho>(started);
+  CHECK(answer.get() == "second");
 }
 
 TEST_CASE(

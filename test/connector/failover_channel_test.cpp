@@ -45,7 +45,16 @@ struct World {
         return link_to(static_cast<int>(i + 1));
       }
     }
+    if (refusal == ErrorCode::Unavailable) throw NoProvider("nobody is left");
     throw_error(refusal, "nobody is left");
+  }
+
+  /// The provider is there again, by a connection of its own.
+  void restart(int number) {
+    gone.push_back(std::exchange(providers[static_cast<std::size_t>(number - 1)],
+                                 std::make_shared<FakeChannel>(clock, continuations)));
+    channel->on_change();
+    continuations.run_all();
   }
 
   std::shared_ptr<NumberCall> call(const OperationInfo& operation) {
@@ -61,6 +70,7 @@ struct World {
   ManualClock clock;
   ManualExecutor continuations;
   std::vector<std::shared_ptr<FakeChannel>> providers;
+  std::vector<std::shared_ptr<FakeChannel>> gone;
   std::shared_ptr<FailoverChannel> channel;
   ErrorCode refusal = ErrorCode::Unavailable;  // where there is nobody
 };
@@ -209,14 +219,125 @@ TEST_CASE("a call that every provider refuses is tried by four of them at most")
   CHECK(tries == 4);
 }
 
+namespace {
+
+std::string text_of(NumberCall& call) {
+  try {
+    std::rethrow_exception(call.take_error());
+  } catch (const Error& error) {
+    return std::string(to_string(error.code())) + ": " + error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a call whose only provider was lost waits, without a thread, until one comes back") {
+  World world(1);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.continuations.run_all();
+  world.clock.advance(9s);
+  CHECK(world.continuations.run_all() == 0);
+  CHECK_FALSE(call->finished());
+  world.restart(1);
+  REQUIRE(world.provider(1).calls.size() == 1);
+  CHECK(world.provider(1).arguments[0] == 7);
+  world.provider(1).answer(0, 5);
+  CHECK(call->take_error() == nullptr);
+  CHECK(call->value == 5);
+}
+
+TEST_CASE(
+    "a call that waits for a provider to come back in vain ends at its deadline, and says so") {
+  World world(1);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.continuations.run_all();
+  world.clock.advance(10s);
+  REQUIRE(call->finished());
+  CHECK(text_of(*call) ==
+        "Disconnected: gone; no provider came back while the call waited: nobody is left");
+}
+
+TEST_CASE("a call that waits for a provider ends when its caller cancels it, or its entity ends") {
+  World world(1);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.continuations.run_all();
+  SECTION("cancelled") {
+    call->cancel();
+    CHECK(text_of(*call).starts_with("Cancelled"));
+  }
+  SECTION("ended") {
+    world.channel->lose("this side's entity has ended");
+    world.continuations.run_all();
+    CHECK(text_of(*call).starts_with("Disconnected: gone; no provider came back"));
+  }
+  SECTION("nobody holds its connection any more") {
+    world.channel.reset();
+    world.continuations.run_all();
+    CHECK(text_of(*call).starts_with("Cancelled"));
+    return;
+  }
+  world.restart(1);
+  CHECK(world.provider(1).calls.empty());
+}
+
+TEST_CASE("a call that was lost for the second time ends, since it may itself be the cause") {
+  World world(9);
+  const auto call = world.call(kIdempotent);
+  world.provider(1).lose();
+  world.continuations.run_all();
+  REQUIRE(world.provider(2).calls.size() == 1);
+  world.provider(2).lose();
+  world.continuations.run_all();
+  CHECK(world.provider(3).calls.empty());
+  CHECK(text_of(*call).ends_with("the request itself may be the cause"));
+}
+
+TEST_CASE("a provider that stands and answers with a failure of its own is not asked again") {
+  World world(GENERATE(1, 2));
+  const auto call = world.call(kIdempotent);
+  world.provider(1).calls[0]->fail(std::make_exception_ptr(Disconnected("its own provider died")));
+  world.continuations.run_all();
+  CHECK(world.provider(1).calls.size() == 1);
+  if (world.providers.size() == 1) {
+    CHECK(text_of(*call) == "Disconnected: its own provider died");
+  } else {
+    CHECK(world.provider(2).calls.size() == 1);
+  }
+}
+
+TEST_CASE("a call that is not idempotent waits for a provider without a thread, too") {
+  World world(1);
+  world.provider(1).lose();
+  const auto call = world.call(kOther);
+  world.continuations.run_all();
+  SECTION("one comes") {
+    world.restart(1);
+    world.provider(1).answer(0, 5);
+    CHECK(call->value == 5);
+  }
+  SECTION("none comes") {
+    world.clock.advance(10s);
+    CHECK(text_of(*call) == "Unavailable: nobody is left");
+  }
+  SECTION("it is lost with the one that comes") {
+    world.restart(1);
+    world.provider(1).lose();
+    world.restart(1);
+    CHECK(text_of(*call) == "Disconnected: gone");
+    CHECK(world.provider(1).calls.empty());
+  }
+}
+
 TEST_CASE("who was lost and comes back is asked once more, where nobody else is available") {
   World world(1);
   const auto call = world.call(kIdempotent);
   world.provider(1).lose();
-  world.provider(1).stands = true;
-  world.continuations.run_all();
-  REQUIRE(world.provider(1).calls.size() == 2);
-  world.provider(1).answer(1, 5);
+  world.restart(1);
+  REQUIRE(world.provider(1).calls.size() == 1);
+  world.provider(1).answer(0, 5);
   CHECK(call->value == 5);
 }
 

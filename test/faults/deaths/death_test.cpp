@@ -71,6 +71,19 @@ TEST_CASE(
               std::chrono::duration<double, std::milli>(took).count());
 }
 
+TEST_CASE("an idempotent call whose only provider is killed is answered once that is there again") {
+  auto server = start_provider("server", *Pairing::get().server, kLongLeaseArgument);
+  const auto client = entity_with_lease("client", Pairing::get().client, kLongLease);
+  auto echo = client->connect<LouderEcho>({.timeout = 20s}).within(10min);
+  server.signal(SIGSTOP);  // it gets the call, and does not answer
+  auto call = echo.async_who(0);
+  server.signal(SIGKILL);
+  REQUIRE(knows(*client, 0));
+  CHECK_FALSE(call.ready());
+  auto restarted = start_provider("server", *Pairing::get().server, kLongLeaseArgument);
+  CHECK(call.get() == "echo");
+}
+
 TEST_CASE(
     "a provider killed in the middle of a stream: what came can be taken, then the stream ends") {
   auto server = start_provider("server", *Pairing::get().server, kLongLeaseArgument);

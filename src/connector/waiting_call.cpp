@@ -1,0 +1,132 @@
+#include "waiting_call.hpp"
+
+#include <string>
+#include <utility>
+
+#include "failover_channel.hpp"
+#include "retries.hpp"
+#include "skein/detail/call_memory.hpp"
+#include "skein/error.hpp"
+
+namespace skein::connector {
+std::exception_ptr waited_in_vain(const std::exception_ptr& why, const std::exception_ptr& lack) {
+  try {
+    std::rethrow_exception(lack);
+  } catch (const std::exception& error) {
+    return with_words(
+        why, std::string("; no provider came back while the call waited: ") + error.what());
+  }
+}
+
+void WaitingCall::start(const std::shared_ptr<FailoverChannel>& channel,
+                        const std::shared_ptr<PendingCall>& call, const void* in) {
+  const auto waiting = make_shared_in_call_memory<WaitingCall>(channel, call, in);
+  waiting->own();
+  waiting->seek(nullptr);
+}
+
+WaitingCall::WaitingCall(const std::shared_ptr<FailoverChannel>& channel,
+                         std::shared_ptr<PendingCall> call, const void* in)
+    : channel_(channel),
+      clock_(channel->clock()),
+      continuations_(channel->continuations()),
+      call_(std::move(call)),
+      in_(copy_of(*call_->operation().in, in)) {}
+
+WaitingCall::~WaitingCall() { clock_.cancel(deadline_timer_); }
+
+bool WaitingCall::try_at(const FailoverChannel& channel, const ProviderConnection& connection) {
+  if (channel.sent(*connection.channel, call_, in_.get())) return true;
+  own();  // the connection's own canceller is gone
+  return false;
+}
+
+void WaitingCall::own() {
+  call_->set_canceller([self = shared_from_this()] {});
+}
+
+void WaitingCall::seek(const std::exception_ptr& why) {
+  {
+    std::lock_guard lock(waiting_);
+    why_ = why;
+    lack_ = nullptr;
+    watch_deadline();
+  }
+  if (continuations_.post([self = shared_from_this()] { self->look(); })) return;
+  call_->fail(std::make_exception_ptr(Overloaded("too many calls wait for another provider")));
+}
+
+// Under the lock. While no provider has the call, nobody else watches its deadline.
+void WaitingCall::watch_deadline() {
+  if (deadline_timer_ != 0) return;
+  deadline_timer_ = clock_.call_at(call_->deadline(), [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->expire();
+  });
+}
+
+void WaitingCall::expire() {
+  std::exception_ptr lack;
+  {
+    std::lock_guard lock(waiting_);
+    lack = std::exchange(lack_, nullptr);
+  }
+  if (lack) return give_up(lack, true);
+  call_->fail(std::make_exception_ptr(
+      TimedOut("no provider answered '" + std::string(call_->operation().name) +
+               "' before its deadline; whether it ran is unknown")));
+}
+
+void WaitingCall::look() {
+  const auto channel = channel_.lock();
+  if (!channel) return call_->cancel();
+  if (call_->finished()) return;
+  bool waits = note_lack(nullptr);
+  const std::uint64_t seen = channel->changes();
+  std::exception_ptr lack;
+  try {
+    channel->refuse_if_closed();
+    while (!try_at(*channel, channel->acquire_now(wanted()))) {
+    }
+    return leave_deadline();
+  } catch (const NoProvider&) {
+    lack = std::current_exception();
+    note_lack(lack);
+    if (channel->tell_of_change(seen, weak_from_this())) return;
+    waits = true;
+  } catch (...) {
+    lack = std::current_exception();
+  }
+  give_up(lack, waits);
+}
+
+// Whether it was waiting.
+bool WaitingCall::note_lack(const std::exception_ptr& lack) {
+  std::lock_guard lock(waiting_);
+  return std::exchange(lack_, lack) != nullptr;
+}
+
+// Its provider's connection watches it from now on. Unlocked: the action may be running.
+void WaitingCall::leave_deadline() {
+  TimerId timer = 0;
+  {
+    std::lock_guard lock(waiting_);
+    timer = std::exchange(deadline_timer_, 0);
+  }
+  clock_.cancel(timer);
+}
+
+void WaitingCall::give_up(const std::exception_ptr& lack, bool waited) {
+  std::exception_ptr why;
+  {
+    std::lock_guard lock(waiting_);
+    why = std::exchange(why_, nullptr);
+  }
+  if (!why) {
+    call_->fail(lack);
+    return;
+  }
+  not_made();
+  call_->fail(waited ? waited_in_vain(why, lack) : why);
+}
+
+}  // namespace skein::connector
