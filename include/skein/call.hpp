@@ -271,8 +271,9 @@ class ProxyBase {
   /// A nested call never outlives the deadline of the outer call.
   CallTime call_time() const {
     const Instant begin = channel_->clock().now();
+    const Instant deadline = saturating_sum(begin, timeout_);
     const CallContext* outer = CallContext::current();
-    return {begin, outer ? std::min(begin + timeout_, outer->deadline()) : begin + timeout_};
+    return {begin, outer ? std::min(deadline, outer->deadline()) : deadline};
   }
 
  private:

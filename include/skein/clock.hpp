@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "skein/detail/action.hpp"
@@ -17,6 +18,44 @@ namespace skein {
 using Duration = std::chrono::steady_clock::duration;
 using Instant = std::chrono::steady_clock::time_point;
 using TimerId = std::uint64_t;
+
+/// The sum, or the end of Duration's range if it lies beyond: users and peers may give any
+/// duration, also Duration::max().
+constexpr Duration saturating_sum(Duration a, Duration b) noexcept {
+  Duration::rep sum = 0;
+  if (!__builtin_add_overflow(a.count(), b.count(), &sum)) return Duration(sum);
+  return b < Duration::zero() ? Duration::min() : Duration::max();
+}
+/// The duration, or the end of Duration's range if it lies beyond, as milliseconds::max() does.
+template <class Rep, class Period>
+constexpr Duration saturating_duration(const std::chrono::duration<Rep, Period>& time) noexcept {
+  using Wide = std::chrono::duration<double>;
+  if (Wide(time) >= Wide(Duration::max())) return Duration::max();
+  if (Wide(time) <= Wide(Duration::min())) return Duration::min();
+  return std::chrono::duration_cast<Duration>(time);
+}
+
+/// A Duration that is made of any other by saturating_duration(), and that refuses a number without
+/// a unit in words.
+struct TimeSpan : Duration {
+  constexpr TimeSpan() noexcept : Duration(zero()) {}
+  constexpr TimeSpan(Duration time) noexcept : Duration(time) {}
+  template <class Rep, class Period>
+  requires(std::is_convertible_v<std::chrono::duration<Rep, Period>, Duration>) constexpr TimeSpan(
+      const std::chrono::duration<Rep, Period>& time) noexcept
+      : Duration(saturating_duration(time)) {}
+  template <class Number>
+  requires(std::is_arithmetic_v<Number>) TimeSpan(Number) {
+    static_assert(std::is_void_v<Number>,
+                  "a time has a unit: write 5s or 200ms, with `using namespace "
+                  "std::chrono_literals`");
+  }
+};
+
+/// Likewise; no clock reaches Instant::max().
+constexpr Instant saturating_sum(Instant from, TimeSpan by) noexcept {
+  return Instant(saturating_sum(from.time_since_epoch(), by));
+}
 
 /// Source of time and timers. Time is an argument: only composition roots make a SystemClock; tests
 /// pass a ManualClock. Thread-safe.
@@ -34,8 +73,11 @@ class Clock {
   /// action itself makes this call. Cancelling 0, or a timer that has run, is no error.
   virtual void cancel(TimerId timer) = 0;
 
-  TimerId call_after(Duration delay, Action action) {
-    return call_at(now() + delay, std::move(action));
+  /// The time in `delay` from now; never, Instant::max(), if that lies beyond the range.
+  Instant after(TimeSpan delay) const { return saturating_sum(now(), delay); }
+
+  TimerId call_after(TimeSpan delay, Action action) {
+    return call_at(after(delay), std::move(action));
   }
 };
 

@@ -66,12 +66,14 @@ struct ConnectOptions {
   std::string strategy{};
   /// Hedging: a call of an idempotent operation that has no answer after this time is also made at
   /// a second provider, if one is available. The first answer is used, the other call cancelled.
-  /// Unset: no hedging. Each such call copies its in struct and its result. Hedges, and repeats of
-  /// calls that a full provider refused, are at most 5 for a connection, and one for 16 of its
-  /// calls; a repeat that another provider answers does not count.
-  std::optional<Duration> hedge_after{};
-  /// Timeout for finding a provider and opening the connection. Calls have their own timeout.
-  Duration timeout = std::chrono::seconds(5);
+  /// Unset: no hedging. A warning is logged if the interface has no such operation. Each such call
+  /// copies its in struct and its result. Hedges, and repeats of calls that a full provider
+  /// refused, are at most 5 for a connection, and one for 16 of its calls; a repeat that another
+  /// provider answers does not count.
+  std::optional<TimeSpan> hedge_after{};
+  /// Timeout for finding a provider and opening the connection, more than 0. Calls have their own
+  /// timeout.
+  TimeSpan timeout = std::chrono::seconds(5);
   /// Connect to a server that is not built with Skein. It has no description, and uses the default
   /// partition of the interface's topics. `name`, if set, is the interface's; of the other options
   /// only `timeout` applies.

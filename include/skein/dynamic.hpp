@@ -48,7 +48,7 @@ class DynamicProxy : public ProxyBase {
   DynamicProxy(std::shared_ptr<Channel> channel, const DynamicInterface& interface);
 
   /// A copy with another timeout for its calls.
-  DynamicProxy within(Duration timeout) const;
+  DynamicProxy within(TimeSpan timeout) const;
 
   /// Canonical name: `AE_navigator/INavigator`.
   std::string interface_name() const;

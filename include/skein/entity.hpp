@@ -152,7 +152,7 @@ class Entity {
   /// `patience` it withdraws the rest as withdraw() does, and returns false. Peers that are not
   /// built with Skein are not told; their new calls are refused as Unavailable. Blocks; not from a
   /// call of these services.
-  bool drain(Duration patience);
+  bool drain(TimeSpan patience);
 
   /// Counters and latencies of each operation of the services that this entity provides, CSPs
   /// included. "skein/introspection.idl.hpp" defines the type; `skein services --statistics` shows

@@ -88,7 +88,7 @@ class Head {
   /// throws.
   template <class Interface, class Result>
   Result perform(const Task<Interface, Result>& task, introspection::Decision* record = nullptr,
-                 Duration limit = std::chrono::seconds(60)) {
+                 TimeSpan limit = std::chrono::seconds(60)) {
     task_run::TypedRun<Interface, Result> run(task);
     decide(Interface::interface_info(), run, limit, record);
     return run.take();
@@ -100,7 +100,7 @@ class Head {
   /// connection.
   template <class Interface>
   typename ProxyOf<Interface>::type preselect(const Features& features = {},
-                                              Duration limit = std::chrono::seconds(5)) {
+                                              TimeSpan limit = std::chrono::seconds(5)) {
     return
         typename Interface::Proxy(preselect(Interface::interface_info(), features, limit), limit);
   }

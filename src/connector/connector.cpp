@@ -260,7 +260,7 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
     return connector.open_next(query, strategy, wanted);
   };
   const auto channel = std::make_shared<FailoverChannel>(
-      await_connection(parts_.broker, query, parts_.clock->now() + options.timeout, connect),
+      await_connection(parts_.broker, query, parts_.clock->after(options.timeout), connect),
       connect, options.hedge_after);
   connections_->add(channel);
   channel->attach(std::make_shared<brokerless_discovery::Broker::Registration>(
@@ -273,7 +273,7 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
 std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interface,
                                                    const ConnectOptions& options) const {
   const Connections::Opening opening(*connections_);
-  const Instant deadline = parts_.clock->now() + options.timeout;
+  const Instant deadline = parts_.clock->after(options.timeout);
   std::vector<Opened> all;
   std::exception_ptr failure;
   for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
@@ -340,7 +340,7 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
   do {
     if (failure) {
       connections_->pause(*parts_.clock,
-                          std::min(wanted.deadline, parts_.clock->now() + kRetryPause));
+                          std::min(wanted.deadline, parts_.clock->after(kRetryPause)));
     }
     auto providers = parts_.broker.find_service(query);
     if (providers.empty()) throw NoProvider(parts_.broker.explain(query));

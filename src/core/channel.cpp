@@ -103,7 +103,7 @@ void PendingCall::wait() const {
   if (finished_) return;
   attend();
   if (const auto spin = spin_.load(); spin.count() > 0) {
-    const auto end = std::chrono::steady_clock::now() + spin;
+    const auto end = saturating_sum(std::chrono::steady_clock::now(), spin);
     while (!finished_.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < end) {
       std::this_thread::yield();
     }

@@ -135,7 +135,7 @@ void ManualClock::cancel(TimerId timer) {
 
 void ManualClock::advance(Duration by) {
   std::unique_lock lock(mutex_);
-  const Instant end = now_ + by;
+  const Instant end = saturating_sum(now_, by);
   while (!timers_.empty() && timers_.begin()->first.first <= end) {
     auto node = timers_.extract(timers_.begin());
     const TimerId timer = node.key().second;

@@ -14,6 +14,7 @@
 #include "core/threads/stall_watch.hpp"
 #include "core/threads/start_thread.hpp"
 #include "core/threads/thread_settings.hpp"
+#include "skein/clock.hpp"
 #include "skein/detail/call_memory.hpp"
 
 namespace skein {
@@ -54,7 +55,7 @@ struct ThreadExecutor::State {
     work_while_idle(lock);
     if (settings.spin.count() > 0 && !called.load(std::memory_order_acquire)) {
       lock.unlock();
-      const auto end = std::chrono::steady_clock::now() + settings.spin;
+      const auto end = saturating_sum(std::chrono::steady_clock::now(), settings.spin);
       // Yielding lets whoever shares the processor make the work that is waited for.
       while (!called.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < end) {
         std::this_thread::yield();
@@ -163,7 +164,8 @@ bool ThreadExecutor::stop_or_abandon(std::chrono::milliseconds patience,
   request_stop();
   {
     std::unique_lock lock(state_->mutex);
-    if (state_->changed.wait_for(lock, patience, [&] { return state_->alive == 0; })) {
+    const auto end = saturating_sum(std::chrono::steady_clock::now(), patience);
+    if (state_->changed.wait_until(lock, end, [&] { return state_->alive == 0; })) {
       lock.unlock();
       stop();
       return true;

@@ -69,7 +69,7 @@ DynamicException::DynamicException(const ExceptionInfo& info, std::shared_ptr<co
 DynamicProxy::DynamicProxy(std::shared_ptr<Channel> channel, const DynamicInterface& interface)
     : ProxyBase(std::move(channel), kDefaultTimeout), interface_(&interface) {}
 
-DynamicProxy DynamicProxy::within(Duration timeout) const {
+DynamicProxy DynamicProxy::within(TimeSpan timeout) const {
   DynamicProxy copy = *this;
   copy.set_timeout(timeout);
   return copy;
@@ -128,7 +128,7 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
   if (options.name.empty()) {
     throw InvalidArgument("connect_dynamic() needs a name, of an interface or an entity");
   }
-  const Instant deadline = entity.clock().now() + options.timeout;
+  const Instant deadline = entity.clock().after(options.timeout);
   const auto providers = providers_of(entity, options, deadline);
   const discovery::ServiceDescription& provider = *providers.front();
   const auto left = [&] { return std::max(Duration::zero(), deadline - entity.clock().now()); };

@@ -133,11 +133,7 @@ bool await_end(Entity& entity, const std::stop_token& told_to_end, Duration at_m
   });
   std::unique_lock lock(mutex);
   const auto told = [&] { return told_to_end.stop_requested(); };
-  Clock& clock = entity.clock();
-  const Instant now = clock.now();
-  if (at_most < Instant::max() - now) return wait_until(clock, now + at_most, lock, changed, told);
-  changed.wait(lock, told);
-  return true;
+  return wait_until(entity.clock(), entity.clock().after(at_most), lock, changed, told);
 }
 
 }  // namespace skein

@@ -506,8 +506,8 @@ bool Entity::check_progress(std::function<void(const std::string& stuck)> report
       [&state = *state_, report = std::move(report)] { report(state.stuck()); });
 }
 
-bool Entity::drain(Duration patience) {
-  const Instant deadline = clock().now() + patience;
+bool Entity::drain(TimeSpan patience) {
+  const Instant deadline = clock().after(patience);
   const bool bodies = drain_some(false, deadline);  // which may call the CSPs
   return drain_some(true, deadline) && bodies;
 }

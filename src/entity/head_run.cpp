@@ -116,7 +116,7 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       task_(task),
       record_(record),
       begin_(begin),
-      deadline_(begin + wire_values::duration(record.available)),
+      deadline_(saturating_sum(begin, wire_values::duration(record.available))),
       strategy_(strategy),
       features_(std::make_shared<const Features>(task.options().features)),
       iterator_(strategy, candidates, decision_record::situation_of(record)) {
@@ -221,12 +221,13 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   }
   const Selection& selection = next.selection;
   Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr};
-  const Instant end =
-      task_.options().execution == Execution::One ? began + selection.slice : deadline_;
+  const Instant end = task_.options().execution == Execution::One
+                          ? saturating_sum(began, selection.slice)
+                          : deadline_;
   // What is late before the next may begin is late only by what it was expected to take.
-  late_at_ =
-      began + (selection.expected > Duration::zero() ? std::min(selection.expected, selection.slice)
-                                                     : selection.slice);
+  late_at_ = saturating_sum(began, selection.expected > Duration::zero()
+                                       ? std::min(selection.expected, selection.slice)
+                                       : selection.slice);
   try {
     Instant reached = began;
     auto channel = state_.channel_to(live.candidate,
@@ -297,7 +298,7 @@ void Head::Run::note(Live& live, Verdict verdict) {
   attempt.text = verdict.text;
   attempt.quality = wire_values::list(verdict.quality);
   // Late by less is a matter of load, and for the history.
-  const bool hardly_late = verdict.outcome == Outcome::TimedOut && took < kHangs * expected;
+  const bool hardly_late = verdict.outcome == Outcome::TimedOut && took / kHangs < expected;
   const bool fault = verdict.fault && !hardly_late;
   state_.end(interface_, live.candidate, features_, live.run,
              {verdict.outcome, took, expected, verdict.quality, fault, verdict.settled, verdict.own,

@@ -91,14 +91,14 @@ struct Inspector::State {
     const Waiting entry(*this, lock, question.number);
     Answers& answers =
         waiting.emplace(question.number, Asked{Guid{question.participant}}).first->second.answers;
-    const Instant deadline = entity.clock().now() + timeout;
+    const Instant deadline = entity.clock().after(timeout);
     bool first = true;
     while (!complete(answers)) {
       lock.unlock();
       send(question, first ? std::vector<Guid>() : missing(answers));
       lock.lock();
       first = false;
-      const Instant again = std::min(deadline, entity.clock().now() + kRepetition);
+      const Instant again = std::min(deadline, entity.clock().after(kRepetition));
       wait_until(entity.clock(), again, lock, changed, [&] { return complete(answers); });
       if (entity.clock().now() >= deadline) break;
     }

@@ -155,7 +155,7 @@ class LinkWriter final : public dds::Writer {
   }
 
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
-    return !link_ || link_->await_taken(std::chrono::steady_clock::now() + timeout);
+    return !link_ || link_->await_taken(saturating_sum(std::chrono::steady_clock::now(), timeout));
   }
 
   Guid guid() const override { return guid_; }

@@ -141,7 +141,7 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
   RingReader& in = link->in();
   const bool may_spin = spin.limit() > Duration::zero();
   const Instant begin = may_spin ? std::chrono::steady_clock::now() : Instant();
-  const Instant give_up = begin + spin.budget();
+  const Instant give_up = saturating_sum(begin, spin.budget());
   bool come = false;
   while (!come && spin.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
     come = in.ready() || called != 0;
@@ -223,7 +223,7 @@ class Receiver::Consumer final : public dds::CallerDelivery {
   Word called_{1};  // 0 while it waits to be given the lead
 };
 
-Receiver::Receiver(std::string name, Duration spin, std::shared_ptr<Unfinished> unfinished)
+Receiver::Receiver(std::string name, TimeSpan spin, std::shared_ptr<Unfinished> unfinished)
     : name_(std::move(name)),
       spin_limit_(spin),
       unfinished_(std::move(unfinished)),
@@ -482,7 +482,7 @@ void Receiver::await() {
   };
   const Instant begin =
       spin_limit_ > Duration::zero() ? std::chrono::steady_clock::now() : Instant();
-  const Instant give_up = begin + spin_.budget();
+  const Instant give_up = saturating_sum(begin, spin_.budget());
   bool come = false;
   while (!come && spin_.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
     come = ready();

@@ -92,7 +92,7 @@ class Unfinished {
 class Receiver {
  public:
   /// `name` is the thread's, which starts with the first link; `spin` as SpinPolicy's limit.
-  Receiver(std::string name, Duration spin,
+  Receiver(std::string name, TimeSpan spin,
            std::shared_ptr<Unfinished> unfinished = std::make_shared<Unfinished>());
   /// No function of an inbox runs any more, but for those that have left the turn of a thread that
   /// led in the receiver's place.

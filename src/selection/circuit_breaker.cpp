@@ -6,11 +6,11 @@ namespace skein {
 
 CircuitBreaker::State CircuitBreaker::state(Instant now) const noexcept {
   if (quarantine_ == Duration::zero()) return State::Closed;
-  return probing_ || now < opened_ + quarantine_ ? State::Open : State::HalfOpen;
+  return probing_ || now < saturating_sum(opened_, quarantine_) ? State::Open : State::HalfOpen;
 }
 
 Duration CircuitBreaker::quarantine(Instant now) const noexcept {
-  return std::max(Duration::zero(), opened_ + quarantine_ - now);
+  return std::max(Duration::zero(), saturating_sum(opened_, quarantine_) - now);
 }
 
 void CircuitBreaker::begin(Instant now) noexcept { probing_ = state(now) != State::Closed; }
@@ -30,7 +30,7 @@ void CircuitBreaker::trip(Instant now) noexcept {
   probing_ = false;
   quarantine_ = quarantine_ == Duration::zero()
                     ? rules_.first_quarantine
-                    : std::min(2 * quarantine_, rules_.longest_quarantine);
+                    : std::min(saturating_sum(quarantine_, quarantine_), rules_.longest_quarantine);
   opened_ = now;
 }
 

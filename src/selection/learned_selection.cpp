@@ -19,7 +19,8 @@ using selection_text::number;
 double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 Duration duration(double seconds) {
-  return std::chrono::round<Duration>(std::chrono::duration<double>(seconds));
+  const std::chrono::duration<double> time(seconds);
+  return time < Duration::max() ? std::chrono::round<Duration>(time) : Duration::max();
 }
 
 std::size_t runs_of(const Candidate& candidate) {

@@ -241,6 +241,19 @@ TEST_CASE_METHOD(Pair, "a time limit that has passed before any call is refused"
   CHECK_THROWS_AS(echo->within(0s).echo("x"), TimedOut);
 }
 
+TEST_CASE_METHOD(Pair, "a limit may be longer than any clock counts", "[wire]") {
+  for (const TimeSpan limit : {TimeSpan(Duration::max()), TimeSpan(std::chrono::hours::max())}) {
+    const auto patient = client->connect<Echo>({.timeout = limit}).within(limit);
+    CHECK(patient.echo("x") == "x");
+    CHECK(patient.who(0) == "echo");
+    CHECK(patient.async_echo("y").get() == "y");
+    auto numbers = patient.count_up(3, -1);
+    while (numbers.next()) {
+    }
+  }
+  CHECK(server->drain(Duration::max()));
+}
+
 TEST_CASE_METHOD(Pair, "a call is used once, and says so the second time") {
   auto call = echo->async_echo("once");
   CHECK(call.get() == "once");

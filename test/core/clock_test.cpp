@@ -35,6 +35,26 @@ int sleeps_of(pid_t thread) {
 
 }  // namespace
 
+static_assert(saturating_sum(Duration(1), Duration(2)) == Duration(3));
+static_assert(saturating_sum(Duration::max(), 1ns) == Duration::max());
+static_assert(saturating_sum(Duration::min(), -1ns) == Duration::min());
+static_assert(saturating_sum(Instant(1h), Duration::max()) == Instant::max());
+static_assert(saturating_sum(Instant(1h), std::chrono::hours::max()) == Instant::max());
+static_assert(saturating_duration(1500ms) == 1'500'000us);
+static_assert(saturating_duration(std::chrono::milliseconds::max()) == Duration::max());
+static_assert(saturating_duration(std::chrono::milliseconds::min()) == Duration::min());
+static_assert(saturating_duration(std::chrono::duration<double>(1e300)) == Duration::max());
+
+TEST_CASE("a timer that is set for longer than the clock counts is not due before that") {
+  ManualClock clock;
+  int ran = 0;
+  clock.call_after(Duration::max(), [&] { ++ran; });
+  clock.advance(24h * 365 * 200);
+  CHECK(ran == 0);
+  clock.advance(Duration::max());
+  CHECK(ran == 1);
+}
+
 TEST_CASE("a manual clock stands still until it is told") {
   ManualClock clock;
   const Instant begin = clock.now();

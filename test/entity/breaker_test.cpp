@@ -147,3 +147,15 @@ TEST_CASE("a CSP in the process that does not return is told of when that shows,
   CHECK(log.count("\n") == 2);
   hang.release();
 }
+
+TEST_CASE("a quarantine may be longer than any clock counts") {
+  CircuitBreaker breaker({.faults = 1,
+                          .first_quarantine = Duration::max() / 2 + 1s,
+                          .longest_quarantine = Duration::max()});
+  const Instant now(1h);
+  for (int i = 0; i < 2; ++i) {
+    breaker.trip(now);
+    CHECK(breaker.state(now + 24h * 365) == CircuitBreaker::State::Open);
+    CHECK(breaker.quarantine(now) > 24h * 365);
+  }
+}

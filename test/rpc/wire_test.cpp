@@ -58,6 +58,19 @@ TEST_CASE("a request's head and trailer are read as they were written") {
   CHECK(trailer->strategy == "declared");
 }
 
+TEST_CASE("the time that a caller leaves is read as a year at most, and never as less than none") {
+  const auto read = [](Duration left) {
+    Bytes message;
+    wire::begin_request(message, kId, wire::kOpen);
+    wire::append_default_branch(message);
+    wire::append_trailer(message, wire::RequestTrailer{left});
+    const auto head = wire::read_request_head(message);
+    return wire::read_request_trailer(message, head.body + 1)->remaining;
+  };
+  CHECK(read(Duration::max()) == 24h * 365);
+  CHECK(read(Duration::min()) == 0s);
+}
+
 TEST_CASE("a reply's head and trailer are read as they were written") {
   Bytes message;
   wire::begin_reply(message, kId, wire::RemoteException::OutOfResources, 0);

@@ -397,3 +397,16 @@ TEST_CASE_METHOD(Sea, "a topic belongs to its systems") {
   const auto station = watch_rudder(both);
   CHECK(rudder.subscribers() == 1);
 }
+
+TEST_CASE_METHOD(Sea, "times that no clock counts are waited for, or refused as a topic's") {
+  CHECK(helm().wait_for_acknowledgments(std::chrono::milliseconds::max()));
+  const auto refused = [&](void (*change)(TopicQos&)) {
+    TopicQos qos;
+    change(qos);
+    CHECK_THROWS_WITH(helm(qos), Contains("is longer than 50 years; write less"));
+  };
+  refused([](TopicQos& qos) { qos.max_blocking = std::chrono::milliseconds::max(); });
+  refused([](TopicQos& qos) { qos.deadline = std::chrono::milliseconds::max(); });
+  refused([](TopicQos& qos) { qos.lifespan = std::chrono::milliseconds::max(); });
+  refused([](TopicQos& qos) { qos.liveliness_lease = std::chrono::milliseconds::max(); });
+}

@@ -30,7 +30,7 @@ def definition(interface):
         f"  explicit {name}(std::shared_ptr<::skein::Channel> channel, ::skein::Duration timeout = kDefaultTimeout);",
         "",
         "  /// The same connection with another limit for each call.",
-        f"  {name} within(::skein::Duration timeout) const;",
+        f"  {name} within(::skein::TimeSpan timeout) const;",
     ]
     for operation in interface.all_operations():
         lines += ["", *cpp.documentation(operation.documentation, "  ")]
@@ -50,7 +50,7 @@ def source(interface):
         f"{name}::{name}(std::shared_ptr<::skein::Channel> channel, ::skein::Duration timeout)",
         "    : ProxyBase(std::move(channel), timeout) {}",
         "",
-        f"{name} {name}::within(::skein::Duration timeout) const {{",
+        f"{name} {name}::within(::skein::TimeSpan timeout) const {{",
         f"  {name} copy(*this);",
         "  copy.set_timeout(timeout);",
         "  return copy;",

@@ -12,6 +12,7 @@
 
 #include "core/system/ending_signals.hpp"
 #include "core/system/file_descriptor.hpp"
+#include "skein/clock.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
@@ -37,7 +38,8 @@ class Interruption {
   /// stdout takes no more.
   bool wait(double seconds) const {
     using namespace std::chrono;
-    const auto end = steady_clock::now() + duration_cast<nanoseconds>(duration<double>(seconds));
+    const auto end =
+        saturating_sum(steady_clock::now(), saturating_duration(duration<double>(seconds)));
     while (std::ferror(stdout) == 0) {
       nanoseconds part = kLookAgain;
       if (seconds > 0) part = std::min<nanoseconds>(part, end - steady_clock::now());

@@ -54,7 +54,7 @@ bool Hub::has_room(const WriterCore& writer) const {
 void Hub::wait_for_room(WriterCore& writer, Lock& lock) {
   if (has_room(writer)) return;
   const auto waited = patience(writer.qos.max_blocking);
-  if (wait_until(clock_, clock_.now() + waited, lock, changed_, [&] { return has_room(writer); })) {
+  if (wait_until(clock_, clock_.after(waited), lock, changed_, [&] { return has_room(writer); })) {
     return;
   }
   throw Overloaded("topic '" + writer.topic.name + "': " + std::to_string(writer.qos.max_samples) +
@@ -70,7 +70,7 @@ bool Hub::wait_for_acknowledgments(const WriterCore& writer, std::chrono::millis
     }
     return true;
   };
-  return wait_until(clock_, clock_.now() + patience(timeout), lock, changed_, all_arrived);
+  return wait_until(clock_, clock_.after(patience(timeout)), lock, changed_, all_arrived);
 }
 
 // A listener may be called on the clock's thread, which cannot wait for itself.

@@ -3,7 +3,7 @@
 namespace skein::dds {
 
 void DeadlineWatch::heard(const KeyHash& key, Instant now) {
-  const Instant due = now + period_;
+  const Instant due = saturating_sum(now, period_);
   const auto [found, fresh] = due_.try_emplace(key, due);
   if (fresh) {
     order_.emplace(due, key);

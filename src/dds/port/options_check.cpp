@@ -16,6 +16,13 @@ namespace {
 
 constexpr const char* kLoopbackAddress = "127.0.0.1";
 
+// What is longer overflows a clock, or what DDS sends: 2^31 s.
+constexpr std::chrono::milliseconds kLongest = std::chrono::hours(50 * 365 * 24);
+
+std::string too_long(const std::string& what, std::chrono::milliseconds time) {
+  return what + " of " + std::to_string(time.count()) + " ms is longer than 50 years; write less";
+}
+
 std::string address_of(const std::string& wanted, const std::vector<HostInterface>& host) {
   for (const HostInterface& interface : host) {
     if (wanted == interface.name || wanted == interface.address) return interface.address;
@@ -77,6 +84,8 @@ void check_options(const ParticipantOptions& options) {
     throw InvalidArgument("a participant's lease of " + std::to_string(options.lease.count()) +
                           " ms is too short: 20 ms at least");
   }
+  if (options.lease > kLongest)
+    throw InvalidArgument(too_long("a participant's lease", options.lease));
 }
 
 void refuse_shared_memory(const ParticipantOptions& options, const std::string& vendor) {
@@ -144,6 +153,10 @@ void check_qos(const Topic& topic, const Qos& qos) {
   if (topic.type_name.empty()) refuse("a topic needs a type's name");
   if (qos.history_depth && *qos.history_depth == 0) refuse("a history depth of 0 keeps nothing");
   if (qos.max_blocking.count() < 0) refuse("max_blocking is negative");
+  for (const auto& time :
+       {std::optional(qos.max_blocking), qos.liveliness_lease, qos.deadline, qos.lifespan}) {
+    if (time > kLongest) refuse(too_long("a time", *time));
+  }
   if (qos.liveliness_lease && qos.liveliness_lease->count() <= 0) {
     refuse("a liveliness lease must be longer than 0");
   }

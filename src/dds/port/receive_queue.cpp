@@ -119,7 +119,7 @@ std::optional<SourceTime> ReceiveQueue::admit(const Arrival& arrival, const KeyH
   SourceTime expiry = kNever;
   // That an instance has ended stays true.
   if (offer.lifespan && arrival.state == InstanceState::Alive) {
-    expiry = (arrival.written ? *arrival.written : source_time_()) + *offer.lifespan;
+    expiry = saturating_sum(arrival.written ? *arrival.written : source_time_(), *offer.lifespan);
   }
   if (drop_expired(expiry)) {
     note_expired_on_arrival(arrival, *offer.lifespan);

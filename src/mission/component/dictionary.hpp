@@ -56,10 +56,10 @@ ParameterValue parse_value(const DictionaryEntry& entry, std::string_view text);
 std::string plain_text(const DictionaryEntry& entry, std::string_view text);
 
 /// A length of time such as `100 ms`. Throws InvalidArgument for anything else: a number without a
-/// unit, negative times and more than 200 years included.
+/// unit, negative times and more than 50 years included.
 std::chrono::nanoseconds parse_duration(std::string_view text);
 
-/// A length of time in seconds, as people write it at a command line: what is longer than 200 years
+/// A length of time in seconds, as people write it at a command line: what is longer than 50 years
 /// becomes that. Throws InvalidArgument for what is no length of time.
 double parse_seconds(std::string_view text);
 

@@ -127,7 +127,7 @@ Route Navigator::decide(const AE_navigatorI::RouteRequest& request,
   Problem problem = request.problem;
   problem.limits = flight_limits();
   const Duration limit = in_call(parameters.find<Duration>("Time limit").value_or(kLongestRequest));
-  const Instant end = entity_.clock().now() + limit;
+  const Instant end = entity_.clock().after(limit);
   const std::string id = request.request_id;
   const std::string only = parameters.find<std::string>("Planner").value_or("");
   try {

@@ -69,7 +69,7 @@ void DdsChannel::State::create_endpoints() {
 }
 
 void DdsChannel::State::await_open() {
-  const Instant deadline = clock.now() + options.timeout;
+  const Instant deadline = clock.after(options.timeout);
   std::unique_lock lock(mutex);
   std::size_t greeted = 0;
   auto interval = kFirstOpenInterval;

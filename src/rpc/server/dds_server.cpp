@@ -158,8 +158,8 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   invocation->caller = head.id.client;
   invocation->connection = sample.writer;
   invocation->number = head.id.number;
-  invocation->deadline =
-      arrived + (trailer ? remaining(*client, *trailer, arrived) : options.default_deadline);
+  invocation->deadline = saturating_sum(arrived, trailer ? remaining(*client, *trailer, arrived)
+                                                         : Duration(options.default_deadline));
   if (trailer) invocation->chain = std::move(trailer->chain);
   invocation->session = client->session;
   if (operation->stream) {

@@ -65,6 +65,12 @@ TEST_CASE("A length of time without a unit is refused, and both readings are off
   CHECK_THROWS_AS(parse_duration("0"), skein::InvalidArgument);
 }
 
+TEST_CASE("A length of time leaves room for multiples of it") {
+  CHECK(4 * parse_duration("438000 h") > std::chrono::nanoseconds(0));
+  CHECK_THROWS_AS(parse_duration("876000 h"), skein::InvalidArgument);
+  CHECK(parse_seconds("1e300") < 4.0 * 365 * 24 * 3600 * 50);
+}
+
 TEST_CASE("A number may name its unit, or another of the same quantity") {
   const auto real = [](const std::string& unit, const std::string& text) {
     return std::get<double>(parse_value(entry_of(ValueType::Real, unit), text));
