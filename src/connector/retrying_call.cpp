@@ -32,7 +32,9 @@ ProviderQuery RetryingCall::wanted() {
   return retries_.wanted();
 }
 
+// A call that is over is not sent.
 bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnection& connection) {
+  if (call_->claimed()) return true;
   const TypeSupport& type = *call_->operation().out;
   std::shared_ptr<void> own;
   if (hedged_) own = {type.make(), type.destroy, std::pmr::polymorphic_allocator<>(&call_memory())};

@@ -23,7 +23,7 @@ namespace {
 /// How the writers of a SlowParticipant fare.
 class Valve {
  public:
-  enum class Mode { Open, Holding, Full };
+  enum class Mode { Open, Holding, HoldingFirst, Full };
 
   void set(Mode mode) {
     std::lock_guard lock(mutex_);
@@ -34,9 +34,11 @@ class Valve {
   /// Inside write(): waits while the valve holds; throws where there is no room in time.
   void pass() {
     std::unique_lock lock(mutex_);
-    ++inside_;
-    changed_.wait(lock, [&] { return mode_ != Mode::Holding; });
+    const bool first = inside_++ == 0;
+    changed_.wait(
+        lock, [&] { return mode_ != Mode::Holding && !(mode_ == Mode::HoldingFirst && first); });
     --inside_;
+    ++passed_;
     if (mode_ != Mode::Full) return;
     ++refused_;
     if (!changed_.wait_for(lock, dds::Qos().max_blocking, [&] { return mode_ != Mode::Full; }))
@@ -50,6 +52,10 @@ class Valve {
     std::lock_guard lock(mutex_);
     return inside_;
   }
+  int passed() const {
+    std::lock_guard lock(mutex_);
+    return passed_;
+  }
   int refused() const {
     std::lock_guard lock(mutex_);
     return refused_;
@@ -62,6 +68,7 @@ class Valve {
   std::condition_variable changed_;
   Mode mode_ = Mode::Open;
   int inside_ = 0;
+  int passed_ = 0;
   int refused_ = 0;
 };
 
@@ -147,6 +154,13 @@ struct Pair {
   std::shared_ptr<rpc::DdsChannel> channel;
 };
 
+const OperationInfo& operation_named(std::string_view name) {
+  for (const OperationInfo& operation : LouderEcho::interface_info().operations) {
+    if (operation.name == name) return operation;
+  }
+  throw std::runtime_error("no such operation");
+}
+
 /// Runs what must not end while a thread is inside a writer, and lets that thread go on then.
 template <class End>
 void check_that_it_waits(Valve& valve, End end) {
@@ -191,6 +205,34 @@ TEST_CASE("a journal that ends waits for who is inside its writer") {
   journal.note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",
                LouderEcho::interface_info().operations[0]);
   check_that_it_waits(participant.valve, [&] { journal.close(); });
+}
+
+TEST_CASE_METHOD(Pair, "a call that has ended before it is sent is not sent") {
+  const OperationInfo& operation = operation_named("echo");
+  std::string out;
+  const auto call = std::make_shared<PendingCall>(operation, &out, Instant::max(), false);
+  call->cancel();
+  const ::test::Echo_echo_In in{Argument<std::string>::borrow("x")};
+  channel->start(call, &in);
+  CHECK(echo().echo("y") == "y");
+  CHECK(implementation->calls == 1);
+}
+
+TEST_CASE_METHOD(Pair, "a stream that is cancelled while its request is sent holds up no other") {
+  const OperationInfo& operation = operation_named("count_up");
+  const auto stream = std::make_shared<PendingStream>(operation, Instant::max());
+  calling.valve.set(Valve::Mode::HoldingFirst);
+  auto caller = std::async(std::launch::async, [&] {
+    const ::test::Echo_count_up_In in{1 << 30, -1};
+    channel->start(stream, &in);
+  });
+  REQUIRE(eventually([&] { return calling.valve.inside() == 1; }));
+  const auto before = calling.valve.passed();
+  stream->cancel();
+  REQUIRE(eventually([&] { return calling.valve.passed() > before; }));  // its end is told first
+  calling.valve.set(Valve::Mode::Open);
+  caller.get();
+  CHECK(echo(10s).echo("y") == "y");
 }
 
 TEST_CASE_METHOD(

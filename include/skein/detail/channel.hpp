@@ -52,6 +52,7 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
 
   /// Returns true to exactly one caller, which may then fill out() and must call finish().
   bool claim() noexcept { return !claimed_.exchange(true, std::memory_order_acq_rel); }
+  bool claimed() const noexcept { return claimed_.load(std::memory_order_acquire); }
 
   /// Ends the call; only after a successful claim(). A null `error` means that out() is filled.
   void finish(std::exception_ptr error = nullptr);

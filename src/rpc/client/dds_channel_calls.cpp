@@ -42,8 +42,10 @@ void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, con
   }
   const std::uint64_t number = entered.number;
   call->attempt([&] {
-    send(*entered.writer, *call, number, in);
-    sent = true;
+    const std::uint64_t told_before = told;
+    sent = send(*entered.writer, *call, number, in);
+    // The call ended while it was sent: the server may have heard of its end first.
+    if (sent && told != told_before && call->claimed()) tell_server(number);
   });
   if (!sent || call->operation().oneway) remove(number);
   if (!sent || !call->operation().oneway || !call->claim()) return;
@@ -143,7 +145,8 @@ auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
   }
 }
 
-void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
+// False, and nothing is sent, if the call has ended: its server would be told of its end first.
+bool DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
                              const void* in) {
   thread_local Bytes message;
   std::shared_ptr<LoanMemory> lent;
@@ -154,6 +157,7 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
     lent = leaving_out.memory();
     position = leaving_out.position();
   }
+  if (call.claimed()) return false;
   if (options.journal) {
     options.journal->note(introspection::CallStep::Sent, client, number, address.service,
                           call.operation());
@@ -163,6 +167,7 @@ void DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
   if (lent && !sent) put_request(message, call, number, in);
   if (!sent) in_time(call, [&] { return writer.write(message); });
   if (message.capacity() > kKeptCapacity) message = Bytes();
+  return true;
 }
 
 void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
@@ -174,6 +179,11 @@ void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std
     dds::check_size(size, "the request of " + quoted(call.operation()));
   }
   const Instant now = clock.now();
+  if (now >= call.deadline()) {
+    throw TimedOut("the deadline of " + quoted(call.operation()) +
+                   " passed before it was sent to " + options.peer + "; it did not run" +
+                   kMoreTime);
+  }
   wire::append_trailer(
       message, wire::RequestTrailer{call.deadline() - now,
                                     0,
@@ -222,6 +232,7 @@ void DdsChannel::State::abandon(std::uint64_t number) {
 }
 
 void DdsChannel::State::tell_server(std::uint64_t number) {
+  ++told;                       // before it is
   std::lock_guard lock(mutex);  // once closed, `control` may be gone
   if (phase != Phase::Open) return;
   control.post([state = weak_from_this(), number] {

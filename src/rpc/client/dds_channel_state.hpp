@@ -61,7 +61,8 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   std::uint64_t forged = 0;
   std::string first_malformed;  // what was wrong with it
   Entries entries{&call_memory()};
-  TimerId timer = 0;  // one for all calls: steady calls come and go without it
+  std::atomic<std::uint64_t> told{0};  // how often the server was told that a call has ended
+  TimerId timer = 0;                   // one for all calls: steady calls come and go without it
   Instant timer_due = Instant::max();
   Guid client;
   SharedWriters writers;
@@ -104,7 +105,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void on_full();
   TimerId look_at(Instant deadline);
   void expire_due();
-  void send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
+  bool send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
   void put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
                    const void* in) const;
   template <class Write>

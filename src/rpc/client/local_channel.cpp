@@ -243,6 +243,7 @@ void LocalChannel::remember(const std::shared_ptr<QueuedCall>& call) {
 
 void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
                            const void* in) {
+  if (call->claimed()) return;  // nobody waits for it any more
   const std::uint64_t number = next_number();
   const OperationInfo& operation = served_operation(service, call->operation());
   const auto invocation =
