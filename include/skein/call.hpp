@@ -214,7 +214,8 @@ class Reply {
   Stored* result_;
 };
 
-/// Base of generated proxies: a connection and the timeout of each call through it.
+/// Base of generated proxies: a connection and the timeout of each call through it. A proxy that
+/// was made without a connection, or moved from, throws InvalidArgument when it is called.
 class ProxyBase {
  public:
   /// Default timeout of a call. Every call has a deadline.
@@ -224,10 +225,13 @@ class ProxyBase {
   const std::shared_ptr<Channel>& channel() const noexcept { return channel_; }
 
   /// Ends the connection, also for copies of this proxy: pending calls end as Cancelled, later ones
-  /// as Unavailable.
-  void disconnect() { channel_->disconnect(); }
+  /// as Unavailable. Has no effect if there is none.
+  void disconnect() {
+    if (channel_) channel_->disconnect();
+  }
 
  protected:
+  ProxyBase() = default;
   ProxyBase(std::shared_ptr<Channel> channel, Duration timeout)
       : channel_(std::move(channel)), timeout_(timeout) {}
 
@@ -242,7 +246,7 @@ class ProxyBase {
   template <class Out, class In>
   Out call(const OperationInfo& operation, const In& in) const {
     Out out{};
-    channel_->call(operation, &in, &out, call_time());
+    connection().call(operation, &in, &out, call_time());
     return out;
   }
 
@@ -270,15 +274,23 @@ class ProxyBase {
 
   /// A nested call never outlives the deadline of the outer call.
   CallTime call_time() const {
-    const Instant begin = channel_->clock().now();
+    const Instant begin = connection().clock().now();
     const Instant deadline = saturating_sum(begin, timeout_);
     const CallContext* outer = CallContext::current();
     return {begin, outer ? std::min(deadline, outer->deadline()) : deadline};
   }
 
+  /// Throws InvalidArgument if there is none.
+  Channel& connection() const {
+    if (!channel_) throw_no_connection();
+    return *channel_;
+  }
+
  private:
+  [[noreturn]] static void throw_no_connection();
+
   std::shared_ptr<Channel> channel_;
-  Duration timeout_;
+  Duration timeout_ = kDefaultTimeout;
 };
 
 }  // namespace skein

@@ -126,6 +126,8 @@ class Connector {
     return typename Interface::Proxy(open(Interface::interface_info(), options));
   }
 
+  Connector(const Connector&) = default;  // also in place of a move: none is without its parts
+  Connector& operator=(const Connector&) = delete;
   /// Connects to exactly the provider of a service reference, in any system. Throws InvalidArgument
   /// for a nil reference.
   template <class Interface>

@@ -38,13 +38,15 @@ class DynamicException : public UserException {
 };
 
 /// A proxy without the interface's generated code: typed on the wire, JSON text here. For tools,
-/// and for bridges to other languages. Made by connect_dynamic(). Thread-safe.
+/// and for bridges to other languages. Made by connect_dynamic(). Thread-safe. One that was made
+/// without a connection throws InvalidArgument.
 ///
 /// Arguments are a JSON object of the in and inout parameters by name; where there is only one, its
 /// value alone will do, and where there is none, empty text. A result is a JSON object: `return_`,
 /// and the out and inout parameters by name. JSON is that of generated types (idl/README.md).
 class DynamicProxy : public ProxyBase {
  public:
+  DynamicProxy() = default;
   DynamicProxy(std::shared_ptr<Channel> channel, const DynamicInterface& interface);
 
   /// A copy with another timeout for its calls.
@@ -71,7 +73,9 @@ class DynamicProxy : public ProxyBase {
  private:
   const OperationInfo& find(const std::string& operation, bool stream) const;
 
-  const DynamicInterface* interface_;
+  const DynamicInterface& described() const;
+
+  const DynamicInterface* interface_ = nullptr;
 };
 
 /// Connects to a provider as Connector::connect does, and asks it for its types. `options.name` is
@@ -79,8 +83,8 @@ class DynamicProxy : public ProxyBase {
 /// provider does not tell its types within the timeout.
 DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options);
 
-/// Publishes JSON on a topic whose type is known by its description alone. Thread-safe, movable.
-/// Destroy it before its entity.
+/// Publishes JSON on a topic whose type is known by its description alone. Thread-safe, movable as
+/// a Publisher. Destroy it before its entity.
 class DynamicPublisher {
  public:
   /// `type` is one of `known`, a struct or a union. Throws as Publisher() does, and InvalidArgument
@@ -95,9 +99,9 @@ class DynamicPublisher {
   void publish_encoded(std::span<const std::byte> cdr);
   /// As Publisher's.
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
-    return writer_->wait_for_acknowledgments(timeout);
+    return topics::held(writer_).wait_for_acknowledgments(timeout);
   }
-  std::size_t subscribers() const { return writer_->subscribers(); }
+  std::size_t subscribers() const { return topics::held(writer_).subscribers(); }
 
  private:
   const topics::TopicType& type_;
@@ -105,7 +109,7 @@ class DynamicPublisher {
 };
 
 /// Receives the values of a topic whose type is known by its description alone, as JSON.
-/// Thread-safe, movable. Destroy it before its entity.
+/// Thread-safe, movable as a Subscription. Destroy it before its entity.
 class DynamicSubscription {
  public:
   using Callback = std::function<void(const std::string& json)>;
@@ -115,8 +119,8 @@ class DynamicSubscription {
                       const types::TypeSystem& known, const TopicQos& qos, Callback callback,
                       SubscriptionOptions options = {});
 
-  std::size_t publishers() const { return reader_->publishers(); }
-  SubscriptionCounters counters() const { return reader_->counters(); }
+  std::size_t publishers() const { return topics::held(reader_).publishers(); }
+  SubscriptionCounters counters() const { return topics::held(reader_).counters(); }
 
  private:
   std::unique_ptr<topics::TopicReader> reader_;

@@ -6,6 +6,7 @@
 
 #include "skein/detail/lendable.hpp"
 #include "skein/detail/loan_memory.hpp"
+#include "skein/error.hpp"
 
 namespace skein {
 
@@ -28,20 +29,25 @@ class Loaned {
  public:
   /// Throws Unavailable where the kernel gives no memory.
   Loaned() : memory_(LoanMemory::make(sizeof(T))) {}
-  /// What was moved from can only be destroyed, or given another one.
+  /// What was moved from can only be destroyed, or given another one; its use throws
+  /// InvalidArgument.
   Loaned(Loaned&&) noexcept = default;
   Loaned& operator=(Loaned&&) noexcept = default;
 
-  T& operator*() noexcept { return *value(); }
-  const T& operator*() const noexcept { return *value(); }
-  T* operator->() noexcept { return value(); }
-  const T* operator->() const noexcept { return value(); }
+  T& operator*() { return *value(); }
+  const T& operator*() const { return *value(); }
+  T* operator->() { return value(); }
+  const T* operator->() const { return value(); }
 
   /// Whether an implementation that it was passed to may still read it.
-  bool in_use() const { return memory_->is_read(); }
+  bool in_use() const { return memory().is_read(); }
 
  private:
-  T* value() const noexcept { return static_cast<T*>(memory_->data()); }
+  LoanMemory& memory() const {
+    if (memory_) return *memory_;
+    throw InvalidArgument("this loan was moved from; use the object that it was moved to");
+  }
+  T* value() const { return static_cast<T*>(memory().data()); }
 
   std::shared_ptr<LoanMemory> memory_;
 };

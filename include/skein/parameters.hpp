@@ -42,6 +42,9 @@ class ParameterHost {
 template <class T>
 class LiveParameter {
  public:
+  LiveParameter(const LiveParameter&) = default;  // also in place of a move: none is empty
+  LiveParameter& operator=(const LiveParameter&) = default;
+
   /// The latest value.
   T get() const {
     const std::lock_guard lock(state_->mutex);

@@ -47,8 +47,8 @@ class TopicWriter {
 
 }  // namespace topics
 
-/// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable.
-/// Destroy it before its entity.
+/// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable:
+/// one that was moved from throws InvalidArgument. Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Publisher {
   static_assert(topics::kIsType<T>,
@@ -68,21 +68,21 @@ class [[nodiscard]] Publisher {
   /// QoS say so. Throws Overloaded if reliable subscribers make no room within `max_blocking`,
   /// InvalidArgument for a value that CDR cannot carry. A value of more than 1 MiB that is
   /// published best effort is logged, the first time: it hardly arrives.
-  void publish(const T& value) { writer_->publish(&value); }
+  void publish(const T& value) { topics::held(writer_).publish(&value); }
 
   /// Disposes the instance with this value's key. Throws as publish() does.
-  void dispose(const T& value) requires Keyed<T> { writer_->dispose(&value); }
+  void dispose(const T& value) requires Keyed<T> { topics::held(writer_).dispose(&value); }
 
   /// Waits until all reliable subscribers that are matched now have what was published; false where
   /// they have not by the timeout. Before a publisher goes: what they have not is lost then.
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
-    return writer_->wait_for_acknowledgments(timeout);
+    return topics::held(writer_).wait_for_acknowledgments(timeout);
   }
 
   /// Number of subscribers that are matched now.
-  std::size_t subscribers() const { return writer_->subscribers(); }
+  std::size_t subscribers() const { return topics::held(writer_).subscribers(); }
 
-  PublisherCounters counters() const { return writer_->counters(); }
+  PublisherCounters counters() const { return topics::held(writer_).counters(); }
 
  private:
   std::unique_ptr<topics::TopicWriter> writer_;

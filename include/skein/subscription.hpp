@@ -75,8 +75,8 @@ class TopicReader {
 /// is no T is dropped and counted; the first is logged. The first exception from a callback is
 /// logged; the next value follows. Keep it: its callbacks end with it.
 ///
-/// Thread-safe, movable. The destructor waits for a running callback; do not destroy it from one.
-/// Destroy it before its entity.
+/// Thread-safe, movable: one that was moved from throws InvalidArgument. The destructor waits for a
+/// running callback; do not destroy it from one. Destroy it before its entity.
 template <class T>
 class [[nodiscard]] Subscription {
   static_assert(topics::kIsType<T>,
@@ -98,7 +98,7 @@ class [[nodiscard]] Subscription {
   /// subscription has a callback.
   std::optional<T> take() {
     T value{};
-    return reader_->take(&value) ? std::optional<T>(std::move(value)) : std::nullopt;
+    return topics::held(reader_).take(&value) ? std::optional<T>(std::move(value)) : std::nullopt;
   }
 
   /// The newest waiting value, or nullopt; older ones are dropped.
@@ -109,9 +109,9 @@ class [[nodiscard]] Subscription {
   }
 
   /// Number of publishers that are matched now.
-  std::size_t publishers() const { return reader_->publishers(); }
+  std::size_t publishers() const { return topics::held(reader_).publishers(); }
 
-  SubscriptionCounters counters() const { return reader_->counters(); }
+  SubscriptionCounters counters() const { return topics::held(reader_).counters(); }
 
  private:
   static topics::TopicReader::Consumer consumer_of(Callback callback) {

@@ -25,6 +25,12 @@ void report_thrown_by_continuation(const std::exception_ptr& thrown) noexcept {
   }
 }
 
+void ProxyBase::throw_no_connection() {
+  throw InvalidArgument(
+      "this proxy is not connected: it was made without a connection, or moved from; assign what "
+      "connect() returns");
+}
+
 void ProxyBase::set_timeout(Duration timeout) {
   if (timeout < Duration::zero()) {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();

@@ -75,21 +75,26 @@ DynamicProxy DynamicProxy::within(TimeSpan timeout) const {
   return copy;
 }
 
-std::string DynamicProxy::interface_name() const { return std::string(interface_->info().name); }
+const DynamicInterface& DynamicProxy::described() const {
+  connection();  // else there is none
+  return *interface_;
+}
 
-const types::TypeSystem& DynamicProxy::types() const { return interface_->types(); }
+std::string DynamicProxy::interface_name() const { return std::string(described().info().name); }
+
+const types::TypeSystem& DynamicProxy::types() const { return described().types(); }
 
 const types::Operation& DynamicProxy::operation(const std::string& name) const {
-  return interface_->described(name);
+  return described().described(name);
 }
 
 std::string DynamicProxy::example(const std::string& operation) const {
-  const auto& in = static_cast<const DynamicSupport&>(*interface_->operation(operation).in);
+  const auto& in = static_cast<const DynamicSupport&>(*described().operation(operation).in);
   return idl::initial_json(in.type);
 }
 
 const OperationInfo& DynamicProxy::find(const std::string& operation, bool stream) const {
-  const OperationInfo& found = interface_->operation(operation);
+  const OperationInfo& found = described().operation(operation);
   if (found.stream == stream) return found;
   throw InvalidArgument(
       operation + (stream ? " is no stream: use call()" : " is a stream of results: use stream()"));
@@ -99,7 +104,7 @@ std::string DynamicProxy::call(const std::string& operation, const std::string& 
   const OperationInfo& found = find(operation, false);
   const DynamicValue in = arguments_of(found, arguments);
   DynamicValue out = new_value(*found.out);
-  channel()->call(found, &in, &out, call_time());
+  connection().call(found, &in, &out, call_time());
   return std::move(out.json);
 }
 
@@ -109,7 +114,7 @@ Call<std::string> DynamicProxy::async_call(const std::string& operation,
   const DynamicValue in = arguments_of(found, arguments);
   auto pending = std::make_shared<DynamicCall>(found, call_time().deadline);
   auto* const result = &pending->value.json;
-  channel()->start(pending, &in);
+  connection().start(pending, &in);
   return {std::move(pending), channel(), result};
 }
 
@@ -118,7 +123,7 @@ Stream<std::string> DynamicProxy::stream(const std::string& operation,
   const OperationInfo& found = find(operation, true);
   const DynamicValue in = arguments_of(found, arguments);
   auto pending = std::make_shared<PendingStream>(found, call_time().deadline);
-  channel()->start(pending, &in);
+  connection().start(pending, &in);
   return Stream<std::string>(std::move(pending), channel(), [](void* out) {
     return std::move(static_cast<DynamicValue*>(out)->json);
   });

@@ -66,7 +66,7 @@ DynamicPublisher::DynamicPublisher(Entity& entity, const std::string& topic,
 
 void DynamicPublisher::publish(const std::string& json) {
   const DynamicValue value{static_cast<const DynamicSupport*>(type_.support), json};
-  writer_->publish(&value);
+  topics::held(writer_).publish(&value);
 }
 
 void DynamicPublisher::publish_encoded(std::span<const std::byte> cdr) {
@@ -77,7 +77,7 @@ void DynamicPublisher::publish_encoded(std::span<const std::byte> cdr) {
     support->decode(&value, cdr, idl::kEncapsulation.size());
     key = type_.key_of(&value);
   }
-  writer_->publish(cdr, key);
+  topics::held(writer_).publish(cdr, key);
 }
 
 DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topic,

@@ -254,6 +254,22 @@ TEST_CASE_METHOD(Pair, "a limit may be longer than any clock counts", "[wire]") 
   CHECK(server->drain(Duration::max()));
 }
 
+TEST_CASE_METHOD(Pair, "a proxy that nothing was assigned to, or that was moved from, says so") {
+  const std::string told =
+      "this proxy is not connected: it was made without a connection, or moved from; assign what "
+      "connect() returns";
+  Echo::Proxy later;
+  CHECK_THROWS_WITH(later.echo("x"), told);
+  CHECK_THROWS_WITH(later.within(1s).async_echo("x"), told);
+  CHECK_THROWS_WITH(later.count_up(1, -1), told);
+  CHECK_NOTHROW(later.disconnect());
+  later = *echo;
+  const auto take = [](Echo::Proxy& from) { return std::move(from); };
+  const Echo::Proxy moved = take(later);
+  CHECK(moved.echo("x") == "x");
+  CHECK_THROWS_WITH(later.echo("x"), told);
+}
+
 TEST_CASE_METHOD(Pair, "a call is used once, and says so the second time") {
   auto call = echo->async_echo("once");
   CHECK(call.get() == "once");

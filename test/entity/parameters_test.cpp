@@ -89,3 +89,12 @@ TEST_CASE("a value of another type, of another size, or none, is refused by the 
       Catch::Contains("the code asks for the parameter 'Climb', which has no value") &&
           Catch::Contains("<required>"));
 }
+
+TEST_CASE("a live parameter that was moved from is still the same parameter") {
+  const ParameterValues values{{"Time limit", 2s}};
+  auto limit = values.live<std::chrono::seconds>("Time limit");
+  const auto take = [](auto& from) { return std::move(from); };
+  const auto moved = take(limit);
+  CHECK(moved.get() == 2s);
+  CHECK(limit.get() == 2s);
+}

@@ -398,6 +398,21 @@ TEST_CASE_METHOD(Sea, "a topic belongs to its systems") {
   CHECK(rudder.subscribers() == 1);
 }
 
+TEST_CASE_METHOD(Sea, "a publisher or a subscription that was moved from says so") {
+  const std::string told =
+      "this publisher or subscription was moved from; use the object that it was moved to";
+  auto rudder = helm();
+  auto watch = watch_rudder();
+  const auto take = [](auto& from) { return std::move(from); };
+  const auto moved_rudder = take(rudder);
+  const auto moved_watch = take(watch);
+  CHECK_THROWS_WITH(rudder.publish({"helm", 1}), told);
+  CHECK_THROWS_WITH(rudder.subscribers(), told);
+  CHECK_THROWS_WITH(watch.take(), told);
+  CHECK(moved_rudder.subscribers() == 1);
+  CHECK(moved_watch.publishers() == 1);
+}
+
 TEST_CASE_METHOD(Sea, "times that no clock counts are waited for, or refused as a topic's") {
   CHECK(helm().wait_for_acknowledgments(std::chrono::milliseconds::max()));
   const auto refused = [&](void (*change)(TopicQos&)) {

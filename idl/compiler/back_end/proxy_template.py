@@ -24,9 +24,11 @@ def definition(interface):
     name = interface.cpp_name + "Proxy"
     lines = [
         f"/// {interface.idl_name} at the other end of a channel. Every call has a deadline and throws what ended it;",
-        "/// `async_` calls return at once. Copies share the channel. Threads: as the channel, any.",
+        "/// `async_` calls return at once. Copies share the channel; one without a channel throws InvalidArgument when it",
+        "/// is called. Threads: as the channel, any.",
         f"class {name} : public virtual {interface.cpp}, public ::skein::ProxyBase {{",
         " public:",
+        f"  {name}() = default;",
         f"  explicit {name}(std::shared_ptr<::skein::Channel> channel, ::skein::Duration timeout = kDefaultTimeout);",
         "",
         "  /// The same connection with another limit for each call.",
@@ -36,11 +38,12 @@ def definition(interface):
         lines += ["", *cpp.documentation(operation.documentation, "  ")]
         lines.append(f"  {result(operation)} {operation.cpp_name}({parameters(operation)}) override;")
         if operation.stream:
-            lines.append(f"  {_stream_type(operation)} {operation.cpp_name}({in_parameters(operation)});")
+            lines.append(f"  {_stream_type(operation)} {operation.cpp_name}({in_parameters(operation)}) const;")
             continue
-        lines.append(
-            f"  ::skein::Call<{async_result(operation)}> {operation.async_name}({in_parameters(operation)});"
-        )
+        lines += [
+            f"  {result(operation)} {operation.cpp_name}({parameters(operation)}) const;",
+            f"  ::skein::Call<{async_result(operation)}> {operation.async_name}({in_parameters(operation)}) const;",
+        ]
     return lines + ["};"]
 
 
@@ -83,7 +86,15 @@ def _operation(interface, index):
 def _blocking(name, interface, operation, index):
     out = operation.out_struct
     call = f"ProxyBase::call<{out.cpp}>({_operation(interface, index)}, {_request(operation)});"
-    lines = [f"{result(operation)} {name}::{operation.cpp_name}({parameters(operation)}) {{"]
+    arguments = ", ".join(p.cpp_name for p in operation.parameters)
+    signature = f"{result(operation)} {name}::{operation.cpp_name}({parameters(operation)})"
+    lines = [
+        f"{signature} {{",
+        f"  return std::as_const(*this).{operation.cpp_name}({arguments});",
+        "}",
+        "",
+        f"{signature} const {{",
+    ]
     lines.append(f"  auto out = {call}" if out.members else f"  {call}")
     outs = [p for p in operation.parameters if p.is_out]
     members = out.members[1:] if operation.result else out.members
@@ -99,7 +110,7 @@ def _asynchronous(name, interface, operation, index):
     select = {"void": "static_cast<char*>(nullptr)", out: "&out"}.get(kind, "&out.return_")
     parameter = "" if kind == "void" else " out"
     return [
-        f"::skein::Call<{kind}> {name}::{operation.async_name}({in_parameters(operation)}) {{",
+        f"::skein::Call<{kind}> {name}::{operation.async_name}({in_parameters(operation)}) const {{",
         f"  return ProxyBase::async_call<{kind}, {out}>(",
         f"      {_operation(interface, index)}, {_request(operation)},",
         f"      []({out}&{parameter}) {{ return {select}; }});",
@@ -113,7 +124,7 @@ def _stream(name, interface, operation, index):
     item = cpp.type_name(operation.result)
     arguments = ", ".join(p.cpp_name for p in operation.parameters)
     return [
-        f"::skein::Stream<{item}> {name}::{operation.cpp_name}({in_parameters(operation)}) {{",
+        f"::skein::Stream<{item}> {name}::{operation.cpp_name}({in_parameters(operation)}) const {{",
         f"  return ProxyBase::stream<{item}, {operation.out_struct.cpp}>(",
         f"      {_operation(interface, index)}, {_request(operation)});",
         "}",

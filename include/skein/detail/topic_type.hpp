@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
 #include "skein/guid.hpp"
 
 namespace skein {
@@ -39,6 +42,14 @@ TopicType topic_type() {
     type.key_of = [](const void* value) { return key_hash(*static_cast<const T*>(value)); };
   }
   return type;
+}
+
+/// The writer or the reader, unless its publisher or subscription was moved from.
+template <class Endpoint>
+Endpoint& held(const std::unique_ptr<Endpoint>& endpoint) {
+  if (endpoint) return *endpoint;
+  throw InvalidArgument(
+      "this publisher or subscription was moved from; use the object that it was moved to");
 }
 
 }  // namespace topics

@@ -346,3 +346,12 @@ TEST_CASE_METHOD(Pair, "a provider keeps a few memories of a client, and none th
 TEST_CASE("a Loaned that the system has no memory for says so") {
   CHECK_THROWS_AS(LoanMemory::make(std::size_t{1} << 62), Unavailable);
 }
+
+TEST_CASE("a Loaned that was moved from says so") {
+  Loaned<Line> line;
+  const auto take = [](auto& from) { return std::move(from); };
+  const auto moved = take(line);
+  CHECK_FALSE(moved.in_use());
+  CHECK_THROWS_WITH(line.in_use(), "this loan was moved from; use the object that it was moved to");
+  CHECK_THROWS_AS(*line, InvalidArgument);
+}
