@@ -51,6 +51,11 @@ Quantity quantity_of(std::string_view text) {
   return {Quantity::Kind::Time, value * known->second};
 }
 
+std::string text_of(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
 void check(const Constraint& constraint) {
   if (!is_order(constraint.relation) ||
       quantity_of(constraint.value).kind != Quantity::Kind::Text) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "skein/call.hpp"
@@ -83,6 +84,19 @@ struct ConnectOptions {
   static constexpr const char* kOwnHost = ".";
 };
 
+/// What is given to connect() where neither ConnectOptions nor a reference to the interface is.
+template <class Given, class Interface>
+concept WrongConnectArgument = !std::is_convertible_v<Given, ConnectOptions> &&
+                               !std::is_convertible_v<Given, Reference<Interface>>;
+
+/// Refuses it in words.
+template <class Given>
+[[noreturn]] void refuse_connect_argument() {
+  static_assert(std::is_void_v<Given>,
+                "connect() takes its options in braces, connect<INTERFACE>({.name = \"rover\", "
+                ".timeout = 2s}), or a Reference<INTERFACE>");
+}
+
 /// One of several providers, with a connection to it alone (see Connector::connect_all).
 template <class Interface>
 struct Connected {
@@ -112,6 +126,8 @@ class Connector {
 
   /// The parts must exist until close() has returned.
   explicit Connector(const Parts& parts);
+  Connector(const Connector&) = default;  // also in place of a move: none is without its parts
+  Connector& operator=(const Connector&) = delete;
 
   /// Ends all connections of this connector and its copies, even if others still hold proxies,
   /// calls or streams: pending calls end as Disconnected, later ones as Unavailable.
@@ -126,14 +142,17 @@ class Connector {
     return typename Interface::Proxy(open(Interface::interface_info(), options));
   }
 
-  Connector(const Connector&) = default;  // also in place of a move: none is without its parts
-  Connector& operator=(const Connector&) = delete;
   /// Connects to exactly the provider of a service reference, in any system. Throws InvalidArgument
   /// for a nil reference.
   template <class Interface>
   typename ProxyOf<Interface>::type connect(const Reference<Interface>& reference,
                                             const ConnectOptions& options = {}) {
     return typename Interface::Proxy(open(Interface::interface_info(), to(reference, options)));
+  }
+
+  template <class Interface, WrongConnectArgument<Interface> Given>
+  typename ProxyOf<Interface>::type connect(Given&&) {
+    refuse_connect_argument<Given>();
   }
 
   /// Returns a proxy for each provider that matches now, in the Broker's order, for gather(). Each

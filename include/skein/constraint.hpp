@@ -1,8 +1,12 @@
 #pragma once
 
+#include <chrono>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "skein/detail/version.hpp"
 
@@ -14,6 +18,25 @@ namespace skein::brokerless_discovery {
 
 enum class Relation { Equal, NotEqual, AtMost, AtLeast };
 
+std::string text_of(double number);
+
+/// An attribute's value as text. A number becomes its shortest text, a duration one in
+/// milliseconds: `"20"`, `20` and `20ms` are `20`, `20` and `20 ms`.
+struct AttributeValue : std::string {
+  AttributeValue() = default;
+  template <std::convertible_to<std::string> Text>
+  AttributeValue(Text&& text) : std::string(std::forward<Text>(text)) {}
+  template <class Number>
+  requires(std::is_arithmetic_v<Number>) AttributeValue(Number number)
+      : std::string(text_of(static_cast<double>(number))) {
+    static_assert(!std::is_same_v<Number, bool> && !std::is_same_v<Number, char>,
+                  "an attribute's value is a text, a number or a duration");
+  }
+  template <class Rep, class Period>
+  AttributeValue(const std::chrono::duration<Rep, Period>& time)
+      : std::string(text_of(std::chrono::duration<double, std::milli>(time).count()) + " ms") {}
+};
+
 /// A condition on an attribute that providers declare: `{"latency", Relation::AtMost, "300"}`.
 ///
 /// Numbers compare as numbers. A plain number is in the unit that the dictionary gives the
@@ -23,7 +46,7 @@ enum class Relation { Equal, NotEqual, AtMost, AtLeast };
 struct Constraint {
   std::string attribute;
   Relation relation = Relation::Equal;
-  std::string value;
+  AttributeValue value;
 };
 
 /// A value as it is compared.

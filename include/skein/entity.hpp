@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "skein/connector.hpp"
@@ -55,7 +57,7 @@ struct EntityOptions {
 
 struct ServiceAttribute {
   std::string name;
-  std::string value;
+  brokerless_discovery::AttributeValue value;
 };
 
 struct ServiceOptions {
@@ -81,6 +83,26 @@ struct ServiceOptions {
   /// Managed interfaces for which the entity uses CSPs.
   std::vector<std::string> subcomponents{};
 };
+
+/// What cannot be provided as an implementation of `Interface`.
+template <class Given, class Interface>
+concept NoImplementation =
+    !std::is_convertible_v<Given, std::shared_ptr<Interface>> &&
+    !requires(Given && given, void (&take)(std::shared_ptr<typename Interface::Deferred>)) {
+  take(std::forward<Given>(given));
+};
+
+/// Says in words why it cannot.
+template <class Given>
+[[noreturn]] void refuse_implementation() {
+  constexpr bool shared = requires(Given & given) { given.use_count(); };
+  static_assert(shared,
+                "an implementation is given as a std::shared_ptr: "
+                "provide<INTERFACE>(std::make_shared<YOUR_CLASS>())");
+  static_assert(!shared,
+                "this class does not implement the interface: derive it, publicly, from INTERFACE, "
+                "or from INTERFACE::Deferred if it answers later");
+}
 
 /// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that
 /// implement its public services, and CSPs that implement its managed ones; it can also publish and
@@ -121,6 +143,11 @@ class Entity {
     return provide(std::shared_ptr<Servant>(std::move(body)), options);
   }
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
+  /// Refuses in words what implements no `Interface`.
+  template <class Interface, NoImplementation<Interface> Given>
+  Guid provide(Given&&, const ServiceOptions& = {}) {
+    refuse_implementation<Given>();
+  }
 
   /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. If the owner is
   /// this entity, the CSP is called without leaving the process. `name` is the CSP's, not the
@@ -139,6 +166,18 @@ class Entity {
   }
   Guid provide_csp(const std::string& name, const std::string& owner,
                    std::shared_ptr<Servant> servant, const ServiceOptions& options);
+  /// Refuses in words what implements no `Interface`, and other arguments than these.
+  template <class Interface, class Name, class Owner, class Given>
+  requires(NoImplementation<Given, Interface> || !std::is_convertible_v<Name, std::string> ||
+           !std::is_convertible_v<Owner, std::string>) Guid
+      provide_csp(Name&&, Owner&&, Given&&, const ServiceOptions& = {}) {
+    static_assert(
+        std::is_convertible_v<Name, std::string> && std::is_convertible_v<Owner, std::string>,
+        "provide_csp() takes the CSP's name, its owner's Entity::id(), the "
+        "implementation, and options: "
+        "provide_csp<INTERFACE>(\"AStar\", entity.id(), csp)");
+    refuse_implementation<Given>();
+  }
 
   /// Withdraws one service of this entity. Queued calls are refused; running calls are told to
   /// stop, and awaited for up to 2 s; what those that hang return later goes nowhere. Other
@@ -175,6 +214,11 @@ class Entity {
   typename ProxyOf<Interface>::type connect(const Reference<Interface>& reference,
                                             const ConnectOptions& options = {}) {
     return connector().connect(reference, options);
+  }
+
+  template <class Interface, WrongConnectArgument<Interface> Given>
+  typename ProxyOf<Interface>::type connect(Given&&) {
+    refuse_connect_argument<Given>();
   }
 
   /// See Connector::connect_all and gather().

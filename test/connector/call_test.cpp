@@ -382,6 +382,15 @@ TEST_CASE(
       InvalidArgument);
 }
 
+TEST_CASE("an attribute's value may be a text, a number or a duration") {
+  Pair pair({.attributes = {{"latency", 20ms}, {"quality", 0.9}, {"kind", "grid"}}});
+  CHECK(pair.client
+            ->connect<Echo>({.constraints = {{"latency", Relation::Equal, "20 ms"},
+                                             {"quality", Relation::AtLeast, 0.9},
+                                             {"kind", Relation::Equal, "grid"}}})
+            .echo("x") == "x");
+}
+
 TEST_CASE_METHOD(Pair,
                  "a client with another version of the interface is told which operation differs") {
   CHECK_THROWS_WITH(client->connect<changed::Echo>({.name = "test::Echo", .timeout = 50ms}),

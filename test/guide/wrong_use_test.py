@@ -15,7 +15,7 @@ for row in output.splitlines():
         line = int(place.group(1) or place.group(2))
     elif row.startswith(("In file included", "In instantiation")) or ": In " in row:
         line = None
-    if line:
+    if line and not re.match(r" *\d* \|", row):  # a quoted line of the source shows the comment itself
         said[line] += row + "\n"
 with open(source, encoding="utf-8") as stream:
     wanted = {number: found.group(1) for number, text in enumerate(stream, 1) if (found := re.search(r"; *// (.+)$", text))}
