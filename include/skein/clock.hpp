@@ -97,7 +97,8 @@ class SystemClock final : public Clock {
 };
 
 /// A clock that stands still until advance() is called, which runs the timers that are due, in
-/// order, on the calling thread.
+/// order, on the calling thread. A thread that waits for a deadline, as in a blocking call whose
+/// reply was lost, waits until another thread calls advance().
 class ManualClock final : public Clock {
  public:
   Instant now() const override;

@@ -73,10 +73,10 @@ struct ServiceOptions {
   std::size_t threads = 1;
   /// Scheduling of these threads.
   ThreadSettings scheduling{};
-  /// Capacity of the request queue, for all clients together; further requests are refused as
-  /// Overloaded. So is a request of a peer that has as many waiting as there are free places: a
-  /// single peer fills at most half of the queue, and there is always room for a new one. As many
-  /// calls again may be begun and not answered yet, where the implementation answers later.
+  /// Capacity of the request queue, 1 or more, for all clients together; further requests are
+  /// refused as Overloaded. So is a request of a peer that has as many waiting as there are free
+  /// places: a single peer fills at most half of the queue, and there is always room for a new one.
+  /// As many calls again may be begun and not answered yet, where the implementation answers later.
   std::size_t queue = 2048;
   /// The component description as XML, for clients that look the service up.
   std::string component{};

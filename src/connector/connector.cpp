@@ -47,6 +47,24 @@ constexpr std::chrono::milliseconds kRetryPause{20};
 
 constexpr const char* kLeaving = "it was about to leave";
 
+Instant deadline_of(const ConnectOptions& options, const Clock& clock) {
+  if (options.timeout > Duration::zero()) return clock.after(options.timeout);
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count();
+  throw Unavailable("connect() has a `timeout` of " + std::to_string(ms) +
+                    " ms, in which no provider can be found; give it some time, as 5s");
+}
+
+void tell_useless_hedging(const InterfaceInfo& interface, const ConnectOptions& options) {
+  if (!options.hedge_after ||
+      std::ranges::any_of(interface.operations, &OperationInfo::idempotent)) {
+    return;
+  }
+  log(LogLevel::Warning, "connector",
+      "`hedge_after` has no effect: no operation of " +
+          scoped_interface_name(std::string(interface.name)) +
+          " is declared @idempotent, and no other one is called twice");
+}
+
 const char* ending_of(brokerless_discovery::Departure departure) {
   switch (departure) {
     case brokerless_discovery::Departure::Left:
@@ -252,7 +270,9 @@ Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& opt
 
 std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
+  const Instant deadline = deadline_of(options, *parts_.clock);
   if (options.foreign) return open_foreign(interface, options);
+  tell_useless_hedging(interface, options);
   const Connections::Opening opening(*connections_);
   const Query query = this->query(interface, options);
   const auto connect = [connector = *this, query,
@@ -260,8 +280,7 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
     return connector.open_next(query, strategy, wanted);
   };
   const auto channel = std::make_shared<FailoverChannel>(
-      await_connection(parts_.broker, query, parts_.clock->after(options.timeout), connect),
-      connect, options.hedge_after);
+      await_connection(parts_.broker, query, deadline, connect), connect, options.hedge_after);
   connections_->add(channel);
   channel->attach(std::make_shared<brokerless_discovery::Broker::Registration>(
       parts_.broker.observe([weak = std::weak_ptr(channel)](const Change&) {
@@ -273,7 +292,7 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
 std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interface,
                                                    const ConnectOptions& options) const {
   const Connections::Opening opening(*connections_);
-  const Instant deadline = parts_.clock->after(options.timeout);
+  const Instant deadline = deadline_of(options, *parts_.clock);
   std::vector<Opened> all;
   std::exception_ptr failure;
   for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {

@@ -142,7 +142,7 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
   const DynamicInterface& interface =
       dynamic_interface(provider, Inspector(entity).types(provider.service, *participant, left()));
   ConnectOptions wanted = options;
-  wanted.timeout = left();
+  wanted.timeout = std::max(left(), Duration(1));  // at its end it fails as it does elsewhere
   return {entity.connector().open(interface.info(), wanted), interface};
 }
 

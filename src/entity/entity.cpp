@@ -102,13 +102,17 @@ void check_attributes(const ServiceOptions& options, const std::string& entity,
       tell_misspelt(entity, name, who);
       continue;
     }
-    const bool finite = std::isfinite(quantity.value);
-    if (finite && (quantity.kind == Kind::Number || (latency && quantity.kind == Kind::Time))) {
-      continue;
+    const bool sound = std::isfinite(quantity.value) && (!latency || quantity.value >= 0);
+    if (!sound || (quantity.kind != Kind::Number && !(latency && quantity.kind == Kind::Time))) {
+      throw InvalidArgument("the attribute " + name + " of '" + who + "' is '" + value +
+                            "'; write a number" +
+                            (latency ? " of milliseconds from 0 on, or a duration: 0.3 s" : ""));
     }
-    throw InvalidArgument("the attribute " + name + " of '" + who + "' is '" + value +
-                          "'; write a number" +
-                          (latency ? " of milliseconds, or a duration: 0.3 s" : ""));
+    if (!latency && (quantity.value < 0 || quantity.value > 1)) {
+      log(LogLevel::Warning, entity,
+          "'" + who + "' declares a quality of " + value +
+              "; the scale is 0 to 1 for all CSPs of a mission, or they cannot be compared");
+    }
   }
 }
 
@@ -415,6 +419,10 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   check_attributes(options, id(), name);
   if (options.threads == 0) {
     throw InvalidArgument("the service of '" + name + "' has 0 threads; give it 1 or more");
+  }
+  if (options.queue == 0) {
+    throw InvalidArgument("the service of '" + name +
+                          "' has a `queue` of 0, which refuses every call; give it 1 or more");
   }
   const InterfaceInfo& interface = servant->interface_info();
   if (!owner.empty()) refuse_second_csp(interface, name, owner);

@@ -124,6 +124,7 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   state_->record(record, begin, wanted, [&] {
     const auto candidates = state_->candidates(interface, options, *strategy, begin);
     if (candidates.empty()) state_->refuse_without(interface, options.only);
+    state_->tell_too_few(interface, options, candidates.size());
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
     if (!run.run()) run.fail();
   });

@@ -149,6 +149,19 @@ void Head::State::tell_waiting(const InterfaceInfo& interface, const TaskOptions
           "`async_` function returns");
 }
 
+void Head::State::tell_too_few(const InterfaceInfo& interface, const TaskOptions& task,
+                               std::size_t csps) {
+  if (task.enough == TaskOptions::kAll || task.enough <= csps) return;
+  {
+    std::lock_guard lock(mutex);
+    if (!told_too_few.insert(&interface).second) return;
+  }
+  log(LogLevel::Warning, parts.entity,
+      "a task waits for `enough` = " + std::to_string(task.enough) + " results, but " +
+          std::string(interface.name) + " has " + std::to_string(csps) +
+          " CSPs: its result is made of what these give, once all have ended");
+}
+
 // Under the lock. Nothing that was told of it last: one cause is not told again at each request.
 void Head::State::tell(std::string_view interface, const std::string& csp,
                        const std::string& text) {

@@ -61,6 +61,8 @@ struct Head::State {
   void conclude(introspection::Decision&& record, introspection::Decision* wanted = nullptr);
   /// Logs, once for each interface, that CSPs do not work at a time since `run` waits for each.
   void tell_waiting(const InterfaceInfo& interface, const TaskOptions& task);
+  /// Logs, once for each interface, that a task asks for more results than there are CSPs.
+  void tell_too_few(const InterfaceInfo& interface, const TaskOptions& task, std::size_t csps);
 
   /// While it lives this thread may run a CSP, and then cannot say itself that it does not return:
   /// that is logged after `end`, at most a second later.
@@ -125,6 +127,7 @@ struct Head::State {
   std::vector<const Watch*> watches;
   TimerId watch_timer = 0;  // armed while there are watches, and until the next round after them
   std::set<const InterfaceInfo*> told_waiting;
+  std::set<const InterfaceInfo*> told_too_few;
   RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
   std::uint64_t last_run = 0;

@@ -341,6 +341,9 @@ TEST_CASE_METHOD(Pair, "a service that cannot work is refused with the reason") 
                     Catch::Contains("latency of 'csp' is 'quick'"));
   CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.attributes = {{"quality", "3 s"}}}),
                     Catch::Contains("quality of 'csp' is '3 s'"));
+  CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.attributes = {{"latency", -5}}}),
+                    Catch::Contains("latency of 'csp' is '-5'"));
+  CHECK_THROWS_WITH(provide("csp", "uav-1/owner", {.queue = 0}), Catch::Contains("a `queue` of 0"));
   provide("csp", "uav-1/owner");
   CHECK_THROWS_WITH(provide("csp", "uav-1/owner"), Catch::Contains("another name"));
   CHECK_NOTHROW(provide("csp", "uav-1/other"));
@@ -389,6 +392,28 @@ TEST_CASE("an attribute's value may be a text, a number or a duration") {
                                              {"quality", Relation::AtLeast, 0.9},
                                              {"kind", Relation::Equal, "grid"}}})
             .echo("x") == "x");
+}
+
+TEST_CASE_METHOD(Pair, "no time to connect in is refused") {
+  const std::string told = "in which no provider can be found; give it some time, as 5s";
+  CHECK_THROWS_WITH(client->connect<Echo>({.timeout = 0s}), Catch::EndsWith("of 0 ms, " + told));
+  CHECK_THROWS_WITH(client->connect<Echo>({.timeout = -1s}), Catch::EndsWith(told));
+  CHECK_THROWS_WITH(client->connect<Echo>({.timeout = 0s, .foreign = true}), Catch::EndsWith(told));
+  CHECK_THROWS_WITH(client->connect_all<Echo>({.timeout = 0s}), Catch::EndsWith(told));
+}
+
+TEST_CASE_METHOD(Pair, "hedging for which there is no operation is told of") {
+  struct Introducing : ::test::Introducer {
+    Reference<Echo> introduce() override { return {}; }
+    std::string ask(const Reference<Echo>&, const std::string&) override { return {}; }
+  };
+  const Log log;
+  const auto hedged = client->connect<Echo>({.hedge_after = 20ms});
+  CHECK(log.count("`hedge_after` has no effect") == 0);
+  server->provide<::test::Introducer>(std::make_shared<Introducing>());
+  const auto plain = client->connect<::test::Introducer>({.hedge_after = 20ms});
+  CHECK(log.count("`hedge_after` has no effect: no operation of test::Introducer is declared "
+                  "@idempotent") == 1);
 }
 
 TEST_CASE_METHOD(Pair,

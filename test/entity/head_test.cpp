@@ -386,3 +386,19 @@ TEST_CASE("a task may have more time than any clock counts, whatever the strateg
   task.execution = GENERATE(Execution::One, Execution::Staggered, Execution::All);
   for (int i = 0; i < 2; ++i) CHECK_NOTHROW(office.perform(task, Duration::max()));
 }
+
+TEST_CASE_METHOD(Office,
+                 "a task that waits for more results than there are CSPs is told of, once") {
+  const Log log;
+  add("quick", Place::Inside, answer_as("quick"), declared("1", "0.5"));
+  auto task = Office::task();
+  task.enough = 3;
+  for (int i = 0; i < 2; ++i) CHECK(perform(task, 10s) == "quick did it");
+  CHECK(log.count("a task waits for `enough` = 3 results, but crew/Worker has 1 CSPs") == 1);
+}
+
+TEST_CASE_METHOD(Office, "a declared quality that is not on the common scale is told of") {
+  const Log log;
+  add("boaster", Place::Inside, answer_as("boaster"), declared("1", "1.5"));
+  CHECK(log.count("'boaster' declares a quality of 1.5; the scale is 0 to 1") == 1);
+}

@@ -136,7 +136,7 @@ ConnectOptions connection_of(Entity& entity, const CallArguments& arguments) {
   const Instant end = entity.clock().now() + options.timeout;
   while (std::ranges::none_of(broker.all(), is_there) && entity.clock().now() < end)
     std::this_thread::sleep_for(kTablePeriod);
-  options.timeout = std::max(Duration::zero(), end - entity.clock().now());
+  options.timeout = std::max(Duration(1), end - entity.clock().now());
   const auto services = services_of(broker, arguments.name);
   if (services.empty()) return options;
   options.system = arguments.name.substr(0, slash);
