@@ -171,6 +171,19 @@ Table::Found Broker::await_service(const Query& query, Instant deadline) const {
                                     : state_->table.explain(query));
 }
 
+bool Broker::await_change(std::uint64_t seen, Instant deadline) const {
+  std::unique_lock lock(state_->mutex);
+  const bool changed = wait_until(state_->clock, deadline, lock, state_->changed,
+                                  [&] { return state_->leaving || state_->generation != seen; });
+  if (state_->leaving) throw Unavailable("the entity that waited for a service has ended");
+  return changed;
+}
+
+std::vector<Absence> Broker::absent(std::string_view service) const {
+  std::lock_guard lock(state_->mutex);
+  return state_->absences.of(service);
+}
+
 void Broker::end_waits() {
   std::lock_guard lock(state_->mutex);
   state_->leaving = true;

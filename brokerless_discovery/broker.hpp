@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "brokerless_discovery/absences.hpp"
 #include "brokerless_discovery/table.hpp"
 #include "dds/port/port.hpp"
 #include "skein/clock.hpp"
@@ -84,8 +86,16 @@ class Broker {
   /// `deadline` passes, and after end_waits(). Not from a listener.
   Table::Found await_service(const Query& query, Instant deadline) const;
 
-  /// Ends what waits in await_service(), now and from now on: the entity is about to end.
+  /// Waits until generation() is another than `seen`; false where `deadline` comes first. Throws
+  /// Unavailable after end_waits(). Not from a listener.
+  bool await_change(std::uint64_t seen, Instant deadline) const;
+
+  /// Ends what waits in await_service() and await_change(), now and from now on: the entity is
+  /// about to end.
   void end_waits();
+
+  /// The services that this entity manages and that have gone, until they are back.
+  std::vector<Absence> absent(std::string_view service) const;
 
   /// Why find_service gives nothing.
   std::string explain(const Query& query) const;

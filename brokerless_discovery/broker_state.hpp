@@ -47,6 +47,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   mutable std::condition_variable changed;
   bool leaving = false;  // nobody waits for services any more
   Table table;
+  Absences absences;
   std::atomic<std::uint64_t> generation{0};  // written under the lock
   std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
   std::uint64_t last_observer = 0;
@@ -87,6 +88,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
       std::lock_guard lock(mutex);
       changes = event(table);
       if (changes.empty()) return;
+      absences.note(changes, asker, clock.now());
       ++generation;
       changed.notify_all();
       if (!observers.empty()) {

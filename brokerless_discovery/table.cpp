@@ -296,9 +296,11 @@ std::string Table::explain(const Query& query) const {
           std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
             return short_interface_name(part) == query.name;
           })) {
+        const auto& owner = *entry.description;
+        const bool own = query.asker == owner.system + "/" + owner.entity;
         return "no provider of '" + query.name + "'" + place + ": it is a managed interface of " +
-               entry.description->entity + " (" + entry.description->system +
-               "), and only that entity may use it";
+               (own ? "this entity, of which no CSP is there"
+                    : owner.entity + " (" + owner.system + "), and only that entity may use it");
       }
     }
   }

@@ -122,7 +122,8 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   record.request = options.request;
   record.execution = to_string(options.execution);
   state_->record(record, begin, wanted, [&] {
-    const auto candidates = state_->candidates(interface, options, *strategy, begin);
+    const auto candidates = state_->await_candidates(
+        interface, options, *strategy, begin + wire_values::duration(record.available));
     if (candidates.empty()) state_->refuse_without(interface, options.only);
     state_->tell_too_few(interface, options, candidates.size());
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
@@ -141,7 +142,8 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
   record.execution = "none";
   std::shared_ptr<Channel> channel;
   state_->record(record, begin, nullptr, [&] {
-    auto candidates = state_->candidates(interface, options, *strategy, begin);
+    auto candidates = state_->await_candidates(interface, options, *strategy,
+                                               begin + wire_values::duration(record.available));
     if (candidates.empty()) state_->refuse_without(interface, {});
     decision_record::list(record, candidates);
     const Situation situation = decision_record::situation_of(record);

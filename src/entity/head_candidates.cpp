@@ -11,12 +11,15 @@
 #include "core/suggestion.hpp"
 #include "head_state.hpp"
 #include "rpc/service/local_directory.hpp"
+#include "skein/call_context.hpp"
 #include "skein/constraint.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
 
 namespace skein {
 
+using brokerless_discovery::Absence;
+using brokerless_discovery::Departure;
 using brokerless_discovery::find_attribute;
 using brokerless_discovery::number_attribute;
 using brokerless_discovery::Quantity;
@@ -24,6 +27,13 @@ using brokerless_discovery::quantity_of;
 using brokerless_discovery::ServiceDescription;
 
 namespace {
+
+// A launcher takes less to start a CSP again.
+constexpr std::chrono::seconds kReturnPatience{10};
+// The Broker may hear of a CSP's end later than its connection does.
+constexpr std::chrono::seconds kNewsPatience{1};
+// Nobody tells a Head that waits that its caller has given up.
+constexpr std::chrono::milliseconds kLookPeriod{100};
 
 // What others declare may be any number; as far as any task is concerned, this is for ever.
 constexpr double kLongestLatencySeconds = 365.0 * 24 * 3600;
@@ -136,6 +146,49 @@ std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
   return candidates;
 }
 
+bool Head::State::is_worn_out(const Losses& losses, std::string_view csp) {
+  return std::ranges::count(losses, csp, &Loss::csp) > 1;
+}
+
+Instant Head::State::awaited(const InterfaceInfo& interface, const TaskOptions& task,
+                             const Losses& losses) const {
+  Instant until{};
+  const auto may_come_back = [&](const std::string& csp) {
+    return (task.only.empty() || csp == task.only) && !is_worn_out(losses, csp);
+  };
+  for (const Absence& csp : parts.broker.absent(interface.name)) {
+    if (csp.how != Departure::Left && may_come_back(csp.entity))
+      until = std::max(until, csp.since + Duration(kReturnPatience));
+  }
+  for (const Loss& loss : losses) {
+    if (may_come_back(loss.csp) && parts.broker.knows(loss.provider))
+      until = std::max(until, loss.when + Duration(kNewsPatience));
+  }
+  return until;
+}
+
+bool Head::State::await_change(const InterfaceInfo& interface, const TaskOptions& task,
+                               const Losses& losses, std::uint64_t seen, Instant deadline) const {
+  const CallContext* context = CallContext::current();
+  for (;;) {
+    const Instant now = parts.clock.now();
+    const Instant end = std::min(deadline, awaited(interface, task, losses));
+    if (now >= end || (context && context->cancelled())) return false;
+    if (parts.broker.await_change(seen, std::min(end, now + Duration(kLookPeriod)))) return true;
+  }
+}
+
+std::vector<Candidate> Head::State::await_candidates(const InterfaceInfo& interface,
+                                                     const TaskOptions& task,
+                                                     const SelectionStrategy& strategy,
+                                                     Instant deadline) {
+  for (;;) {
+    const std::uint64_t seen = parts.broker.generation();
+    auto found = candidates(interface, task, strategy, parts.clock.now());
+    if (!found.empty() || !await_change(interface, task, {}, seen, deadline)) return found;
+  }
+}
+
 // There may be some that have not returned from an earlier request, and are not to be called again.
 void Head::State::refuse_without(const InterfaceInfo& interface, const std::string& only) {
   std::vector<std::string> names;
@@ -155,6 +208,12 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
                       " has not returned from an earlier request whose time is over; it hangs in "
                       "this process, and is called again once it returns");
   }
+  std::string absent;
+  for (const Absence& csp : parts.broker.absent(interface.name)) {
+    if (only.empty() || csp.entity == only)
+      absent += (absent.empty() ? "" : "; ") + in_words(csp, parts.clock.now());
+  }
+  if (!absent.empty()) throw NoCandidate("no CSP is there for " + task + ": " + absent);
   if (!only.empty()) {
     throw NoCandidate("there is no CSP '" + only + "' for " + task + suggestion(only, names));
   }

@@ -21,7 +21,8 @@ using task_run::Verdict;
 constexpr std::chrono::seconds kOpeningPatience{2};
 
 /// Of Skein's errors those that say nothing of CSPs get the name before their text.
-[[noreturn]] void rethrow_naming(const std::string& csp, const std::exception_ptr& error) {
+[[noreturn]] void rethrow_naming(const std::string& csp, const std::exception_ptr& error,
+                                 const std::string& more) {
   try {
     std::rethrow_exception(error);
   } catch (const NoCandidate&) {
@@ -30,7 +31,7 @@ constexpr std::chrono::seconds kOpeningPatience{2};
     throw;
   } catch (const Error& named) {
     if (csp.empty()) throw;
-    throw_error(named.code(), "CSP '" + csp + "': " + named.what());
+    throw_error(named.code(), "CSP '" + csp + "': " + named.what() + more);
   }
 }
 
@@ -178,21 +179,39 @@ bool Head::Run::may_have_another_turn(const std::string& csp) const {
 
 // Where all have failed others may have joined: those that left, say, have been replaced.
 bool Head::Run::look_again() {
-  if (done_ || settled_ || now() >= deadline_) return false;
-  const auto& options = task_.options();
-  auto joined = state_.candidates(interface_, options, strategy_, now());
-  std::erase_if(joined, [&](const Candidate& candidate) {
-    const bool known =
-        std::any_of(record_.candidates.begin(), record_.candidates.end(),
-                    [&](const auto& each) { return each.provider == candidate.provider.bytes; });
-    return known && !may_have_another_turn(candidate.name);
-  });
-  if (joined.empty()) return false;
+  std::vector<Candidate> joined;
+  do {
+    if (done_ || settled_ || now() >= deadline_) return false;
+    const std::uint64_t seen = state_.parts.broker.generation();
+    joined = this->joined();
+    if (joined.empty() && !await_return(seen)) return false;
+  } while (joined.empty());
   ++round_;
   for (Candidate& candidate : joined) candidate.round = round_;
   decision_record::list(record_, joined);
   iterator_.add(std::move(joined));
   return true;
+}
+
+// A request at which a CSP died twice is not given to it a third time: it may be the cause.
+std::vector<Candidate> Head::Run::joined() {
+  auto joined = state_.candidates(interface_, task_.options(), strategy_, now());
+  std::erase_if(joined, [&](const Candidate& candidate) {
+    const bool known =
+        std::any_of(record_.candidates.begin(), record_.candidates.end(),
+                    [&](const auto& each) { return each.provider == candidate.provider.bytes; });
+    return State::is_worn_out(losses_, candidate.name) ||
+           (known && !may_have_another_turn(candidate.name));
+  });
+  return joined;
+}
+
+// Only with nothing in hand: what there is is not held back.
+bool Head::Run::await_return(std::uint64_t seen) {
+  if (losses_.empty() || task_.accepted() > 0) return false;
+  const bool changed = state_.await_change(interface_, task_.options(), losses_, seen, deadline_);
+  waited_ = !changed;
+  return changed;
 }
 
 bool Head::Run::begin_another() {
@@ -220,7 +239,7 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     return;
   }
   const Selection& selection = next.selection;
-  Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr};
+  Live live{record_.attempts.size() - 1, std::move(next.candidate), *run, nullptr, nullptr};
   const Instant end = task_.options().execution == Execution::One
                           ? saturating_sum(began, selection.slice)
                           : deadline_;
@@ -230,12 +249,12 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
                                        : selection.slice);
   try {
     Instant reached = began;
-    auto channel = state_.channel_to(live.candidate,
+    live.channel = state_.channel_to(live.candidate,
                                      std::min(end - began, Duration(kOpeningPatience)), reached);
     {
       const State::Watch watch(state_, interface_, live.candidate, end);
-      live.work = task_.begin(std::move(channel), std::max(Duration::zero(), end - reached),
-                              live.candidate);
+      live.work =
+          task_.begin(live.channel, std::max(Duration::zero(), end - reached), live.candidate);
     }
     if (live.work->waited()) state_.tell_waiting(interface_, task_.options());
     live_.push_back(std::move(live));
@@ -304,6 +323,8 @@ void Head::Run::note(Live& live, Verdict verdict) {
              {verdict.outcome, took, expected, verdict.quality, fault, verdict.settled, verdict.own,
               fault ? reason(attempt) : std::string(), record_.decided + 1,
               static_cast<std::uint32_t>(live.attempt)});
+  if (verdict.outcome == Outcome::Disconnected && live.channel && !live.channel->connected())
+    losses_.push_back({live.candidate.name, live.candidate.provider, now()});
   settled_ = verdict.settled;
   last_csp_ = verdict.own ? std::string() : live.candidate.name;
   last_ = std::move(verdict);
@@ -335,6 +356,15 @@ void Head::Run::cancel_rest() {
   live_.clear();
 }
 
+// What is added to the last error where a CSP was waited for.
+std::string Head::Run::in_vain() const {
+  std::string text;
+  if (!waited_) return text;
+  for (const auto& csp : state_.parts.broker.absent(interface_.name))
+    text += "; " + in_words(csp, now());
+  return text;
+}
+
 void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_ && too_few()) {
     std::set<std::string_view> csps;
@@ -347,7 +377,13 @@ void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }
-  if (last_.error) rethrow_naming(last_csp_, last_.error);
+  if (State::is_worn_out(losses_, last_csp_)) {
+    throw Internal("CSP '" + last_csp_ +
+                   "' was lost at this request twice, and is not asked again, as the request "
+                   "itself may be the cause: " +
+                   last_.text);
+  }
+  if (last_.error) rethrow_naming(last_csp_, last_.error, in_vain());
   if (record_.attempts.empty()) throw TimedOut("no time was left to run a CSP");
   throw NoneAccepted("no result was good enough; the last one, of CSP '" + last_csp_ +
                      "': " + last_.text);

@@ -28,6 +28,7 @@ class Head::Run {
     Candidate candidate;
     std::uint64_t run;
     std::unique_ptr<task_run::Work> work;
+    std::shared_ptr<Channel> channel;
   };
 
   /// Where the caller's thread waits for several CSPs.
@@ -46,6 +47,8 @@ class Head::Run {
   void run_all();
   bool begin_another();
   bool look_again();
+  std::vector<Candidate> joined();
+  bool await_return(std::uint64_t seen);
   bool may_have_another_turn(const std::string& csp) const;
   void begin(CandidateIterator::Next next, Instant began);
   void await();
@@ -57,6 +60,7 @@ class Head::Run {
   void note_too_few();
   void cancel_rest();
   bool waits_for_late_ones() const;
+  std::string in_vain() const;
 
   State& state_;
   const InterfaceInfo& interface_;
@@ -71,6 +75,8 @@ class Head::Run {
   std::vector<Live> live_;
   std::optional<Instant> late_at_;
   std::shared_ptr<Bell> bell_;  // once several work at a time
+  State::Losses losses_;
+  bool waited_ = false;  // for a CSP that was lost, in vain
   task_run::Verdict last_;
   std::string last_csp_;  // whose that was; empty where none could be asked
   bool done_ = false;

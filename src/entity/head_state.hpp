@@ -26,6 +26,22 @@ struct Head::State {
   /// Those that are available; perhaps none.
   std::vector<Candidate> candidates(const InterfaceInfo& interface, const TaskOptions& task,
                                     const SelectionStrategy& strategy, Instant now);
+  /// The same; where there is none, waits for a CSP that died to come back, until `deadline`.
+  std::vector<Candidate> await_candidates(const InterfaceInfo& interface, const TaskOptions& task,
+                                          const SelectionStrategy& strategy, Instant deadline);
+  /// A CSP that was lost while it worked on a request.
+  struct Loss {
+    std::string csp;
+    Guid provider;
+    Instant when;
+  };
+  using Losses = std::vector<Loss>;
+  /// Whether a request has lost that CSP so often that it is not to be asked again.
+  static bool is_worn_out(const Losses& losses, std::string_view csp);
+  /// Waits for the Broker's next change after `seen` while a CSP that died may come back, until
+  /// `deadline`. False where there was none.
+  bool await_change(const InterfaceInfo& interface, const TaskOptions& task, const Losses& losses,
+                    std::uint64_t seen, Instant deadline) const;
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
   /// A request has come: how many there were before, which is its number less 1.
@@ -150,6 +166,9 @@ struct Head::State {
   void remember(const InterfaceInfo& interface, const Candidate& candidate,
                 const std::shared_ptr<const Features>& features, const Ending& ending);
   void begin_learning(const std::string& service);
+  /// Until when a CSP may come back; in the past where none may.
+  Instant awaited(const InterfaceInfo& interface, const TaskOptions& task,
+                  const Losses& losses) const;
   std::size_t stuck();
   void arm_watch_timer(Instant next_end);
   void look_at_watches();

@@ -126,6 +126,9 @@ TEST_CASE("a stranger is told whose a managed interface is even without its desc
       table.explain(query("A/IPlanner")),
       Catch::Contains("managed interface of navigator") && Catch::Contains("only that entity"));
   CHECK_THAT(table.explain(query("IPlanner")), Catch::Contains("managed interface of navigator"));
+  Query owner = query("IPlanner");
+  owner.asker = "uav-1/navigator";
+  CHECK_THAT(table.explain(owner), Catch::EndsWith("of this entity, of which no CSP is there"));
 }
 
 TEST_CASE("a provider that lacks one of the client's operations is not offered", "[R7]") {

@@ -1,5 +1,6 @@
-// A CSP in a process of its own, to be killed: worker_process VENDOR NAME OWNER. It says `ready`,
-// then `inside` when it has begun to work, and never ends by itself.
+// A CSP in a process of its own, to be killed: worker_process VENDOR NAME OWNER [dies | answers].
+// It says `ready`, then `inside` when it has begun to work, and never ends by itself; or it dies
+// then, or answers.
 #include <unistd.h>
 
 #include <cstdio>
@@ -20,7 +21,8 @@ void say(const char* line) {
 
 }  // namespace
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+  const std::string then = argc > 4 ? argv[4] : "";
   EntityOptions options;
   options.name = std::string(argv[2]) + "-host";
   options.system = "uav-1";
@@ -30,10 +32,11 @@ int main(int, char** argv) {
   ServiceOptions declared;
   declared.attributes = {{"latency", "20"}, {"quality", "0.9"}};
   entity.provide_csp<crew::Worker>(
-      argv[2], argv[3],
-      std::make_shared<skein::test::ScriptedWorker>([](const std::string&) -> std::string {
+      argv[2], argv[3], std::make_shared<skein::test::ScriptedWorker>([&](const std::string& task) {
         say("inside");
-        for (;;) pause();
+        if (then == "dies") _exit(1);
+        while (then != "answers") pause();
+        return argv[2] + (" did " + task);
       }),
       declared);
   say("ready");
