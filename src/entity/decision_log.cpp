@@ -7,6 +7,7 @@
 
 #include "core/log.hpp"
 #include "core/system/held_signal.hpp"
+#include "core/system/passing_error.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 
@@ -28,9 +29,10 @@ DecisionLog::DecisionLog(std::string entity, std::string path, std::uintmax_t fu
   if (!on()) return;
   file_.open(path_, std::ios::app | std::ios::binary);
   if (!file_) {
-    throw InvalidArgument("the Head of " + entity_ + " cannot write its decisions to '" + path_ +
-                          "': " + std::generic_category().message(errno) +
-                          "; name a file in a folder that may be written to");
+    const int error = errno;
+    throw_for_file(error, "the Head of " + entity_ + " cannot write its decisions to '" + path_ +
+                              "': " + std::generic_category().message(error) +
+                              "; name a file in a folder that may be written to");
   }
   const HeldSignal held(SIGXFSZ);
   if (ends_in_mid_line(path_)) file_ << std::endl;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/system/passing_error.hpp"
 #include "core/system/whole_file.hpp"
 #include "service_history.hpp"
 #include "skein/detail/type_support.hpp"
@@ -101,7 +102,11 @@ History History::load(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
   text << file.rdbuf();
-  if (!file) refuse(path, "cannot be read: " + std::generic_category().message(errno));
+  if (!file) {
+    const int reason = errno;
+    throw_for_file(reason, "the Head's history '" + path +
+                               "' cannot be read: " + std::generic_category().message(reason));
+  }
   try {
     return from_json(text.str());
   } catch (const InvalidArgument& wrong) {

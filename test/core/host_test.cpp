@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/system/network_interface.hpp"
 #include "skein/error.hpp"
 
 using namespace skein;
@@ -28,4 +29,25 @@ TEST_CASE("another address, and a name that nobody knows, is not this host") {
 TEST_CASE("interfaces are listed for people with their addresses") {
   CHECK(to_text({}) == "none");
   CHECK(to_text({{"lo", "127.0.0.1"}, {"eth0", "10.0.0.2"}}) == "lo (127.0.0.1), eth0 (10.0.0.2)");
+}
+
+TEST_CASE("an interface that is up and has no address yet is an obstacle") {
+  NetworkInterface eth0{.name = "eth0", .addresses = {}, .up = true};
+  const auto obstacle = find_obstacle({eth0}, "eth0");
+  REQUIRE(obstacle);
+  CHECK(obstacle->problem == "the interface eth0 has no IPv4 address, and Skein speaks IPv4");
+  eth0.addresses = {"10.0.0.2"};
+  CHECK_FALSE(find_obstacle({eth0}, "eth0"));
+}
+
+TEST_CASE("an interface that is not there is misspelled, or a device that may still come") {
+  const std::vector<std::string> known{"lo", "eth0", "wlp2s0"};
+  for (const char* slip : {"etho", "ehh0", "l0", "lo0", "wlps20"}) {
+    CAPTURE(slip);
+    CHECK(is_misspelled_interface(slip, known));
+  }
+  for (const char* device : {"eth1", "wlp13s0", "usb0", "wlan0", "10.0.0.3"}) {
+    CAPTURE(device);
+    CHECK_FALSE(is_misspelled_interface(device, known));
+  }
 }

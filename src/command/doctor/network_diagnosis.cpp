@@ -71,13 +71,8 @@ Symptom interface(const std::string& wanted, bool by_multicast, const Facts& fac
   if (!found) return missing_interface(facts, wanted);
   const std::string& name = found->name;
   if (const auto down = find_obstacle(facts.interfaces, wanted))
-    return {Severity::Error, "interface", down->problem, "its flags lack UP", down->remedy};
-  if (found->addresses.empty()) {
-    return {Severity::Error, "interface",
-            "the interface " + name + " has no IPv4 address, and Skein speaks IPv4",
-            "ip -4 address show dev " + name,
-            "sudo ip address add ADDRESS/PREFIX dev " + name + ", or start its DHCP client"};
-  }
+    return {Severity::Error, "interface", down->problem,
+            found->up ? "ip -4 address show dev " + name : "its flags lack UP", down->remedy};
   if (by_multicast && !found->multicast) {
     return {Severity::Error, "interface",
             "the interface " + name + " takes no multicast: peers do not find each other by it",

@@ -228,8 +228,10 @@ CLI::Validator interface_of_this_host() {
           network.interfaces = {text};
           dds::interface_addresses(network);
           return {};
-        } catch (const Error& error) {
+        } catch (const InvalidArgument& error) {
           return error.what();
+        } catch (const Unavailable&) {
+          return {};  // it may come until it is used, which tells it otherwise
         }
       },
       "");

@@ -11,6 +11,7 @@
 #include "command/print/json_output.hpp"
 #include "command/print/wrapped.hpp"
 #include "core/printable.hpp"
+#include "core/system/passing_error.hpp"
 #include "recording/mcap/reader.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
@@ -97,8 +98,8 @@ using Visit = std::function<void(const introspection::Decision& record, const st
 
 void for_each_in_log(const std::string& log, const Visit& visit) {
   const auto refuse = [&](int reason) {
-    throw InvalidArgument("the log of decisions '" + log +
-                          "' cannot be read: " + std::generic_category().message(reason));
+    throw_for_file(reason, "the log of decisions '" + log +
+                               "' cannot be read: " + std::generic_category().message(reason));
   };
   std::ifstream file(log);
   if (!file) refuse(errno);

@@ -96,12 +96,18 @@ std::string mission_place(const profile::MissionProfile& mission) {
 }
 
 /// Throws DescriptionError with all that `check` finds, where one of it is an error; otherwise says
-/// what it finds. A dry run starts nothing, and does not need what this machine may lack.
+/// what it finds, and throws Unavailable where this machine may yet become ready. A dry run starts
+/// nothing, and does not need what this machine may lack.
 profile::MissionProfile read_checked(const LaunchArguments& arguments) {
   if (arguments.dry_run) return read_mission(arguments);
   auto [mission, findings] = check_mission(arguments);
-  if (profile::has_errors(findings)) throw profile::DescriptionError(findings);
+  const auto is_lasting = [](const profile::Finding& finding) {
+    return finding.severity == profile::Severity::Error && !finding.passing;
+  };
+  if (std::ranges::any_of(findings, is_lasting)) throw profile::DescriptionError(findings);
   std::fputs(profile::to_text(findings).c_str(), stderr);
+  if (profile::has_errors(findings))
+    throw Unavailable("this machine lacks for the moment what the mission needs; launch it later");
   return std::move(mission);
 }
 

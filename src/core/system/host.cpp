@@ -51,7 +51,10 @@ std::vector<std::string> host_addresses(const std::string& host) {
   addrinfo* list = nullptr;
   const int failure = getaddrinfo(host.c_str(), nullptr, &wanted, &list);
   if (failure != 0) {
-    throw InvalidArgument("host '" + host + "' has no IPv4 address: " + gai_strerror(failure));
+    const std::string text = "host '" + host + "' has no IPv4 address: " + gai_strerror(failure);
+    if (failure == EAI_AGAIN || failure == EAI_MEMORY || failure == EAI_SYSTEM)
+      throw Unavailable(text);
+    throw InvalidArgument(text);
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
   std::vector<std::string> addresses;
@@ -71,7 +74,7 @@ bool is_this_host(const std::string& host) {
   std::vector<std::string> addresses;
   try {
     addresses = host_addresses(host);
-  } catch (const InvalidArgument&) {
+  } catch (const Error&) {
     return false;
   }
   const auto interfaces = interfaces_of_this_host();

@@ -19,7 +19,7 @@ std::vector<HostInterface> interfaces_of_this_host();
 std::string to_text(const std::vector<HostInterface>& interfaces);
 
 /// The addresses of a host by name or address, in dotted form. Throws InvalidArgument where it has
-/// none; may ask the network's name servers.
+/// none, Unavailable where the network's name servers, which it may ask, do not answer.
 std::vector<std::string> host_addresses(const std::string& host);
 
 /// Whether `host` is this machine: its name, short or whole, an address of its interfaces, or a

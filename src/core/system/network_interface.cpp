@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/suggestion.hpp"
 #include "skein/error.hpp"
 
 namespace skein {
@@ -17,6 +18,16 @@ NetworkInterface& of_name(std::vector<NetworkInterface>& interfaces, const std::
   if (found != interfaces.end()) return *found;
   interfaces.push_back({.name = name, .addresses = {}});
   return interfaces.back();
+}
+
+/// With each number as one `#`.
+std::string without_numbers(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool digit = c >= '0' && c <= '9';
+    if (!digit || !text.ends_with('#')) text += digit ? '#' : c;
+  }
+  return text;
 }
 
 }  // namespace
@@ -57,7 +68,13 @@ std::optional<InterfaceObstacle> find_obstacle(const std::vector<NetworkInterfac
                                    " has no carrier: its cable, or the other end of it, is missing",
                                "ip link show dev " + interface.name};
     }
-    if (interface.up) continue;
+    if (interface.up && (loopback || !interface.addresses.empty())) continue;
+    if (interface.up) {
+      return InterfaceObstacle{
+          "the interface " + interface.name + " has no IPv4 address, and Skein speaks IPv4",
+          "sudo ip address add ADDRESS/PREFIX dev " + interface.name +
+              ", or start its DHCP client"};
+    }
     return InterfaceObstacle{
         loopback
             ? "the loopback interface is down: the peers of this host cannot speak to each other"
@@ -65,6 +82,13 @@ std::optional<InterfaceObstacle> find_obstacle(const std::vector<NetworkInterfac
         "sudo ip link set " + interface.name + " up"};
   }
   return std::nullopt;
+}
+
+bool is_misspelled_interface(const std::string& wanted, const std::vector<std::string>& known) {
+  const auto is_of_its_kind = [&](const std::string& name) {
+    return without_numbers(name) == without_numbers(wanted);
+  };
+  return std::ranges::none_of(known, is_of_its_kind) && !suggestion(wanted, known).empty();
 }
 
 std::string obstacle_of_this_host(const std::vector<std::string>& wanted, Carrier carrier) {

@@ -33,9 +33,9 @@ struct InterfaceObstacle {
 /// Whether an interface may be without a carrier at first: Fast DDS does not use one that is.
 enum class Carrier { MayComeLater, Needed };
 
-/// That the interface of that name or address is down, or lacks a carrier that it needs. For
-/// 127.0.0.1, and for an empty name, which means it, the loopback interface. Nothing where there is
-/// no obstacle, or no such interface among `interfaces`.
+/// That the interface of that name or address is down, has no address (which DHCP may bring), or
+/// lacks a carrier that it needs. For 127.0.0.1, and for an empty name, which means it, the
+/// loopback interface. Nothing where there is no obstacle, or no such interface among `interfaces`.
 std::optional<InterfaceObstacle> find_obstacle(const std::vector<NetworkInterface>& interfaces,
                                                const std::string& wanted,
                                                Carrier carrier = Carrier::MayComeLater);
@@ -45,5 +45,9 @@ std::optional<InterfaceObstacle> find_obstacle(const std::vector<NetworkInterfac
 /// the system does not tell.
 std::string obstacle_of_this_host(const std::vector<std::string>& wanted,
                                   Carrier carrier = Carrier::MayComeLater);
+
+/// Whether `wanted`, which is none of `known`, is a misspelled one of these. Otherwise it may come
+/// later, as a device does that is plugged in: also if it differs in a number alone.
+bool is_misspelled_interface(const std::string& wanted, const std::vector<std::string>& known);
 
 }  // namespace skein

@@ -12,6 +12,7 @@
 #include "core/printable.hpp"
 #include "file_descriptor.hpp"
 #include "held_signal.hpp"
+#include "passing_error.hpp"
 
 namespace skein {
 namespace {
@@ -87,6 +88,7 @@ class Draft {
   }
 
   [[noreturn]] void refuse() const {
+    if (is_passing(errno)) fail("opening");
     throw InvalidArgument(told("opening") + "; name a file in a folder that may be written to");
   }
   [[noreturn]] void fail(const char* step) const { throw WriteFailed(told(step)); }

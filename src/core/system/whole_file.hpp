@@ -18,7 +18,8 @@ class WriteFailed : public Unavailable {
 /// reader finds the old content or the new one, after a loss of power, too. What is no regular
 /// file, such as a terminal or a pipe, is written directly; a link is followed. Errors name `what`
 /// it is ("the picture"), the file, the step and the system's reason: InvalidArgument where it
-/// cannot be made, WriteFailed where that fails later, which leaves the old file as it was.
+/// cannot be made, WriteFailed where that may pass (is_passing()) or fails later, which leaves the
+/// old file as it was.
 void write_whole_file(const std::string& what, const std::filesystem::path& file,
                       std::string_view content);
 

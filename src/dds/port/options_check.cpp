@@ -32,12 +32,14 @@ std::string address_of(const std::string& wanted, const std::vector<HostInterfac
   if (inet_pton(AF_INET, wanted.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127) {
     return wanted;
   }
-  if (const std::string down = obstacle_of_this_host({wanted}); !down.empty())
-    throw InvalidArgument(down);
+  if (const std::string obstacle = obstacle_of_this_host({wanted}); !obstacle.empty())
+    throw Unavailable(obstacle);
   std::vector<std::string> known;
   for (const HostInterface& interface : host) known.push_back(interface.name);
-  throw InvalidArgument("this host has no interface '" + wanted + "' with an IPv4 address" +
-                        suggestion(wanted, known) + "; it has " + to_text(host));
+  const std::string text = "this host has no interface '" + wanted + "' with an IPv4 address" +
+                           suggestion(wanted, known) + "; it has " + to_text(host);
+  if (is_misspelled_interface(wanted, known)) throw InvalidArgument(text);
+  throw Unavailable(text);
 }
 
 bool is_host_name(const std::string& text) {

@@ -33,13 +33,18 @@ using profile::MissionProfile;
 using profile::PeerProfile;
 using profile::Severity;
 
-/// What stands against a host's name; empty where it has an address.
-std::string obstacle(const std::string& host) {
+/// What stands against a host's name; nothing where it has an address.
+struct HostObstacle {
+  std::string problem;
+  bool passing = false;
+};
+
+HostObstacle obstacle(const std::string& host) {
   try {
     host_addresses(host);
     return {};
-  } catch (const InvalidArgument& error) {
-    return error.what();
+  } catch (const Error& error) {
+    return {error.what(), error.code() == ErrorCode::Unavailable};
   }
 }
 
@@ -83,9 +88,9 @@ class MachineCheck {
  private:
   using SourcePosition = profile::SourcePosition;
 
-  void add(Severity severity, const SourcePosition& where, std::string problem,
-           std::string remedy) {
-    findings_.push_back({severity, where, std::move(problem), std::move(remedy)});
+  void add(Severity severity, const SourcePosition& where, std::string problem, std::string remedy,
+           bool passing = false) {
+    findings_.push_back({severity, where, std::move(problem), std::move(remedy), passing});
   }
 
   bool is_here(const PeerProfile& peer) const {
@@ -99,7 +104,7 @@ class MachineCheck {
     if (down && peer.vendor != dds::kLoopback) {
       if (!told_down_.insert(down->problem).second) return;
       return add(Severity::Error, peer.where, "'" + peer.name + "' cannot speak: " + down->problem,
-                 down->remedy);
+                 down->remedy, true);
     }
     const bool known = wanted.empty() || wanted.starts_with("127.") ||
                        std::ranges::any_of(interfaces_, [&](const HostInterface& interface) {
@@ -112,7 +117,7 @@ class MachineCheck {
         "'" + peer.name + "' speaks on '" + wanted +
             "', but this host has no such interface with an IPv4 address" +
             suggestion(wanted, names),
-        "it has " + to_text(interfaces_));
+        "it has " + to_text(interfaces_), !is_misspelled_interface(wanted, names));
   }
 
   /// Whether the peer can meet those of other hosts.
@@ -134,14 +139,15 @@ class MachineCheck {
       }
     }
     for (const std::string& host : network_of(mission_, peer).peers) {
-      const std::string problem = obstacle(host);
+      const auto [problem, passing] = obstacle(host);
       if (problem.empty() || !asked_.insert(host).second) continue;
       add(Severity::Error, peer.where,
           "'" + peer.name + "' is to look for peers there, but " + problem,
           peer.peers.empty() ? "write host=\"...\" as an address, add the name to /etc/hosts, or "
                                "say where to look: "
                                "peers=\"...\" or multicast=\"true\""
-                             : "write an address in peers=\"...\", or add the name to /etc/hosts");
+                             : "write an address in peers=\"...\", or add the name to /etc/hosts",
+          passing);
     }
   }
 
@@ -341,7 +347,7 @@ std::vector<Finding> check_hosts(const MissionProfile& mission, const std::strin
     findings.push_back({Severity::Note, first->where,
                         "of the host '" + name + "' only the profile was checked",
                         "'skein check' there checks its plugins, vendors, CPUs and interfaces"});
-    if (obstacle(name).empty()) continue;
+    if (obstacle(name).problem.empty()) continue;
     const bool asked = std::ranges::any_of(mission.peers, [&](const PeerProfile& peer) {
       return is_here(peer.host, host) &&
              std::ranges::count(network_of(mission, peer).peers, name) > 0;

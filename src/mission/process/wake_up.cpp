@@ -8,24 +8,14 @@
 #include <system_error>
 
 #include "core/system/ending_signals.hpp"
+#include "core/system/passing_error.hpp"
 
 namespace skein::launch {
 
 SystemError::SystemError(const std::string& what, int number)
     : Unavailable(what + ": " + std::generic_category().message(number)), number_(number) {}
 
-bool SystemError::is_passing() const noexcept {
-  switch (number_) {
-    case EAGAIN:
-    case ENOMEM:
-    case EMFILE:
-    case ENFILE:
-    case ETXTBSY:
-      return true;
-    default:
-      return false;
-  }
-}
+bool SystemError::is_passing() const noexcept { return skein::is_passing(number_); }
 
 void throw_system_error(const char* what) {
   throw SystemError(std::string("the launcher cannot make ") + what, errno);

@@ -26,8 +26,9 @@ enum class Severity {
 struct Finding {
   Severity severity = Severity::Error;
   SourcePosition where;
-  std::string problem;  ///< What is wrong, or was not checked: one clause without a full stop.
-  std::string remedy;   ///< What to write instead; may be empty.
+  std::string problem;   ///< What is wrong, or was not checked: one clause without a full stop.
+  std::string remedy;    ///< What to write instead; may be empty.
+  bool passing = false;  ///< This machine lacks something that may come: no file is wrong.
 };
 
 /// `error`, `warning`, `note`.

@@ -13,6 +13,7 @@
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/file_descriptor.hpp"
+#include "core/system/passing_error.hpp"
 #include "mission/xml/finding.hpp"
 
 namespace skein::profile {
@@ -52,6 +53,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   const FileDescriptor input = open_file(file);
   if (!input) {
     const int error = errno;
+    if (is_passing(error)) throw Unavailable(file.string() + " cannot be opened: " + reason());
     refuse(file, "cannot be opened: " + reason(),
            error == ENOENT   ? remedy_for_missing(file)
            : error == EACCES ? "check its rights, and those of its folders"

@@ -1,14 +1,20 @@
 #include "line_reader.hpp"
 
+#include <cerrno>
 #include <charconv>
 #include <sstream>
+#include <system_error>
 
+#include "core/system/passing_error.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation::grid {
 
 LineReader::LineReader(const std::filesystem::path& file) : file_(file), in_(file) {
-  if (!in_) throw InvalidArgument(file.string() + ": cannot be read; does it exist?");
+  if (in_) return;
+  const int error = errno;
+  throw_for_file(error,
+                 file.string() + ": cannot be read: " + std::generic_category().message(error));
 }
 
 bool LineReader::next() {

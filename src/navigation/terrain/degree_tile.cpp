@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/system/passing_error.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation {
@@ -195,6 +196,11 @@ void raise_to_posts(std::vector<float>& ground_m, const DegreePosts& degrees,
 
 void refuse(const std::filesystem::path& file, const std::string& why) {
   throw InvalidArgument(fmt::format("{}: {}", file.string(), why));
+}
+
+void refuse_unread(const std::filesystem::path& file, const std::error_code& error) {
+  throw_for_file(error.value(),
+                 fmt::format("{}: cannot be read: {}", file.string(), error.message()));
 }
 
 void require_earthly(const std::filesystem::path& file, int height_m, const std::string& where) {

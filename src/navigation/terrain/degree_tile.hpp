@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "navigation/terrain/terrain.hpp"
@@ -14,6 +15,9 @@ constexpr float kVoidPost = -32768;
 
 /// Throws InvalidArgument with the file's name and the reason.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
+
+/// As throw_for_file() does.
+[[noreturn]] void refuse_unread(const std::filesystem::path& file, const std::error_code& error);
 
 /// Refuses heights that no mountain on earth has; `where` says which post it is.
 void require_earthly(const std::filesystem::path& file, int height_m, const std::string& where);

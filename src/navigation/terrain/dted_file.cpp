@@ -33,7 +33,7 @@ struct Layout {
 std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) refuse(file, "cannot be read: " + error.message());
+  if (error) refuse_unread(file, error);
   if (size < kHeadersSize) {
     refuse(file, fmt::format("has {} bytes; the headers of a DTED file alone have {}", size,
                              kHeadersSize));

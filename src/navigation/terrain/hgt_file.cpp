@@ -89,7 +89,7 @@ void require_all(const Tiles& tiles, const std::filesystem::path& file) {
 int posts_per_side(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) refuse(file, "cannot be read: " + error.message());
+  if (error) refuse_unread(file, error);
   for (const int side : {1201, 3601}) {
     if (size == 2U * static_cast<std::uintmax_t>(side) * static_cast<std::uintmax_t>(side)) {
       return side;

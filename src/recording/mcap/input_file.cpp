@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/printable.hpp"
+#include "core/system/passing_error.hpp"
 #include "recording/mcap/record_reader.hpp"
 #include "skein/error.hpp"
 
@@ -16,8 +17,8 @@ namespace {
 
 constexpr std::size_t kPiece = std::size_t{64} << 10;
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw InvalidArgument("the recording '" + printable(path) + "' cannot be opened: " + why);
+std::string refusal(const std::string& path, const std::string& why) {
+  return "the recording '" + printable(path) + "' cannot be opened: " + why;
 }
 
 }  // namespace
@@ -26,9 +27,10 @@ InputFile::InputFile(std::string path)
     : path_(std::move(path)), file_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
   struct ::stat status {};
   if (!file_ || ::fstat(file_.get(), &status) != 0) {
-    refuse(path_, std::generic_category().message(errno));
+    const int error = errno;
+    throw_for_file(error, refusal(path_, std::generic_category().message(error)));
   }
-  if (!S_ISREG(status.st_mode)) refuse(path_, "it is no file");
+  if (!S_ISREG(status.st_mode)) throw InvalidArgument(refusal(path_, "it is no file"));
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
 

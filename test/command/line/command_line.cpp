@@ -183,8 +183,9 @@ TEST_CASE("a domain, vendor or interface that cannot be is refused with those th
   }
   CHECK_THAT(refusal("services --vendor cyclone"),
              Contains("--vendor: 'cyclone' is none of ") && Contains("cyclonedds"));
-  CHECK_THAT(refusal("services --interface eth99"),
-             Contains("--interface: this host has no interface 'eth99'") && Contains("it has lo"));
+  CHECK_THAT(refusal("services --interface l0"),
+             Contains("--interface: this host has no interface 'l0'") &&
+                 Contains("did you mean 'lo'?") && Contains("it has lo"));
 }
 
 TEST_CASE("help says once what a length of time is, where an option takes one") {

@@ -16,6 +16,7 @@
 #include "skein/introspection.idl.hpp"
 #include "test/tools/command_run.hpp"
 #include "test/tools/installed.hpp"
+#include "test/tools/network_space.hpp"
 #include "worker.idl.hpp"
 
 using namespace skein;
@@ -465,4 +466,31 @@ TEST_CASE("a profile without a peer on this host is complete, with a warning") {
   CHECK(run.wait() == 0);
   CHECK_THAT(run.output(), Contains("warning: no peer of mission 'errand' is of this host") &&
                                Contains("its hosts are 192.0.2.1 (office); 192.0.2.2 (client)"));
+}
+
+TEST_CASE("a network interface that is not ready yet ends nobody for good") {
+  const NetworkSpace host;
+  host.run("ip link add veth0 type veth peer name veth1 && ip link set veth0 up");
+  const Errand errand;
+  struct Case {
+    const char* interface;
+    int code;
+    const char* text;
+  };
+  const auto [interface, code, text] = GENERATE(values<Case>({
+      {"veth0", 71, "the interface veth0 has no IPv4 address"},
+      {"veth7", 71, "no interface 'veth7'"},
+      {"wlan0", 71, "no interface 'wlan0'"},
+      {"10.0.0.7", 71, "no interface '10.0.0.7'"},
+      {"l0", 78, "did you mean 'lo'?"},
+  }));
+  CAPTURE(interface);
+  const std::string profile =
+      errand.profile("interface='" + std::string(interface) + "'",
+                     "<peer name='office' component='office.xml' vendor='cyclonedds'/>");
+  CommandRun peer({"peer", profile, "office"}, {.network = host.descriptor()});
+  CommandRun launch({"launch", profile}, {.network = host.descriptor()});
+  CHECK(peer.wait() == code);
+  CHECK_THAT(peer.output(), Contains(text));
+  CHECK(launch.wait() == code);
 }
