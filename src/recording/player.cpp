@@ -4,8 +4,10 @@
 #include <charconv>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <sstream>
 
+#include "core/log.hpp"
 #include "core/suggestion.hpp"
 #include "recording/recorded_types.hpp"
 #include "recording/recorded_values.hpp"
@@ -19,6 +21,38 @@ namespace {
 
 /// Of all topics together.
 constexpr std::chrono::seconds kDeliveryPatience{5};
+
+/// No replay waits longer for the next value: in so long a time somebody has set the clock of the
+/// recorder (others' recordings have the wall clock's times), or nothing happened.
+constexpr std::chrono::nanoseconds kLongestPause = std::chrono::hours(24);
+
+/// When values are due, after the first one.
+class Timetable {
+ public:
+  explicit Timetable(double rate) : rate_(rate) {}
+
+  Duration due(std::uint64_t log_time) {
+    const std::uint64_t pause = first_ ? 0 : log_time - last_;
+    first_ = false;
+    last_ = log_time;
+    if (pause <= static_cast<std::uint64_t>(kLongestPause.count())) {
+      recorded_ += pause;
+    } else {
+      const auto hours = pause / std::chrono::nanoseconds(std::chrono::hours(1)).count();
+      log(LogLevel::Warning, "recording",
+          "nothing was recorded for " + std::to_string(hours) +
+              " h, or the recorder's clock was set by them; the replay leaves them out");
+    }
+    return std::chrono::duration_cast<Duration>(
+        std::chrono::duration<double, std::nano>(static_cast<double>(recorded_) / rate_));
+  }
+
+ private:
+  const double rate_;
+  bool first_ = true;
+  std::uint64_t last_ = 0;
+  std::uint64_t recorded_ = 0;
+};
 
 std::string value_of(const Channel& channel, const std::string& name) {
   const auto found = channel.metadata.find(name);
@@ -121,15 +155,12 @@ std::uint64_t Player::play(const std::function<bool(Duration)>& pause) {
   selection.topics = topics();
   Messages messages = state_->recording.messages(selection);
   std::uint64_t published = 0;
-  std::uint64_t first = 0;
+  Timetable timetable(state_->options.rate);
   const auto begin = steady_clock::now();
   while (const auto message = messages.next()) {
     const auto track = state_->tracks.find(message->channel);
     if (track == state_->tracks.end()) continue;
-    if (first == 0) first = message->log_time;
-    const std::chrono::duration<double, std::nano> after(
-        static_cast<double>(message->log_time - first) / state_->options.rate);
-    const auto left = begin + std::chrono::duration_cast<Duration>(after) - steady_clock::now();
+    const auto left = begin + timetable.due(message->log_time) - steady_clock::now();
     if (pause(std::max<Duration>(left, Duration::zero()))) return published;
     track->second.publish_encoded(message->data);
     ++published;

@@ -27,6 +27,14 @@ std::string part_of_result(const CallRecord& record) {
   return record.end == CallEnd::Raised ? "raised/" + record.text : kReply;
 }
 
+/// How long ago a call ended, by the entity's wall clock and by this machine's: nothing if these
+/// differ by more than a record is on its way.
+std::uint64_t age_of(const CallRecord& record, std::uint64_t now) {
+  constexpr std::uint64_t kLongestWay = 1'000'000'000;
+  const std::uint64_t age = now - record.ended;
+  return age <= kLongestWay ? age : 0;
+}
+
 /// The operation, and the interface that declares it; nothing if they are not described.
 std::pair<const types::Interface*, const types::Operation*> find_operation(
     const types::TypeSystem& known, const std::string& name) {
@@ -57,9 +65,13 @@ std::string add_type(types::TypeSystem& known, const CallRecord& record, const s
 
 }  // namespace
 
-RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask,
-                             std::size_t most_waiting)
-    : writer_(writer), types_(types), ask_(std::move(ask)), most_waiting_(most_waiting) {
+RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, const RecordingTime& time,
+                             AskTypes ask, std::size_t most_waiting)
+    : writer_(writer),
+      types_(types),
+      time_(time),
+      ask_(std::move(ask)),
+      most_waiting_(most_waiting) {
   const std::string type = "skein::introspection::CallRecord";
   records_ = types_.add_channel(introspection::kCallRecords.name, type,
                                 skein::describe(idl::type_support<CallRecord>()),
@@ -69,10 +81,12 @@ RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask,
 void RecordedCalls::receive(const dds::Sample& sample) {
   if (sample.state != dds::InstanceState::Alive) return;
   auto batch = introspection::decoded<CallRecords>(sample);
+  const ClockTimes now = clock_times_now();
   std::lock_guard lock(mutex_);
   count_dropped(sample.writer, batch.dropped);
-  for (CallRecord& record : batch.values)
-    receive({std::move(record), ++sequence_, sample.writer.participant()});
+  for (const CallRecord& record : batch.values)
+    receive({record, ++sequence_, sample.writer.participant(),
+             time_.at(now.since_boot) - age_of(record, now.wall)});
 }
 
 // Under the lock. What an entity had dropped before it was recorded does not count.
@@ -155,21 +169,26 @@ const types::TypeSystem& RecordedCalls::types_of(const Waiting& waiting) {
 // Under the lock.
 void RecordedCalls::write(const Waiting& waiting) {
   const CallRecord& record = waiting.record;
-  if (record.end != CallEnd::Item) write_part(waiting, kRequest, record.arguments, record.begun);
-  write_part(waiting, part_of_result(record), record.result, record.ended);
+  const std::uint64_t took = record.ended - std::min(record.begun, record.ended);
+  const std::uint64_t begun = waiting.ended - std::min(took, waiting.ended);
+  if (record.end != CallEnd::Item)
+    write_part(waiting, kRequest, record.arguments, begun, record.begun);
+  write_part(waiting, part_of_result(record), record.result, waiting.ended, record.ended);
   CallRecord rest = record;
   rest.arguments.clear();
   rest.result.clear();
   const Bytes message = idl::encode_message(rest);
-  writer_.write({records_, waiting.sequence, record.ended, record.ended, message});
+  writer_.write({records_, waiting.sequence, waiting.ended, record.ended, message});
 }
 
 void RecordedCalls::write_part(const Waiting& waiting, const std::string& part,
-                               const std::vector<std::uint8_t>& data, std::uint64_t time) {
+                               const std::vector<std::uint8_t>& data, std::uint64_t log_time,
+                               std::uint64_t publish_time) {
   const auto channel = channels_.find({waiting.record.service, waiting.record.operation, part});
   if (data.empty()) return;
   if (channel == channels_.end()) return writer_.count_dropped(records_, 1);
-  writer_.write({channel->second, waiting.sequence, time, time, std::as_bytes(std::span(data))});
+  writer_.write(
+      {channel->second, waiting.sequence, log_time, publish_time, std::as_bytes(std::span(data))});
 }
 
 }  // namespace skein::recording

@@ -10,6 +10,7 @@
 
 #include "dds/port/port.hpp"
 #include "recording/recorded_types.hpp"
+#include "recording/recording_time.hpp"
 #include "skein/introspection.idl.hpp"
 
 namespace skein::recording {
@@ -17,6 +18,7 @@ namespace skein::recording {
 /// Calls in a recording: each as a message of the channel `skein/call_records`, without what it
 /// carried, and this in the channels `calls/SERVICE/OPERATION/request`, `…/reply` and
 /// `…/raised/EXCEPTION`, by which viewers decode it. Messages of one call have one sequence number.
+/// Their log times are of the recording, their publish times of the entity's wall clock.
 /// Thread-safe.
 class RecordedCalls {
  public:
@@ -26,7 +28,7 @@ class RecordedCalls {
 
   /// `most_waiting`: of records that wait for their channels, in bytes. Further ones are dropped,
   /// but not one alone.
-  RecordedCalls(Writer& writer, RecordedTypes& types, AskTypes ask,
+  RecordedCalls(Writer& writer, RecordedTypes& types, const RecordingTime& time, AskTypes ask,
                 std::size_t most_waiting = kMostWaiting);
 
   /// On a vendor's thread. Throws InvalidArgument for what is no record.
@@ -41,6 +43,7 @@ class RecordedCalls {
     introspection::CallRecord record;
     std::uint32_t sequence;
     Guid participant;
+    std::uint64_t ended;  // by the recording's time
   };
   /// What of a call is a channel of its own: `request`, `reply`, `raised/A::E`.
   using Part = std::tuple<std::string, std::string, std::string>;
@@ -49,7 +52,8 @@ class RecordedCalls {
   void receive(Waiting waiting);
   void write(const Waiting& waiting);
   void write_part(const Waiting& waiting, const std::string& part,
-                  const std::vector<std::uint8_t>& data, std::uint64_t time);
+                  const std::vector<std::uint8_t>& data, std::uint64_t log_time,
+                  std::uint64_t publish_time);
   std::uint16_t channel_of(const Waiting& waiting, const std::string& part);
   const types::TypeSystem& types_of(const Waiting& waiting);
 
@@ -60,6 +64,7 @@ class RecordedCalls {
 
   Writer& writer_;
   RecordedTypes& types_;
+  const RecordingTime& time_;
   const AskTypes ask_;
   const std::size_t most_waiting_;
   std::uint16_t records_ = 0;   // the channel

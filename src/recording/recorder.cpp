@@ -8,11 +8,12 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/wall_clock.hpp"
 #include "introspection/topic_witness.hpp"
+#include "recording/mcap/format.hpp"
 #include "recording/recorded_calls.hpp"
 #include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
+#include "recording/recording_time.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/json.hpp"
@@ -88,7 +89,7 @@ struct Recorder::State {
         writer(path, options.writer),
         types(writer),
         inspector(entity),
-        calls(writer, types, [this](const std::string& service, const Guid& participant) {
+        calls(writer, types, time, [this](const std::string& service, const Guid& participant) {
           return inspector.types(service, participant, std::chrono::seconds(2));
         }) {
     if (options.decisions) record_own(introspection::kDecisions);
@@ -115,8 +116,8 @@ struct Recorder::State {
   }
 
   void write(std::uint16_t channel, std::span<const std::byte> cdr) {
-    const std::uint64_t time = nanoseconds_since_1970();
-    writer.write({channel, ++sequence, time, time, cdr});
+    const std::uint64_t now = time.now();
+    writer.write({channel, ++sequence, now, now, cdr});
   }
 
   bool is_wanted(const KnownTopic& topic) const {
@@ -182,8 +183,21 @@ struct Recorder::State {
     }
   }
 
+  void look_at_clock() {
+    const ClockTimes now = clock_times_now();
+    const auto step = time.step(now);
+    if (!step) return;
+    writer.add_metadata(
+        {kClockStepName,
+         {{"at_ns", std::to_string(time.at(now.since_boot))}, {"by_ns", std::to_string(*step)}}});
+    log(LogLevel::Warning, "recording",
+        "the wall clock was set by " + std::to_string(*step / 1'000'000'000) +
+            " s; the recording's times go on from its start");
+  }
+
   void end() {
     std::lock_guard lock(looking);
+    look_at_clock();
     call_reader.reset();
     own_readers.clear();
     recorded.clear();
@@ -192,6 +206,7 @@ struct Recorder::State {
 
   Entity& entity;
   const RecorderOptions options;
+  RecordingTime time;
   Writer writer;
   RecordedTypes types;
   Inspector inspector;
@@ -220,6 +235,7 @@ Recorder::~Recorder() {
 std::vector<std::string> Recorder::look(Duration patience) {
   std::vector<std::string> found;
   std::lock_guard lock(state_->looking);
+  state_->look_at_clock();
   for (const KnownTopic& topic : known_topics(state_->inspector, patience)) {
     if (!state_->is_wanted(topic) || !topic.has_publisher()) continue;
     if (auto said = state_->follow(topic, patience)) found.push_back(std::move(*said));

@@ -333,7 +333,8 @@ TEST_CASE("a call is recorded, however large, while no other one waits for its t
   const auto nobody_tells = [](const std::string&, const Guid&) -> types::TypeSystem {
     throw Unavailable("nobody tells types here");
   };
-  recording::RecordedCalls calls(writer, known, nobody_tells, 1);
+  const recording::RecordingTime time;
+  recording::RecordedCalls calls(writer, known, time, nobody_tells, 1);
   introspection::CallRecord call;
   call.service = "survey/ISurveyor";
   call.operation = "measure";

@@ -24,6 +24,8 @@ nlohmann::ordered_json json_of_recording(const recording::Reader& reader) {
     json["first_ns"] = times->first;
     json["last_ns"] = times->second;
   }
+  for (const recording::ClockStep& step : reader.clock_steps())
+    json["clock_steps"].push_back({{"at_ns", step.at}, {"by_ns", step.by}});
   const auto& counts = reader.message_counts();
   const auto dropped = reader.dropped();
   for (const auto& [id, channel] : reader.channels()) {
@@ -53,6 +55,11 @@ void print_recording(const recording::Reader& reader) {
   if (const auto times = reader.times()) {
     std::printf("from %s, %.3f s\n", local_time(times->first, "%Y-%m-%d %H:%M:%S").c_str(),
                 static_cast<double>(times->second - times->first) / kNanoseconds);
+  }
+  for (const recording::ClockStep& step : reader.clock_steps()) {
+    std::printf("at %s the wall clock was set by %.3f s; times go on from the recording's start\n",
+                local_time(step.at, "%H:%M:%S").c_str(),
+                static_cast<double>(step.by) / kNanoseconds);
   }
   std::printf(
       "%llu messages%s\n", static_cast<unsigned long long>(reader.message_count()),

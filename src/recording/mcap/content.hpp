@@ -6,7 +6,8 @@
 #include <span>
 #include <string>
 
-/// What a recording contains. Texts are UTF-8. Times are nanoseconds since 1970.
+/// What a recording contains. Texts are UTF-8. Times are nanoseconds since 1970, by the wall clock
+/// at the recording's start and a clock that nobody sets.
 namespace skein::recording {
 
 /// How the messages of channels are to be decoded.
@@ -48,6 +49,14 @@ struct Attachment {
   std::uint64_t create_time = 0;
 
   bool operator==(const Attachment&) const = default;
+};
+
+/// The wall clock was set while it was recorded.
+struct ClockStep {
+  std::uint64_t at = 0;  ///< By log time, which goes on as if it had not been set.
+  std::int64_t by = 0;   ///< In nanoseconds; negative: back.
+
+  bool operator==(const ClockStep&) const = default;
 };
 
 struct Metadata {

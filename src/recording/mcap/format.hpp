@@ -39,4 +39,7 @@ inline constexpr std::size_t kFooterFields = 8 + 8 + 4;
 /// messages were dropped since the recording began. The last such record counts.
 inline constexpr const char* kDropsName = "skein.dropped_messages";
 
+/// The metadata record that says that the wall clock was set: `at_ns`, by log time, and `by_ns`.
+inline constexpr const char* kClockStepName = "skein.clock_step";
+
 }  // namespace skein::recording

@@ -93,6 +93,22 @@ std::map<std::string, std::uint64_t> Reader::dropped() const {
   return dropped;
 }
 
+std::vector<ClockStep> Reader::clock_steps() const {
+  std::vector<ClockStep> steps;
+  for (const Metadata& entry : metadata()) {
+    if (entry.name != kClockStepName) continue;
+    const auto read = [&](const char* name, auto& number) {
+      const auto found = entry.values.find(name);
+      if (found == entry.values.end()) return;
+      const std::string& text = found->second;
+      std::from_chars(text.data(), text.data() + text.size(), number);
+    };
+    read("at_ns", steps.emplace_back().at);
+    read("by_ns", steps.back().by);
+  }
+  return steps;
+}
+
 std::vector<std::string> Reader::attachments() const {
   std::vector<std::string> names;
   for (const AttachmentPlace& place : state_->index.attachments) names.push_back(place.name);

@@ -65,6 +65,9 @@ class Reader {
   /// How many messages whoever wrote it had to drop, by topic.
   std::map<std::string, std::uint64_t> dropped() const;
 
+  /// Of the wall clock while it was recorded.
+  std::vector<ClockStep> clock_steps() const;
+
   const std::vector<Metadata>& metadata() const;
   std::vector<std::string> attachments() const;
   /// The first with this name. Throws InvalidArgument if it is not there, or damaged.

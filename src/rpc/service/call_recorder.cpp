@@ -73,6 +73,7 @@ CallRecorder::Tap::Tap(CallRecorder* recorder, const InterfaceInfo& interface,
       id_(id) {
   if (!recorder_) return;
   begun_ = nanoseconds_since_1970();
+  begun_steadily_ = std::chrono::steady_clock::now();
   arguments_ = message_of(*operation.in, in);
 }
 
@@ -90,7 +91,8 @@ CallRecord CallRecorder::Tap::record(CallEnd end) {
   record.service = interface_.name;
   record.operation = operation_.name;
   record.begun = begun_;
-  record.ended = nanoseconds_since_1970();
+  const std::chrono::nanoseconds took = std::chrono::steady_clock::now() - begun_steadily_;
+  record.ended = begun_ + static_cast<std::uint64_t>(took.count());
   record.end = end;
   if (end != CallEnd::Item) record.arguments = std::move(arguments_);
   return record;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -58,6 +59,7 @@ class CallRecorder {
     const OperationInfo& operation_;
     const wire::RequestId id_;
     std::uint64_t begun_ = 0;
+    std::chrono::steady_clock::time_point begun_steadily_;
     std::vector<std::uint8_t> arguments_;
     std::shared_ptr<StreamWriter> items_;
   };
