@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,8 +25,10 @@ struct Inspected {
 /// for its end.
 class Inspector {
  public:
-  /// `entity` must outlive it. Throws what Participant::create_writer() throws.
-  explicit Inspector(Entity& entity);
+  /// `entity` must outlive it. `gives_up` is asked ten times a second by each thread that waits for
+  /// answers: once it says so, nobody waits any more. Throws what Participant::create_writer()
+  /// throws.
+  explicit Inspector(Entity& entity, std::function<bool()> gives_up = {});
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;
@@ -38,6 +41,17 @@ class Inspector {
   /// reads, with all that they name. With a nil participant, of the first that knows them. Throws
   /// Unavailable where there is no answer within `timeout`.
   types::TypeSystem types(const std::string& name, const Guid& participant, Duration timeout);
+
+  /// A question for types, as types() asks it.
+  struct TypesWanted {
+    std::string name;
+    Guid participant;
+  };
+  /// Asks all of them at once, so that one that is not answered does not hold up the others. Calls
+  /// `on_told(index, types)` in this thread as the answers come; returns when the last has come, at
+  /// most after `timeout`.
+  void types(const std::vector<TypesWanted>& wanted, Duration timeout,
+             const std::function<void(std::size_t, const types::TypeSystem&)>& on_told);
 
  private:
   struct State;

@@ -4,7 +4,9 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/clock_wait.hpp"
 #include "entity/inspection_topic.hpp"
@@ -27,7 +29,8 @@ constexpr std::chrono::milliseconds kRepetition{100};
 }  // namespace
 
 struct Inspector::State {
-  explicit State(Entity& entity_) : entity(entity_) {
+  State(Entity& entity_, std::function<bool()> gives_up_)
+      : entity(entity_), gives_up(std::move(gives_up_)) {
     dds::WriterListener listener;
     listener.on_matched = [this](const Guid& reader, bool matched) {
       std::lock_guard lock(mutex);
@@ -66,66 +69,83 @@ struct Inspector::State {
     Answers answers{};
   };
 
-  /// Forgets a question when who asked it waits no longer.
-  struct Waiting {
-    Waiting(State& state_, std::unique_lock<std::mutex>& lock_, std::uint32_t number_)
-        : state(state_), lock(lock_), number(number_) {}
-    ~Waiting() {
-      if (!lock.owns_lock()) lock.lock();
-      state.waiting.erase(number);
+  /// A question, which is forgotten with this object.
+  class Asking {
+   public:
+    Asking(State& state, Question question) : state_(state), question_(std::move(question)) {
+      std::lock_guard lock(state.mutex);
+      question_.asker = state.asker.bytes;
+      question_.number = ++state.last;
+      answers_ = &state.waiting.emplace(question_.number, Asked{Guid{question_.participant}})
+                      .first->second.answers;
     }
-    Waiting(const Waiting&) = delete;
-    Waiting& operator=(const Waiting&) = delete;
+    ~Asking() {
+      std::lock_guard lock(state_.mutex);
+      state_.waiting.erase(question_.number);
+    }
+    Asking(const Asking&) = delete;
+    Asking& operator=(const Asking&) = delete;
 
-    State& state;
-    std::unique_lock<std::mutex>& lock;
-    const std::uint32_t number;
+    /// Under the lock.
+    Answers& answers() const noexcept { return *answers_; }
+
+    /// To all that it is meant for, or again to those that have not answered.
+    void send() {
+      const auto again = std::exchange(first_, false) ? std::vector<Guid>() : missing();
+      if (again.empty() || question_.participant != Guid{}.bytes) return write(question_);
+      Question question = question_;
+      for (const Guid& participant : again) {
+        question.participant = participant.bytes;
+        write(question);
+      }
+    }
+
+   private:
+    void write(const Question& question) const {
+      state_.writer->write(idl::encode_message(question));
+    }
+
+    std::vector<Guid> missing() const {
+      std::lock_guard lock(state_.mutex);
+      std::vector<Guid> others;
+      std::ranges::copy_if(state_.known, std::back_inserter(others),
+                           [&](const Guid& each) { return !answers_->contains(each); });
+      return others;
+    }
+
+    State& state_;
+    Question question_;
+    Answers* answers_;
+    bool first_ = true;
   };
 
-  /// Waits until `complete(answers)`, under the lock; asks those again that have not answered.
+  /// Waits until `complete()`, under the lock. In between it calls `ask`, without the lock.
+  template <class Ask, class Complete>
+  void await(Duration timeout, const Ask& ask, const Complete& complete) {
+    std::unique_lock lock(mutex);
+    const Instant deadline = entity.clock().after(timeout);
+    while (!complete()) {
+      lock.unlock();
+      ask();
+      const bool patient = !gives_up || !gives_up();
+      lock.lock();
+      const Instant again = std::min(deadline, entity.clock().after(kRepetition));
+      if (patient) wait_until(entity.clock(), again, lock, changed, complete);
+      if (!patient || entity.clock().now() >= deadline) break;
+    }
+  }
+
   template <class Complete>
   Answers ask(Question question, Duration timeout, const Complete& complete) {
-    std::unique_lock lock(mutex);
-    question.asker = asker.bytes;
-    question.number = ++last;
-    const Waiting entry(*this, lock, question.number);
-    Answers& answers =
-        waiting.emplace(question.number, Asked{Guid{question.participant}}).first->second.answers;
-    const Instant deadline = entity.clock().after(timeout);
-    bool first = true;
-    while (!complete(answers)) {
-      lock.unlock();
-      send(question, first ? std::vector<Guid>() : missing(answers));
-      lock.lock();
-      first = false;
-      const Instant again = std::min(deadline, entity.clock().after(kRepetition));
-      wait_until(entity.clock(), again, lock, changed, [&] { return complete(answers); });
-      if (entity.clock().now() >= deadline) break;
-    }
-    return std::move(answers);
-  }
-
-  std::vector<Guid> missing(const Answers& answers) {
+    Asking asking(*this, std::move(question));
+    await(
+        timeout, [&] { asking.send(); }, [&] { return complete(asking.answers()); });
     std::lock_guard lock(mutex);
-    std::vector<Guid> others;
-    std::ranges::copy_if(known, std::back_inserter(others),
-                         [&](const Guid& each) { return !answers.contains(each); });
-    return others;
-  }
-
-  /// To all that it is meant for, or again to some of them.
-  void send(Question question, const std::vector<Guid>& again) const {
-    if (again.empty() || question.participant != Guid{}.bytes) {
-      writer->write(idl::encode_message(question));
-      return;
-    }
-    for (const Guid& participant : again) {
-      question.participant = participant.bytes;
-      writer->write(idl::encode_message(question));
-    }
+    return std::move(asking.answers());
   }
 
   Entity& entity;
+  const std::function<bool()> gives_up;
   const Guid asker = Guid::random();
   std::mutex mutex;
   std::condition_variable changed;
@@ -137,7 +157,8 @@ struct Inspector::State {
   std::unique_ptr<dds::Writer> writer;
 };
 
-Inspector::Inspector(Entity& entity) : state_(std::make_unique<State>(entity)) {}
+Inspector::Inspector(Entity& entity, std::function<bool()> gives_up)
+    : state_(std::make_unique<State>(entity, std::move(gives_up))) {}
 Inspector::~Inspector() = default;
 
 std::vector<Inspected> Inspector::ask_all(inspection::Subject subject, Duration timeout) {
@@ -156,20 +177,52 @@ std::vector<Inspected> Inspector::ask_all(inspection::Subject subject, Duration 
 
 types::TypeSystem Inspector::types(const std::string& name, const Guid& participant,
                                    Duration timeout) {
-  Question question;
-  question.subject = inspection::Subject::Types;
-  question.participant = participant.participant().bytes;
-  question.name = name;
-  const auto has_types = [](const auto& each) { return !each.second.types.empty(); };
-  const auto answers = state_->ask(question, timeout, [&](const State::Answers& answers_) {
-    return std::ranges::any_of(answers_, has_types);
-  });
-  const auto found = std::ranges::find_if(answers, has_types);
-  if (found != answers.end()) return found->second.types.front();
+  std::optional<types::TypeSystem> found;
+  types({{name, participant}}, timeout,
+        [&](std::size_t, const types::TypeSystem& told) { found = told; });
+  if (found) return std::move(*found);
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout);
   throw Unavailable("nobody told the types of " + name + " within " +
                     std::to_string(waited.count()) + " ms" +
                     (participant.is_nil() ? "" : ": its provider did not answer"));
+}
+
+void Inspector::types(const std::vector<TypesWanted>& wanted, Duration timeout,
+                      const std::function<void(std::size_t, const types::TypeSystem&)>& on_told) {
+  std::map<std::size_t, State::Asking> asked;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    Question question;
+    question.subject = inspection::Subject::Types;
+    question.participant = wanted[i].participant.participant().bytes;
+    question.name = wanted[i].name;
+    asked.try_emplace(i, *state_, std::move(question));
+  }
+  const Instant deadline = state_->entity.clock().now() + timeout;
+  const auto has_types = [](const auto& each) { return !each.second.types.empty(); };
+  const auto first_told = [&] {
+    return std::ranges::find_if(asked, [&](const auto& each) {
+      return std::ranges::any_of(each.second.answers(), has_types);
+    });
+  };
+  Instant next{};
+  const auto send_all = [&] {
+    const Instant now = state_->entity.clock().now();
+    if (now < next) return;
+    next = now + kRepetition;
+    for (auto& [index, asking] : asked) asking.send();
+  };
+  while (!asked.empty()) {
+    state_->await(deadline - state_->entity.clock().now(), send_all,
+                  [&] { return first_told() != asked.end(); });
+    std::unique_lock lock(state_->mutex);
+    const auto told = first_told();
+    if (told == asked.end()) return;
+    const State::Answers answers = std::move(told->second.answers());
+    lock.unlock();
+    const std::size_t index = told->first;
+    asked.erase(told);
+    on_told(index, std::ranges::find_if(answers, has_types)->second.types.front());
+  }
 }
 
 }  // namespace skein

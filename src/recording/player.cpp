@@ -21,6 +21,7 @@ namespace {
 
 /// Of all topics together.
 constexpr std::chrono::seconds kDeliveryPatience{5};
+constexpr std::chrono::milliseconds kAcknowledgmentPeriod{100};
 
 /// No replay waits longer for the next value: in so long a time somebody has set the clock of the
 /// recorder (others' recordings have the wall clock's times), or nothing happened.
@@ -167,8 +168,8 @@ std::uint64_t Player::play(const std::function<bool(Duration)>& pause) {
   }
   const auto end = steady_clock::now() + kDeliveryPatience;
   for (auto& [id, track] : state_->tracks) {
-    const auto left = std::max<Duration>(end - steady_clock::now(), Duration::zero());
-    track.wait_for_acknowledgments(std::chrono::ceil<std::chrono::milliseconds>(left));
+    while (!track.wait_for_acknowledgments(kAcknowledgmentPeriod))
+      if (pause(Duration::zero()) || steady_clock::now() >= end) return published;
   }
   return published;
 }

@@ -38,7 +38,8 @@ class Player {
   std::size_t subscribers() const;
 
   /// Publishes all of it. `pause` is called before each value and waits as long as it is told,
-  /// which may be nothing; true from it ends the replay. Returns how many values were published.
+  /// which may be nothing, and while the last values are not acknowledged; true from it ends the
+  /// replay. Returns how many values were published.
   std::uint64_t play(const std::function<bool(Duration)>& pause);
 
  private:

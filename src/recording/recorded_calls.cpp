@@ -155,15 +155,17 @@ std::uint16_t RecordedCalls::channel_of(const Waiting& waiting, const std::strin
   }
 }
 
-// A participant that does not tell them is asked once.
+// A participant that does not answer once is not asked again, whatever services it has: each
+// silence takes time from the others.
 const types::TypeSystem& RecordedCalls::types_of(const Waiting& waiting) {
   const std::string& service = waiting.record.service;
-  const auto [place, is_new] = told_.try_emplace({service, waiting.participant});
-  if (is_new) {
-    place->second = std::make_shared<const types::TypeSystem>(ask_(service, waiting.participant));
-  }
-  if (!place->second) throw Unavailable("the provider of " + service + " did not tell its types");
-  return *place->second;
+  const auto known = told_.find({service, waiting.participant});
+  if (known != told_.end()) return known->second;
+  if (!silent_.insert(waiting.participant).second)
+    throw Unavailable("the provider of " + service + " did not tell its types");
+  types::TypeSystem told = ask_(service, waiting.participant);
+  silent_.erase(waiting.participant);
+  return told_.emplace(std::pair(service, waiting.participant), std::move(told)).first->second;
 }
 
 // Under the lock.

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -74,8 +75,8 @@ class RecordedCalls {
   std::vector<Waiting> waiting_;
   std::size_t waiting_size_ = 0;
   std::map<Part, std::uint16_t> channels_;
-  /// By service and participant; null if it did not tell them.
-  std::map<std::pair<std::string, Guid>, std::shared_ptr<const types::TypeSystem>> told_;
+  std::map<std::pair<std::string, Guid>, types::TypeSystem> told_;  // by service and participant
+  std::set<Guid> silent_;
 };
 
 }  // namespace skein::recording

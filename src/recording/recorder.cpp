@@ -88,7 +88,7 @@ struct Recorder::State {
         options(std::move(options_)),
         writer(path, options.writer),
         types(writer),
-        inspector(entity),
+        inspector(entity, options.gives_up),
         calls(writer, types, time, [this](const std::string& service, const Guid& participant) {
           return inspector.types(service, participant, std::chrono::seconds(2));
         }) {
@@ -124,34 +124,56 @@ struct Recorder::State {
     return options.topics.empty() || std::ranges::count(options.topics, topic.name) > 0;
   }
 
-  /// What it says of a topic that is new, or of which there is news; nothing otherwise.
-  std::optional<std::string> follow(const KnownTopic& topic, Duration patience) {
-    Recorded& known = recorded[{topic.name, topic.type}];
-    const bool is_new = known.channel == 0;
-    const std::string name = topic.name + " (" + topic.type + ")";
-    std::string problem;
-    if (!known.has_schema && known.questions < kMostQuestions) {
-      problem = name_channel(known, topic, patience);
+  Recorded& recorded_of(const KnownTopic& topic) { return recorded[{topic.name, topic.type}]; }
+
+  /// Follows topics whose types are known, then those whose types come, as they come, and at last
+  /// those without. Returns what it says of topics that are new, or of which there is news.
+  std::vector<std::string> follow(const std::vector<KnownTopic>& topics, Duration patience) {
+    std::vector<std::string> said;
+    const auto follow_one = [&](const KnownTopic& topic) {
+      if (auto news = follow(topic)) said.push_back(std::move(*news));
+    };
+    std::vector<const KnownTopic*> asked;
+    std::vector<Inspector::TypesWanted> wanted;
+    for (const KnownTopic& topic : topics) {
+      Recorded& known = recorded_of(topic);
+      if (known.has_schema || known.questions == kMostQuestions) {
+        follow_one(topic);
+        continue;
+      }
+      ++known.questions;
+      asked.push_back(&topic);
+      wanted.push_back({topic.type, witness_of(topic)});
     }
+    inspector.types(wanted, patience, [&](std::size_t index, const types::TypeSystem& told) {
+      name_channel(*asked[index], told);
+      follow_one(*asked[index]);
+    });
+    for (const KnownTopic* topic : asked)
+      if (!recorded_of(*topic).has_schema) follow_one(*topic);
+    return said;
+  }
+
+  std::optional<std::string> follow(const KnownTopic& topic) {
+    Recorded& known = recorded_of(topic);
+    const bool is_new = !known.topic;
+    const std::string name = topic.name + " (" + topic.type + ")";
+    // What comes until somebody tells the types has no schema.
+    if (known.channel == 0) known.channel = writer.add_channel(topic.name, 0, metadata_of(topic));
     if (topic.endpoints.front().told.keyed) name_disposals();
     const std::string failure = listen(known, topic);
     if (!failure.empty()) return name + " is not recorded: " + failure;
     if (!is_new) return std::nullopt;
-    return problem.empty() ? name : name + ", without schema: " + problem;
+    return known.has_schema ? name : name + ", without schema: nobody told its types yet";
   }
 
-  /// With a schema, once somebody tells its types; what comes until then has none. Says why not.
-  std::string name_channel(Recorded& known, const KnownTopic& topic, Duration patience) {
-    ++known.questions;
+  void name_channel(const KnownTopic& topic, const types::TypeSystem& told) {
+    Recorded& known = recorded_of(topic);
     try {
-      known.channel = types.add_channel(topic.name, topic.type,
-                                        inspector.types(topic.type, witness_of(topic), patience),
-                                        metadata_of(topic));
+      known.channel = types.add_channel(topic.name, topic.type, told, metadata_of(topic));
       known.has_schema = true;
-      return "";
-    } catch (const Error& error) {
-      if (known.channel == 0) known.channel = writer.add_channel(topic.name, 0, metadata_of(topic));
-      return error.what();
+    } catch (const Error& error) {  // what was told makes no sense
+      log(LogLevel::Warning, "recording", topic.name + ": " + error.what());
     }
   }
 
@@ -233,15 +255,15 @@ Recorder::~Recorder() {
 }
 
 std::vector<std::string> Recorder::look(Duration patience) {
-  std::vector<std::string> found;
   std::lock_guard lock(state_->looking);
   state_->look_at_clock();
-  for (const KnownTopic& topic : known_topics(state_->inspector, patience)) {
-    if (!state_->is_wanted(topic) || !topic.has_publisher()) continue;
-    if (auto said = state_->follow(topic, patience)) found.push_back(std::move(*said));
-  }
+  auto topics = known_topics(state_->inspector, patience);
+  std::erase_if(topics, [&](const KnownTopic& topic) {
+    return !state_->is_wanted(topic) || !topic.has_publisher();
+  });
+  auto said = state_->follow(topics, patience);
   state_->calls.name_channels();
-  return found;
+  return said;
 }
 
 WriterStatistics Recorder::statistics() const { return state_->writer.statistics(); }

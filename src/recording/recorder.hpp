@@ -20,6 +20,8 @@ struct RecorderOptions {
   bool calls = true;                  ///< What services are called with, and what they answer.
   bool decisions = true;              ///< Of Heads.
   WriterOptions writer{};
+  /// Once it says so, nobody is waited for any more; asked by look() and close() while they wait.
+  std::function<bool()> gives_up{};
 };
 
 /// Records a mission while it runs: the values of topics as they travel, calls with their arguments

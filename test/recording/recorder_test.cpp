@@ -1,8 +1,11 @@
 #include "recording/recorder.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <thread>
 
+#include "entity/inspection_topic.hpp"
 #include "recording/mcap/reader.hpp"
 #include "recording/player.hpp"
 #include "recording/recorded_calls.hpp"
@@ -72,6 +75,37 @@ struct Recorded {
     }
     return all;
   }
+};
+
+/// A member that tells of many topics, and answers no other question.
+class Mute {
+ public:
+  static constexpr int kTopics = 40;
+
+ private:
+  static bool answer(const inspection::Question& question, inspection::Answer& answer) {
+    if (question.subject != inspection::Subject::Topics) return false;
+    for (int i = 0; i < kTopics; ++i) {
+      auto& topic = answer.topics.emplace_back();
+      topic.name = "a" + std::to_string(i);  // before the others by name
+      topic.type = "mute::Type";
+      topic.systems = {"uav-1"};
+      topic.publishes = true;
+      topic.signature = 1;
+    }
+    return true;
+  }
+
+  static dds::ParticipantOptions options() {
+    dds::ParticipantOptions options;
+    options.domain = 19;
+    return options;
+  }
+
+  std::unique_ptr<dds::Participant> participant_ =
+      dds::load_vendor("loopback")->create_participant(options());
+  ThreadExecutor control_{"mute", 1, 1000};
+  introspection::Answerer answerer_{*participant_, control_, "uav-1/mute", answer};
 };
 
 /// As the publisher of a survey's type in the system uav-1 has it.
@@ -279,6 +313,32 @@ TEST_CASE("a topic that cannot be read beside another one is told, and ends no r
   CHECK(recorded.recorder->look(1s).empty());
   corners.publish({1, 2});
   CHECK(eventually([&] { return recorded.written("place") == 1; }));
+}
+
+TEST_CASE("a member that tells of topics and not of their types holds up no other topic") {
+  Recorded recorded;
+  const Mute mute;
+  auto publisher = recorded.provider->publisher<survey::Corner>("corner", TopicQos::state());
+  recorded.begin();
+  std::atomic<bool> ended{false};
+  std::jthread looking([&] {
+    while (!ended) recorded.recorder->look(1s);
+  });
+  CHECK(eventually([&] { return publisher.subscribers() == 1; }, 5s));
+  publisher.publish({1, 1});
+  CHECK(eventually([&] { return recorded.written("corner") == 1; }));
+  CHECK(
+      eventually([&] { return recorded.recorder->statistics().channels.size() > Mute::kTopics; }));
+  ended = true;
+}
+
+TEST_CASE("a recorder that is told to give up waits for nobody") {
+  Recorded recorded;
+  const Mute mute;
+  recorded.begin({.gives_up = [] { return true; }});
+  recorded.recorder->look(1h);
+  recorded.recorder->close();
+  CHECK(recording::Reader(recorded.file).is_complete());
 }
 
 TEST_CASE("calls are recorded with what they carried, whatever their transport and end") {

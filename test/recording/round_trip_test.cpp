@@ -40,7 +40,7 @@ TEST_CASE("what was recorded is read again: schemas, channels, messages, attachm
     CHECK(writer.statistics().files == std::vector{path});
     CHECK(writer.statistics().bytes == test::content_of(path).size());
   }
-  const Reader reader(path);
+  const recording::Reader reader(path);
   CHECK(reader.is_complete());
   CHECK(reader.problems().empty());
   REQUIRE(reader.schemas().size() == 1);
@@ -73,7 +73,7 @@ TEST_CASE("messages come in the order of their log time, across chunks that over
       REQUIRE(writer.write({channel, i, time, 0, bytes_of("some text that repeats, repeats")}));
     }
   }
-  const auto messages = test::all_messages(Reader(path));
+  const auto messages = test::all_messages(recording::Reader(path));
   CHECK(messages.size() == 200);
   CHECK(std::ranges::is_sorted(messages, {}, &test::KeptMessage::log_time));
 }
@@ -88,7 +88,7 @@ TEST_CASE("messages of one time keep the order in which they were recorded") {
       REQUIRE(writer.write({channel, i, 7, 0, bytes_of("x")}));
     }
   }
-  const auto messages = test::all_messages(Reader(path));
+  const auto messages = test::all_messages(recording::Reader(path));
   REQUIRE(messages.size() == 100);
   CHECK(std::ranges::is_sorted(messages, {}, &test::KeptMessage::sequence));
 }
@@ -104,7 +104,7 @@ TEST_CASE("a reader selects topics and times") {
       REQUIRE(writer.write({i % 2 == 0 ? even : odd, i, i, i, bytes_of("x")}));
     }
   }
-  const Reader reader(path);
+  const recording::Reader reader(path);
   const auto found = test::all_messages(reader, {{"odd"}, 11, 15});
   CHECK(found == std::vector<test::KeptMessage>{
                      {"odd", 11, 11, "x"}, {"odd", 13, 13, "x"}, {"odd", 15, 15, "x"}});
@@ -127,8 +127,8 @@ TEST_CASE("chunks that overlap by more than the memory are read in bounded memor
       REQUIRE(writer.write({channel, 2 * i + 1, 100, 0, bytes_of("x")}));
     }
   }
-  CHECK(test::all_messages(Reader(path, {.memory = 30'000})).size() == 80);
-  const Reader reader(path, {.memory = 5'000});
+  CHECK(test::all_messages(recording::Reader(path, {.memory = 30'000})).size() == 80);
+  const recording::Reader reader(path, {.memory = 5'000});
   auto messages = reader.messages();
   CHECK_FALSE(messages.next());
   REQUIRE_FALSE(messages.problems().empty());
@@ -156,7 +156,7 @@ TEST_CASE("a recording is split by size, and no message is lost between two file
   CHECK(files[2] == folder / "flight_2.mcap");
   std::uint32_t next = 0;
   for (const std::string& file : files) {
-    const Reader reader(file);
+    const recording::Reader reader(file);
     CHECK(reader.is_complete());
     CHECK(reader.schemas().size() == 1);
     CHECK(reader.channels().size() == 1);
@@ -178,7 +178,7 @@ TEST_CASE("a recording is split by time") {
   writer.close();
   CHECK(writer.statistics().files.size() == 5);
   for (const std::string& file : writer.statistics().files) {
-    const auto times = Reader(file).times();
+    const auto times = recording::Reader(file).times();
     REQUIRE(times);
     CHECK(times->second - times->first <= 100);
   }
@@ -215,7 +215,7 @@ TEST_CASE("an empty recording can be read") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.mcap";
   { const Writer writer(path); }
-  const Reader reader(path);
+  const recording::Reader reader(path);
   CHECK(reader.is_complete());
   CHECK(reader.message_count() == 0);
   CHECK_FALSE(reader.times());

@@ -114,7 +114,6 @@ std::vector<std::string> usable_vendors(const doctor::Facts& facts) {
 }  // namespace
 
 int examine(const DoctorArguments& arguments) {
-  const Interruption interruption;
   const auto [mission, sound] = read_mission(arguments);
   const doctor::Purpose purpose = purpose_of(arguments, mission);
   const doctor::Facts facts = doctor::collect_facts();
@@ -126,6 +125,7 @@ int examine(const DoctorArguments& arguments) {
   auto expected = mission;
   const auto status = expected ? status_of(*expected, arguments.host) : std::nullopt;
   if (status) add(leave_out(*expected, *status));
+  const Interruption interruption;  // what went before is ended by any signal
   add(doctor::encounter(place_of(arguments, purpose, sound), usable_vendors(facts),
                         expected ? &*expected : nullptr, status.has_value(), interruption));
   if (arguments.json) {

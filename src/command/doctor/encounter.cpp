@@ -179,7 +179,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
              "see the other findings"}};
   }
   Entity& looking = *peers.front().entity;
-  DomainLook look(looking);
+  DomainLook look(looking, interruption.gives_up());
   Symptoms symptoms = each_other(peers, interruption);
   DomainPicture picture;
   const auto complete = [&] {
@@ -193,7 +193,7 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
   const auto add = [&](const Symptoms& more) {
     symptoms.insert(symptoms.end(), more.begin(), more.end());
   };
-  Inspector inspector(looking);
+  Inspector inspector(looking, interruption.gives_up());
   add(diagnose_peers(picture, types_told_by(inspector)));
   if (mission) add(of_mission(picture, *mission, flies, looking.broker().options().place));
   return symptoms;

@@ -34,8 +34,9 @@ std::string managed_by(const discovery::ServiceDescription& service, const std::
   return {};
 }
 
-types::TypeSystem types_named(Entity& entity, const std::string& name) {
-  Inspector inspector(entity);
+types::TypeSystem types_named(Entity& entity, const std::string& name,
+                              const Interruption& interruption) {
+  Inspector inspector(entity, interruption.gives_up());
   std::set<std::string> known;
   std::string managed;
   for (const auto& service : entity.broker().all()) {
@@ -74,7 +75,7 @@ int describe(const DescribeArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "describe");
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
-  const types::TypeSystem types = types_named(entity, arguments.name);
+  const types::TypeSystem types = types_named(entity, arguments.name, interruption);
   if (arguments.json) {
     print_json(json_of(types), true);
   } else {

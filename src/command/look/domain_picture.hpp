@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "brokerless_discovery/broker.hpp"
@@ -33,7 +35,8 @@ using DomainPicture = std::vector<PeerPicture>;
 class DomainLook {
  public:
   /// `entity` must outlive it. Throws as Inspector.
-  explicit DomainLook(Entity& entity) : entity_(entity), inspector_(entity) {}
+  DomainLook(Entity& entity, std::function<bool()> gives_up)
+      : entity_(entity), inspector_(entity, std::move(gives_up)) {}
 
   /// Topics and connections only if `whole`. Takes as long as the slowest peer that answers, at
   /// most a second, or two if `whole`.

@@ -69,7 +69,7 @@ int echo(const TopicArguments& arguments) {
   if (!arguments.file.empty()) return echo_recording(arguments);
   const Interruption interruption;
   Entity entity = join(arguments, "echo");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   tell_conflicts(inspector, topic);
   std::atomic<std::uint64_t> printed{0};

@@ -249,7 +249,7 @@ int draw_graph(const GraphArguments& arguments) {
   const std::string format = arguments.json ? "json" : arguments.format;
   Entity entity = join(arguments, "graph");
   const introspection::StatisticsReader statistics(entity.participant());
-  DomainLook look(entity);
+  DomainLook look(entity, interruption.gives_up());
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   Traffic traffic;
   traffic.before = look.take(true);

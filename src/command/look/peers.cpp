@@ -74,7 +74,7 @@ nlohmann::ordered_json json_of_peer(const PeerPicture& peer) {
 int list_peers(const PeersArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "peers");
-  DomainLook look(entity);
+  DomainLook look(entity, interruption.gives_up());
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const DomainPicture picture = look.take(false);
   if (arguments.json) {

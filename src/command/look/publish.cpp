@@ -13,6 +13,7 @@ namespace skein::command {
 namespace {
 
 constexpr std::chrono::seconds kDeliveryPatience{5};
+constexpr std::chrono::milliseconds kAcknowledgmentPeriod{100};
 constexpr double kSubscribersPeriod_s = 0.01;
 
 std::size_t subscribers_of(const KnownTopic& topic) {
@@ -29,6 +30,15 @@ void await_subscribers(const DynamicPublisher& publisher, std::size_t expected, 
       throw Interrupted("interrupted before it published", interruption.signal());
     }
   }
+}
+
+/// False where some subscriber has not acknowledged within the time, or before an interruption.
+bool await_acknowledgments(DynamicPublisher& publisher, const Interruption& interruption) {
+  const auto end = std::chrono::steady_clock::now() + kDeliveryPatience;
+  const auto gives_up = interruption.gives_up();
+  while (!publisher.wait_for_acknowledgments(kAcknowledgmentPeriod))
+    if (gives_up() || std::chrono::steady_clock::now() >= end) return false;
+  return true;
 }
 
 struct Outcome {
@@ -82,7 +92,7 @@ void print_published(std::uint64_t published, std::size_t subscribers, bool ackn
 int publish(const PublishArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "publish");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic, false),
                              topic.writing_qos());
@@ -90,7 +100,7 @@ int publish(const PublishArguments& arguments) {
   const Outcome outcome = arguments.value == "-"
                               ? publish_lines(publisher, arguments, interruption)
                               : publish_value(publisher, arguments, interruption);
-  const bool acknowledged = publisher.wait_for_acknowledgments(kDeliveryPatience);
+  const bool acknowledged = await_acknowledgments(publisher, interruption);
   print_published(outcome.published, publisher.subscribers(), acknowledged, arguments.json);
   if (!outcome.done) {
     throw Interrupted("interrupted before all was published", interruption.signal());

@@ -99,7 +99,7 @@ int show_rate(const TopicArguments& arguments) {
   constexpr double kInterval = 1;
   const Interruption interruption;
   Entity entity = join(arguments, "rate");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   Arrivals arrivals;
   const auto reader =

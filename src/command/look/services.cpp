@@ -142,7 +142,7 @@ int list_services(const ServicesArguments& arguments) {
   std::optional<Inspector> inspector;
   if (arguments.statistics) {
     statistics.emplace(entity.participant());
-    inspector.emplace(entity);
+    inspector.emplace(entity, interruption.gives_up());
   }
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   if (statistics) {

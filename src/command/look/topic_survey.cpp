@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
@@ -74,10 +75,13 @@ types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool p
 }
 
 TellTypes types_told_by(Inspector& inspector) {
-  return [&inspector](const KnownTopic::Endpoint& asked) -> std::optional<types::TypeSystem> {
+  return [&inspector, silent = std::set<Guid>()](
+             const KnownTopic::Endpoint& asked) mutable -> std::optional<types::TypeSystem> {
+    if (silent.contains(asked.participant)) return std::nullopt;
     try {
       return inspector.types(asked.told.type, asked.participant, kAnswerPatience);
     } catch (const Unavailable&) {
+      silent.insert(asked.participant);
       return std::nullopt;
     }
   };

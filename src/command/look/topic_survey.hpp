@@ -22,7 +22,8 @@ KnownTopic await_topic(Inspector& inspector, const std::string& name, double sec
 /// subscriptions; the other way round if not `publishers`.
 types::TypeSystem types_of(Inspector& inspector, const KnownTopic& topic, bool publishers = true);
 
-/// Asks entities for the types of their topics. `inspector` must outlive it.
+/// Asks entities for the types of their topics, and none again that did not answer. `inspector`
+/// must outlive it.
 TellTypes types_told_by(Inspector& inspector);
 
 /// On stderr: who does not hear whom there, because their types or their QoS differ.

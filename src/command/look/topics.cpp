@@ -59,7 +59,7 @@ nlohmann::ordered_json json_of_topic(const KnownTopic& topic) {
 int list_topics(const TopicsArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "topics");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   const auto topics = known_topics(inspector, kAnswerPatience);
   if (arguments.names) {

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 #include "core/system/ending_signals.hpp"
@@ -40,7 +42,7 @@ class Interruption {
     using namespace std::chrono;
     const auto end =
         saturating_sum(steady_clock::now(), saturating_duration(duration<double>(seconds)));
-    while (std::ferror(stdout) == 0) {
+    while (!came()) {
       nanoseconds part = kLookAgain;
       if (seconds > 0) part = std::min<nanoseconds>(part, end - steady_clock::now());
       if (part <= nanoseconds(0)) return false;
@@ -54,30 +56,42 @@ class Interruption {
 
   /// Whether a signal has come, or stdout takes no more. Does not wait.
   bool came() const {
-    return std::ferror(stdout) != 0 || takes_signal(std::chrono::nanoseconds(0));
+    return std::ferror(stdout) != 0 || signal_ != 0 || takes_signal(std::chrono::nanoseconds(0));
   }
 
-  /// The latest signal that wait() or came() told of; 0: none.
+  /// For whoever waits for others' answers: true from 0.3 s after a signal on. Until then what has
+  /// come so far, and what still comes at once, is told all the same. From any thread.
+  std::function<bool()> gives_up() const {
+    return [this] {
+      return came() && std::chrono::steady_clock::now().time_since_epoch() > came_.load() + kGrace;
+    };
+  }
+
+  /// The latest signal that came; 0: none.
   int signal() const noexcept { return signal_; }
 
-  /// Can be read while a signal has come that neither wait() nor came() has told of: for poll().
+  /// Can be read while a signal has come that nobody here has told of: for poll().
   FileDescriptor descriptor() const {
     return FileDescriptor(::signalfd(-1, &signals_, SFD_CLOEXEC | SFD_NONBLOCK));
   }
 
  private:
   static constexpr std::chrono::milliseconds kLookAgain{200};
+  static constexpr std::chrono::milliseconds kGrace{300};
 
   bool takes_signal(std::chrono::nanoseconds within) const {
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(within);
     const timespec time{whole.count(), (within - whole).count()};
     const int taken = sigtimedwait(&signals_, nullptr, &time);
-    if (taken > 0) signal_ = taken;
-    return taken > 0;
+    if (taken <= 0) return false;
+    came_ = std::chrono::steady_clock::now().time_since_epoch();
+    signal_ = taken;
+    return true;
   }
 
   const sigset_t signals_ = ending_signals();
-  mutable int signal_ = 0;
+  mutable std::atomic<std::chrono::nanoseconds> came_{std::chrono::nanoseconds(0)};
+  mutable std::atomic<int> signal_ = 0;
 };
 
 }  // namespace skein::command

@@ -29,11 +29,13 @@ std::string file_of(const RecordArguments& arguments) {
   return local_time(nanoseconds_since_1970(), "mission_%Y-%m-%d_%H-%M-%S.mcap");
 }
 
-recording::RecorderOptions options_of(const RecordArguments& arguments) {
+recording::RecorderOptions options_of(const RecordArguments& arguments,
+                                      const Interruption& interruption) {
   recording::RecorderOptions options;
   options.topics = arguments.topics;
   options.calls = options.decisions = !arguments.only_topics;
   options.writer.split_size = arguments.split_megabytes * 1'000'000;
+  options.gives_up = interruption.gives_up();
   return options;
 }
 
@@ -89,9 +91,9 @@ void tell_missing(const std::vector<std::string>& wanted,
 int record(const RecordArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "record");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   const std::string file = file_of(arguments);
-  recording::Recorder recorder(entity, file, options_of(arguments));
+  recording::Recorder recorder(entity, file, options_of(arguments, interruption));
   std::fprintf(stderr, "skein: recording into %s what domain %u has; Ctrl-C ends it\n",
                printable(file, kLongestProblem).c_str(), arguments.watched_domain());
   bool alone = true;

@@ -30,10 +30,10 @@ using namespace std::chrono;
 /// Looks at a domain. Decisions come on a vendor's thread.
 class Watch {
  public:
-  Watch(Entity& entity, bool tools)
+  Watch(Entity& entity, bool tools, const Interruption& interruption)
       : entity_(entity),
         tools_(tools),
-        look_(entity),
+        look_(entity, interruption.gives_up()),
         statistics_(entity.participant()),
         decisions_(entity.participant(), introspection::kDecisions,
                    [this](const introspection::Decision& decision) { add(decision); }) {}
@@ -209,7 +209,7 @@ void show_once(Watch& watch, const TopArguments& arguments, const Interruption& 
 int show_top(const TopArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "top");
-  Watch watch(entity, arguments.tools);
+  Watch watch(entity, arguments.tools, interruption);
   if (arguments.once) {
     show_once(watch, arguments, interruption);
   } else {

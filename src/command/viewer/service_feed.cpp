@@ -72,37 +72,44 @@ void ServiceFeed::update() {
     for (const view::ServiceId service : each.second) server_.remove_service(service);
     return true;
   });
-  for (const auto& service : broker.all()) {
+  auto asked = broker.all();
+  std::vector<Inspector::TypesWanted> wanted;
+  std::erase_if(asked, [&](const auto& service) {
     const Guid provider{service->provider};
-    if (!service->owner.empty()) continue;  // its entity's alone
-    if (offered_.contains(provider) || late_.contains(provider) || offer(*service)) continue;
-    late_.insert(provider);
-    return;
-  }
+    if (!service->owner.empty()) return true;  // its entity's alone
+    if (offered_.contains(provider) || late_.contains(provider)) return true;
+    const auto participant = broker.participant_of(provider);
+    if (participant) wanted.push_back({service->service, *participant});
+    return !participant;  // it has just gone
+  });
+  inspector_.types(wanted, kServiceWithin, [&](std::size_t index, const types::TypeSystem& told) {
+    offer(*asked[index], told);
+  });
   late_.clear();
+  for (const auto& service : asked)
+    if (!offered_.contains(Guid{service->provider})) note_late(*service);
 }
 
-bool ServiceFeed::offer(const discovery::ServiceDescription& service) {
+void ServiceFeed::note_late(const discovery::ServiceDescription& service) {
+  late_.insert(Guid{service.provider});
+  log(LogLevel::Warning, "view",
+      printable(service.service + ": its provider did not tell its types", kLongestExplanation));
+}
+
+void ServiceFeed::offer(const discovery::ServiceDescription& service,
+                        const types::TypeSystem& types) {
   const Guid provider{service.provider};
-  const auto participant = entity_.broker().participant_of(provider);
-  if (!participant) return true;  // it has just gone
   try {
-    offered_.emplace(
-        provider, offer(service, inspector_.types(service.service, *participant, kServiceWithin)));
-  } catch (const Unavailable& error) {
-    log(LogLevel::Warning, "view",
-        printable(service.service + ": " + error.what(), kLongestExplanation));
-    return false;
+    offered_.emplace(provider, operations(service, types));
   } catch (const InvalidArgument& error) {  // what was told makes no sense
     offered_.emplace(provider, std::vector<view::ServiceId>());
     log(LogLevel::Warning, "view",
         printable(service.service + " is not offered: " + error.what(), kLongestExplanation));
   }
-  return true;
 }
 
-std::vector<view::ServiceId> ServiceFeed::offer(const discovery::ServiceDescription& service,
-                                                const types::TypeSystem& types) {
+std::vector<view::ServiceId> ServiceFeed::operations(const discovery::ServiceDescription& service,
+                                                     const types::TypeSystem& types) {
   ConnectOptions options;
   options.name = service.service;
   options.system = std::string(ConnectOptions::kAnySystem);

@@ -28,22 +28,21 @@ class ServiceFeed {
   ServiceFeed(view::Server& server, Entity& entity, Inspector& inspector)
       : server_(server), entity_(entity), inspector_(inspector) {}
 
-  /// Offers what is provided now, but for streams, and takes away what is no more. Asks for the
-  /// types of those that are new, and ends with the first that is not told, as
-  /// TopicFeed::update() does.
+  /// Offers what is provided now, but for streams, and takes away what is no more. Asks for types
+  /// as TopicFeed::update() does.
   void update();
 
  private:
-  /// False where the types were not told.
-  bool offer(const discovery::ServiceDescription& service);
-  std::vector<view::ServiceId> offer(const discovery::ServiceDescription& service,
-                                     const types::TypeSystem& types);
+  void offer(const discovery::ServiceDescription& service, const types::TypeSystem& types);
+  std::vector<view::ServiceId> operations(const discovery::ServiceDescription& service,
+                                          const types::TypeSystem& types);
+  void note_late(const discovery::ServiceDescription& service);
 
   view::Server& server_;
   Entity& entity_;
   Inspector& inspector_;
   std::map<Guid, std::vector<view::ServiceId>> offered_;  // by provider
-  std::set<Guid> late_;                                   // whose types were not told
+  std::set<Guid> late_;                                   // whose types were not told last
 };
 
 }  // namespace skein::command

@@ -38,18 +38,29 @@ void TopicFeed::update(const std::vector<Inspected>& entities) {
     server_.remove_channel(each.second.channel);
     return true;
   });
-  for (const auto& [key, witness] : now) {
-    if (shown_.contains(key) || late_.contains(key)) continue;
-    if (add(key, witness)) continue;
-    late_.insert(key);
-    return;
+  std::vector<const Witnesses::value_type*> asked;
+  std::vector<Inspector::TypesWanted> wanted;
+  for (const auto& each : now) {
+    if (shown_.contains(each.first) || late_.contains(each.first)) continue;
+    asked.push_back(&each);
+    wanted.push_back({each.first.type, each.second.participant});
   }
+  inspector_.types(wanted, kTypesWithin, [&](std::size_t index, const types::TypeSystem& told) {
+    add(asked[index]->first, asked[index]->second, told);
+  });
   late_.clear();
+  for (const auto* each : asked)
+    if (!shown_.contains(each->first)) note_late(each->first);
 }
 
-std::map<TopicFeed::Key, TopicFeed::Witness> TopicFeed::witnesses(
-    const std::vector<Inspected>& entities) {
-  std::map<Key, Witness> result;
+void TopicFeed::note_late(const Key& key) {
+  late_.insert(key);
+  log(LogLevel::Warning, kPlace,
+      printable(key.name + ": nobody told the types of " + key.type, kLongestRefusal));
+}
+
+TopicFeed::Witnesses TopicFeed::witnesses(const std::vector<Inspected>& entities) {
+  Witnesses result;
   for (const Inspected& entity : entities) {
     for (const auto& endpoint : entity.answer.topics) {
       for (const std::string& system : endpoint.systems) {
@@ -78,21 +89,16 @@ TopicFeed::Source TopicFeed::source(const Key& key, const inspection::TopicEndpo
   return result;
 }
 
-bool TopicFeed::add(const Key& key, const Witness& witness) {
+void TopicFeed::add(const Key& key, const Witness& witness, const types::TypeSystem& types) {
   try {
-    const auto types = inspector_.types(key.type, witness.participant, kTypesWithin);
     const auto channel =
         add(source(key, witness.endpoint), shown_name(key.system, key.name), types);
     shown_.emplace(key, Shown{witness.endpoint.signature, channel});
-  } catch (const Unavailable& error) {
-    log(LogLevel::Warning, kPlace, printable(key.name + ": " + error.what(), kLongestRefusal));
-    return false;
   } catch (const InvalidArgument& error) {  // IDL cannot say it, or what was told makes no sense
     shown_.emplace(key, Shown{witness.endpoint.signature, 0});
     log(LogLevel::Warning, kPlace,
         printable(key.name + " is not shown: " + error.what(), kLongestRefusal));
   }
-  return true;
 }
 
 view::ChannelId TopicFeed::add(Source source, const std::string& name,

@@ -34,8 +34,8 @@ class TopicFeed {
   }
 
   /// Topics that entities publish or read; those that none does any more are taken away. Asks for
-  /// the types of those that are new, and ends with the first that is not told, for which it waits
-  /// 2 s; it is asked for again when all others were.
+  /// the types of all that are new at once, and waits up to 2 s for those that are not told; these
+  /// it leaves out the next time.
   void update(const std::vector<Inspected>& entities);
 
  private:
@@ -65,18 +65,19 @@ class TopicFeed {
 
   using Readers = std::map<view::ChannelId, std::unique_ptr<dds::Reader>>;
 
-  static std::map<Key, Witness> witnesses(const std::vector<Inspected>& entities);
+  using Witnesses = std::map<Key, Witness>;
+  static Witnesses witnesses(const std::vector<Inspected>& entities);
   static Source source(const Key& key, const inspection::TopicEndpoint& endpoint);
   view::ChannelId add(Source source, const std::string& name, const types::TypeSystem& types);
-  /// False where the type was not told.
-  bool add(const Key& key, const Witness& witness);
+  void add(const Key& key, const Witness& witness, const types::TypeSystem& types);
+  void note_late(const Key& key);
   std::unique_ptr<dds::Reader> read(const Source& source, view::ChannelId channel);
 
   view::Server& server_;
   dds::Participant& participant_;
   Inspector& inspector_;
   std::map<Key, Shown> shown_;
-  std::set<Key> late_;  // their types were not told
+  std::set<Key> late_;  // their types were not told the last time
   Readers readers_;     // used by the server's callbacks alone, until it is closed
 };
 

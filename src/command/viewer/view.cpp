@@ -40,7 +40,7 @@ void add_services(view::Graph& graph, const brokerless_discovery::Broker& broker
 int serve_view(const ViewArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "view");
-  Inspector inspector(entity);
+  Inspector inspector(entity, interruption.gives_up());
   view::Server server(server_options(arguments));
   ServiceFeed services(server, entity, inspector);
   TopicFeed topics(server, entity.participant(), inspector);

@@ -262,7 +262,8 @@ bool told_to_end() {
 /// says for what. False where the process was told to end meanwhile.
 bool await_dependencies(Entity& entity, const PeerProfile& peer,
                         std::chrono::steady_clock::time_point begun) {
-  constexpr Duration kPatience = std::chrono::seconds(1);
+  constexpr Duration kPatience = std::chrono::milliseconds(200);  // between looks at signals
+  constexpr Duration kSilence = std::chrono::seconds(1);
   const Duration limit = peer.rules.ready_timeout * 4 / 5;
   const Instant deadline =
       entity.clock().now() + limit - Duration(std::chrono::steady_clock::now() - begun);
@@ -270,6 +271,7 @@ bool await_dependencies(Entity& entity, const PeerProfile& peer,
   for (const auto& dependency : peer.component->dependencies) {
     auto query = entity.broker().query(dependency.type);
     query.system = std::nullopt;
+    const Instant first_word = entity.clock().now() + kSilence;
     while (!told_to_end()) {
       const Instant look_again = std::min(deadline, entity.clock().now() + kPatience);
       try {
@@ -277,7 +279,7 @@ bool await_dependencies(Entity& entity, const PeerProfile& peer,
         break;
       } catch (const Unavailable& error) {
         const std::string reason = std::string("waits for its dependency: ") + error.what();
-        if (reason != told) {
+        if (reason != told && entity.clock().now() >= first_word) {
           report_waiting(reason);
           log(LogLevel::Warning, entity.id(), reason);
           told = reason;
