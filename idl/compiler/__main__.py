@@ -7,6 +7,8 @@ import sys
 
 import names
 from compilation import Compilation
+from front_end import source
+from report import printable
 
 _IDL = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _OWN_FOLDERS = [os.path.join(_IDL, "skein"), os.path.join(_IDL, "corba")]  # behind those that the user names
@@ -18,7 +20,7 @@ _USAGE_ERROR = 64  # as of Skein's other commands
 class _Options(argparse.ArgumentParser):
     def error(self, message):
         self.print_usage(sys.stderr)
-        self.exit(_USAGE_ERROR, f"{self.prog}: {message}; see `{self.prog} --help`\n")
+        self.exit(_USAGE_ERROR, f"{self.prog}: {printable(message)}; see `{self.prog} --help`\n")
 
 
 def main():
@@ -55,16 +57,21 @@ def _namespace(text):
 
 def _compiled(path, arguments):
     if not os.path.isfile(path):
-        sys.stderr.write(f"{path}: error: {'it is no file' if os.path.exists(path) else 'there is no such file'}\n")
-        return False
+        return _refused(path, "it is no file" if os.path.exists(path) else "there is no such file")
+    if os.path.getsize(path) > source.LARGEST:
+        return _refused(path, f"the file has more than {source.LARGEST >> 20} MiB; divide it into files that include each other")
     compilation = Compilation(path, [*arguments.folders, *_OWN_FOLDERS], arguments.definitions, arguments.namespace)
     if compilation.accepted and not arguments.check:
         try:
             compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile)
         except OSError as error:
-            sys.stderr.write(f"{error.filename or arguments.out}: error: cannot be written: {error.strerror}; name another folder by --output\n")
-            return False
+            return _refused(error.filename or arguments.out, f"cannot be written: {error.strerror}; name another folder by --output")
     return compilation.accepted
+
+
+def _refused(path, reason):
+    sys.stderr.write(printable(f"{path}: error: {reason}") + "\n")
+    return False
 
 
 def _name(path, folders):

@@ -115,6 +115,20 @@ def is_scalar(kind):
     return isinstance(kind, Primitive) or (isinstance(kind, Named) and isinstance(kind.decl, (Enum, Bitmask)))
 
 
+def least_bytes(kind):
+    """What a value takes at least: its arrays and numbers."""
+    kind = unaliased(kind)
+    if isinstance(kind, Primitive):
+        return PRIMITIVES[kind.idl][1]
+    if isinstance(kind, Array):
+        return kind.size * least_bytes(kind.element)
+    if not isinstance(kind, Named) or not isinstance(kind.decl, Struct):
+        return 0
+    if kind.decl.least_bytes is None:
+        kind.decl.least_bytes = sum(least_bytes(member.type) for member in kind.decl.all_members())
+    return kind.decl.least_bytes
+
+
 # ---- declarations --------------------------------------------------------------------------------
 
 
@@ -171,6 +185,7 @@ class Struct(Declaration):
     recursive: bool = False
     keys: list = field(default_factory=list)  # [[member, nested member, ...], ...]
     nested: list = field(default_factory=list)  # types declared inside
+    least_bytes: int = None  # once that was asked
 
     def all_members(self):
         """Those of the base first."""
@@ -236,7 +251,7 @@ class Enum(Declaration):
     @property
     def counted(self):
         """Whether the values are 0, 1, 2, … in 32 bits, as an enumeration has them that says nothing."""
-        return self.bits == 32 and self.values == list(range(len(self.values)))
+        return self.bits == 32 and all(value == index for index, value in enumerate(self.values))
 
 
 @dataclass(eq=False)

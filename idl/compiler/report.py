@@ -1,6 +1,7 @@
 """What the compiler has to say: each finding with its place, the line itself, and a mark below it."""
 
 import difflib
+import re
 import sys
 from dataclasses import dataclass
 
@@ -13,6 +14,16 @@ class Place:
 
     def __str__(self):
         return f"{self.file}:{self.line}"
+
+
+_LONGEST_LINE = 400  # characters of a line that are shown
+# As src/core/printable.cpp has them: controls without the tab, what turns the direction of writing, ends of lines, bytes that are no UTF-8.
+_UNSHOWN = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+
+
+def printable(text):
+    """Text of a file, or a file's name, as it may be written to a terminal."""
+    return _UNSHOWN.sub(lambda found: "".join(f"\\x{byte:02x}" for byte in found[0].encode("utf-8", "surrogateescape")), text)
 
 
 class Report:
@@ -36,12 +47,13 @@ class Report:
             return False
         self._said.add((place, kind, reason))
         column = f":{place.column}" if place.column else ""
-        said = f"{place}{column}: {kind}: {reason}\n"
+        said = printable(f"{place}{column}: {kind}: {reason}") + "\n"
         line = self.source.line(place) if self.source else ""
         if place.column and line:
+            begin = max(0, place.column - _LONGEST_LINE // 2) if len(line) > _LONGEST_LINE else 0
             # Tabs stay tabs, so that the mark stands below its character.
-            indent = "".join("\t" if character == "\t" else " " for character in line[: place.column - 1])
-            said += f"{line}\n{indent}^\n"
+            indent = "".join("\t" if character == "\t" else " " for character in printable(line[begin : place.column - 1]))
+            said += f"{printable(line[begin : begin + _LONGEST_LINE])}\n{indent}^\n"
         sys.stderr.write(said)
         return True
 
@@ -68,6 +80,14 @@ def native(name):
     return _FOREIGN.get(str(name), "")
 
 
+_MOST_COMPARED = 1000
+
+
+def nearest(name, known):
+    """The name that was probably meant; empty without one."""
+    return next(iter(difflib.get_close_matches(name, list(known)[:_MOST_COMPARED], 1)), "") if len(name) <= 256 else ""
+
+
 def suggestion(name, known):
-    near = difflib.get_close_matches(name, known, 1)
-    return f" (did you mean '{near[0]}'?)" if near else ""
+    near = nearest(name, known)
+    return f" (did you mean '{near}'?)" if near else ""

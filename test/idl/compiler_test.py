@@ -8,6 +8,7 @@ import re
 import shutil
 import sys
 import tempfile
+import time
 import unittest
 
 sys.dont_write_bytecode = True
@@ -155,7 +156,10 @@ class WhatMakesNoSense(CompilerTest):
         self.assertEqual((code, self.errors(findings)), (1, ["x.idl:1: error: " + said]))
 
     def test_names(self):
-        self.assert_finding("struct S { Speed x; }; struct Sped { long x; };", "there is no 'Speed' here")
+        self.assert_finding("struct S { Speed x; }; struct Sped { long x; };",
+                            "there is no 'Speed' here (did you mean 'Sped', which is declared further down, at x.idl:1?)")
+        self.assert_finding("interface I { void f() raises (NotFond); }; exception NotFound { };",
+                            "there is no 'NotFond' here (did you mean 'NotFound', which is declared further down, at x.idl:1?)")
         self.assert_finding("struct Sped { long x; }; struct S { Speed x; };", "there is no 'Speed' here (did you mean 'Sped'?)")
         self.assert_finding("module A { enum E { ONE }; }; const A::E X = A::OEN;", "there is no 'OEN' in A (did you mean 'ONE'?)")
         self.assert_finding("struct S { long x; }; enum S { A };", "'S' is declared twice in one scope, first at x.idl:1")
@@ -283,8 +287,44 @@ class WhatMakesNoSense(CompilerTest):
         ):
             with self.subTest(member):
                 self.assert_finding(f"struct S {{ {member}; }};", finding)
-        self.assert_finding("float64 x\nfloat64 y\n",
-                            "IDL has no 'float64'; write 'double'; this file has no struct: IDL declares members as struct NAME { double x; };")
+        self.assert_finding("struct T { long y; }; class S { long x; };",
+                            "IDL has no 'class'; write struct NAME { ... }; for data, interface NAME { ... }; for operations")
+        self.assert_finding("enum class E { A };", "IDL has no 'enum class'; leave 'class' out: in C++ it becomes one")
+        self.assert_finding("struct S { bitfield<3> a; };", "bit fields stand in a bitset: bitset NAME { bitfield<3> a; };")
+        self.assert_finding("# a comment", "there is no directive '#a'; a comment begins with '//' in IDL")
+        self.assert_finding('#inlcude "y.idl"', "there is no directive '#inlcude' (did you mean 'include'?); a comment begins with '//' in IDL")
+        self.assert_finding("struct S { long x; # a comment\n};",
+                            "'#' begins a directive at the beginning of a line; a comment begins with '//' in IDL")
+
+    def test_arrays_references_and_constants_of_other_languages(self):
+        sequence = "an array has a size; for any number of elements write "
+        for member, finding in (
+            ("float64[] x", sequence + "sequence<double> x"),
+            ("unsigned long[] x", sequence + "sequence<unsigned long> x"),
+            ("double x[]", sequence + "sequence<double> x"),
+            ("long[3] x", "the size of an array stands behind its name; write long x[3]"),
+            ("string* x", "IDL has no references and no pointers; write string x"),
+            ("const long x", "a member or a parameter has no 'const' in IDL; leave it out: what is passed 'in' cannot change"),
+        ):
+            with self.subTest(member):
+                self.assert_finding(f"struct S {{ {member}; }};", finding)
+        self.assert_finding("interface I { void f(in const string& x); };", "IDL has no references and no pointers; write in string x")
+        self.assert_finding("interface I { void f(in long a, in double[] x); };", sequence + "in sequence<double> x")
+
+    def test_a_letter_beyond_ascii_is_shown_where_it_stands(self):
+        path = self.write("x.idl", "struct S {\n  double größe;\n};\n")
+        _, said = run_compiler(ROOT, "--check", path)
+        self.assertIn("x.idl:2:12: error: a name in IDL has the letters A to Z, digits and '_'; 'größe' has 'ö'\n", said)
+
+    def test_an_array_that_makes_every_value_huge(self):
+        remedy = "use a sequence, which takes what it holds"
+        self.assertEqual(self.compile("struct S { octet x[1000000000]; };\n"),
+                         (0, f"x.idl:1: warning: this array takes 953 MiB in every value and every message; {remedy}\n"))  # fmt: skip
+        self.assertEqual(self.compile("struct P { double x; long y[30000]; }; struct S { P x[30000]; };\n"),
+                         (0, f"x.idl:1: warning: this array takes 3433 MiB (a message has less than 2048) in every value and every message; {remedy}\n"))
+        self.assertEqual(self.compile("struct S { octet x[8000000]; string y[100000000]; };\n"), (0, ""))
+
+    def test_words_that_are_not_closed(self):
         self.assert_refused("const char A = 'abc';\n", "x.idl:1: error: a character in quotes is one character; text stands in double quotes")
         self.assert_refused('const string A = "abc;\n', "x.idl:1: error: this text does not end on its line; add the '\"' (texts that follow each "
                             "other are joined)")  # fmt: skip
@@ -307,7 +347,10 @@ class WhatMakesNoSense(CompilerTest):
             ("package lift;\nmessage A { int32 x = 1; }", "Protocol Buffers"),
             ("<?xml version='1.0'?>\n<types/>", "XML"),
             ('{"type": "object"}', "JSON"),
-            ("namespace a { struct S { int x; }; }", "C++"),
+            ("namespace a { struct S { int x; }; }",
+             "C++; IDL declares data by struct NAME { ... };, operations by interface NAME { ... };"),
+            ("int64 a\nint64 b\n---\nint64 sum", "a message, a service or an action of ROS 2; IDL declares struct NAME { double x; };"),
+            ("float64 x\nfloat64[] y\n", "a message, a service or an action of ROS 2; IDL declares struct NAME { double x; };"),
         ):
             with self.subTest(language):
                 line = 2 if text.startswith("//") else 1
@@ -681,6 +724,63 @@ class Streams(CompilerTest):
         )
         self.assertEqual(self.compile("@annotation Mine {};\n@Mine struct S { @Mine long x; };\n"), (0, ""))
 
+    def test_an_annotation_that_does_nothing_where_it_stands_is_told(self):
+        for text, annotation, place, use in (
+            ("@appendable module M { struct S { long x; }; };", "appendable", "a module", "types"),
+            ("@appendable interface I { void f(); };", "appendable", "an interface", "types"),
+            ("@key interface I { void f(); };", "key", "an interface", "members of structs"),
+            ("@idempotent struct S { long x; };", "idempotent", "a struct", "operations"),
+            ("@key typedef long T;", "key", "a typedef", "members of structs"),
+            ("struct S { @stream long x; };", "stream", "a member", "operations"),
+            ("struct S { sequence<@key long> x; };", "key", "an element", "members of structs"),
+            ("union U switch (@key long) { case 1: long x; };", "key", "a discriminator", "members of structs"),
+            ("interface I { void f(in @optional string x); };", "optional", "a parameter", "members of structs, and for operations"),
+            ("enum E { @position(2) A };", "position", "an enumerator", "bits of a bitmask"),
+        ):
+            with self.subTest(text):
+                self.assertEqual(self.compile(text + "\n"),
+                                 (0, f"x.idl:1: warning: '@{annotation}' has no effect on {place}: it is for {use}\n"))  # fmt: skip
+        self.assertEqual(self.compile("interface I { @idempotent oneway void f(); };\n"),
+                         (0, "x.idl:1: warning: '@idempotent' has no effect on 'f', which is oneway: without an answer nothing is repeated\n"))  # fmt: skip
+        self.assertEqual(self.compile("@key(FALSE) interface I { @optional void f(); };\n@autoid(HASH) module M { @final struct S { @id(3) long x; }; };\n"
+                                      "@bit_bound(8) bitmask B { @position(2) A };\n"), (0, ""))  # fmt: skip
+
+
+class Sizes(CompilerTest):
+    """A small file does not keep the compiler busy, and a large one is refused before it does."""
+
+    def test_numbers_of_any_length_in_any_base(self):
+        for number in ("1" + "0" * 5000, "0x" + "f" * 5000, "0" + "7" * 6000):
+            self.assert_refused(f"const long X = {number};\n", "x.idl:1: error: the number is too large")
+
+    def test_a_source_that_grows_without_end(self):
+        laughs = "".join(f"#define A{i} {f'A{i - 1} ' * 10}\n" for i in range(1, 10))
+        self.assert_refused(f"#define A0 long x;\n{laughs}struct S {{ A9 }};\n",
+                            "x.idl:1: error: with what it includes this file has more than 2 MiB; divide it into files that include each other")  # fmt: skip
+        code, said = self.compile('#include "/dev/zero"\nstruct S { long x; };\n')
+        self.assertEqual(code, 1)
+        self.assertIn("out of memory", said)
+        path = self.write("y.idl", "")
+        os.truncate(path, 3 << 20)
+        self.assertEqual(run_compiler(ROOT, path), (1, f"{path}: error: the file has more than 2 MiB; divide it into files that include each other\n"))
+
+    def test_the_time_for_a_declaration_grows_with_its_size_and_not_with_the_square(self):
+        def seconds(declaration):
+            begin = time.process_time()
+            self.assert_compiles(declaration)
+            return time.process_time() - begin
+
+        for text in ("struct S {{ long {} ; }};", "enum E {{ {} }};"):
+            few, many = (text.format(", ".join(f"a{i}" for i in range(count))) + "\n" for count in (500, 8000))
+            self.assertLess(seconds(many), 100 * seconds(few))
+
+    def test_what_draws_on_a_terminal_is_escaped(self):
+        path = self.write("a\u202eb.idl", "struct \u009bS { long x; };\n")
+        _, said = run_compiler(ROOT, path)
+        self.assertIn("a\\xe2\\x80\\xaeb.idl:1:8: error: the character '\\xc2\\x9b' has no meaning here\nstruct \\xc2\\x9bS {", said)
+        _, said = run_compiler(ROOT, f"{self.folder}/no\u009bne.idl")
+        self.assertIn("no\\xc2\\x9bne.idl: error: there is no such file", said)
+
 
 class Signatures(CompilerTest):
     BASE = "struct S { long x; double y; }; exception E { S s; }; interface I { S f(in S a, out string b) raises (E); };"
@@ -731,7 +831,7 @@ class Dependencies(CompilerTest):
         for name in ("x.idl", "sub/a.idl", "sub/b.idl", "far/c.idl"):
             self.assertIn(f" {self.folder}/{name}", text)
         self.assertIn("idl/compiler/model.py", text)
-        self.assertTrue(text.startswith(f"{self.folder}/out/x.idl.hpp {self.folder}/out/x.idl.cpp"))
+        self.assertTrue(text.startswith(f"{self.folder}/out/x.dds.idl {self.folder}/out/x.idl.hpp {self.folder}/out/x.idl.cpp"))
 
     def test_corbas_sequences_are_there_to_be_included(self):
         for name in ("orb.idl", "tao/LongSeq.pidl"):

@@ -213,17 +213,16 @@ class _Writer:
 
     def _struct(self, decl):
         keys = {id(key[0]) for key in decl.keys}
+        all_members = decl.all_members()
         members = [
-            f"  {self._annotations(decl, m, id(m) in keys)}{self._declarator(m.type, m.name, f'{decl.dds_name}_{m.name}')}"
-            for m in decl.all_members()
+            f"  {self._annotations(decl, m, before, id(m) in keys)}{self._declarator(m.type, m.name, f'{decl.dds_name}_{m.name}')}"
+            for before, m in zip([None, *all_members], all_members)
         ]
         return [f"{_extensible(decl)}struct {_identifier(decl.dds_name)} {{", *(members or ["  octet dummy;"]), "};"]
 
     @staticmethod
-    def _annotations(decl, member, is_key):
-        members = decl.all_members()
-        position = next(index for index, each in enumerate(members) if each is member)
-        follows = member.id == (members[position - 1].id + 1 if position else 0)
+    def _annotations(decl, member, before, is_key):
+        follows = member.id == (before.id + 1 if before else 0)
         said = {
             "@key ": is_key,
             f"@id({member.id}) ": decl.extensibility == "mutable" and not follows,

@@ -61,10 +61,11 @@ def _typedef(decl):
 
 
 def _enum(decl):
-    underlying = "std::uint32_t" if decl.counted else f"std::int{decl.bits}_t"
+    counted = decl.counted
+    underlying = "std::uint32_t" if counted else f"std::int{decl.bits}_t"
     lines = [f"enum class {decl.cpp_name} : {underlying} {{"]
     for (_, name, documentation), value in zip(decl.enumerators, decl.values):
-        assigned = "" if decl.counted else f" = {cpp.literal(model.Primitive(model.SIGNED[decl.bits]), value)}"
+        assigned = "" if counted else f" = {cpp.literal(model.Primitive(model.SIGNED[decl.bits]), value)}"
         lines += cpp.documentation(documentation, "  ") + [f"  {name}{assigned},"]
     return lines + ["};"] + functions(decl)
 

@@ -19,6 +19,31 @@ KNOWN = frozenset(
 FLAGS = frozenset("external idempotent key must_understand non_serialized nested oneway optional".split())
 
 
+_TYPES = "struct union enum bitmask bitset exception"
+_CALLS = "operation attribute"
+# What the annotations are for that this compiler obeys: kinds of declarations, as the grammar calls them, and in words.
+_PLACES = {
+    name: (frozenset(kinds.split()), spoken)
+    for names, kinds, spoken in (
+        ("final appendable mutable extensibility", _TYPES, "types"),
+        ("autoid", "module struct union exception", "types and modules"),
+        ("key", "member", "members of structs"),
+        ("must_understand", "member", "members of structs"),
+        ("optional", f"member {_CALLS}", "members of structs, and for operations"),
+        ("default", "member", "members of structs"),
+        ("external id hashid", "member case", "members"),
+        ("default_literal value", "enumerator", "enumerators"),
+        ("position", "bit_value", "bits of a bitmask"),
+        ("bit_bound", "enum bitmask", "enumerations and bitmasks"),
+        ("idempotent stream", _CALLS, "operations"),
+        ("oneway", "operation", "operations"),
+    )
+    for name in names.split()
+}
+_SPOKEN = {"bit_value": "a bit", "bitfield": "a bit field", "struct_forward": "the announcement of a struct",
+           "union_forward": "the announcement of a union", "interface_forward": "the announcement of an interface", "typedef": "a typedef"}  # fmt: skip
+
+
 @dataclass(eq=False)
 class Annotation:
     name: str
@@ -71,6 +96,15 @@ def check(annotation, declared):
         annotation.name = name.lower()
         return f"'@{name}' is taken for '@{annotation.name}'"
     return f"unknown annotation '@{name}' is kept and has no effect{suggestion(name, KNOWN)}"
+
+
+def misplaced(annotation, kind):
+    """What there is to say of an annotation that does nothing on a declaration of this kind; None where it does something."""
+    kinds, spoken = _PLACES.get(annotation.name, ((kind,), ""))
+    if kind in kinds or annotation.off:
+        return None
+    article = "an" if kind[0] in "aeiou" else "a"
+    return f"'@{annotation.name}' has no effect on {_SPOKEN.get(kind) or f'{article} {kind}'}: it is for {spoken}"
 
 
 def written(tree):

@@ -56,6 +56,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._reason = None  # why it cannot
         self._annotations = {}  # declared ones, and unknown ones of which it was said
         self._spans = []  # of what holds names: begin, end, path
+        self._known = {}  # what structs, exceptions, unions and interfaces have declared
         self._forwards = {}  # structs and unions that are not defined yet: place
         self._read = set()  # places and texts of declarations
 
@@ -80,7 +81,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
                 continue
             scope, depth, modules = self._scope, len(self._outer), self._modules
             try:
-                getattr(self, "_" + declared.data, self._refused)(declared, self._read_annotations(noted))
+                getattr(self, "_" + declared.data, self._refused)(declared, self._read_annotations(declared.data, noted))
             except constants.Fault as fault:
                 self._fault(fault)
                 self._scope, self._modules = scope, modules
@@ -139,7 +140,8 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         """Of what `name` declares, whose cause was found a moment ago, nothing is generated."""
         self._scope.names[scopes.plain(name)] = scopes.Symbol(scopes.LeftOut(self._cause, told), self._place(name))
 
-    def _read_annotations(self, *trees):
+    def _read_annotations(self, kind, *trees):
+        """Those of a declaration of this kind."""
         found = annotations.Annotations(*trees)
         for each in found:
             name = each.name
@@ -151,7 +153,14 @@ class Builder(Types, Structures, Enumerations, Interfaces):
             value = each.arguments.get("value")
             if each.name in annotations.FLAGS and value is not None:
                 each.off = not constants.value(value, model.Primitive("boolean"), self._resolve)
+            if said := annotations.misplaced(each, kind):
+                self._warn(each.token, said)
         return found
+
+    def _warn(self, where, reason):
+        """Of the main file alone."""
+        if self._place(where).file == self.source.path:
+            self.report.warning(self._place(where), reason)
 
     def _by_hash(self, noted):
         """Whether members have the hashes of their names as identifiers: HASH is what @autoid says without an argument, and what it says
@@ -209,18 +218,20 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._scope.names[plain] = scopes.Symbol(decl, place)
         return decl
 
-    def _warn_of_case(self, where, name, others):
+    def _warn_of_case(self, where, name, declared):
         """IDL takes names that differ in case alone for one (7.2.3), and so do compilers for languages that do. Files of others have such names
         all the same (constants beside types, members `x` and `X`), and idlc and fastddsgen read them when told to: a warning."""
         place = self._place(where)
-        other, first = next(((other, first) for other, first in others if other != name and other.lower() == name.lower()), (None, None))
-        if other is not None and place.file == self.source.path:
+        declared_before = declared.in_other_letters(name)
+        declared.add(name, place)
+        if declared_before and place.file == self.source.path:
+            other, first = declared_before
             self.report.warning(place, f"'{name}' and '{other}', at {first}, are one name in IDL, where case does not count: other compilers may refuse them; "
                                 "rename one")  # fmt: skip
 
     def _check_free(self, name, plain):
         found = self._scope.names.get(plain)
-        self._warn_of_case(name, plain, ((other, symbol.place) for other, symbol in self._scope.names.items()))
+        self._warn_of_case(name, plain, self._scope.declared)
         if found is not None and not isinstance(found.what, scopes.LeftOut):
             raise constants.Fault(name, f"'{plain}' is declared twice in one scope, first at {found.place}")
 

@@ -14,14 +14,17 @@ class Comments:
         block = []
         expected = None
         below, line = offset, self._source.place(offset).line
-        for comment in reversed(self._source.comments[: bisect.bisect_right(self._ends, offset)]):
+        for index in range(bisect.bisect_right(self._ends, offset) - 1, -1, -1):
+            comment = self._source.comments[index]
+            if expected is None and not 0 <= line - comment.last.line <= 3:
+                break
             if self._source.text[comment.end : below].strip() or comment.behind:
                 break
             below = comment.begin
             if re.match(r"//[/!]?<|/\*[*!]?<", comment.text):
                 continue  # describes what stands before it
             if expected is None:
-                if not 0 <= line - comment.last.line <= (3 if comment.text.startswith(("///", "//!", "/**", "/*!")) else 1):
+                if line - comment.last.line > (3 if comment.text.startswith(("///", "//!", "/**", "/*!")) else 1):
                     break
             elif comment.last.line != expected:
                 break

@@ -45,6 +45,7 @@ _RANGES = {
     "long long": (-(1 << 63), (1 << 63) - 1),
     "unsigned long long": (0, (1 << 64) - 1),
 }
+_MOST_DIGITS = 40  # of a whole number; 2^64 has 22 in octal
 _WIDEST = 1 << 12  # bits of an intermediate result
 _ESCAPES = {"n": "\n", "t": "\t", "v": "\v", "b": "\b", "r": "\r", "f": "\f", "a": "\a"}
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{1,4}|x[0-9a-fA-F]{1,2}|[0-7]{1,3}|[ntvbrfa\\?'\"]|(?P<other>.))", re.DOTALL)
@@ -241,17 +242,15 @@ _WHOLE = {
 
 def _integer(tree):
     digits = tree.children[0]
+    if len(digits) > _MOST_DIGITS:
+        raise Fault(tree, "the number is too large")
     if digits[:2] in ("0x", "0X"):
         return int(digits, 16)
     if digits[0] != "0" or digits == "0":
-        return int(digits) if len(digits) < 40 else _too_large(tree)
+        return int(digits)
     if re.search("[89]", digits):
         raise Fault(tree, f"'{digits}' begins with 0 and so is octal, which has no 8 and no 9")
     return int(digits, 8)
-
-
-def _too_large(tree):
-    raise Fault(tree, "the number is too large")
 
 
 def written_text(tree):

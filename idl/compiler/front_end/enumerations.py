@@ -15,13 +15,13 @@ class Enumerations:
         enum = self._declare(model.Enum, name, tree, bits=8 if bits <= 8 else 16 if bits <= 16 else 32)
         enum.documentation = enum.documentation or annotations.verbatim(noted)
         inner = self._scope.names[scopes.plain(name)].scope = scopes.Scope(scopes.plain(name), self._scope)
-        taken = set()
+        taken, used = set(), set()
         for each in enumerators:
             annotated, token, assigned = each.children
             plain = scopes.plain(token)
             self._check_free(token, plain)
-            noted = self._read_annotations(annotated)
-            enum.values.append(self._enumerator_value(enum, token, noted, assigned))
+            noted = self._read_annotations("enumerator", annotated)
+            enum.values.append(self._enumerator_value(enum, token, noted, assigned, used))
             symbol = scopes.Symbol(scopes.Enumerator(plain, enum), self._place(token))
             self._scope.names[plain] = inner.names[plain] = symbol
             enum.enumerators.append((plain, names.unique(plain, names.MEMBER, taken), self._documentation(each)))
@@ -31,13 +31,14 @@ class Enumerations:
                 enum.initial = plain
         self._add(enum)
 
-    def _enumerator_value(self, enum, token, noted, assigned):
+    def _enumerator_value(self, enum, token, noted, assigned, used):
         kind = model.Primitive(model.SIGNED[enum.bits])
         given = noted.find("value")
         where = assigned if assigned is not None else given and given.arguments.get("value")
         value = constants.value(where, kind, self._resolve) if where is not None else enum.values[-1] + 1 if enum.values else 0
-        if value in enum.values:
+        if value in used:
             raise constants.Fault(where if where is not None else token, f"another enumerator has the value {value} already")
+        used.add(value)
         return value
 
     def _bit_bound(self, noted, most):
@@ -57,7 +58,7 @@ class Enumerations:
             plain = scopes.plain(token)
             if plain in inner.names:
                 raise constants.Fault(token, f"there is a bit '{plain}' already, at {inner.names[plain].place}")
-            position, where = self._number(self._read_annotations(annotated), "position")
+            position, where = self._number(self._read_annotations("bit_value", annotated), "position")
             if position is None:
                 position, where = (mask.flags[-1][2] + 1 if mask.flags else 0), token
             if not 0 <= position < bound:
@@ -86,7 +87,7 @@ class Enumerations:
 
     def _bit_fields(self, bitset, tree, taken):
         annotated, width_tree, given, listed = tree.children
-        self._read_annotations(annotated)
+        self._read_annotations("bitfield", annotated)
         width = constants.size(width_tree, self._resolve)
         if width > 64:
             raise constants.Fault(width_tree, f"a bit field has at most 64 bits, not {width}")

@@ -58,9 +58,10 @@ class Interfaces:
         self._scope.bases.append(found.scope)
 
     def _contents(self, interface, exports):
-        calls = [export for export in exports if export.children[1].data in ("operation", "attribute")]
+        calls = [export for export in exports if _is_call(export)]
+        self._known[interface] = scopes.Declared()
         self._outer.append(interface)
-        self._each(export for export in exports if export not in calls)
+        self._each(export for export in exports if not _is_call(export))
         self._outer.pop()
         taken = {decl.scope[-1] for decl in interface.nested} | {interface.cpp_name}
         plain = {name for call in calls for name in _names(call.children[1])}  # and the names of asynchronous calls
@@ -68,7 +69,7 @@ class Interfaces:
             noted, call = export.children
             build = self._operation if call.data == "operation" else self._attribute
             try:
-                build(interface, call, export, self._read_annotations(noted), taken, plain)
+                build(interface, call, export, self._read_annotations(call.data, noted), taken, plain)
             except constants.Fault as fault:
                 self._fault(fault)
         self._check_inherited(interface)
@@ -86,12 +87,12 @@ class Interfaces:
     def _operation(self, interface, tree, export, noted, taken, plain):
         oneway, kind, token, given, raises, context = tree.children
         name = scopes.plain(token)
-        self._warn_of_case(token, name, _declared_in(interface))
+        self._warn_of_case(token, name, self._known[interface])
         if context is not None:
             self._error(context, "context clauses are not supported: pass what they carry as a parameter")
         result = None if kind.data == "void" else self._type(kind)
-        used, places = set(), {}
-        parameters = [self._parameter(parameter, used, places) for parameter in (given.children if given else [])]
+        used, declared = set(), scopes.Declared()
+        parameters = [self._parameter(parameter, used, declared) for parameter in (given.children if given else [])]
         operation = model.Operation(
             name=name,
             cpp_name=names.unique(name, names.OPERATION, taken),
@@ -111,6 +112,8 @@ class Interfaces:
         )
         if operation.oneway and (kind.data != "void" or raises or any(p.is_out for p in parameters)):
             self._error(token, f"'{name}' is oneway, so that nothing can come back: no result, no out parameter, no exception")
+        if operation.oneway and operation.idempotent:
+            self._warn(noted.find("idempotent").token, f"'@idempotent' has no effect on '{name}', which is oneway: without an answer nothing is repeated")
         interface.operations.append(operation)
 
     def _by_default(self, noted):
@@ -119,17 +122,16 @@ class Interfaces:
         given = stream and stream.arguments.get("by_default")
         return str(constants.value(given, model.String(0), self._resolve)) if given else None
 
-    def _parameter(self, tree, used, places):
+    def _parameter(self, tree, used, declared):
         *around, kind, token = tree.children
         for each in around:
             if each is not None and each.data == "annotations":
-                self._read_annotations(each)
+                self._read_annotations("parameter", each)
         direction = next((each.data for each in around if each is not None and each.data != "annotations"), "in")
         name = scopes.plain(token)
         if name in used:
             raise constants.Fault(token, f"there is a parameter '{name}' already")
-        self._warn_of_case(token, name, places.items())
-        places[name] = self._place(token)
+        self._warn_of_case(token, name, declared)
         built = self._type(kind)
         if built is not None:
             built = self._complete(kind, built, apart=False)
@@ -153,7 +155,7 @@ class Interfaces:
         documentation = self._documentation(tree, export)
         for declarator in declarators.children:
             name = scopes.plain(declarator.children[1])
-            self._warn_of_case(declarator, name, _declared_in(interface))
+            self._warn_of_case(declarator, name, self._known[interface])
             if len(declarator.children) > 3:
                 raise constants.Fault(declarator, f"the attribute '{name}' cannot be an array; give the array a name by typedef, and use that")
             shared = dict(
@@ -177,9 +179,8 @@ class Interfaces:
                 interface.operations.append(model.Operation(name="_set_" + name, result=None, parameters=[value], raises=put, **shared))
 
 
-def _declared_in(interface):
-    """The names of the operations and attributes so far, and their places."""
-    return ((operation.name.removeprefix("_get_").removeprefix("_set_"), operation.place) for operation in interface.operations)
+def _is_call(export):
+    return export.children[1].data in ("operation", "attribute")
 
 
 def _names(call):

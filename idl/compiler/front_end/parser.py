@@ -78,6 +78,11 @@ def _reason(error, source, text, offset):
     if isinstance(error, lark.UnexpectedCharacters):
         if text[offset] == '"':
             return "this text does not end on its line; add the '\"' (texts that follow each other are joined)"
+        if text[offset] == "#":
+            return "'#' begins a directive at the beginning of a line; a comment begins with '//' in IDL"
+        if text[offset] > "\x7f" and text[offset].isalpha():
+            name = re.search(r"\w*$", text[:offset])[0] + re.match(r"\w+", text[offset:])[0]
+            return f"a name in IDL has the letters A to Z, digits and '_'; '{name}' has '{text[offset]}'"
         if text[offset] == "'":
             return "a character in quotes is one character; text stands in double quotes"
         return f"the character '{text[offset]}' has no meaning here"
@@ -92,6 +97,8 @@ def _reason(error, source, text, offset):
         return said
     if error.token == "<" and before and (own := _template(before[1], text[offset:])):
         return f"IDL has no '{before[1]}<'; write {own}"
+    if error.token == "<" and before and before[1] == "bitfield":
+        return "bit fields stand in a bitset: bitset NAME { bitfield<3> a; };"
     if error.token == "<" and before:
         found += f" behind '{before[1]}'{suggestion(before[1], _TEMPLATES)}"
     accepted = set(error.accepts or error.expected) - {"ANNOTATION", "AT_ANNOTATION"}
@@ -101,9 +108,44 @@ def _reason(error, source, text, offset):
     return f"{found} where a declaration or a type is expected" if "IDENTIFIER" in accepted else f"{found} where it cannot"
 
 
+_CPP_WORDS = {"class": "write struct NAME { ... }; for data, interface NAME { ... }; for operations", "namespace": "write module NAME { ... };",
+              "template": "write out the type for each of its arguments", "using": "write typedef TYPE NAME;"}  # fmt: skip
+_KEPT = r"(?P<kept>(?:(?:in|out|inout|readonly|attribute|typedef)\s+)*)(?:const\s+)?"  # in front of a type
+
+
+def _c_like(token, before, behind):
+    """What C, C++ or ROS 2 write otherwise; `before` begins with what is being declared."""
+    if token in _CPP_WORDS and not before.strip():
+        return f"IDL has no '{token}'; {_CPP_WORDS[token]}"
+    if re.search(r"\bconst\s+[\w:]+(<[^>]*>)?\s+$", before):
+        return "a member or a parameter has no 'const' in IDL; leave it out: what is passed 'in' cannot change"
+    if re.fullmatch(r"\s*enum\s+class\s+", before):
+        return "IDL has no 'enum class'; leave 'class' out: in C++ it becomes one"
+    if token in ("[", "&", "*") and (known := re.fullmatch(rf"\s*{_KEPT}(?P<type>[\w:]+(?: long| short| double)?(?:<.*>)?)\s*", before)):
+        kind = _own(known["type"])
+        name = re.match(r"[&*\s]*(\[[^\]]*\])?\s*(\w*)", behind)
+        if token != "[":
+            return f"IDL has no references and no pointers; write {known['kept']}{kind} {name[2] or 'NAME'}"
+        size = (name[1] or "[]")[1:-1].strip()
+        if size.isalnum():
+            return f"the size of an array stands behind its name; write {kind} {name[2] or 'NAME'}[{size}]"
+        return f"an array has a size; for any number of elements write {known['kept']}sequence<{kind}> {name[2] or 'NAME'}"
+    if token == "]" and (known := re.fullmatch(rf"\s*{_KEPT}(?P<type>[\w:]+(?: long| short| double)?(?:<.*>)?)\s+(?P<name>\w+)\s*\[\s*", before)):
+        return f"an array has a size; for any number of elements write {known['kept']}sequence<{_own(known['type'])}> {known['name']}"
+    return ""
+
+
+def _own(kind):
+    """IDL's word for a type of another language."""
+    own = native(kind)
+    return own.split("'")[1] if own else kind
+
+
 def _misplaced(token, before, behind):
     """What is said in IDL by other means; empty for what is not known."""
     declared = re.split(r"[;{}()]", before)[-1]  # what is being declared, as far as it was read
+    if said := _c_like(token, declared.rsplit(",", 1)[-1] if "<" not in declared else declared, behind):
+        return said
     block = re.search(r"\b(interface|struct|exception|union)\b[^;{}]*$", before[: _opening(before, len(before))])
     within = block[1] if block else ""
     if token == "=" and re.match(r"\s*(in|out|inout)\s", declared):
@@ -129,13 +171,18 @@ _OTHER_LANGUAGES = {
     r"syntax\s*=|message\s+\w+\s*\{|package\s+[\w.]+\s*;": "Protocol Buffers",
     r"<[?\w!]": "XML",
     r"[\[{]\s*[\"{\[]": "JSON",
-    r"(class|namespace|template|using)\b": "C++",
+    r"(class|namespace|template|using)\b": "C++; IDL declares data by struct NAME { ... };, operations by interface NAME { ... };",
 }
+# Lines of a type and a name; IDL has a semicolon or a brace somewhere.
+_ROS_LINE = r"(?!(module|struct|union|enum|interface|exception|typedef|const|bitset|bitmask|native)\b)[\w/]+(\[[<=\d]*\])?[ \t]+\w+[^\n]*\n|---"
 
 
 def _other_language(text):
     """Which other language the text is in, by how it begins; empty where it may be IDL."""
-    return next((language for begin, language in _OTHER_LANGUAGES.items() if re.match(begin, text[_first(text) :])), "")
+    text = text[_first(text) :]
+    if not re.search("[;{}]", text) and re.match(_ROS_LINE, text):
+        return "a message, a service or an action of ROS 2; IDL declares struct NAME { double x; };"
+    return next((language for begin, language in _OTHER_LANGUAGES.items() if re.match(begin, text)), "")
 
 
 def _first(text):

@@ -52,6 +52,31 @@ class LeftOut:
     told: bool = False  # its own error is enough: each use would repeat it
 
 
+class Declared:
+    """Names that are declared side by side, and where."""
+
+    def __init__(self, inherited=None):
+        self.places = dict(inherited.places) if inherited else {}
+        self._spelled = {lower: list(each) for lower, each in inherited._spelled.items()} if inherited else {}
+
+    def add(self, name, place):
+        self.places.setdefault(name, place)
+        self._spelled.setdefault(name.lower(), []).append((name, place))
+
+    def in_other_letters(self, name):
+        """The first that differs in case alone, and its place; None without one."""
+        return next((each for each in self._spelled.get(name.lower(), ()) if each[0] != name), None)
+
+
+class Members(Declared):
+    """Those of a struct, an exception or a union."""
+
+    def __init__(self, inherited=None):
+        super().__init__(inherited)
+        self.ids = dict(inherited.ids) if inherited else {}  # and the names that have them
+        self.last_id = inherited.last_id if inherited else None
+
+
 # Of which names may be almost right.
 _TYPES = "boolean char wchar octet short long float double string wstring int8 int16 int32 int64 uint8 uint16 uint32 uint64".split()
 
@@ -62,6 +87,7 @@ class Scope:
         self.path = outer.path + (name,) if outer else ()
         self.bases = []  # scopes of inherited interfaces and structs
         self.names = {}
+        self.declared = Declared()
 
     def own(self, name, seen=None):
         """The symbol of that name here or in a base; None where there is none."""

@@ -3,17 +3,24 @@
 import bisect
 import os
 import re
+import resource
 import subprocess
+import tempfile
 from dataclasses import dataclass
 
-from report import Place
+from report import Place, suggestion
 
 _MARKER = re.compile(r'# (\d+) "((?:[^"\\]|\\.)*)"((?: \d)*)$')
 _PRAGMA = re.compile(r"\s*#\s*pragma\b(.*)$")
 _COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
+# How the preprocessor writes letters beyond ASCII in names; behind `_COMMENT_OR_TEXT`, where it leaves them.
+_LETTER = re.compile(_COMMENT_OR_TEXT.pattern + r"|\\U([0-9a-fA-F]{8})", re.DOTALL)
 _INCLUDE = re.compile(r'\s*#\s*include\s*["<]([^">]*)[">]')
+_DIRECTIVES = "include define undef if ifdef ifndef elif else endif pragma error".split()
 _FINDING = re.compile(r"(.+?):(\d+):(?:(\d+):)? (?:fatal )?error: (.*)$")
 _ENTER, _LEAVE = " 1", " 2"
+LARGEST = 2 << 20  # bytes of a file with all that it includes; the largest known to us have some 500,000
+_MOST_MEMORY = 1 << 30  # bytes for the preprocessor, which reads whole files
 
 
 @dataclass(frozen=True)
@@ -50,10 +57,14 @@ class Source:
         self.pragmas = []
         self._lines = {}  # file: its lines
         self._solid = {}  # file and line: where its characters stand that are no blanks
+        self._solid_text = {}  # the same of a line of the text
         self._places = []  # of each line of the text: file, line
         self._around = [path]
         self._entered = 0  # the line of the text where the file begins that the main file includes
-        self.text = self._without_comments("\n".join(map(self._read, map(_decoded, done.stdout.split(b"\n")))))
+        if len(done.stdout) > LARGEST:
+            report.error(Place(path, 1), f"with what it includes this file has more than {LARGEST >> 20} MiB; divide it into files that include each other")
+            done.stdout = b""
+        self.text = self._without_comments(_with_letters("\n".join(map(self._read, map(_decoded, done.stdout.split(b"\n"))))))
         self._starts = _line_starts(self.text)
         self.direct = [(*included, self._starts[index]) for *included, index in self.direct]
         self.pragmas = [Pragma(text, Place(*self._places[index]), self._starts[index]) for index, text in self.pragmas]
@@ -68,14 +79,21 @@ class Source:
         index = bisect.bisect_right(self._starts, offset) - 1
         end = self._starts[index + 1] - 1 if index + 1 < len(self._starts) else len(self.text)
         file, number = self._places[index]
-        return Place(file, number, self._column(file, number, self.text[self._starts[index] : offset], self.text[offset:end]))
+        return Place(file, number, self._column(file, number, self._solid_before(index, offset), self.text[offset : min(end, offset + 200)]))
+
+    def _solid_before(self, index, offset):
+        """How many characters that are no blanks stand before an offset on its line of the text."""
+        if index not in self._solid_text:
+            end = self._starts[index + 1] if index + 1 < len(self._starts) else len(self.text)
+            self._solid_text[index] = _solid(self.text[self._starts[index] : end])
+        return bisect.bisect_left(self._solid_text[index], offset - self._starts[index])
 
     def line(self, place):
         """A line of a file as it stands there."""
         if place.file not in self._lines:
             try:
                 with open(place.file, "rb") as stream:
-                    self._lines[place.file] = [_decoded(line.rstrip(b"\r")) for line in stream.read().split(b"\n")]
+                    self._lines[place.file] = [_decoded(line.rstrip(b"\r")) for line in stream.read(LARGEST).split(b"\n")]
             except OSError:
                 self._lines[place.file] = []
         lines = self._lines[place.file]
@@ -117,25 +135,31 @@ class Source:
         def where(offset):
             return Place(*self._places[bisect.bisect_right(starts, offset) - 1])
 
+        looked = 0  # up to there, something else than comments was looked for
+        last_line = -1  # where that last stood
+
         def blank(match):
+            nonlocal looked, last_line
+            begin, end = match.span()
+            line = starts[bisect.bisect_right(starts, begin) - 1]
+            if match[0][0] in "\"'" or text[max(looked, line) : begin].strip():
+                last_line = line
+            looked = end
             if match[0][0] in "\"'":
                 return match[0]
-            begin, end = match.span()
-            before = text[starts[bisect.bisect_right(starts, begin) - 1] : begin]
-            behind = bool(_COMMENT_OR_TEXT.sub(lambda found: "" if found[0][0] == "/" else found[0], before).strip())
-            self.comments.append(Comment(match[0], where(begin), where(end - 1), begin, end, behind))
+            self.comments.append(Comment(match[0], where(begin), where(end - 1), begin, end, behind=last_line == line))
             return re.sub(r"[^\n]", " ", match[0])
 
         return _COMMENT_OR_TEXT.sub(blank, text)
 
-    def _column(self, file, number, before, behind):
-        """The preprocessor draws blanks together; characters that are none stand in the same order, unless a macro was there."""
+    def _column(self, file, number, count, behind):
+        """The preprocessor draws blanks together; characters that are none stand in the same order, unless a macro was there. `count` of
+        them stand before."""
         written = self.line(Place(file, number))
-        count = len(re.sub(r"\s", "", before))
         if (file, number) not in self._solid:
-            self._solid[file, number] = [index for index, character in enumerate(written) if not character.isspace()]
+            self._solid[file, number] = _solid(written)
         solid = self._solid[file, number]
-        rest = re.sub(r"\s", "", behind[:200])[:8]
+        rest = re.sub(r"\s", "", behind)[:8]
         if count < len(solid) and "".join(written[index] for index in solid[count : count + 8]).startswith(rest):
             return solid[count] + 1
         return 0
@@ -146,16 +170,38 @@ class Source:
         if missing:
             name = missing["name"] or missing["angled"]
             reason = f"there is no file '{name}' here or in the folders given by -I; add the folder that holds it"
+        elif wrong := re.match(r"invalid preprocessing directive #(\w*)$", reason):
+            reason = f"there is no directive '#{wrong[1]}'{suggestion(wrong[1], _DIRECTIVES)}; a comment begins with '//' in IDL"
         elif opened := re.match(r"unterminated (#\w+)$", reason):
             reason = f"this {opened[1]} does not end; add the #endif"
         report.error(Place(os.path.normpath(found[1]), int(found[2]), int(found[3] or 0)), reason)
 
 
 def _preprocessed(command):
+    """What the preprocessor wrote, and no more than what is read of it: a few macros or a device may make it endless."""
     try:
-        return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, preexec_fn=_limit_memory) as running:
+            text = running.stdout.read(LARGEST + 1)
+            if len(text) > LARGEST:
+                running.kill()
+            code = running.wait()
+            said.seek(0)
+            return subprocess.CompletedProcess(command, code if len(text) <= LARGEST else 0, text, said.read(LARGEST))
     except FileNotFoundError:
         return subprocess.CompletedProcess(command, 127, b"", b"there is no program 'cpp' in PATH; install it (Debian's package cpp)")
+
+
+def _limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY, _MOST_MEMORY))
+
+
+def _with_letters(text):
+    return _LETTER.sub(lambda found: chr(int(found[1], 16)) if found[1] else found[0], text) if "\\U" in text else text
+
+
+def _solid(line):
+    """Where the characters stand that are no blanks."""
+    return [index for index, character in enumerate(line) if not character.isspace()]
 
 
 def _line_starts(text):

@@ -22,6 +22,7 @@ class Structures:
         struct.documentation = struct.documentation or annotations.verbatim(noted)
         self._span(name, tree)
         supported = base is None or self._inherit(struct, base)
+        self._known[struct] = scopes.Members(self._known.get(struct.base))
         scope = self._enter(name, struct)
         taken = {member.cpp_name for member in struct.all_members()}
         reserved |= {struct.cpp_name}  # a class has no member of its own name
@@ -56,8 +57,9 @@ class Structures:
                     raise constants.Fault(each.token, "@extensibility is FINAL, APPENDABLE or MUTABLE")
         return said
 
-    def _member_id(self, members, name, noted, hashed, first=0, least=0):
+    def _member_id(self, decl, name, noted, hashed, first=0, least=0):
         """By @id, @hashid or @autoid (DDS-XTypes 1.3, 7.3.1.2.1.1), else one more than the last."""
+        members = self._known[decl]
         given, where = self._number(noted, "id")
         by_hash = noted.find("hashid")
         if given is None and (by_hash or hashed):
@@ -65,12 +67,13 @@ class Structures:
             text = constants.value(tree, model.String(0), self._resolve) if tree is not None else ""
             given = int.from_bytes(hashlib.md5((text or name).encode("latin-1")).digest()[:4], "little") & _GREATEST_ID
         if given is None:
-            given = members[-1].id + 1 if members else first
+            given = first if members.last_id is None else members.last_id + 1
         if not least <= given <= _GREATEST_ID:
             raise constants.Fault(where if where is not None else name, f"a member's identifier is from {least} to {_GREATEST_ID}, not {given}")
-        if other := next((member for member in members if member.id == given), None):
-            reason = f"'{name}' would have the identifier {given}, as '{other.name}' has; give one of them another by @id"
+        if other := members.ids.get(given):
+            reason = f"'{name}' would have the identifier {given}, as '{other}' has; give one of them another by @id"
             raise constants.Fault(where if where is not None else by_hash.token if by_hash else name, reason)
+        members.ids[given], members.last_id = name, given
         return given
 
     def _exception(self, tree, noted):
@@ -82,9 +85,9 @@ class Structures:
         try:
             base = self._type_or_definition(kind)
             for declarator in declarators.children:
-                found = self._read_annotations(noted, declarator.children[0])
+                found = self._read_annotations("member", noted, declarator.children[0])
                 name = scopes.plain(declarator.children[1])
-                self._check_member(declarator, name, struct.all_members())
+                self._check_member(declarator, name, struct)
                 built = base and self._with_sizes(base, declarator)
                 built = built and self._complete(kind, built, found.has("external") or found.has("optional"))
                 if built is None:
@@ -93,7 +96,7 @@ class Structures:
                 cpp_name = names.unique(name, reserved | {names.plain(each.scope[-1]) for each in struct.nested}, taken)
                 member = model.Member(name, cpp_name, built, self._place(declarator), documentation, annotations=found)
                 member.initial = self._initial(found, built)
-                member.id = self._member_id(struct.all_members(), declarator.children[1], found, hashed)
+                member.id = self._member_id(struct, declarator.children[1], found, hashed)
                 if self._comments.say_key(tree.meta.end_pos):
                     found.add_flag("key")
                 member.must_understand = found.has("must_understand")
@@ -126,10 +129,11 @@ class Structures:
             raise constants.Fault(given.token, f"@{name} needs a number: @{name}(1)")
         return (None, None) if tree is None else (constants.value(tree, model.Primitive("long long"), self._resolve), tree)
 
-    def _check_member(self, declarator, name, members):
-        self._warn_of_case(declarator, name, ((member.name, member.place) for member in members))
-        if other := next((member for member in members if member.name == name), None):
-            raise constants.Fault(declarator, f"there is a member '{name}' already, at {other.place}")
+    def _check_member(self, declarator, name, decl):
+        known = self._known[decl].places.get(name)
+        self._warn_of_case(declarator, name, self._known[decl])
+        if known:
+            raise constants.Fault(declarator, f"there is a member '{name}' already, at {known}")
 
     def _complete(self, where, kind, apart):
         """The type of a member; of what is not defined yet only where it may lie apart. None, with an error, where it may not."""
@@ -179,9 +183,11 @@ class Structures:
                 self.items.append(model.Forward(decl))
 
     def _union(self, tree, noted):
-        name, _, discriminator, *cases = tree.children
+        name, annotated, discriminator, *cases = tree.children
+        self._read_annotations("discriminator", annotated)
         union = self._defined(model.Union, name, tree)
         union.extensibility = self._extensibility(noted)
+        self._known[union] = scopes.Members()
         scope = self._enter(name, union)
         union.discriminator = self._type_or_definition(discriminator)
         supported = union.discriminator is not None and self._check_discriminator(discriminator, union.discriminator)
@@ -211,10 +217,10 @@ class Structures:
         found = [self._label(union, label, used) for label in labels]
         base = self._type_or_definition(kind)
         name = scopes.plain(declarator.children[1])
-        self._check_member(declarator, name, union.cases)
+        self._check_member(declarator, name, union)
         if name == "_d":
             raise constants.Fault(declarator, "'_d' is the discriminator's name in JSON; give the member another")
-        notes = self._read_annotations(*noted)
+        notes = self._read_annotations("case", *noted)
         built = base and self._with_sizes(base, declarator)
         built = built and self._complete(kind, built, notes.has("external"))
         if built is None:
@@ -222,6 +228,7 @@ class Structures:
         cpp_name = names.unique(name, self._reserved_in(union), taken)
         while f"holds_{cpp_name}" in taken:
             cpp_name = names.unique(cpp_name + "_", self._reserved_in(union), taken)
+        taken.add(f"holds_{cpp_name}")
         case = model.Case(
             name,
             cpp_name,
@@ -230,15 +237,14 @@ class Structures:
             self._place(declarator),
             documentation=self._documentation(declarator) or self._documentation(kind) or self._documentation(tree),
             annotations=notes,
-            id=self._member_id(union.cases, declarator.children[1], notes, hashed, first=1, least=int(union.extensibility == "mutable")),
+            id=self._member_id(union, declarator.children[1], notes, hashed, first=1, least=int(union.extensibility == "mutable")),
         )
         union.cases.append(case)
         return True
 
     @staticmethod
     def _reserved_in(union):
-        known = {f"holds_{case.cpp_name}" for case in union.cases} | {names.plain(each.scope[-1]) for each in union.nested}
-        return names.UNION_MEMBER | known | {union.cpp_name}
+        return names.UNION_MEMBER | {names.plain(each.scope[-1]) for each in union.nested} | {union.cpp_name}
 
     def _label(self, union, label, used):
         value = None if label.data == "default_label" else self._label_value(label.children[0], union.discriminator)

@@ -1,6 +1,7 @@
 """Types where they are used."""
 
 import model
+from report import nearest
 
 from . import annotations, constants, scopes
 
@@ -27,6 +28,7 @@ _REFUSED = {
     "object": "Object is not supported: a reference names its interface; use the interface as the type",
     "value_base": "ValueBase is not supported: objects do not travel by value; use a struct",
 }
+_LARGE_ARRAY = 64 << 20  # bytes
 _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 _NO_TYPE = {model.Constant: "a constant", model.Exception_: "an exception", scopes.Enumerator: "an enumerator", scopes.Flag: "a bit", type(None): "a module"}
 
@@ -57,11 +59,14 @@ class Types:
             return self._map(*tree.children)
         if tree.data == "sequence":
             element, bound = tree.children
+            self._read_annotations("element", element.children[0])
             built = self._type(element.children[1])
             return built and model.Sequence(built, self._bound(bound))
         return self._declared(tree, self._symbol(tree))
 
     def _map(self, key, value, bound):
+        for each in (key, value):
+            self._read_annotations("element", each.children[0])
         built = self._type(key.children[1]), self._type(value.children[1])
         if None in built:
             return None
@@ -79,14 +84,22 @@ class Types:
         sizes = [constants.size(child.children[0], self._resolve_size) for child in declarator.children if _is(child, "dimension")]
         for size in reversed(sizes):
             kind = model.Array(kind, size)
+        if sizes:
+            self._check_array(declarator, model.least_bytes(kind))
         return kind
+
+    def _check_array(self, declarator, size):
+        """A value holds its arrays itself, full or not."""
+        if size > _LARGE_ARRAY:
+            beyond = " (a message has less than 2048)" if size >= 1 << 31 else ""
+            self._warn(declarator, f"this array takes {size >> 20} MiB{beyond} in every value and every message; use a sequence, which takes what it holds")
 
     def _symbol(self, tree, remedy=""):
         """What a scoped name stands for; None, with an error, where it is unknown."""
         parts = [scopes.plain(token) for token in tree.children]
         found, reason = self._scope.find(parts, tree.data == "absolute_name")
         if found is None:
-            self._error(tree, "" if self._quiet else self._further_down(tree, parts[-1]) or reason + ("" if "did you mean" in reason else remedy))
+            self._error(tree, "" if self._quiet else self._further_down(tree, parts[-1]) or self._with_hint(tree, parts[-1], reason, remedy))
         return found
 
     def _further_down(self, tree, name):
@@ -95,6 +108,13 @@ class Types:
         if later is None:
             return ""
         return f"'{name}' is declared further down, at {self._place(later)}; move its declaration up, before its first use"
+
+    def _with_hint(self, tree, name, reason, remedy):
+        if "did you mean" in reason or "; write " in reason:
+            return reason
+        later = {known: token for known, tokens in self._declared_names.items() for token in tokens[-1:] if token.start_pos > self._offset(tree)}
+        near = nearest(name, later)
+        return f"{reason} (did you mean '{near}', which is declared further down, at {self._place(later[near])}?)" if near else reason + remedy
 
     def _resolve_size(self, tree):
         return self._resolve(tree, f"; a size is a number or a constant: const unsigned long {scopes.plain(tree.children[-1])} = 10;")
