@@ -188,6 +188,34 @@ TEST_CASE("a chunk that announces more memory than is allowed is passed over") {
   CHECK_FALSE(reader.messages().next());
 }
 
+TEST_CASE("a small file of many chunks does not stand for a large one") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "bomb.mcap";
+  Bytes zeros, compressed;
+  zeros.resize(std::size_t{60} << 20);
+  std::memset(zeros.data(), 0, zeros.size());
+  REQUIRE(Compressor(1).compress(zeros, compressed));
+  const auto chunk = [&](RecordWriter& writer, Bytes& file) {
+    writer.record(Opcode::Chunk, [&] {
+      writer.number(std::uint64_t{0});
+      writer.number(std::uint64_t{0});
+      writer.number(std::uint64_t{zeros.size()});
+      writer.number(std::uint32_t{0});
+      writer.text(kZstd);
+      writer.number(std::uint64_t{compressed.size()});
+      file.append(compressed);
+    });
+  };
+  Bytes file{std::span<const std::byte>(kMagic)};
+  RecordWriter writer(file);
+  for (int i = 0; i < 8; ++i) chunk(writer, file);
+  test::put(path, {reinterpret_cast<const char*>(file.data()), file.size()});
+  const Reader reader(path);
+  REQUIRE(reader.problems().size() > 1);
+  CHECK_THAT(reader.problems().front(),
+             Catch::Contains("the chunks before it have ") && Catch::Contains("times as many"));
+}
+
 TEST_CASE("a file without chunks, as other programs write them, is read in order of time") {
   const TemporaryFolder folder;
   const std::string path = folder / "plain.mcap";

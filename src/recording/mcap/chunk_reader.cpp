@@ -1,5 +1,7 @@
 #include "recording/mcap/chunk_reader.hpp"
 
+#include <algorithm>
+
 #include "core/printable.hpp"
 #include "recording/mcap/compression.hpp"
 
@@ -12,6 +14,16 @@ ChunkHead::ChunkHead(RecordReader& fields)
       crc(fields.number<std::uint32_t>()),
       compression(fields.text()),
       compressed_size(fields.number<std::uint64_t>()) {}
+
+Allowance::Allowance(const InputFile& file, std::size_t most)
+    : memory(std::min<std::uint64_t>(most, (std::uint64_t{64} << 20) + 100 * file.size())),
+      total((std::uint64_t{256} << 20) + 1000 * file.size()) {}
+
+void Allowance::check(std::uint64_t read) const {
+  if (read <= total) return;
+  throw MalformedRecord("the chunks before it have " + std::to_string(read) +
+                        " bytes, a thousand times as many as the file");
+}
 
 Bytes read_chunk(const InputFile& file, const ChunkPlace& place, std::size_t memory) {
   const auto refuse_larger = [&](std::uint64_t size) {

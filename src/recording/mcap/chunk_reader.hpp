@@ -21,6 +21,18 @@ struct ChunkHead {
 /// compressed in another way than by zstd, or need more than `memory`.
 Bytes read_chunk(const InputFile& file, const ChunkPlace& place, std::size_t memory);
 
+/// How much a reader of this file takes: a small file must not stand for a large one. Messages of
+/// zeros alone shrink to a thirty-thousandth, those of real systems to a tenth.
+struct Allowance {
+  Allowance(const InputFile& file, std::size_t memory);
+
+  /// Throws MalformedRecord if so much has been read from chunks that the next is passed over.
+  void check(std::uint64_t read) const;
+
+  std::size_t memory;   ///< At a time.
+  std::uint64_t total;  ///< From all chunks together.
+};
+
 /// A message record's fields.
 Message read_message(RecordReader fields);
 

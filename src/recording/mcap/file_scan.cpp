@@ -14,7 +14,8 @@ constexpr std::size_t kHeadOfRecord = std::size_t{64} << 10;
 
 class Scan {
  public:
-  Scan(const InputFile& file, std::size_t memory) : file_(file), memory_(memory), window_(file) {}
+  Scan(const InputFile& file, std::size_t memory)
+      : file_(file), allowance_(file, memory), window_(file) {}
 
   FileIndex run() {
     std::uint64_t offset = kMagic.size();
@@ -143,7 +144,9 @@ class Scan {
 
   void read_into_index() {
     chunk_counts_.clear();
-    const Bytes records = read_chunk(file_, *chunk_, memory_);
+    allowance_.check(read_);
+    const Bytes records = read_chunk(file_, *chunk_, allowance_.memory);
+    read_ += records.size();
     RecordReader reader(records);
     while (const auto record = next_record(reader)) {
       const RecordReader fields(record->fields);
@@ -171,7 +174,8 @@ class Scan {
   }
 
   const InputFile& file_;
-  std::size_t memory_;
+  const Allowance allowance_;
+  std::uint64_t read_ = 0;  // from chunks
   InputWindow window_;
   FileIndex index_;
   bool ended_ = false;

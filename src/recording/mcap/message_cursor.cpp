@@ -16,7 +16,7 @@ MessageCursor::MessageCursor(const InputFile& file, const FileIndex& index,
       channels_(std::move(channels)),
       first_(selection.first),
       last_(selection.last),
-      memory_(memory) {
+      allowance_(file, memory) {
   for (const ChunkPlace& place : index.chunks) {
     const bool in_time = place.end >= first_ && place.start <= last_;
     const bool wanted =
@@ -58,7 +58,7 @@ void MessageCursor::load_until_due() {
     const ChunkPlace& place = *places_[next_place_];
     const bool is_due =
         heap_.empty() || place.start <= heap_.front().entries[heap_.front().next].log_time;
-    if (!is_due || (!heap_.empty() && loaded_ >= memory_)) return;
+    if (!is_due || (!heap_.empty() && loaded_ >= allowance_.memory)) return;
     ++next_place_;
     try {
       load(place);
@@ -73,7 +73,9 @@ void MessageCursor::load_until_due() {
 
 void MessageCursor::load(const ChunkPlace& place) {
   LoadedChunk chunk;
-  chunk.records = read_chunk(file_, place, memory_);
+  allowance_.check(read_);
+  chunk.records = read_chunk(file_, place, allowance_.memory);
+  read_ += chunk.records.size();
   chunk.offset = place.offset;
   RecordReader reader(chunk.records);
   while (const auto record = next_record(reader)) add_entry(chunk, *record);

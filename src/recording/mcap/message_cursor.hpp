@@ -40,7 +40,8 @@ class MessageCursor {
   const std::set<std::uint16_t> channels_;
   const std::uint64_t first_;
   const std::uint64_t last_;
-  const std::size_t memory_;
+  const Allowance allowance_;
+  std::uint64_t read_ = 0;                 // from chunks
   std::vector<const ChunkPlace*> places_;  // by time
   std::size_t next_place_ = 0;
   std::vector<LoadedChunk> heap_;  // the one with the next message in front
