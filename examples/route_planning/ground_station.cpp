@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -61,10 +60,9 @@ AE_navigator::GroundPoint on_ground(const AE_navigator::Position& position) {
 std::vector<AE_navigator::NoFlyZone> read_zones(const std::string& file,
                                                 const skein::navigation::Terrain& terrain) {
   if (file.empty()) return {};
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw skein::InvalidArgument(fmt::format("the zones in '{}' cannot be read", file));
-  return skein::navigation::zones_from_geojson(text, file, terrain);
+  constexpr std::size_t kLargest = std::size_t{64} << 20;
+  return skein::navigation::zones_from_geojson(
+      skein::read_whole_file("the zones in", file, kLargest), file, terrain);
 }
 
 void use(const AE_adManagerI::ThreatPicture& picture, Problem& problem) {

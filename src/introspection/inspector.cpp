@@ -197,7 +197,7 @@ void Inspector::types(const std::vector<TypesWanted>& wanted, Duration timeout,
     question.name = wanted[i].name;
     asked.try_emplace(i, *state_, std::move(question));
   }
-  const Instant deadline = state_->entity.clock().now() + timeout;
+  const Instant deadline = state_->entity.clock().after(timeout);
   const auto has_types = [](const auto& each) { return !each.second.types.empty(); };
   const auto first_told = [&] {
     return std::ranges::find_if(asked, [&](const auto& each) {

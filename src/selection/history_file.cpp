@@ -1,11 +1,7 @@
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
-#include "core/system/passing_error.hpp"
 #include "core/system/whole_file.hpp"
 #include "service_history.hpp"
 #include "skein/detail/type_support.hpp"
@@ -18,6 +14,7 @@ namespace {
 using introspection::Experience;
 
 constexpr std::uint32_t kVersion = 2;
+constexpr std::size_t kLargestHistory = std::size_t{256} << 20;
 
 introspection::PastRun run_of(const History::Sample& sample) {
   return {wire_values::list(*sample.features),
@@ -99,16 +96,9 @@ void History::save(const std::string& path) const {
 History History::load(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error) && !error) return {};
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) {
-    const int reason = errno;
-    throw_for_file(reason, "the Head's history '" + path +
-                               "' cannot be read: " + std::generic_category().message(reason));
-  }
+  const std::string text = read_whole_file("the Head's history", path, kLargestHistory);
   try {
-    return from_json(text.str());
+    return from_json(text);
   } catch (const InvalidArgument& wrong) {
     refuse(path, std::string("is damaged or of another version: ") + wrong.what() +
                      "; remove it to begin anew");

@@ -94,6 +94,23 @@ TEST_CASE("Whether a file can be written is tried without a trace") {
   CHECK_THROWS_WITH(try_whole_file("the picture", folder.path()), Contains("Is a directory"));
 }
 
+TEST_CASE("A file is read whole, and nothing that may be without end") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "file";
+  const std::string text(200'000, 'x');
+  write_whole_file("the zones", file, text);
+  CHECK(read_whole_file("the zones", file, text.size()) == text);
+  CHECK_THROWS_WITH(read_whole_file("the zones", file, text.size() - 1),
+                    Contains("the zones '") && Contains("cannot be read: it has more than 0 MiB"));
+  CHECK_THROWS_WITH(read_whole_file("the zones", "/dev/zero", 1'000),
+                    Contains("'/dev/zero' cannot be read: it is no regular file"));
+  const auto pipe = folder.path() / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(read_whole_file("the zones", pipe, 1'000), Contains("no regular file"));
+  CHECK_THROWS_WITH(read_whole_file("the zones", folder.path() / "none", 1'000),
+                    Contains("No such file"));
+}
+
 TEST_CASE("A file is written through a link to it, and a device directly") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "file";

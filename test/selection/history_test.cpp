@@ -268,6 +268,7 @@ TEST_CASE("a history that cannot be read is refused with file, place and remedy"
   CHECK_THROWS_WITH(History::load(file.path), Catch::Contains("$.csps[0].service"));
   write("{\"version\":1,\"csps\":[],\"decisions\":[]}");
   CHECK_THROWS_WITH(History::load(file.path), Catch::Contains("$.version is 1"));
+  CHECK_THROWS_WITH(History::load("/dev/zero"), Catch::Contains("it is no regular file"));
   CHECK_THROWS_WITH(History().save("no_such_folder/history.json"),
                     Catch::Contains("no_such_folder"));
 }

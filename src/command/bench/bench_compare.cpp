@@ -1,9 +1,10 @@
 #include <cstdio>
-#include <fstream>
 #include <string>
 
 #include "bench.hpp"
 #include "command/commands.hpp"
+#include "core/printable.hpp"
+#include "core/system/whole_file.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
@@ -11,9 +12,10 @@ namespace {
 
 using bench::Rows;
 
+constexpr std::size_t kLargestResult = std::size_t{64} << 20;
+
 Rows load(const std::string& path) {
-  std::ifstream file(path);
-  Rows rows = Rows::parse(file, nullptr, false);
+  Rows rows = Rows::parse(read_whole_file("the result", path, kLargestResult), nullptr, false);
   bool good = rows.is_array();
   for (const Rows& row : rows) {
     good = good && row.is_object() && row.contains("what") && row.contains("vendor") &&
@@ -33,16 +35,16 @@ bool same(const Rows& one, const Rows& other) {
 std::string way_of(const Rows& row) {
   const auto transport = row.value("transport", std::string("DDS"));
   const auto vendor = row["vendor"].get<std::string>();
-  return transport == "DDS" ? vendor : vendor + ", " + transport;
+  return printable(transport == "DDS" ? vendor : vendor + ", " + transport);
 }
 
 void print_comparison(const Rows& before, const Rows& after) {
   const double old_p50 = before["p50_us"], new_p50 = after["p50_us"];
   const double old_p99 = before["p99_us"], new_p99 = after["p99_us"];
   std::printf("%-10s %8d  %-25s %-25s %9.1f %9.1f %7.2f %7.2f\n",
-              before["what"].get<std::string>().c_str(), before.value("payload_bytes", 0),
-              way_of(before).c_str(), way_of(after).c_str(), old_p50, new_p50, new_p50 / old_p50,
-              new_p99 / old_p99);
+              printable(before["what"].get<std::string>()).c_str(),
+              before.value("payload_bytes", 0), way_of(before).c_str(), way_of(after).c_str(),
+              old_p50, new_p50, new_p50 / old_p50, new_p99 / old_p99);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ namespace {
 
 constexpr std::size_t kLongestDifference = 4096;
 constexpr std::size_t kLongestPlace = 4096;
+constexpr std::size_t kLongestLine = std::size_t{16} << 20;
 
 void print_decision(const introspection::Decision& record) {
   std::fputs(folded(explain(record), terminal_width()).c_str(), stdout);
@@ -94,6 +95,23 @@ bool is_cut(const std::string& line, bool last) {
   return line.starts_with('{') && (last || !line.ends_with('}'));
 }
 
+/// As std::getline(); a longer line is none of a log.
+bool next_line(std::istream& file, std::string& line, const std::string& place) {
+  line.clear();
+  for (int c = file.rdbuf()->sbumpc(); c != '\n'; c = file.rdbuf()->sbumpc()) {
+    if (c == std::char_traits<char>::eof()) {
+      file.setstate(std::ios::eofbit);
+      return !line.empty();
+    }
+    if (line.size() == kLongestLine) {
+      throw InvalidArgument(place + ": no log of decisions: this line has more than " +
+                            std::to_string(kLongestLine >> 20) + " MiB");
+    }
+    line += static_cast<char>(c);
+  }
+  return true;
+}
+
 using Visit = std::function<void(const introspection::Decision& record, const std::string& place)>;
 
 void for_each_in_log(const std::string& log, const Visit& visit) {
@@ -105,8 +123,8 @@ void for_each_in_log(const std::string& log, const Visit& visit) {
   if (!file) refuse(errno);
   if (std::filesystem::is_directory(log)) refuse(EISDIR);
   std::size_t count = 0;
-  for (std::string line; std::getline(file, line);) {
-    const std::string place = log + ":" + std::to_string(++count);
+  for (std::string line; next_line(file, line, log + ":" + std::to_string(++count));) {
+    const std::string place = log + ":" + std::to_string(count);
     if (line.empty()) continue;
     const bool last = file.eof();  // no newline ends it
     if (is_cut(line, last)) {
@@ -142,7 +160,7 @@ void print_difference(const introspection::Decision& record, const std::string& 
                false);
     return;
   }
-  std::printf("%s: decision %llu of %s: %s\n", place.c_str(),
+  std::printf("%s: decision %llu of %s: %s\n", printable(place, kLongestPlace).c_str(),
               static_cast<unsigned long long>(record.number), printable(record.entity).c_str(),
               printable(what, kLongestDifference).c_str());
 }

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <optional>
@@ -110,6 +111,31 @@ void write_whole_file(const std::string& what, const std::filesystem::path& file
   draft.open();
   draft.write(content);
   draft.put_in_place();
+}
+
+std::string read_whole_file(const std::string& what, const std::filesystem::path& file,
+                            std::size_t largest) {
+  const auto refuse = [&](const std::string& reason, int error = 0) {
+    throw_for_file(error, what + " '" + printable(file.string()) + "' cannot be read: " + reason);
+  };
+  const auto fail = [&] { refuse(std::generic_category().message(errno), errno); };
+  // O_NONBLOCK: opening a pipe must not wait for a writer.
+  const FileDescriptor input(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct ::stat status {};
+  if (!input || ::fstat(input.get(), &status) != 0) fail();
+  if (!S_ISREG(status.st_mode)) refuse("it is no regular file");
+  std::string text;
+  std::array<char, 64 * 1024> piece;
+  while (true) {
+    const auto count = ::read(input.get(), piece.data(), piece.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail();
+    if (count == 0) return text;
+    text.append(piece.data(), static_cast<std::size_t>(count));
+    if (text.size() > largest) {
+      refuse("it has more than " + std::to_string(largest >> 20) + " MiB, and is another file");
+    }
+  }
 }
 
 void try_whole_file(const std::string& what, const std::filesystem::path& file) {

@@ -23,6 +23,12 @@ class WriteFailed : public Unavailable {
 void write_whole_file(const std::string& what, const std::filesystem::path& file,
                       std::string_view content);
 
+/// The bytes of a file of at most `largest` bytes. A device or a pipe is refused before it is read:
+/// one may be without end, the other wait for ever. Throws InvalidArgument, as write_whole_file(),
+/// or Unavailable if the machine lacks something for the moment.
+std::string read_whole_file(const std::string& what, const std::filesystem::path& file,
+                            std::size_t largest);
+
 /// For those who will write the file later: throws as write_whole_file() would now. Changes
 /// nothing.
 void try_whole_file(const std::string& what, const std::filesystem::path& file);

@@ -9,12 +9,25 @@
 #include "skein/error.hpp"
 
 namespace skein::navigation::grid {
+namespace {
 
-LineReader::LineReader(const std::filesystem::path& file) : file_(file), in_(file) {
+constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 30;
+
+}  // namespace
+
+LineReader::LineReader(const std::filesystem::path& file) : file_(file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw InvalidArgument(file.string() + ": cannot be read; does it exist, and is it a file?");
+  }
+  if (std::filesystem::file_size(file, error) > kLargest) {
+    throw InvalidArgument(file.string() + ": is larger than 1 GiB, as no map and no scenarios are");
+  }
+  in_.open(file);
   if (in_) return;
-  const int error = errno;
-  throw_for_file(error,
-                 file.string() + ": cannot be read: " + std::generic_category().message(error));
+  const int reason = errno;
+  throw_for_file(reason,
+                 file.string() + ": cannot be read: " + std::generic_category().message(reason));
 }
 
 bool LineReader::next() {

@@ -4,15 +4,15 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 
+#include "core/system/whole_file.hpp"
 #include "skein/error.hpp"
 
 namespace skein::navigation {
 namespace {
 
-constexpr std::size_t kFirstColumn = 3428;  // After all headers.
+constexpr std::size_t kFirstColumn = 3428;    // After all headers.
+constexpr std::size_t kLargest = 32'000'000;  // 3601 columns of 3601 posts have 26 million bytes.
 
 int byte_at(const std::string& text, std::size_t at) {
   return static_cast<unsigned char>(text[at]);
@@ -21,8 +21,7 @@ int byte_at(const std::string& text, std::size_t at) {
 }  // namespace
 
 TilePosts read_dted_posts(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = read_whole_file("the terrain", file, kLargest);
   TilePosts tile;
   int longitude_lines = 0, latitude_points = 0;
   if (text.size() < kFirstColumn ||

@@ -274,9 +274,10 @@ class ZoneReader {
       area += std::abs(offset(i, 0) * offset(i + 1, 1) - offset(i + 1, 0) * offset(i, 1));
     }
     if (area > 2e-14) return;
-    refuse(place,
-           "encloses nothing, so that it is no zone; a zone about a place or a line is a Point or a "
-           "LineString with margin_m");
+    refuse(
+        place,
+        "encloses nothing, so that it is no zone; a zone about a place or a line is a Point or a "
+        "LineString with margin_m");
   }
 
   void require_simple(const std::vector<AE_navigator::GroundPoint>& corners,
