@@ -45,8 +45,9 @@ class InventedPeer {
   }
 
   /// What it says of a reliable endpoint, in the default partition: the `number`th such message.
+  /// With user data of that size, a multiple of 4.
   RtpsPacket endpoint(const Guid& whose, const std::string& topic, const std::string& type,
-                      std::int64_t number) const {
+                      std::int64_t number, std::size_t user_data = 0) const {
     const OctetWriter list =
         OctetWriter()
             .append(kList)
@@ -54,6 +55,8 @@ class InventedPeer {
             .append(parameter(0x05, text(topic)))
             .append(parameter(0x07, text(type)))
             .append(parameter(0x1a, OctetWriter().u32(2).u32(0).u32(100'000'000)))
+            .append(parameter(
+                0x2c, OctetWriter().u32(static_cast<std::uint32_t>(user_data)).zeros(user_data)))
             .append(kEnd);
     return heartbeat_of(announcer_of(whose), number)
         .submessage(0x15, kHasPayload, data(announcer_of(whose), number, list.octets()));

@@ -49,6 +49,7 @@ CycloneParticipant::CycloneParticipant(const ParticipantOptions& options) : opti
   guid_ = participant_.guid().participant();
   internals_ = &find_internals();
   guard_ = std::make_unique<PacketGuard>(*internals_, options_);
+  endpoints_.emplace(handle(), guard());
   absences_.emplace(*internals_);
   watch_participants();
   if (options.network.multicast_discovery) membership_.emplace(options);
@@ -107,12 +108,6 @@ void CycloneParticipant::adapt_heartbeats() const {
   const HeartbeatIntervals intervals = heartbeat_intervals(present_.size());
   skein_set_heartbeat_intervals(internals_, std::chrono::nanoseconds(intervals.first).count(),
                                 std::chrono::nanoseconds(intervals.longest).count());
-}
-
-Endpoints& CycloneParticipant::endpoints() {
-  std::lock_guard lock(discovering_);
-  if (!endpoints_) endpoints_.emplace(handle());
-  return endpoints_->all();
 }
 
 TopicHandle CycloneParticipant::acquire_topic(const Topic& topic) {

@@ -41,8 +41,7 @@ class CycloneParticipant final : public Participant {
   TopicHandle acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);
 
-  /// Watched from when they are first asked for, not from a listener.
-  Endpoints& endpoints();
+  Endpoints& endpoints() noexcept { return endpoints_->all(); }
 
  private:
   ddsi_domaingv& find_internals();
@@ -57,9 +56,8 @@ class CycloneParticipant final : public Participant {
   Guid guid_;
   ddsi_domaingv* internals_ = nullptr;
   TopicTable<TopicHandle> topics_;
-  std::mutex discovering_;
-  std::optional<DiscoveredEndpoints> endpoints_;  // made once, under discovering_
-  std::mutex presence_;                           // one call of on_participant at a time
+  std::optional<DiscoveredEndpoints> endpoints_;
+  std::mutex presence_;  // one call of on_participant at a time
   std::set<Guid> present_;
   std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first

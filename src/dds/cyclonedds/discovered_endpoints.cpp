@@ -90,7 +90,8 @@ std::string name_of(dds_entity_t participants, dds_instance_handle_t participant
 
 }  // namespace
 
-DiscoveredEndpoints::DiscoveredEndpoints(dds_entity_t participant) {
+DiscoveredEndpoints::DiscoveredEndpoints(dds_entity_t participant, RtpsGuard& guard)
+    : writers_{Side::Writer, all_, guard}, readers_{Side::Reader, all_, guard} {
   participants_ = Entity(
       check(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
             "participants cannot be watched"));
@@ -119,8 +120,10 @@ void DiscoveredEndpoints::take(Source& source) {
     const auto& found = *static_cast<const dds_builtintopic_endpoint_t*>(samples[0]);
     const Guid guid = to_guid(found.key);
     if (info.instance_state != DDS_IST_ALIVE) {
+      source.guard.endpoint_removed(guid);
       source.all.lost(guid);
     } else if (info.valid_data) {
+      source.guard.endpoint_found(guid);
       source.all.found(guid, {source.side, found.topic_name, found.type_name, to_qos(found.qos),
                               name_of(source.participants, found.participant_instance_handle)});
     }

@@ -7,6 +7,7 @@
 
 #include "cyclone_entity.hpp"
 #include "dds/port/endpoints.hpp"
+#include "dds/rtps/rtps_guard.hpp"
 
 namespace skein::dds::cyclonedds {
 
@@ -15,8 +16,8 @@ namespace skein::dds::cyclonedds {
 /// writes the built-in sample, on the thread that matches afterwards.
 class DiscoveredEndpoints {
  public:
-  /// Not from a listener.
-  explicit DiscoveredEndpoints(dds_entity_t participant);
+  /// Tells the guard, too. Not from a listener.
+  DiscoveredEndpoints(dds_entity_t participant, RtpsGuard& guard);
 
   Endpoints& all() noexcept { return all_; }
 
@@ -24,6 +25,7 @@ class DiscoveredEndpoints {
   struct Source {
     Side side;
     Endpoints& all;
+    RtpsGuard& guard;
     dds_entity_t participants = 0;  // the reader of their names
     std::mutex taking{};
     std::atomic<dds_entity_t> handle{0};  // 0 for a listener that comes before it is known
@@ -35,8 +37,8 @@ class DiscoveredEndpoints {
 
   Endpoints all_;
   Entity participants_;
-  Source writers_{Side::Writer, all_};
-  Source readers_{Side::Reader, all_};
+  Source writers_;
+  Source readers_;
 };
 
 }  // namespace skein::dds::cyclonedds

@@ -138,23 +138,29 @@ void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
 
 void FastParticipant::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return endpoints_.lost(guid);
+  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return lost(guid);
   found(guid, to_endpoint(info.info));
 }
 
 void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
   const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return endpoints_.lost(guid);
+  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return lost(guid);
   found(guid, to_endpoint(info.info));
 }
 
 void FastParticipant::found(const Guid& guid, Endpoint endpoint) {
+  guard().endpoint_found(guid);
   {
     std::lock_guard lock(mutex_);
     const auto name = names_.find(guid.participant());
     if (name != names_.end()) endpoint.participant = name->second;
   }
   endpoints_.found(guid, std::move(endpoint));
+}
+
+void FastParticipant::lost(const Guid& endpoint) {
+  guard().endpoint_removed(endpoint);
+  endpoints_.lost(endpoint);
 }
 
 void FastParticipant::follow(const Guid& participant,

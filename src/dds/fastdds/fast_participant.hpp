@@ -81,6 +81,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   void check_liveliness();
   void drop_incomplete();
   void found(const Guid& guid, Endpoint endpoint);
+  void lost(const Guid& endpoint);
   void forget_all();
 
   struct Watched {

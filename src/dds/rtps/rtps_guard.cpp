@@ -40,6 +40,9 @@ const char* describe(Refusal why) {
       return "it speaks of another participant, or of another's endpoints";
     case Refusal::Crowd:
       return "it is of one participant too many, of its address or in all, or too soon";
+    case Refusal::Announced:
+      return "its participant, its address or all together have announced too many endpoints, or "
+             "too large ones";
     case Refusal::Locator:
       return "its participant names only addresses that are not its own, and not in the profile "
              "(peers, allowed_sources)";
@@ -133,6 +136,16 @@ void RtpsGuard::found(const Guid& participant) {
 void RtpsGuard::removed(const Guid& participant) {
   const std::lock_guard lock(mutex_);
   admission_.removed(participant);
+}
+
+void RtpsGuard::endpoint_found(const Guid& endpoint) {
+  const std::lock_guard lock(mutex_);
+  admission_.endpoint_found(endpoint.participant(), entity_of(endpoint));
+}
+
+void RtpsGuard::endpoint_removed(const Guid& endpoint) {
+  const std::lock_guard lock(mutex_);
+  admission_.endpoint_removed(endpoint.participant(), entity_of(endpoint));
 }
 
 void RtpsGuard::matched(const Guid& writer, std::uint32_t reader, bool now) {
@@ -265,6 +278,10 @@ RtpsGuard::Verdict RtpsGuard::judge_data(const Submessage& submessage, const Ori
   if (service != Service::None) {
     if (const auto verdict = judge_discovery(submessage, *found, service, origin)) return verdict;
   }
+  if (service == Service::Endpoints) {
+    const std::uint32_t writer = entity_at(found->writer);
+    if (const auto verdict = admission_.may_wait(origin, writer, found->number)) return verdict;
+  }
   // A farewell may come from who was never found.
   if (service == Service::Participants && !admission_.knows(origin)) return kSound;
   return admission_.sample(origin, entity_at(found->writer), found->number);
@@ -291,10 +308,13 @@ RtpsGuard::Verdict RtpsGuard::judge_discovery(const Submessage& submessage, cons
     constexpr std::uint32_t kLongestLease = 100;  // RTPS's default, in seconds
     if (!names_lease(found.payload, found.payload_size, kLongestLease)) return Refusal::Lease;
     if (!check_locators(found, origin)) return Refusal::Locator;
-    return admission_.announced(origin);
+    if (const auto verdict = admission_.announced(origin)) return verdict;
+  } else {
+    check_locators(found, origin);
   }
-  check_locators(found, origin);
-  return kSound;
+  const auto whose = announced_entity(found.payload, found.payload_size);
+  if (!whose) return Refusal::Parameters;
+  return admission_.announced(origin, *whose, found.payload_size);
 }
 
 bool RtpsGuard::check_locators(const Data& found, const Origin& origin) const {

@@ -45,6 +45,9 @@ class RtpsGuard {
   /// The vendor has found a participant, or has removed it.
   void found(const Guid& participant);
   void removed(const Guid& participant);
+  /// It has found a participant's endpoint, or has removed it.
+  void endpoint_found(const Guid& endpoint);
+  void endpoint_removed(const Guid& endpoint);
 
   /// A reader of this participant has been matched with a remote writer, or is no longer. `reader`
   /// is its entity id, or what else tells it from others.

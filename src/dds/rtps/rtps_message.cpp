@@ -16,6 +16,9 @@ std::optional<NumberSet> with_bits(NumberSet set, const Submessage& submessage, 
   return set.end <= submessage.size ? std::optional(set) : std::nullopt;
 }
 
+/// With the zero at its end: of a topic, a type or a partition. Vendors have fixed room for them.
+constexpr std::size_t kLongestName = 256;
+
 /// A parameter's value that is read from front to back.
 struct Value {
   const unsigned char* at;
@@ -34,16 +37,16 @@ struct Value {
     return get32(place, little);
   }
   /// Ends with a zero, as CDR's strings do; vendors rely on it.
-  bool text() {
+  bool text(std::size_t longest = SIZE_MAX) {
     const auto length = number();
     if (!length || *length == 0 || *length > left || at[*length - 1] != 0) return false;
-    return skip(std::min(left, (std::size_t{*length} + 3) / 4 * 4));
+    return *length <= longest && skip(std::min(left, (std::size_t{*length} + 3) / 4 * 4));
   }
-  bool texts(std::uint32_t each = 1) {
+  bool texts(std::uint32_t each = 1, std::size_t longest = SIZE_MAX) {
     const auto count = number();
     if (!count || *count > left / 4) return false;
     for (std::uint32_t i = 0; i < *count * each; ++i) {
-      if (!text()) return false;
+      if (!text(longest)) return false;
     }
     return true;
   }
@@ -59,11 +62,12 @@ bool check_parameter(const Parameter& parameter) {
   switch (parameter.id) {
     case 0x0005:  // topic name
     case 0x0007:  // type name
+      return value.text(kLongestName);
     case 0x0062:  // entity name
     case 0x4014:  // domain tag
       return value.text();
     case 0x0029:  // partitions
-      return value.texts();
+      return value.texts(1, kLongestName);
     case 0x0059:  // properties
       return value.texts(2);
     case 0x0035:  // content filter
@@ -221,6 +225,24 @@ bool is_of_sender(const Submessage& submessage, const unsigned char* prefix) {
     if (!for_each_parameter_of(found->payload, found->payload_size, is_own)) return false;
   }
   return named;
+}
+
+std::optional<std::uint32_t> announced_entity(unsigned char* payload, std::size_t size) {
+  std::optional<std::uint32_t> participant;
+  std::optional<std::uint32_t> endpoint;
+  bool several = false;
+  for_each_parameter_of(payload, size, [&](const Parameter& parameter) {
+    const bool is_endpoint = parameter.id == kEndpointGuid || parameter.id == kKeyHash;
+    if (!is_endpoint && parameter.id != kParticipantGuid) return true;
+    if (parameter.size < 16) return several = true;
+    const std::uint32_t named = get32(parameter.value + kPrefixSize, false);
+    auto& known = is_endpoint ? endpoint : participant;
+    several |= known && *known != named;
+    known = named;
+    return true;
+  });
+  if (several) return std::nullopt;
+  return endpoint ? endpoint : participant;
 }
 
 bool names_lease(unsigned char* payload, std::size_t size, std::uint32_t longest_s) {

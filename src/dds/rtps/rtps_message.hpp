@@ -260,6 +260,10 @@ bool check_discovery(unsigned char* payload, std::size_t size);
 /// QoS and in its payload.
 bool is_of_sender(const Submessage& submessage, const unsigned char* prefix);
 
+/// The entity id of the participant or endpoint that a good payload of discovery is about; nothing
+/// where it names none, or several.
+std::optional<std::uint32_t> announced_entity(unsigned char* payload, std::size_t size);
+
 /// Whether a payload of participant discovery that is good says for how long its participant lives
 /// on unheard. Without it Fast DDS reads a lease of 0 s instead of RTPS's default. A longer lease
 /// than `longest_s` is changed into that.

@@ -6,6 +6,7 @@
 #include "dds/rtps/repeated_messages.hpp"
 #include "guard_stage.hpp"
 #include "skein/error.hpp"
+#include "test/tools/invented_peer.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -193,6 +194,16 @@ TEST_CASE_METHOD(Stage, "discovery's parameters, texts and lists lie within it")
         announcement(parameter(0x00, OctetWriter().zeros(16))).octets());
   CHECK(refuses(from(announcer, kDataFrag, 0, data_frag(announcer, 1, {1, 1, 1024, 1024}, 1024)),
                 Refusal::Unused));
+}
+
+TEST_CASE_METHOD(Stage, "a name that is announced has at most 255 octets") {
+  const InventedPeer peer(1, kSomewhere);
+  REQUIRE(passes(peer.announcement()));
+  const std::string longest(255, 'n');
+  CHECK(passes(peer.endpoint(peer.writer(1), longest, longest, 1)));
+  CHECK_FALSE(passes(peer.endpoint(peer.writer(1), longest + "n", "T", 2)));
+  CHECK_FALSE(passes(peer.endpoint(peer.writer(1), "t", longest + "n", 2)));
+  CHECK(guard.refused(Refusal::Parameters) == 2);
 }
 
 TEST_CASE_METHOD(Stage, "a participant says when it counts as gone") {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "guard_stage.hpp"
+#include "test/tools/invented_peer.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -299,4 +300,76 @@ TEST_CASE_METHOD(Stage,
   const Guid another = stranger_of(9);
   pass(announcement_of(another).octets());
   CHECK(passes(from(another, kHeartbeat, 0, heartbeat(another, 1, 5))));
+}
+
+TEST_CASE_METHOD(
+    Stage,
+    "what a participant announces is bounded, and free again when the vendor has removed it") {
+  constexpr std::size_t kSize = 60'000;
+  std::uint32_t source = kSomewhere;
+  const auto announces = [&](const InventedPeer& peer, std::uint32_t number, std::size_t data = 0) {
+    const auto packet = peer.endpoint(peer.writer(number), "topic", "type", number, data);
+    return pass(packet.octets(), source) == packet.octets();
+  };
+  const auto announce_all = [&](const InventedPeer& peer, std::size_t data = 0) {
+    REQUIRE_FALSE(pass(peer.announcement().octets(), source).empty());
+    std::uint32_t number = 1;
+    while (announces(peer, number, data)) ++number;
+    return number - 1;
+  };
+  const InventedPeer peer(1, kSomewhere);
+  SECTION("by their number") {
+    const std::uint32_t all = announce_all(peer);
+    CHECK(all > 9'000);  // 1,000 services, each with eight clients
+    CHECK(all * Admission::kKeptOfEach <= Admission::kMaxAnnounced);
+    CHECK(announces(peer, 1));  // those that are known may be said again
+    // Whether the vendor takes a withdrawal is the vendor's to say.
+    pass(peer.withdrawal(peer.writer(1), all + 1).octets());
+    CHECK_FALSE(announces(peer, all + 2));
+    guard.endpoint_removed(peer.writer(1));
+    CHECK(announces(peer, all + 2));
+    // It was announced anew in the meantime.
+    guard.endpoint_found(peer.writer(1));
+    guard.endpoint_removed(peer.writer(2));
+    CHECK_FALSE(announces(peer, all + 3));
+  }
+  SECTION("by their size") {
+    const std::uint32_t all = announce_all(peer, kSize);
+    CHECK(all * kSize <= Admission::kMaxAnnounced);
+    CHECK(all > 500);
+  }
+  SECTION("of all at an address, and in all") {
+    std::uint32_t rogue = 0;
+    std::size_t all = 0;
+    for (std::uint32_t address = kSomewhere; address < kSomewhere + 3; ++address) {
+      source = address;
+      const std::size_t before = all;
+      for (int i = 0; i < 6; ++i)
+        all += announce_all(InventedPeer(++rogue, address), kSize) * kSize;
+      CHECK(all - before <= Admission::kMaxAnnouncedAtSource);
+    }
+    CHECK(all <= Admission::kMaxAnnouncedInAll);
+    CHECK(all > Admission::kMaxAnnouncedInAll * 9 / 10);
+    guard.removed(InventedPeer(1).entity(0).participant());
+    source = kSomewhere;
+    CHECK(announce_all(InventedPeer(100, source), kSize) > 500);
+  }
+}
+
+TEST_CASE(
+    "few announcements wait for a vendor that looks through them, until it has acknowledged") {
+  Stage stage(SkippedNumbers::Counted);
+  const InventedPeer peer(1, kSomewhere);
+  REQUIRE(stage.passes(peer.announcement()));
+  const auto announces = [&](std::int64_t number) {
+    return stage.passes(peer.endpoint(peer.writer(1), "topic", "type", number));
+  };
+  std::int64_t number = 2;  // the first one is missing
+  while (announces(number)) ++number;
+  CHECK(number <= Admission::kMaxWaiting + 3);
+  CHECK(number > 4000);
+  CHECK(announces(1));
+  stage.acknowledge(peer.entity(entity_id::kPublicationsAnnouncer), number - 1);
+  CHECK(announces(number));
+  CHECK(announces(number + 1));
 }

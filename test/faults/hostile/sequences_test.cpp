@@ -4,6 +4,7 @@
 
 #include "attacked_provider.hpp"
 #include "dds/port/port.hpp"
+#include "dds/rtps/packet_admission.hpp"
 #include "skein/detail/bytes.hpp"
 #include "skein/error.hpp"
 #include "test/tools/cable.hpp"
@@ -156,6 +157,62 @@ TEST_CASE("who withdraws another's endpoint in its own name withdraws nothing") 
     return matched(peer.writer(2));
   }));
   CHECK(matched(writer->guid()));
+}
+
+TEST_CASE_METHOD(AttackedProvider,
+                 "endpoints announced without end take a bounded part of a provider's memory") {
+  constexpr std::uint32_t kMany = 60'000;
+  const InventedPeer peer(1);
+  send(peer.announcement());
+  const std::size_t before = resident_mib();
+  for (std::uint32_t i = 1; i <= kMany; ++i) {
+    send(peer.endpoint(peer.writer(i), "announced", "announced", i));
+  }
+  CHECK(has_read_all(30s));
+  CHECK(resident_mib() <= before + kLittleMemory);
+  send(farewell(peer.entity(entity_id::kParticipant), 2));
+  check_answers();
+}
+
+TEST_CASE_METHOD(AttackedProvider,
+                 "announcements behind a missing one take a bounded part of a provider's memory") {
+  constexpr std::int64_t kMany = 30'000;
+  const InventedPeer peer(1);
+  send(peer.announcement());
+  const std::size_t before = resident_mib();
+  for (std::int64_t i = 2; i <= kMany; ++i) {
+    send(peer.endpoint(peer.writer(1), "announced", "announced", i));
+  }
+  CHECK(has_read_all(5s));
+  CHECK(resident_mib() <= before + kLittleMemory);
+  check_answers();
+}
+
+TEST_CASE("who withdraws endpoints may announce others, however many it has had") {
+  constexpr std::size_t kSize = 50'000;
+  constexpr std::uint32_t kMany = dds::Admission::kMaxAnnounced / kSize + 16;
+  Stage stage;
+  const auto reader = stage.participant->create_reader(stage.topic, {});
+  const InventedPeer peer(1);
+  const auto matched = [&] { return !reader->matched_writers().empty(); };
+  REQUIRE(eventually([&] {
+    stage.send(peer.announcement());
+    stage.send(peer.endpoint(peer.writer(1), stage.topic.name, stage.topic.type_name, 1));
+    return matched();
+  }));
+  const auto ports = receiving_ports_of(getpid());
+  for (std::uint32_t i = 2; i < kMany; ++i) {
+    const auto number = 2 * std::int64_t{i} - 2;
+    stage.send(peer.withdrawal(peer.writer(i - 1), number));
+    stage.send(peer.endpoint(peer.writer(i), "announced", "announced", number + 1, kSize));
+    REQUIRE(eventually([&] { return unread_bytes(ports) == 0; }));
+  }
+  CHECK(eventually([&] { return !matched(); }));
+  CHECK(eventually([&] {
+    stage.send(peer.endpoint(peer.writer(kMany), stage.topic.name, stage.topic.type_name,
+                             2 * std::int64_t{kMany} - 2));
+    return matched();
+  }));
 }
 
 TEST_CASE_METHOD(AttackedProvider,
