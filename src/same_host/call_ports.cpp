@@ -136,16 +136,18 @@ class LinkWriter final : public dds::Writer {
     link_->close();
   }
 
-  void write(std::span<const std::byte> cdr, const dds::KeyHash&) override {
-    dds::check_size(cdr.size(), "a message");
-    conclude(link_ ? link_->send(cdr, max_blocking_, on_full_) : Link::Sent::Ended);
+  void write(std::span<const std::byte> cdr, const dds::KeyHash&) override { send(cdr, nullptr); }
+  void write_within(const std::function<Duration()>& left,
+                    std::span<const std::byte> cdr) override {
+    send(cdr, &left);
   }
 
   bool write_lending(std::span<const std::byte> cdr, const std::shared_ptr<LoanMemory>& value,
                      std::size_t position) override {
     dds::check_size(cdr.size() + sizeof(LoanNote), "a message");
-    const auto sent = link_ ? link_->send_lending(cdr, value, position, max_blocking_, on_full_)
-                            : std::optional(Link::Sent::Ended);
+    const auto sent = link_
+                          ? link_->send_lending(cdr, value, position, patience(cdr.size(), nullptr))
+                          : std::optional(Link::Sent::Ended);
     if (sent) conclude(*sent);
     return sent.has_value();
   }
@@ -165,13 +167,24 @@ class LinkWriter final : public dds::Writer {
   }
 
  private:
+  void send(std::span<const std::byte> cdr, const std::function<Duration()>* left) const {
+    dds::check_size(cdr.size(), "a message");
+    conclude(link_ ? link_->send(cdr, patience(cdr.size(), left)) : Link::Sent::Ended);
+  }
+
+  // A large message needs time in proportion, which a reader that takes little must not stretch.
+  Link::Patience patience(std::size_t size, const std::function<Duration()>* left) const {
+    constexpr std::size_t kSlowestReader = 16 << 10;  // octets in a millisecond
+    return {max_blocking_ + std::chrono::milliseconds(size / kSlowestReader), on_full_, left};
+  }
+
   void conclude(Link::Sent sent) const {
     switch (sent) {
       case Link::Sent::Yes:
         return;
       case Link::Sent::NoRoom:
-        throw Overloaded("the other side has taken nothing from its memory for " +
-                         std::to_string(max_blocking_.count()) + " ms");
+        throw Overloaded("the other side has not taken the message from its memory in time: " +
+                         std::to_string(max_blocking_.count()) + " ms, and 1 s for each 16 MB");
       case Link::Sent::Ended:
         if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
     }

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "dds/port/largest_sample.hpp"
@@ -61,16 +62,19 @@ Link::Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory
       notify_(std::move(notify)),
       out_(place_of(*memory_, side == Side::Client)) {}
 
-Link::Sent Link::send(std::span<const std::byte> message, Duration patience,
-                      const std::function<void()>& on_full) {
+Duration Link::Patience::begin() const {
+  if (on_full && *on_full) (*on_full)();
+  return left ? std::min(longest, (*left)()) : longest;
+}
+
+Link::Sent Link::send(std::span<const std::byte> message, const Patience& patience) {
   std::lock_guard lock(out_mutex_);
-  return write({message}, patience, on_full);
+  return write({message}, patience);
 }
 
 std::optional<Link::Sent> Link::send_lending(std::span<const std::byte> message,
                                              const std::shared_ptr<LoanMemory>& value,
-                                             std::size_t position, Duration patience,
-                                             const std::function<void()>& on_full) {
+                                             std::size_t position, const Patience& patience) {
   if (side_ != Side::Client) return std::nullopt;
   std::lock_guard lock(out_mutex_);
   if (ended_) return Sent::Ended;
@@ -81,7 +85,7 @@ std::optional<Link::Sent> Link::send_lending(std::span<const std::byte> message,
   try {
     Bytes whole(message);
     whole.append(std::as_bytes(std::span(&*note, 1)));
-    sent = write({whole, true}, patience, on_full);
+    sent = write({whole, true}, patience);
   } catch (...) {
     lender_->not_sent(*note);
     throw;
@@ -137,8 +141,7 @@ void Link::forget(const LoanNote& gone) {
 }
 
 // Under the lock.
-Link::Sent Link::write(RingWriter::Part message, Duration patience,
-                       const std::function<void()>& on_full) {
+Link::Sent Link::write(RingWriter::Part message, const Patience& patience) {
   if (ended_) return Sent::Ended;
   message.lets_sleep = let_sleep();
   try {
@@ -152,8 +155,7 @@ Link::Sent Link::write(RingWriter::Part message, Duration patience,
       return Sent::Yes;
     }
     message.lets_sleep = false;  // it has been woken, as there is no room
-    if (on_full) on_full();
-    if (out_.write(message, patience, [this] { return ended(); })) return Sent::Yes;
+    if (out_.write(message, patience.begin(), [this] { return ended(); })) return Sent::Yes;
   } catch (const BrokenRing&) {
     break_off();
     throw;

@@ -55,17 +55,30 @@ class Link : public std::enable_shared_from_this<Link> {
   const Guid& own() const noexcept { return own_; }
   const Guid& peer() const noexcept { return peer_; }
 
-  /// Sends a message; NoRoom where the other side takes nothing for as long as `patience`. Calls
-  /// `on_full` before it waits for room. A ring that is found broken ends the link; throws
-  /// BrokenRing then.
-  Sent send(std::span<const std::byte> message, Duration patience,
-            const std::function<void()>& on_full = nullptr);
+  /// How long all of a message may wait for room. `left`, if any, says how much time its sender
+  /// has; like `on_full` it is called only before the message waits.
+  struct Patience {
+    template <class Rep, class Period>
+    Patience(std::chrono::duration<Rep, Period> longest_) : longest(longest_) {}
+    Patience(Duration longest_, const std::function<void()>& on_full_,
+             const std::function<Duration()>* left_)
+        : longest(longest_), on_full(&on_full_), left(left_) {}
+
+    Duration begin() const;
+
+    Duration longest;
+    const std::function<void()>* on_full = nullptr;
+    const std::function<Duration()>* left = nullptr;
+  };
+
+  /// Sends a message; NoRoom if the other side does not take enough in that time. A ring that is
+  /// found broken ends the link; throws BrokenRing then.
+  Sent send(std::span<const std::byte> message, const Patience& patience);
   /// The same of one that has left out `value` at `position`, of a client's; nothing where the
   /// other side cannot read it where it lies.
   std::optional<Sent> send_lending(std::span<const std::byte> message,
                                    const std::shared_ptr<LoanMemory>& value, std::size_t position,
-                                   Duration patience,
-                                   const std::function<void()>& on_full = nullptr);
+                                   const Patience& patience);
   /// Waits until the other side has taken everything; false at the deadline and at the end, also
   /// where the ring is found broken.
   bool await_taken(Instant deadline);
@@ -117,8 +130,7 @@ class Link : public std::enable_shared_from_this<Link> {
  private:
   void break_off();
   bool let_sleep();
-  Sent write(RingWriter::Part message, Duration patience,
-             const std::function<void()>& on_full = nullptr);
+  Sent write(RingWriter::Part message, const Patience& patience);
   Lender::Connection lending();
   void forget(const LoanNote& gone);
   std::optional<dds::LentValue> borrow();

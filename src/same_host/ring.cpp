@@ -161,24 +161,23 @@ bool RingWriter::prepare_to_sleep() {
   return false;
 }
 
-// False at the end; the reader may have taken something otherwise.
+// False at the end; the reader may have taken something otherwise. The end is looked at first: a
+// reader that always takes something must not put it off.
 bool RingWriter::await_change(Instant deadline, const std::function<bool()>& ended) {
-  if (!prepare_to_sleep()) return true;
-  const bool over = ended() || std::chrono::steady_clock::now() >= deadline;
+  if (std::chrono::steady_clock::now() >= deadline) return false;
+  if (!prepare_to_sleep()) return !ended();
+  const bool over = ended();
   if (!over) futex_wait(place_.state->writer_sleeps, 1, deadline);
   stay_awake();
   return !over;
 }
 
 bool RingWriter::write(Part part, Duration patience, const std::function<bool()>& ended) {
-  while (!put(part)) {
-    const std::uint64_t taken = read_;
-    const Instant deadline = std::chrono::steady_clock::now() + patience;
-    while (read_ == taken) {
-      if (!await_change(deadline, ended)) return false;
-      in_flight();
-    }
-  }
+  if (put(part)) return true;
+  const Instant deadline = std::chrono::steady_clock::now() + patience;
+  do {
+    if (!await_change(deadline, ended)) return false;
+  } while (!put(part));
   return true;
 }
 

@@ -69,8 +69,9 @@ class RingWriter {
   /// BrokenRing.
   bool put(Part& part);
 
-  /// Puts all of it in. Where the reader takes nothing for as long as `patience`, or `ended` is so
-  /// (which wake() makes it look at), it gives up; false then. Throws BrokenRing.
+  /// Puts all of it in. It gives up if it has waited for room for as long as `patience`, however
+  /// much the reader takes meanwhile, or if `ended` is so (which wake() makes it look at); false
+  /// then. Throws BrokenRing.
   bool write(Part message, Duration patience, const std::function<bool()>& ended);
 
   /// After messages that let it sleep. From any thread.

@@ -32,7 +32,7 @@ class Valve {
   }
 
   /// Inside write(): waits while the valve holds; throws where there is no room in time.
-  void pass() {
+  void pass(Duration left = Duration::max()) {
     std::unique_lock lock(mutex_);
     const bool first = inside_++ == 0;
     changed_.wait(
@@ -41,7 +41,8 @@ class Valve {
     ++passed_;
     if (mode_ != Mode::Full) return;
     ++refused_;
-    if (!changed_.wait_for(lock, dds::Qos().max_blocking, [&] { return mode_ != Mode::Full; }))
+    if (!changed_.wait_for(lock, std::min<Duration>(a_try.load(), left),
+                           [&] { return mode_ != Mode::Full; }))
       throw Overloaded("no room");
   }
   bool full() const {
@@ -62,6 +63,7 @@ class Valve {
   }
 
   std::atomic<int> writers{0};  // that have not been destroyed
+  std::atomic<std::chrono::milliseconds> a_try{dds::Qos().max_blocking};
 
  private:
   mutable std::mutex mutex_;
@@ -85,6 +87,11 @@ class SlowWriter final : public dds::Writer {
   void write(std::span<const std::byte> cdr, const dds::KeyHash& key) override {
     valve_.pass();
     writer_->write(cdr, key);
+  }
+  void write_within(const std::function<Duration()>& left,
+                    std::span<const std::byte> cdr) override {
+    valve_.pass(left());
+    writer_->write(cdr);
   }
   void dispose(const dds::KeyHash& key) override { writer_->dispose(key); }
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
@@ -274,6 +281,14 @@ TEST_CASE_METHOD(
   calling.valve.set(Valve::Mode::Open);
   CHECK(echo().echo("y") == "y");
   CHECK(implementation->calls == 1);
+}
+
+TEST_CASE_METHOD(Pair,
+                 "a call whose message is taken slowly is inside for no longer than its limit") {
+  calling.valve.set(Valve::Mode::Full);
+  calling.valve.a_try = 10s;
+  CHECK_THROWS_AS(echo(1s).echo("x"), Overloaded);
+  CHECK(calling.valve.refused() <= 2);
 }
 
 TEST_CASE_METHOD(

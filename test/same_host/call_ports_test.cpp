@@ -77,6 +77,9 @@ class Story {
   }
   dds::WriterListener writer() { return {matched()}; }
 
+  /// Nothing more is taken while the result lives.
+  std::unique_lock<std::mutex> hold_up() { return std::unique_lock(mutex_); }
+
   Guid last_writer() {
     std::lock_guard lock(mutex_);
     return last_writer_;
@@ -259,6 +262,28 @@ TEST_CASE("who takes nothing is told of as overloaded, and gets the rest once it
   CHECK(reply->wait_for_acknowledgments(20s));
   reply->write(message("after"));
   CHECK(eventually([&] { return taken == written + 1; }));
+}
+
+TEST_CASE("a message waits for room no longer than its sender has time") {
+  Pair pair;
+  auto qos = in_partition(pair.id);
+  qos.max_blocking = 1h;
+  const auto request = pair.clients.create_writer(kRequests, qos, {});
+  const auto large = message(std::string(40'000, 'x'));
+  std::size_t asked = 0;
+  const auto left = [&] {
+    ++asked;
+    return Duration::zero();
+  };
+  const auto holds_up = pair.at_provider.hold_up();
+  request->write_within(left, large);
+  CHECK(asked == 0);
+  CHECK_THROWS_AS(
+      [&] {
+        for (int i = 0; i < 1000; ++i) request->write_within(left, large);
+      }(),
+      Overloaded);
+  CHECK(asked == 1);
 }
 
 TEST_CASE("what is no message is dropped and counted, and a sample can be kept") {

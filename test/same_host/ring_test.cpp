@@ -130,6 +130,27 @@ TEST_CASE("a full ring takes no more until the reader has made room") {
   CHECK(writer.await_empty(std::chrono::steady_clock::now(), never));
 }
 
+TEST_CASE("a reader that always takes something, but never enough, puts off no writer's end") {
+  Memory memory(4096);
+  RingWriter writer(memory.place());
+  const auto content = message(8000, 1);
+  std::atomic<bool> reading = true;
+  std::thread reader([&] {
+    const Instant end = soon();
+    for (std::uint64_t taken = 0; reading && std::chrono::steady_clock::now() < end; taken ^= 8) {
+      memory.state.read = taken;
+      Word& sleeps = memory.state.writer_sleeps;
+      if (sleeps.exchange(0) != 0) futex_wake(sleeps);
+    }
+    reading = false;
+  });
+  CHECK_FALSE(writer.write({content}, 50ms, never));
+  CHECK(reading);
+  CHECK_FALSE(writer.await_empty(std::chrono::steady_clock::now() + 50ms, never));
+  CHECK(reading.exchange(false));
+  reader.join();
+}
+
 TEST_CASE("a message that its writer gave up is passed over") {
   Memory memory(4096);
   RingWriter writer(memory.place());

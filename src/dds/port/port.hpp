@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/clock.hpp"
 #include "skein/detail/loan_memory.hpp"
 #include "skein/detail/qos.hpp"
 #include "skein/guid.hpp"
@@ -111,6 +112,13 @@ class Writer {
   /// Throws InvalidArgument where that is missing, Overloaded where there was no room within
   /// max_blocking, Internal with the vendor's reason otherwise.
   virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
+
+  /// As write(), of a sample that is worth nothing after `left`, which is asked for only if there
+  /// is no room at first. For vendors, whose max_blocking is short, the same as write().
+  virtual void write_within(const std::function<Duration()>& /*left*/,
+                            std::span<const std::byte> cdr) {
+    write(cdr);
+  }
 
   /// As write(), of a sample that has left out `value` at `position`. False where the readers
   /// cannot read it where it lies: nothing is written.

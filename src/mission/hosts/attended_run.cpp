@@ -42,11 +42,13 @@ class Attendant {
   void tell(const AttendedReport& report) {
     if (lost_) return;
     const std::string line = to_line(report);
+    const auto end = steady_clock::now() + kAttendancePatience;
     for (std::size_t at = 0; at < line.size();) {
       const auto size = ::write(output_, line.data() + at, line.size() - at);
       if (size > 0) at += static_cast<std::size_t>(size);
       const bool may_go_on = size > 0 || errno == EINTR || errno == EAGAIN;
-      if (may_go_on && (size > 0 || becomes(output_, POLLOUT, kAttendancePatience))) continue;
+      const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
+      if (may_go_on && left.count() > 0 && (size > 0 || becomes(output_, POLLOUT, left))) continue;
       lost_ = true;
       return;
     }

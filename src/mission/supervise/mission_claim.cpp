@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -109,11 +110,12 @@ std::optional<pid_t> own_holder_of(const std::string& name) {
 constexpr timeval kSocketPatience{10, 0};
 constexpr std::size_t kLongestAnswer = 1 << 20;
 
-/// All that comes until the other side ends; what has come where it takes too long.
+/// All that comes until the other side ends; what has come if all of it takes too long.
 std::string read_all(const FileDescriptor& socket) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kSocketPatience.tv_sec);
   std::string text;
   std::array<char, 4096> part;
-  while (text.size() < kLongestAnswer) {
+  while (text.size() < kLongestAnswer && std::chrono::steady_clock::now() < end) {
     const auto size = ::read(socket.get(), part.data(), part.size());
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) break;

@@ -11,6 +11,13 @@
 #include "skein/introspection.idl.hpp"
 
 namespace skein::rpc {
+namespace {
+
+// So long before its deadline a call stops waiting for room: it has not been sent, and its caller
+// hears that before the deadline's timer says that whether it ran is unknown.
+constexpr std::chrono::milliseconds kToTellOfRoom{20};
+
+}  // namespace
 
 void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   try {
@@ -129,8 +136,8 @@ void DdsChannel::State::expire_due() {
 }
 
 // A caller that waits for the answer also waits for room, as long as it has time; others are told.
-// The writer itself waits before it throws: tries are counted, for a clock that may stand still.
-// The last one is over before the deadline is: what was not sent does not end as TimedOut.
+// The writer itself waits before it throws: tries are counted, too, for a clock that may stand
+// still. The last one is over before the deadline is: what was not sent does not end as TimedOut.
 template <class Write>
 auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
   const Duration a_try = dds::Qos().max_blocking;
@@ -139,7 +146,8 @@ auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
       return write();
     } catch (const Overloaded&) {
       if (!call.blocking()) throw;
-      if (!left) left = call.deadline() - clock.now();  // asked for where there is need alone
+      // The clock is asked only now that there is need.
+      left = std::min(left.value_or(Duration::max()), call.deadline() - clock.now());
       if (*left <= a_try || !is_open()) throw;
     }
   }
@@ -165,7 +173,10 @@ bool DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
   const bool sent =
       lent && in_time(call, [&] { return writer.write_lending(message, lent, position); });
   if (lent && !sent) put_request(message, call, number, in);
-  if (!sent) in_time(call, [&] { return writer.write(message); });
+  if (!sent) {
+    const auto left = [this, &call] { return call.deadline() - clock.now() - kToTellOfRoom; };
+    in_time(call, [&] { return writer.write_within(left, message); });
+  }
   if (message.capacity() > kKeptCapacity) message = Bytes();
   return true;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -110,7 +111,7 @@ bool DdsServer::State::write(const std::shared_ptr<Client>& client,
   if (!writer) return false;
   if (client->stalled) return keep_unsent(client, message, deadline);
   try {
-    writer->write(message);
+    writer->write_within([this, deadline] { return deadline - clock.now(); }, message);
     return true;
   } catch (const Overloaded&) {
     return keep_unsent(client, message, deadline);
@@ -136,14 +137,14 @@ bool DdsServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes&
     client->stalled = true;
     if (std::exchange(client->retrying, true)) return true;
   }
-  retry_later(client);
+  retry_later(client, kRetryInterval);
   return true;
 }
 
 // The client is not kept: the last to let go of it must not be the clock's thread.
-void DdsServer::State::retry_later(const std::shared_ptr<Client>& client) {
+void DdsServer::State::retry_later(const std::shared_ptr<Client>& client, Duration after) {
   const TimerId timer =
-      clock.call_after(kRetryInterval, [state = weak_from_this(), weak = std::weak_ptr(client)] {
+      clock.call_after(after, [state = weak_from_this(), weak = std::weak_ptr(client)] {
         const auto self = state.lock();
         if (!self) return;
         self->control.post_or_run([state, weak] {
@@ -156,21 +157,25 @@ void DdsServer::State::retry_later(const std::shared_ptr<Client>& client) {
   client->retry = timer;
 }
 
-// In their order, once all that was written before has been acknowledged.
+// In their order, once all that was written before has been acknowledged. Others need `control`,
+// too: a client for which it has waited in vain gets a fifth of its time at most.
 void DdsServer::State::send_unsent(const std::shared_ptr<Client>& client) {
+  Duration pause = kRetryInterval;
   for (std::size_t written = 0; written < kRetrySize;) {
     auto next = next_unsent(*client);
     if (!next) return;
+    const Instant begun = clock.now();
     if (!try_to_send(*client, *next, written == 0)) {
       std::lock_guard lock(mutex);
       if (!client->writer) return;
       client->unsent.push_front(std::move(*next));
       count_unsent(*client, client->unsent.front().message.size());
+      pause = std::max(pause, 4 * (clock.now() - begun));
       break;
     }
     written += next->message.size();
   }
-  retry_later(client);
+  retry_later(client, pause);
 }
 
 // Nothing, and replies go straight to the writer again, where none waits any more.
@@ -199,7 +204,7 @@ bool DdsServer::State::try_to_send(Client& client, const Unsent& reply, bool awa
   if (!writer) return true;
   try {
     if (await_room && !writer->wait_for_acknowledgments(0ms)) return false;
-    writer->write(reply.message);
+    writer->write_within([&] { return reply.deadline - clock.now(); }, reply.message);
   } catch (const Overloaded&) {
     return false;
   } catch (const Error& error) {

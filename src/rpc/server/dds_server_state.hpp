@@ -162,7 +162,7 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   bool write(const std::shared_ptr<Client>& client, const std::shared_ptr<dds::Writer>& writer,
              Bytes& message, Instant deadline);
   bool keep_unsent(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
-  void retry_later(const std::shared_ptr<Client>& client);
+  void retry_later(const std::shared_ptr<Client>& client, Duration after);
   void note_lost(std::uint64_t count, const std::string& why);
 };
 
