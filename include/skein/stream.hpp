@@ -4,6 +4,7 @@
 #include "skein/detail/version.hpp"  // which says so: <coroutine> would say less
 #endif
 
+#include <chrono>
 #include <condition_variable>
 #include <coroutine>
 #include <cstdint>
@@ -60,13 +61,15 @@ class PendingStream final : public PendingCall {
 
  private:
   void end();
-  void grant_taken();
+  bool is_slow();
+  void grant_taken(bool at_once);
 
   mutable std::mutex items_mutex_;
   std::condition_variable arrived_;
   std::deque<Item> items_;
   std::uint64_t delivered_ = 0;
   std::uint32_t taken_ = 0;  // and not granted again yet
+  Instant taken_at_{};       // when the provider was seen to wait
   bool ended_ = false;
   std::function<void()> waiter_;
   std::function<void(std::uint32_t)> granter_;
@@ -77,7 +80,8 @@ class PendingStream final : public PendingCall {
 /// the whole stream. A stream that was moved from throws InvalidArgument.
 ///
 /// A slow reader slows the provider: the provider may be PendingStream::kWindow results ahead, then
-/// it waits.
+/// it waits. If nothing is taken for 3 s then, and other calls wait for the provider's thread, the
+/// stream ends as Overloaded.
 template <class T>
 class [[nodiscard]] Stream {
  public:
@@ -175,8 +179,9 @@ class StreamSink {
 
   /// Sends a result. While the caller is too far behind, it waits, and blocks the service's thread.
   /// Throws Cancelled if nobody waits for results any more, Disconnected if the service is being
-  /// withdrawn, TimedOut after the deadline, Overloaded if a result to another process finds no
-  /// room, Internal for a value that CDR cannot carry there. An implementation need not catch them.
+  /// withdrawn, TimedOut after the deadline, Overloaded if the caller takes nothing for 3 s while
+  /// other calls wait for the thread, or if a result to another process finds no room, Internal for
+  /// a value that CDR cannot carry there. An implementation need not catch them.
   void push(T item) { put(std::move(item), true); }
 
   /// As push(), but does not wait: returns false, and does not send the result, if the caller is

@@ -50,9 +50,11 @@ bool PendingStream::ready() const {
 
 PendingStream::Item PendingStream::next() {
   Item item{nullptr, operation().out->destroy};
+  bool at_once = false;
   {
     std::unique_lock lock(items_mutex_);
     arrived_.wait(lock, [&] { return ended_ || !items_.empty(); });
+    if (items_.size() == kWindow) at_once = is_slow();
     if (!items_.empty()) {
       item = std::move(items_.front());
       items_.pop_front();
@@ -60,20 +62,28 @@ PendingStream::Item PendingStream::next() {
     }
   }
   if (item) {
-    grant_taken();
+    grant_taken(at_once);
   } else if (auto error = take_error()) {
     std::rethrow_exception(std::move(error));
   }
   return item;
 }
 
+// Under the lock: whether the provider waits, and this reader takes so few results that the
+// provider should hear of each.
+bool PendingStream::is_slow() {
+  constexpr std::chrono::milliseconds kSlow{100};
+  const Instant now = std::chrono::steady_clock::now();
+  return now - std::exchange(taken_at_, now) > kSlow;
+}
+
 // By halves of the window: one message of credit for several results, and no pause between them.
-void PendingStream::grant_taken() {
+void PendingStream::grant_taken(bool at_once) {
   std::function<void(std::uint32_t)> granter;
   std::uint32_t count = 0;
   {
     std::lock_guard lock(items_mutex_);
-    if (ended_ || taken_ < kWindow / 2) return;
+    if (ended_ || (taken_ < kWindow / 2 && !at_once)) return;
     count = std::exchange(taken_, 0);
     granter = granter_;
   }

@@ -2,13 +2,16 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <future>
 #include <thread>
 #include <vector>
 
 #include "echo.idl.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace skein::rpc;
+using skein::test::eventually;
 using ::test::Echo_count_up_Out;
 using namespace std::chrono_literals;
 
@@ -23,9 +26,9 @@ const OperationInfo& count_up() {
 
 // A stream of numbers whose results stay here.
 struct Numbers {
-  explicit Numbers(std::uint32_t credit)
+  explicit Numbers(std::uint32_t credit, Duration limit = 1s)
       : stream(std::make_shared<OutgoingStream>(
-            count_up(), clock, clock.now() + 1s, credit,
+            count_up(), clock, clock.now() + limit, credit,
             [this](const void* out, std::uint64_t position) {
               REQUIRE(position == sent.size());
               sent.push_back(static_cast<const Echo_count_up_Out*>(out)->return_);
@@ -103,6 +106,70 @@ TEST_CASE("what waits for credit goes on with it, and ends with the deadline or 
   }
   waiting.join();
   CHECK(ended == expected);
+}
+
+namespace {
+
+/// Puts on a thread of its own; the text of what it throws, or nothing.
+std::future<std::string> put_apart(Numbers& numbers, int number) {
+  return std::async(std::launch::async, [&numbers, number]() -> std::string {
+    try {
+      numbers.put(number, true);
+      return "";
+    } catch (const Overloaded& error) {
+      return error.what();
+    }
+  });
+}
+
+}  // namespace
+
+TEST_CASE("a caller that takes nothing while other calls wait for the thread loses its stream") {
+  Numbers numbers(1, 10min);
+  std::atomic<bool> others = true;
+  numbers.stream->set_others_wait([&] { return others.load(); });
+  numbers.put(1);
+  auto waiting = put_apart(numbers, 2);
+  SECTION("if nobody waits, not before its deadline") {
+    others = false;
+    for (int minute = 0; minute < 9; ++minute) numbers.clock.advance(1min);
+    CHECK(waiting.wait_for(0s) == std::future_status::timeout);
+    numbers.stream->grant(1);
+    CHECK(waiting.get().empty());
+  }
+  SECTION("if it takes results slowly, never") {
+    for (int i = 2; i < 100; ++i) {
+      numbers.clock.advance(OutgoingStream::kPatience - 1ms);
+      numbers.stream->grant(1);
+      REQUIRE(waiting.get().empty());
+      waiting = put_apart(numbers, i + 1);
+    }
+    numbers.stream->stop(ErrorCode::Overloaded, "the test ends");
+  }
+  SECTION("otherwise in seconds, and it is told why") {
+    CHECK(eventually([&] {
+      numbers.clock.advance(1s);
+      return waiting.wait_for(1ms) == std::future_status::ready;
+    }));
+    CHECK_THAT(waiting.get(), Catch::Contains("its caller took no result for ") &&
+                                  Catch::Contains("other calls waited"));
+    CHECK_THROWS_AS(numbers.put(3, true), Overloaded);
+    CHECK_THROWS_AS(numbers.put(3, false), Overloaded);
+  }
+}
+
+TEST_CASE("a reader that takes few results grants each, one that takes many some at a time") {
+  PendingStream stream(count_up(), Instant::max());
+  std::vector<std::uint32_t> granted;
+  stream.set_granter([&](std::uint32_t count) { granted.push_back(count); });
+  const auto deliver = [&] {
+    return stream.deliver({count_up().out->make(), count_up().out->destroy});
+  };
+  for (std::uint32_t i = 0; i < PendingStream::kWindow; ++i) REQUIRE(deliver());
+  REQUIRE(stream.next());
+  CHECK(granted == std::vector<std::uint32_t>{1});  // the provider had to wait
+  for (std::uint32_t i = 0; i < PendingStream::kWindow / 2; ++i) REQUIRE(stream.next());
+  CHECK(granted == std::vector<std::uint32_t>{1, PendingStream::kWindow / 2});
 }
 
 TEST_CASE("a result that cannot be sent takes the room of no other") {

@@ -12,6 +12,7 @@
 #include "rpc/service/reception.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"
+#include "test/tools/eventually.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -311,4 +312,38 @@ TEST_CASE("a stream, and a call that is answered later, never run where they arr
   CHECK(requests->waited == 1);
   CHECK(requests->given_back == 1);
   CHECK(executor.run_all() == 1);
+}
+
+TEST_CASE("a stream whose caller takes nothing gives its thread back to the calls that wait") {
+  ManualClock clock;
+  ThreadExecutor executor("echo");
+  const auto service = std::make_shared<rpc::Service>(
+      std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()),
+      executor, clock, rpc::Service::Options());
+  const auto ask = [&](const char* name, std::function<void(std::exception_ptr)> answered) {
+    auto invocation = std::make_shared<rpc::Invocation>();
+    invocation->operation = operation_of(*service, name);
+    invocation->in = {invocation->operation->in->make(), invocation->operation->in->destroy};
+    invocation->deadline = clock.now() + 10min;
+    invocation->respond = [answered](const void*, const std::exception_ptr& error) {
+      answered(error);
+    };
+    if (invocation->operation->stream) {
+      *static_cast<::test::Echo_count_up_In*>(invocation->in.get()) = {1 << 30, -1};
+      invocation->stream =
+          std::make_shared<rpc::OutgoingStream>(*invocation->operation, clock, invocation->deadline,
+                                                1, [](const void*, std::uint64_t) {});
+    }
+    service->submit(invocation);
+  };
+  std::promise<void> streamed;
+  std::atomic<bool> answered = false;
+  ask("count_up", [&](const std::exception_ptr& error) { streamed.set_exception(error); });
+  ask("echo", [&](const std::exception_ptr& error) { answered = error == nullptr; });
+  CHECK(skein::test::eventually([&] {
+    clock.advance(100ms);
+    return answered.load();
+  }));
+  CHECK_THROWS_AS(streamed.get_future().get(), Overloaded);
+  service->close();
 }

@@ -10,6 +10,8 @@ namespace {
 
 // No caller has room for more, whatever it claims.
 constexpr std::uint32_t kMaxCredit = PendingStream::kWindow;
+// Once the caller's time is over, how soon it is looked again whether other calls wait.
+constexpr std::chrono::milliseconds kLookAgain{250};
 
 }  // namespace
 
@@ -26,9 +28,7 @@ OutgoingStream::OutgoingStream(const OperationInfo& operation, Clock& clock, Ins
 bool OutgoingStream::put(const void* out, bool wait) {
   {
     std::unique_lock lock(mutex_);
-    if (wait && !last_only_) {
-      wait_until(clock_, deadline_, lock, changed_, [&] { return credit_ > 0 || stopped_; });
-    }
+    if (wait && !last_only_ && credit_ == 0) await_credit(lock);
     refuse_if_over();
     if (last_only_) {
       if (!last_) last_.reset(operation_.out->make());
@@ -46,6 +46,30 @@ bool OutgoingStream::put(const void* out, bool wait) {
   }
   ++sent_;
   return true;
+}
+
+void OutgoingStream::set_others_wait(std::function<bool()> others_wait) {
+  others_wait_ = std::move(others_wait);
+}
+
+void OutgoingStream::await_credit(std::unique_lock<std::mutex>& lock) {
+  const Instant begun = clock_.now();
+  Instant look = begun + kPatience;
+  while (!wait_until(clock_, std::min(look, deadline_), lock, changed_,
+                     [&] { return credit_ > 0 || stopped_; })) {
+    const Instant now = clock_.now();
+    if (now >= deadline_) return;
+    if (others_wait_ && others_wait_()) {
+      stopped_ = true;
+      code_ = ErrorCode::Overloaded;
+      why_ = "its caller took no result for " +
+             std::to_string(std::chrono::duration_cast<std::chrono::seconds>(now - begun).count()) +
+             " s while other calls waited for the service's thread; take the results faster, or "
+             "begin the stream again";
+      return;
+    }
+    look = now + kLookAgain;
+  }
 }
 
 void OutgoingStream::refuse_if_over() const {

@@ -85,9 +85,11 @@ class Service::Turn {
     if (!service_) return;
     std::unique_lock lock(service_->turn_mutex_);
     waited_ = service_->turn_taken_;
+    if (waited_) ++service_->turns_awaited_;
     came_ = wait_until(service_->clock_, deadline, lock, service_->turn_ended_,
                        [&] { return !service_->turn_taken_ || service_->closed_; }) &&
             !service_->closed_;
+    if (waited_) --service_->turns_awaited_;
     if (came_) service_->turn_taken_ = true;
   }
   ~Turn() {
@@ -303,6 +305,11 @@ void Service::note_done() {
   less_to_do_.notify_all();
 }
 
+bool Service::others_wait() const {
+  std::lock_guard lock(queue_mutex_);
+  return queue_.size() > 0 || turns_awaited_ > 0;
+}
+
 void Service::leave() { *leaving_ = true; }
 
 // Between the look and the end no invocation slips in, neither by the queue nor on its caller's
@@ -472,6 +479,7 @@ void Service::execute_in_turn(const std::shared_ptr<Invocation>& invocation, boo
 void Service::execute_now(Invocation& invocation) {
   const TypeSupport& type = *invocation.operation->out;
   OutgoingStream* const stream = invocation.stream.get();
+  if (stream) stream->set_others_wait([this] { return others_wait(); });
   const std::unique_ptr<void, void (*)(void*)> out(stream ? nullptr : type.make(), type.destroy);
   const void* result = out.get();
   std::exception_ptr error;

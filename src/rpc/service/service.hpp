@@ -208,6 +208,7 @@ class Service : public std::enable_shared_from_this<Service> {
   NotSent being_withdrawn() const;
   bool is_idle() const noexcept { return accepted_ == 0 && !running_ && deferred_.empty(); }
   void note_done();
+  bool others_wait() const;
   void begin_here(OperationMeter& meter, const Invocation& frame) const;
   [[noreturn]] void refuse_turn(OperationMeter& meter, const OperationInfo& operation) const;
   void dispatch(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
@@ -232,6 +233,7 @@ class Service : public std::enable_shared_from_this<Service> {
   std::mutex turn_mutex_;
   std::condition_variable turn_ended_;
   bool turn_taken_ = false;
+  std::atomic<std::size_t> turns_awaited_{0};
   std::atomic<int> quick_{0};  // calls in a row, as far as it matters
   mutable std::mutex mutex_;
   mutable std::condition_variable less_to_do_;  // once it is leaving
