@@ -11,7 +11,7 @@
 namespace skein::brokerless_discovery {
 namespace {
 
-constexpr std::size_t kMaxName = 256;
+constexpr std::size_t kMaxName = dds::kLongestName;
 constexpr std::size_t kMaxValue = 4096;
 
 // Control characters reach people's terminals. Those that UTF-8 writes with two bytes count, too.
@@ -49,10 +49,12 @@ void check_announced_name(const char* what, const std::string& name) {
   if (!is_name(name)) throw Refused(Refusal::Malformed, std::string(what) + " is no name");
 }
 
-// Its topics' names begin with it.
+// Its topics' names, and their types' names, begin with it.
 void check_interface(const std::string& name) {
+  constexpr const char* kLongestEnd = "_Request";
   check_text("its interface", name);
-  if (!dds::is_topic_name(canonical_interface_name(name))) {
+  if (!dds::is_topic_name(canonical_interface_name(name) + kLongestEnd) ||
+      !dds::is_type_name(scoped_interface_name(name) + kLongestEnd)) {
     throw Refused(Refusal::Malformed, "no topic can have the name of its interface");
   }
 }
@@ -71,7 +73,7 @@ bool is_name(const std::string& text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.';
   };
-  return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
+  return !text.empty() && text.size() <= kMaxName && std::all_of(text.begin(), text.end(), allowed);
 }
 
 void check_description(const discovery::ServiceDescription& description, const Guid& participant) {

@@ -4,6 +4,7 @@
 
 #include "broker_state.hpp"
 #include "core/clock_wait.hpp"
+#include "core/printable.hpp"
 #include "core/threads/sole_owner.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
@@ -13,8 +14,8 @@ namespace {
 
 void check_name(const std::string& what, const std::string& name) {
   if (is_name(name)) return;
-  throw InvalidArgument("'" + name + "' is no name for " + what +
-                        ": use letters, digits, '_', '-' and '.'");
+  throw InvalidArgument("'" + printable(name) + "' is no name for " + what +
+                        ": use letters, digits, '_', '-' and '.', 255 at most");
 }
 
 // Others would refuse it.

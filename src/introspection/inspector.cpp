@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/clock_wait.hpp"
+#include "dds/port/options_check.hpp"
 #include "entity/inspection_topic.hpp"
 #include "idl/types/description_limits.hpp"
 #include "skein/entity.hpp"
@@ -25,6 +26,12 @@ namespace {
 
 /// What is lost, or asked before both sides have matched, is asked again.
 constexpr std::chrono::milliseconds kRepetition{100};
+
+/// Whether a vendor takes its names. Sound entities have no other topics.
+bool has_names_of_dds(const inspection::TopicEndpoint& told) {
+  return dds::is_topic_name(told.name) && dds::is_type_name(told.type) &&
+         std::ranges::all_of(told.systems, dds::is_partition);
+}
 
 }  // namespace
 
@@ -51,6 +58,7 @@ struct Inspector::State {
     auto answer = introspection::decoded<Answer>(sample);
     const Guid participant = sample.writer.participant();
     if (answer.asker != asker.bytes || participant == entity.guid()) return;
+    std::erase_if(answer.topics, [](const auto& told) { return !has_names_of_dds(told); });
     for (const types::TypeSystem& told : answer.types) idl::check_limits(told);
     std::lock_guard lock(mutex);
     const auto asked = waiting.find(answer.number);

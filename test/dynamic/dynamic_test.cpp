@@ -189,6 +189,43 @@ TEST_CASE_METHOD(Survey, "an answer by another one than who was asked does not c
   executor.stop();
 }
 
+TEST_CASE_METHOD(Survey, "topics that no vendor could read are not known, whoever tells of them") {
+  auto stranger = make_client("stranger");
+  const auto answers = stranger->participant().create_writer(introspection::kAnswers.dds_topic(),
+                                                             introspection::kAnswers.qos());
+  const std::string too_long(65'600, 'a');
+  const auto topic = [](const std::string& name, const std::string& type,
+                        const std::string& system) {
+    inspection::TopicEndpoint told;
+    told.name = name;
+    told.type = type;
+    told.systems = {system};
+    told.publishes = true;
+    return told;
+  };
+  ThreadExecutor executor("stranger");
+  const introspection::Reader<inspection::Question> questions(
+      stranger->participant(), introspection::kQuestions, [&](const inspection::Question& asked) {
+        inspection::Answer answer;
+        answer.asker = asked.asker;
+        answer.number = asked.number;
+        answer.topics = {topic(too_long, "T", "s"), topic("a", too_long, "s"),
+                         topic("b", "T", too_long), topic("", "T", "s"),
+                         topic("c", "", "s"),       topic("d", "T\x1b[2J", "s"),
+                         topic("e", "T", "*"),      topic("sound", "T", "s")};
+        executor.post([&, answer] { answers->write(idl::encode_message(answer)); });
+      });
+  Inspector inspector(*caller);
+  std::vector<KnownTopic> topics;
+  CHECK(eventually([&] {
+    topics = known_topics(inspector, 1s);
+    return !topics.empty();
+  }));
+  REQUIRE(topics.size() == 1);
+  CHECK(topics.front().name == "sound");
+  executor.stop();
+}
+
 TEST_CASE_METHOD(Survey, "what has gone is told no more") {
   Inspector inspector(*caller);
   {

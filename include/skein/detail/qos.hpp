@@ -16,7 +16,8 @@ namespace skein::dds {
 using KeyHash = Guid;
 
 struct Topic {
-  /// Letters, digits, `_` and `/`; must not begin with a digit or `DCPS`.
+  /// Letters, digits, `_` and `/`, 255 at most, as of all names; must not begin with a digit or
+  /// `DCPS`.
   std::string name;
   std::string type_name;
   bool keyed = false;

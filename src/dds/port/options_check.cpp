@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/host.hpp"
 #include "core/system/network_interface.hpp"
@@ -15,6 +16,12 @@ namespace skein::dds {
 namespace {
 
 constexpr const char* kLoopbackAddress = "127.0.0.1";
+constexpr const char* kNoText = "has more than 255 octets, or control characters";
+
+bool is_text(const std::string& name) {
+  return name.size() <= kLongestName &&
+         std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
 
 // What is longer overflows a clock, or what DDS sends: 2^31 s.
 constexpr std::chrono::milliseconds kLongest = std::chrono::hours(50 * 365 * 24);
@@ -137,22 +144,31 @@ bool is_loopback_only(const Network& network) {
 
 // What Cyclone takes; other vendors take more.
 bool is_topic_name(const std::string& name) {
-  return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-         !name.starts_with("DCPS") && std::ranges::all_of(name, [](unsigned char c) {
-           return std::isalnum(c) || c == '_' || c == '/';
-         });
+  return !name.empty() && name.size() <= kLongestName &&
+         !std::isdigit(static_cast<unsigned char>(name[0])) && !name.starts_with("DCPS") &&
+         std::ranges::all_of(
+             name, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '/'; });
+}
+
+bool is_type_name(const std::string& name) { return !name.empty() && is_text(name); }
+
+bool is_partition(const std::string& name) {
+  return is_text(name) && name.find_first_of("*?[]") == std::string::npos;
 }
 
 void check_qos(const Topic& topic, const Qos& qos) {
   const auto refuse = [&](const std::string& why) {
-    throw InvalidArgument("topic '" + topic.name + "': " + why);
+    throw InvalidArgument("topic '" + printable(topic.name) + "': " + why);
   };
   if (!is_topic_name(topic.name)) {
     refuse(
-        "a topic's name has letters, digits, '_' and '/', and does not begin with a digit or "
-        "'DCPS'");
+        "a topic's name has letters, digits, '_' and '/', 255 at most, and does not begin with a "
+        "digit or 'DCPS'");
   }
   if (topic.type_name.empty()) refuse("a topic needs a type's name");
+  if (!is_type_name(topic.type_name)) {
+    refuse("its type's name, '" + printable(topic.type_name) + "', " + kNoText);
+  }
   if (qos.history_depth && *qos.history_depth == 0) refuse("a history depth of 0 keeps nothing");
   if (qos.max_blocking.count() < 0) refuse("max_blocking is negative");
   for (const auto& time :
@@ -169,9 +185,9 @@ void check_qos(const Topic& topic, const Qos& qos) {
     refuse("a strength means nothing without exclusive ownership; set `exclusive` too");
   }
   for (const std::string& partition : qos.partitions) {
-    if (partition.find_first_of("*?[]") != std::string::npos) {
-      refuse("partition '" + partition + "' has a wildcard; vendors differ in what they match");
-    }
+    if (is_partition(partition)) continue;
+    refuse("partition '" + printable(partition) + "' " +
+           (is_text(partition) ? "has a wildcard; vendors differ in what they match" : kNoText));
   }
 }
 

@@ -42,8 +42,14 @@ Addresses addresses_of(const Network& network);
 /// Whether the network goes no further than this host's 127.0.0.1.
 bool is_loopback_only(const Network& network);
 
+/// Octets of a name of DDS: one vendor keeps no more, another one overflows a buffer far beyond.
+inline constexpr std::size_t kLongestName = 255;
+
 /// Letters, digits, `_` and `/`; begins with no digit, and not with `DCPS`.
 bool is_topic_name(const std::string& name);
+/// Neither holds control characters; a partition, which may be empty, no wildcards either.
+bool is_type_name(const std::string& name);
+bool is_partition(const std::string& name);
 
 void check_qos(const Topic& topic, const Qos& qos);
 

@@ -200,7 +200,7 @@ class MissionReader {
     if (!system) return "default";
     if (!brokerless_discovery::is_name(system->value)) {
       findings_.error(system->where, in_quotes(system->value) + " is no name of a system",
-                      "use letters, digits, '_', '-' and '.'");
+                      "use letters, digits, '_', '-' and '.', 255 at most");
     }
     return system->value;
   }

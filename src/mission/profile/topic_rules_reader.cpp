@@ -76,7 +76,8 @@ void demand_topic_name(const XmlAttribute& name, FindingList& findings) {
                    "their QoS is fixed; name a topic of the mission");
   } else if (!dds::is_topic_name(name.value)) {
     findings.error(name.where, in_quotes(name.value) + " is no topic's name",
-                   "it has letters, digits, '_' and '/', and does not begin with a digit or DCPS");
+                   "it has letters, digits, '_' and '/', 255 at most, and does not begin with a "
+                   "digit or DCPS");
   }
 }
 

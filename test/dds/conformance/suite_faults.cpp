@@ -74,6 +74,21 @@ TEST_CASE_METHOD(Wire, "names and settings that a vendor could not honour are re
   Qos qos;
   qos.partitions = {"unit_*"};
   CHECK_THROWS_WITH(writing->create_reader(keyless(), qos), Contains("unit_*"));
+  for (const std::size_t size : {256u, 65'600u}) {
+    const std::string name(size, 'a');
+    const Qos in_long_partition = [&] {
+      Qos result;
+      result.partitions = {name};
+      return result;
+    }();
+    CHECK_THROWS_AS(writing->create_reader({name, "T", false}, {}), InvalidArgument);
+    CHECK_THROWS_AS(writing->create_writer({"t", name, false}, {}), InvalidArgument);
+    CHECK_THROWS_AS(writing->create_writer(keyless(), in_long_partition), InvalidArgument);
+  }
+  CHECK_THROWS_AS(writing->create_writer({"t", "T\n", false}, {}), InvalidArgument);
+  const std::string longest(255, 'a');
+  qos.partitions = {longest};
+  CHECK_NOTHROW(writing->create_writer({longest, longest, false}, qos));
   qos = {};
   qos.history_depth = 0;
   CHECK_THROWS_AS(writing->create_reader(keyless(), qos), InvalidArgument);

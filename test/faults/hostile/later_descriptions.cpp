@@ -67,11 +67,11 @@ std::vector<ServiceDescription> extremes(const Rogue& rogue) {
   least.attributes = {{"", ""}};
 
   // It comes first of those that offer what the client wants, and nobody answers there.
-  auto& longest = all.emplace_back(rogue.describe(4, std::string(256, 'a')));
+  auto& longest = all.emplace_back(rogue.describe(4, std::string(255, 'a')));
   longest.bases.push_back(longest.service);
-  longest.service = "later/" + std::string(250, 'I');
-  longest.host = longest.vendor = std::string(256, '\xff');
-  longest.attributes = {{std::string(256, 'n'), std::string(4096, '9')}};
+  longest.service = "later/" + std::string(255 - 15, 'I');
+  longest.host = longest.vendor = std::string(255, '\xff');
+  longest.attributes = {{std::string(255, 'n'), std::string(4096, '9')}};
   longest.component.assign(40'000, '<');
   return all;
 }
