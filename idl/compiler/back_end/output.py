@@ -17,7 +17,7 @@ from . import (
     types_template,
 )
 
-VERSION = 8  # SKEIN_IDL_VERSION of the headers that the output is for
+VERSION = 9  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)
