@@ -6,7 +6,7 @@ import sys
 import model
 from back_end import analysis, flattened, keys, output
 from front_end import builder, parser, pragmas, source
-from report import Place, Report
+from report import Place, Report, TooManyErrors
 
 
 sys.setrecursionlimit(20000)  # levels of nested types and expressions
@@ -18,10 +18,12 @@ class Compilation:
     def __init__(self, path, folders, definitions, namespace=()):
         self._report = Report()
         self._folders = [os.path.join(os.path.abspath(folder), "") for folder in folders]
-        self._source = source.Source(path, folders, definitions, self._report)
         self._built = None
         try:
+            self._source = source.Source(path, folders, definitions, self._report)
             self._read(namespace)
+        except TooManyErrors:
+            pass  # of which the report told
         except RecursionError:
             self._report.error(Place(path, 1), "types or expressions in this file, or in what it includes, are nested too deeply")
 

@@ -16,6 +16,7 @@ class Place:
         return f"{self.file}:{self.line}"
 
 
+_MOST_ERRORS = 500
 _LONGEST_LINE = 400  # characters of a line that are shown
 # As src/core/printable.cpp has them: controls without the tab, what turns the direction of writing, ends of lines, bytes that are no UTF-8.
 _UNSHOWN = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -24,6 +25,10 @@ _UNSHOWN = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u20
 def printable(text):
     """Text of a file, or a file's name, as it may be written to a terminal."""
     return _UNSHOWN.sub(lambda found: "".join(f"\\x{byte:02x}" for byte in found[0].encode("utf-8", "surrogateescape")), text)
+
+
+class TooManyErrors(Exception):
+    pass
 
 
 class Report:
@@ -37,6 +42,9 @@ class Report:
     def error(self, place, reason):
         if self._say(place, "error", reason):
             self.errors += 1
+            if self.errors == _MOST_ERRORS:
+                self._say(place, "error", f"these were {_MOST_ERRORS} errors; what follows was not looked at")
+                raise TooManyErrors
 
     def warning(self, place, reason):
         self._say(place, "warning", reason)

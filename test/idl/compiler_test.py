@@ -774,6 +774,12 @@ class Sizes(CompilerTest):
             few, many = (text.format(", ".join(f"a{i}" for i in range(count))) + "\n" for count in (500, 8000))
             self.assertLess(seconds(many), 100 * seconds(few))
 
+    def test_more_errors_than_anybody_reads(self):
+        code, said = self.compile("".join(f"struct S{i} {{ T{i} x; }};\n" for i in range(5000)))
+        self.assertEqual((code, len(self.errors(said))), (1, 501))
+        self.assertIn("x.idl:500: error: these were 500 errors; what follows was not looked at\n", said)
+        self.assertEqual(len(self.errors(self.compile("#define\n" * 600)[1])), 501)
+
     def test_what_draws_on_a_terminal_is_escaped(self):
         path = self.write("a\u202eb.idl", "struct \u009bS { long x; };\n")
         _, said = run_compiler(ROOT, path)

@@ -110,8 +110,10 @@ class Types:
         return f"'{name}' is declared further down, at {self._place(later)}; move its declaration up, before its first use"
 
     def _with_hint(self, tree, name, reason, remedy):
-        if "did you mean" in reason or "; write " in reason:
+        if "did you mean" in reason:
             return reason
+        if "; write " in reason or len(tree.children) > 1:
+            return reason + remedy
         later = {known: token for known, tokens in self._declared_names.items() for token in tokens[-1:] if token.start_pos > self._offset(tree)}
         near = nearest(name, later)
         return f"{reason} (did you mean '{near}', which is declared further down, at {self._place(later[near])}?)" if near else reason + remedy
