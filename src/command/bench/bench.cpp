@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "command/commands.hpp"
+#include "core/printable.hpp"
 #include "core/system/whole_file.hpp"
 
 namespace skein::command {
@@ -26,7 +27,8 @@ class Server {
     try {
       bench::serve(arguments);
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "skein: %s\n", error.what());
+      const std::string_view text = error.what();
+      std::fprintf(stderr, "skein: %s\n", printable(text, text.size()).c_str());
     }
     _exit(0);
   }

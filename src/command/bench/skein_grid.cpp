@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/printable.hpp"
 #include "grid_contest.hpp"
 #include "skein/error.hpp"
 #include "statistics.hpp"
@@ -11,6 +12,8 @@ using namespace skein::benchmarks;
 using namespace skein::navigation::grid;
 
 namespace {
+
+constexpr std::size_t kLongestError = 4096;
 
 struct Arguments {
   std::string map;
@@ -80,13 +83,13 @@ int main(int argc, char** argv) {
     run(arguments);
     return 0;
   } catch (const Error& error) {
-    std::fprintf(stderr, "skein-grid: %s\n", error.what());
+    std::fprintf(stderr, "skein-grid: %s\n", printable(error.what(), kLongestError).c_str());
     return 2;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr,
                  "skein-grid: there is not enough memory for %s and what the planner prepares; "
                  "raise the limit (ulimit -v), or take a smaller map or --planner astar\n",
-                 arguments.map.c_str());
+                 printable(arguments.map, kLongestError).c_str());
     return 2;
   }
 }

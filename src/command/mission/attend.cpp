@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "command/commands.hpp"
-#include "core/printable.hpp"
 #include "mission/hosts/ssh_attendance.hpp"
 #include "mission/supervise/shell_word.hpp"
 #include "mission_plan.hpp"
@@ -43,7 +42,7 @@ int attend(const AttendArguments& arguments) {
       narrator.tell({report.child, report.state, report.text});
   };
   attendance.on_text = [&](std::string_view line) {
-    narrator.tell_error("* " + printable(line, line.size()));
+    narrator.tell_error("* " + std::string(line));
   };
   return launch::attend_over_ssh(attendance);
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "command/print/json_output.hpp"
+#include "core/printable.hpp"
 #include "mission/check/machine_check.hpp"
 #include "mission/check/profile_check.hpp"
 #include "mission/process/exit_codes.hpp"
@@ -71,7 +72,8 @@ int check(const CheckArguments& arguments) {
   if (result == 0) {
     const auto notes =
         std::ranges::count(findings, profile::Severity::Note, &profile::Finding::severity);
-    std::printf("%s: complete: every dependency is resolved%s\n", arguments.profile.c_str(),
+    std::printf("%s: complete: every dependency is resolved%s\n",
+                printable(arguments.profile, arguments.profile.size()).c_str(),
                 notes > 0 ? "; see the notes" : "");
   }
   return result;

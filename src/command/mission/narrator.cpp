@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <sstream>
+#include <string>
+
 #include "core/printable.hpp"
 
 namespace skein::command {
@@ -44,6 +47,11 @@ bool Narrator::in_order(const launch::ChildEvent& event) const {
   }
 }
 
-void Narrator::tell_error(const std::string& line) { output_.add(STDERR_FILENO, line); }
+void Narrator::tell_error(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    output_.add(STDERR_FILENO, printable(line, line.size()));
+  }
+}
 
 }  // namespace skein::command

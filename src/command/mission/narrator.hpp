@@ -20,7 +20,7 @@ class Narrator {
   void tell_line(std::string_view child, std::string_view line);
   void tell(const launch::ChildEvent& event);
   /// A line on stderr.
-  void tell_error(const std::string& line);
+  void tell_error(const std::string& text);
   /// Waits for readers, but not for long. Why something was not written; or empty.
   std::string finish() { return output_.flush(); }
 

@@ -49,7 +49,9 @@ void print_counts_text(const recording::WriterStatistics& statistics) {
     }
     std::printf("\n");
   }
-  for (const std::string& file : statistics.files) std::printf("%s\n", file.c_str());
+  for (const std::string& file : statistics.files) {
+    std::printf("%s\n", printable(file, kLongestProblem).c_str());
+  }
   std::printf("%llu messages, %llu bytes, %llu dropped\n",
               static_cast<unsigned long long>(statistics.written()),
               static_cast<unsigned long long>(statistics.bytes),

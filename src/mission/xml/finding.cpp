@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/printable.hpp"
+
 namespace skein::profile {
 
 std::string to_text(const SourcePosition& where) {
@@ -24,7 +26,8 @@ std::string_view to_string(Severity severity) noexcept {
 std::string to_text(const Finding& finding) {
   std::string text = to_text(finding.where) + ": " + std::string(to_string(finding.severity)) +
                      ": " + finding.problem;
-  return finding.remedy.empty() ? text : text + "; " + finding.remedy;
+  if (!finding.remedy.empty()) text += "; " + finding.remedy;
+  return printable(text, text.size());
 }
 
 std::string to_text(const std::vector<Finding>& findings) {

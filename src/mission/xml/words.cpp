@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/printable.hpp"
 #include "core/suggestion.hpp"
 
 namespace skein::profile {
@@ -17,11 +18,7 @@ constexpr std::size_t kMaxCompared = 1000;
 std::string shortened(std::string_view text) {
   std::size_t length = std::min(text.size(), kLongestQuote);
   while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80) --length;
-  std::string result;
-  for (const char c : text.substr(0, length)) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7F ? '?' : c;
-  }
+  const std::string result = printable(text.substr(0, length));
   return length < text.size() ? result + "..." : result;
 }
 

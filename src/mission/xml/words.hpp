@@ -6,7 +6,7 @@
 
 namespace skein::profile {
 
-/// `text` for a message: shortened to a readable length, control characters as `?`.
+/// `text` for a message: shortened to a readable length, and as printable() has it.
 std::string shortened(std::string_view text);
 
 /// As shortened(), in quotes.
