@@ -1,6 +1,10 @@
 #include "mission/check/profile_check.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "check_component.hpp"
 #include "core/suggestion.hpp"
@@ -23,6 +27,7 @@ class Checker {
     check_loopback();
     check_groups();
     check_files();
+    check_topics();
     Repeated names("the peer");
     for (std::size_t i = 0; i < mission_.peers.size() && !findings_.full(); ++i) {
       names.add(mission_.peers[i].name, mission_.peers[i].where, findings_);
@@ -35,8 +40,15 @@ class Checker {
  private:
   void check_mission_peer() {
     const PeerProfile* first = nullptr;
+    bool told = false;
     for (const auto& peer : mission_.peers) {
       if (!peer.runs_mission) continue;
+      if (first != nullptr && peer.where == first->where) {
+        if (std::exchange(told, true)) continue;  // one finding, however large its count
+        findings_.error(peer.where, "role=\"mission\" with count: one peer runs the mission",
+                        "leave count out, or the role");
+        continue;
+      }
       if (first != nullptr) {
         findings_.error(peer.where, "a second peer with role=\"mission\"",
                         "the first is at " + to_text(first->where));
@@ -91,6 +103,24 @@ class Checker {
       for (const std::string& file : {peer.head.history, peer.head.log})
         files.add(std::filesystem::path(file).lexically_normal().string(), host, peer.where,
                   findings_);
+    }
+  }
+
+  /// Names are compared letter by letter. ROS writes a '/' in front, which is another topic here.
+  void check_topics() {
+    std::map<std::string, const TopicRules*> spelled;
+    for (const auto& peer : mission_.peers) {
+      for (const TopicRules& topic : peer.topics) {
+        std::string plain = topic.name.substr(topic.name.starts_with('/') ? 1 : 0);
+        std::ranges::transform(plain, plain.begin(),
+                               [](unsigned char c) { return std::tolower(c); });
+        const TopicRules* other = spelled.emplace(plain, &topic).first->second;
+        if (other->name == topic.name || !told_topics_.insert(topic.name).second) continue;
+        findings_.warning(
+            topic.where,
+            in_quotes(topic.name) + " and " + in_quotes(other->name) + " are two topics",
+            "write one name everywhere; the other is at " + to_text(other->where));
+      }
     }
   }
 
@@ -340,6 +370,7 @@ class Checker {
   const MissionProfile& mission_;
   Composition composition_;
   FindingList findings_;
+  std::set<std::string> told_topics_;
 };
 
 }  // namespace

@@ -25,7 +25,9 @@ class Repeated {
     const auto [first, fresh] = first_.emplace(std::pair(host, name), where);
     if (fresh) return;
     findings.error(where, kind_ + " " + in_quotes(name) + " is there twice",
-                   "the first is at " + to_text(first->second));
+                   first->second == where
+                       ? "each peer that count makes has it; write ${instance} in it"
+                       : "the first is at " + to_text(first->second));
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mission/xml/finding.hpp"
 #include "skein/topic_qos.hpp"
 
 namespace skein::profile {
@@ -33,6 +34,7 @@ struct TopicRules {
   std::optional<Period> deadline{};
   std::optional<Period> lifespan{};
   std::optional<Period> liveliness_lease{};
+  SourcePosition where{};
 
   void change(TopicQos& qos) const;
 };

@@ -86,6 +86,7 @@ TopicRules read_rules(const XmlElement& topic) {
   const auto name = topic.attribute("name");
   demand_topic_name(name, topic.findings());
   rules.name = name.value;
+  rules.where = name.where;
   rules.inherited = name.inherited;
   rules.reliable = read_word(topic, "reliability", "best-effort", "reliable");
   rules.transient_local = read_word(topic, "durability", "volatile", "transient-local");

@@ -14,6 +14,8 @@ struct SourcePosition {
   std::string file;
   int line = 0;
   int column = 0;
+
+  bool operator==(const SourcePosition&) const = default;
 };
 
 enum class Severity {

@@ -312,6 +312,29 @@ TEST_CASE("One peer at most runs the mission, and it is not restarted") {
                        Catch::Contains("\"h\" runs the mission and would be restarted"));
 }
 
+TEST_CASE("What count makes twice is told at its place, and is not the first of itself") {
+  ProfileFolder folder;
+  CHECK(
+      folder.check(kF + kN + R"(
+<peer name="g" component="g.xml" role="mission" count="3"/>)") ==
+      "m.xml:3:1: error: role=\"mission\" with count: one peer runs the mission; leave count out, "
+      "or the role\n");
+  CHECK_THAT(
+      folder.check(R"(<peer name="f" component="f.xml" count="2">
+<head history="past.json"/></peer>)"),
+      Catch::Contains("is there twice; each peer that count makes has it; write ${instance}"));
+}
+
+TEST_CASE("Names in findings do not draw on the terminal") {
+  ProfileFolder folder;
+  const std::string csi = "\xc2\x9b", turn = "\xe2\x80\xae";
+  const std::string text = folder.check("<peer name=\"a" + csi + "31m" + turn +
+                                        "b\" component=\"no" + turn + ".xml\"/>");
+  CHECK(text.find(csi) == std::string::npos);
+  CHECK(text.find(turn) == std::string::npos);
+  CHECK_THAT(text, Catch::Contains("\"a\\xc2\\x9b31m\\xe2\\x80\\xaeb\" is no name"));
+}
+
 TEST_CASE("Process rules for a CSP without a process are a mistake") {
   ProfileFolder folder;
   CHECK_THAT(folder.check(kF + R"(<peer name="n" component="n.xml">
