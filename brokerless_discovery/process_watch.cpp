@@ -18,6 +18,8 @@
 #include <vector>
 
 #include "core/system/abstract_socket.hpp"
+#include "core/system/other_process.hpp"
+#include "core/system/users.hpp"
 #include "core/threads/stall_watch.hpp"
 #include "core/threads/start_thread.hpp"
 #include "skein/error.hpp"
@@ -39,7 +41,7 @@ using Actions = std::vector<Action>;
 struct ProcessWatch::State {
   struct Listener {
     std::string address;
-    FileDescriptor socket;
+    ListeningSocket socket;
   };
   struct Watcher {
     pid_t process;
@@ -48,6 +50,8 @@ struct ProcessWatch::State {
   struct Watched {
     std::uint64_t id = 0;
     FileDescriptor socket;
+    std::uint64_t process_id = 0;
+    FileDescriptor process;  // a child of it may keep the other end of the socket open
     bool greeted = false;
     bool second = false;  // whether the first connection ended without a greeting
     std::map<const void*, Action> actions;
@@ -120,17 +124,18 @@ struct ProcessWatch::State {
     }
     if (const auto node = watchers.extract(id)) return forget(node.mapped().process);
     if (const auto address = watched_addresses.find(id); address != watched_addresses.end()) {
-      heard(watched.find(address->second), events, ended);
+      const auto position = watched.find(address->second);
+      if (id == position->second.process_id) return end(position, ended);
+      heard(position, events, ended);
     }
   }
 
   // ---- those who watch this process
 
   std::string open(const Guid& participant) {
-    Listener listener;
-    listener.address = std::string(kPrefix) + participant.hex().substr(0, kParticipantDigits) +
-                       Guid::random().hex().substr(kParticipantDigits);
-    listener.socket = local_socket();
+    Listener listener{std::string(kPrefix) + participant.hex().substr(0, kParticipantDigits) +
+                          Guid::random().hex().substr(kParticipantDigits),
+                      ListeningSocket(local_socket())};
     std::lock_guard lock(mutex);
     const std::uint64_t id = ++last_id;
     if (!listener.socket || !listen_at(listener.socket, listener.address) ||
@@ -144,16 +149,18 @@ struct ProcessWatch::State {
 
   void let_in(const Listener& listener) {
     const std::uint64_t before = refused;
-    const bool served = skein::let_in(listener.socket.get(), kAcceptedInARow, [&](auto socket) {
-      if (!greet(std::move(socket))) ++refused;
-    });
+    const bool served =
+        skein::let_in(listener.socket.get(), kAcceptedInARow, [&](FileDescriptor& socket) {
+          if (!greet(socket)) ++refused;
+        });
     if (!served) return let_nobody_in(kAfterShortage);
     if (refused > before) let_nobody_in(kAfterRefusal);
   }
 
-  bool greet(FileDescriptor socket) {
+  /// Moves from the socket if its process may watch this one.
+  bool greet(FileDescriptor& socket) {
     const auto owner = other_end(socket);
-    if (!owner || owner->uid != geteuid() || watchers.size() >= kMaxWatchers) return false;
+    if (!owner || !is_own_user(owner->uid) || watchers.size() >= kMaxWatchers) return false;
     std::size_t& of_one = watchers_of[owner->pid];
     if (of_one >= kMaxWatchersOfOne) return false;
     const std::uint64_t id = ++last_id;
@@ -208,20 +215,18 @@ struct ProcessWatch::State {
     watched.emplace(address, std::move(other));
   }
 
-  /// Unknown, too, where another user listens.
   Reached join(Watched& other, const std::string& address) {
-    FileDescriptor socket = local_socket();
-    const Reached connected = connect_to(socket, address);
-    if (connected != Reached::Yes) return connected;
-    const auto owner = other_end(socket);
+    Contact contact = reach(address, is_own_user);
+    if (contact.reached != Reached::Yes) return contact.reached;
     const std::uint64_t id = ++last_id;
-    if (!owner || owner->uid != geteuid() ||
-        !control(EPOLL_CTL_ADD, socket, id, EPOLLIN | EPOLLRDHUP)) {
-      return Reached::Unknown;
-    }
+    if (!control(EPOLL_CTL_ADD, contact.socket, id, EPOLLIN | EPOLLRDHUP)) return Reached::Unknown;
     other.id = id;
-    other.socket = std::move(socket);
+    other.socket = std::move(contact.socket);
     watched_addresses.emplace(id, address);
+    other.process_id = ++last_id;
+    other.process = other_process(other.socket).descriptor;
+    if (other.process) control(EPOLL_CTL_ADD, other.process, other.process_id, EPOLLIN);
+    watched_addresses.emplace(other.process_id, address);
     return Reached::Yes;
   }
 
@@ -248,23 +253,35 @@ struct ProcessWatch::State {
       // Then nobody takes the next one, which ends with the listener. That one needs a descriptor,
       // and this connection's may be the last.
       other.socket = {};
+      other.process = {};
       const bool first = !std::exchange(other.second, true);
       const Reached again =
-          first ? join(other, position->first) : connect_to(local_socket(), position->first);
+          first ? join(other, position->first) : reach(position->first, is_own_user).reached;
       if (first && again == Reached::Yes) return;
       if (again != Reached::Nobody) {
         watched.erase(position);
         return;
       }
     }
-    for (auto& [watcher, action] : other.actions) ended.push_back(std::move(action));
+    tell(position, ended);
+  }
+
+  void end(Position position, Actions& ended) {
+    leave(position->second);
+    tell(position, ended);
+  }
+
+  void tell(Position position, Actions& ended) {
+    for (auto& [watcher, action] : position->second.actions) ended.push_back(std::move(action));
     watched.erase(position);
   }
 
   /// A copy of the descriptor, in a child, must not tell of it for ever.
   void leave(const Watched& other) {
     control(EPOLL_CTL_DEL, other.socket, other.id, 0);
+    if (other.process) control(EPOLL_CTL_DEL, other.process, other.process_id, 0);
     watched_addresses.erase(other.id);
+    watched_addresses.erase(other.process_id);
   }
 
   Position drop(Position position) {

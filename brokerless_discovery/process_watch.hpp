@@ -13,9 +13,9 @@ namespace skein::brokerless_discovery {
 
 /// Learns from the kernel, within a scheduling delay, that another process of this host and user
 /// has ended: each participant has an abstract Unix socket on which its process listens, the others
-/// stay connected to it and see it hang up. The process greets with one byte whom it lets watch;
-/// who is not greeted learns nothing from a hang-up, and connects once more. One thread,
-/// `skein-watch`. Thread-safe.
+/// stay connected to it and see it hang up, or its process end. The process greets with one byte
+/// whom it lets watch; who is not greeted learns nothing from a hang-up, and connects once more.
+/// One thread, `skein-watch`. Thread-safe.
 ///
 /// Processes of other users are turned away, root's too. Whoever is turned away, or finds no room,
 /// goes by the lease.

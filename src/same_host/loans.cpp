@@ -1,8 +1,5 @@
 #include "loans.hpp"
 
-#include <poll.h>
-#include <sys/syscall.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -11,7 +8,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/system/abstract_socket.hpp"
+#include "core/system/other_process.hpp"
 #include "pass_descriptor.hpp"
 #include "skein/error.hpp"
 
@@ -27,17 +24,6 @@ struct Packet {
   std::uint32_t place = 0;
   std::uint32_t generation = 0;
 };
-
-std::shared_ptr<const FileDescriptor> process_at(const FileDescriptor& socket) {
-  const auto owner = other_end(socket);
-  const long process = owner && owner->pid > 0 ? syscall(SYS_pidfd_open, owner->pid, 0) : -1;
-  return std::make_shared<const FileDescriptor>(static_cast<int>(process));
-}
-
-bool has_ended(const FileDescriptor& process) {
-  pollfd polled{process.get(), POLLIN, 0};
-  return poll(&polled, 1, 0) > 0;
-}
 
 /// That somebody reads a memory, which is counted.
 class Use {
@@ -102,7 +88,8 @@ class Lender::Reader final : public LoanMemory::Reader {
 
 Lender::Lender(Connection connection)
     : connection_(std::make_shared<const Connection>(std::move(connection))),
-      process_(process_at(*connection_->socket)) {}
+      process_(
+          std::make_shared<const FileDescriptor>(other_process(*connection_->socket).descriptor)) {}
 
 std::optional<LoanNote> Lender::lend(const std::shared_ptr<LoanMemory>& memory,
                                      std::size_t position) {
@@ -193,7 +180,7 @@ std::optional<dds::LentValue> Borrower::borrow(std::span<const std::byte> messag
 void Borrower::receive_descriptors(const LoanNote& wanted) {
   for (int i = 0; i < kDescriptorsInARow; ++i) {
     Packet packet;
-    FileDescriptor descriptor;
+    HandedOver descriptor;
     if (!receive_passed(socket_->get(), std::as_writable_bytes(std::span(&packet, 1)),
                         descriptor) ||
         packet.place >= kLoans) {

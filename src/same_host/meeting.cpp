@@ -19,6 +19,8 @@
 #include "core/printable.hpp"
 #include "core/recent_set.hpp"
 #include "core/system/abstract_socket.hpp"
+#include "core/system/other_process.hpp"
+#include "core/system/users.hpp"
 #include "core/threads/start_thread.hpp"
 #include "pass_descriptor.hpp"
 #include "skein/error.hpp"
@@ -65,7 +67,7 @@ bool send_answer(int socket, const Answer& answer, int descriptor) {
   return pass(socket, std::as_bytes(std::span(&answer, 1)), descriptor);
 }
 
-bool receive_answer(int socket, Answer& answer, FileDescriptor& descriptor) {
+bool receive_answer(int socket, Answer& answer, HandedOver& descriptor) {
   return receive_passed(socket, std::as_writable_bytes(std::span(&answer, 1)), descriptor) &&
          has_our_version(answer);
 }
@@ -76,7 +78,7 @@ struct Meeting::State {
   struct Offer {
     Guid provider;
     Guid server;
-    FileDescriptor socket;
+    ListeningSocket socket{local_socket(SOCK_SEQPACKET)};
     std::function<void()> notify;
     Welcome welcome;
     std::mutex mutex;  // held while `welcome` runs
@@ -88,8 +90,12 @@ struct Meeting::State {
     pid_t process = 0;
     Clock::time_point deadline;
   };
+  // Known by two numbers.
   struct Watched {
+    std::uint64_t id = 0;
     std::shared_ptr<const FileDescriptor> socket;
+    std::uint64_t process_id = 0;
+    FileDescriptor process;  // a child of it may keep the other end of the socket open
     std::weak_ptr<Link> link;
     std::optional<pid_t> guest;  // whose it is
   };
@@ -108,7 +114,7 @@ struct Meeting::State {
   std::uint64_t last_id = kWake;  // never used again, as descriptors are
   std::map<std::uint64_t, std::shared_ptr<Offer>> offers;
   std::map<std::uint64_t, Newcomer> newcomers;
-  std::unordered_map<std::uint64_t, Watched> watched;
+  std::unordered_map<std::uint64_t, std::shared_ptr<const Watched>> watched;
   std::size_t guests = 0;
   std::uint64_t refused = 0;
   std::uint64_t wake_ups = 0;
@@ -144,7 +150,9 @@ struct Meeting::State {
     return epoll_ctl(epoll.get(), operation, of.get(), &event) == 0;
   }
 
-  bool knows(uid_t user) const { return std::ranges::find(rules.users, user) != rules.users.end(); }
+  bool knows(uid_t user) const {
+    return !is_unmapped(user) && std::ranges::find(rules.users, user) != rules.users.end();
+  }
 
   // ---- the thread
 
@@ -175,7 +183,7 @@ struct Meeting::State {
         news.swap(untold);
       }
       for (const auto& text : news) log(LogLevel::Warning, "same host", text);
-      for (const auto& link : gone) link->note_end();
+      for (const auto& link : gone) link->close();
       for (const auto& guest : admitted) welcome(guest);
     }
   }
@@ -197,11 +205,15 @@ struct Meeting::State {
     if (const auto node = newcomers.extract(id)) {
       control(EPOLL_CTL_DEL, *node.mapped().socket, id, 0);
       hear(node.mapped(), admitted);
-    } else if (const auto hung_up = watched.extract(id)) {
+    } else if (const auto found = watched.find(id); found != watched.end()) {
+      const auto ended = found->second;
       // A copy of the descriptor, in a child, must not tell of it for ever.
-      control(EPOLL_CTL_DEL, *hung_up.mapped().socket, id, 0);
-      if (hung_up.mapped().guest) --guests;
-      if (auto link = hung_up.mapped().link.lock()) gone.push_back(std::move(link));
+      control(EPOLL_CTL_DEL, *ended->socket, ended->id, 0);
+      if (ended->process) control(EPOLL_CTL_DEL, ended->process, ended->process_id, 0);
+      watched.erase(ended->id);
+      watched.erase(ended->process_id);
+      if (ended->guest) --guests;
+      if (auto link = ended->link.lock()) gone.push_back(std::move(link));
     }
   }
 
@@ -209,17 +221,17 @@ struct Meeting::State {
     const std::uint64_t before = refused;
     const std::size_t room = rules.newcomers - std::min(rules.newcomers, newcomers.size());
     const std::size_t most = std::clamp<std::size_t>(room, 1, kAcceptedInARow);
-    const bool served = skein::let_in(offer->socket.get(), most, [&](FileDescriptor accepted) {
+    const bool served = skein::let_in(offer->socket.get(), most, [&](FileDescriptor& accepted) {
       const auto owner = other_end(accepted);
       const std::uint64_t id = ++last_id;
-      const auto socket = std::make_shared<const FileDescriptor>(std::move(accepted));
       if (owner && !knows(owner->uid)) note_stranger(*owner);
       if (!owner || !knows(owner->uid) || newcomers.size() >= rules.newcomers ||
-          !control(EPOLL_CTL_ADD, *socket, id, EPOLLIN)) {
+          !control(EPOLL_CTL_ADD, accepted, id, EPOLLIN)) {
         ++refused;
         return;
       }
-      newcomers.emplace(id, Newcomer{offer, socket, owner->pid, Clock::now() + rules.patience});
+      newcomers.emplace(id, Newcomer{offer, std::make_shared<const HandedOver>(std::move(accepted)),
+                                     owner->pid, Clock::now() + rules.patience});
     });
     if (!served) return let_nobody_in(kAfterShortage);
     if (refused > before) let_nobody_in(kAfterRefusal);
@@ -260,8 +272,9 @@ struct Meeting::State {
 
   void hear(const Newcomer& newcomer, std::vector<Admitted>& admitted) {
     Hello hello{};
-    const auto size = recv(newcomer.socket->get(), &hello, sizeof hello, MSG_DONTWAIT | MSG_TRUNC);
-    if (size != sizeof hello) {
+    HandedOver unexpected;
+    if (!receive_passed(newcomer.socket->get(), std::as_writable_bytes(std::span(&hello, 1)),
+                        unexpected)) {
       ++refused;
       return let_nobody_in(kAfterRefusal);
     }
@@ -283,9 +296,9 @@ struct Meeting::State {
     }
     std::size_t of_process = 0;
     for (const auto& [id, other] : watched) {
-      if (!other.guest) continue;
-      of_process += *other.guest == newcomer.process;
-      const auto link = other.link.lock();
+      if (!other->guest || id != other->id) continue;
+      of_process += *other->guest == newcomer.process;
+      const auto link = other->link.lock();
       if (link && link->peer() == hello.client) throw Unavailable("that client is here already");
     }
     if (of_process >= rules.guests_of_process) {
@@ -322,9 +335,12 @@ struct Meeting::State {
   /// Under the lock.
   void watch(const std::shared_ptr<Link>& link, const std::shared_ptr<const FileDescriptor>& socket,
              std::optional<pid_t> guest) {
-    const std::uint64_t id = ++last_id;
-    if (!control(EPOLL_CTL_ADD, *socket, id, EPOLLRDHUP)) refuse();
-    watched.emplace(id, Watched{socket, link, guest});
+    auto other = std::make_shared<Watched>(
+        Watched{++last_id, socket, ++last_id, other_process(*socket).descriptor, link, guest});
+    if (!control(EPOLL_CTL_ADD, *socket, other->id, EPOLLRDHUP)) refuse();
+    if (other->process) control(EPOLL_CTL_ADD, other->process, other->process_id, EPOLLIN);
+    watched.emplace(other->id, other);
+    watched.emplace(other->process_id, other);
   }
 
   // ---- for others
@@ -357,7 +373,7 @@ struct Meeting::State {
     }
     std::lock_guard lock(withdrawn->mutex);
     withdrawn->withdrawn = true;
-    withdrawn->socket.reset();
+    withdrawn->socket.close();
   }
 
   [[noreturn]] static void refuse_to_join(const std::string& why) {
@@ -366,25 +382,25 @@ struct Meeting::State {
 
   std::shared_ptr<Link> join(const Guid& provider, const Guid& client,
                              std::function<void()> notify) {
-    FileDescriptor connected = local_socket(SOCK_SEQPACKET);
-    switch (connect_to(connected, address_of(provider))) {
+    const auto known = [this](uid_t user) { return knows(user); };
+    Contact contact = reach(address_of(provider), known, SOCK_SEQPACKET);
+    switch (contact.reached) {
       case Reached::Nobody:
         refuse_to_join("nobody offers one");
       case Reached::Unknown:
         refuse_to_join(std::strerror(errno));
+      case Reached::Stranger:
+        refuse_to_join("another user offers it, who is not among those that are spoken to");
       case Reached::Yes:
         break;
     }
-    const auto owner = other_end(connected);
-    if (!owner || !knows(owner->uid)) {
-      refuse_to_join("another user offers it, who is not among those that are spoken to");
-    }
+    const auto socket = std::make_shared<const HandedOver>(std::move(contact.socket));
     auto hello = make_packet<Hello>();
     hello.client = client;
-    if (send(connected.get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello) {
+    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello) {
       refuse_to_join(std::strerror(errno));
     }
-    pollfd answered{connected.get(), POLLIN, 0};
+    pollfd answered{socket->get(), POLLIN, 0};
     const auto deadline = Clock::now() + rules.patience;
     while (true) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
@@ -395,8 +411,8 @@ struct Meeting::State {
       if (errno != EINTR) refuse_to_join(std::strerror(errno));
     }
     Answer answer{};
-    FileDescriptor descriptor;
-    if (!receive_answer(connected.get(), answer, descriptor)) {
+    HandedOver descriptor;
+    if (!receive_answer(socket->get(), answer, descriptor)) {
       refuse_to_join("the provider turned it away");
     }
     if (!descriptor) {
@@ -408,7 +424,6 @@ struct Meeting::State {
     }
     auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
     memory.take_descriptor();
-    const auto socket = std::make_shared<const FileDescriptor>(std::move(connected));
     auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
                                        answer.server, std::move(notify));
     std::lock_guard lock(mutex);
@@ -425,7 +440,6 @@ void Meeting::offer(const Guid& provider, const Guid& server, std::function<void
   auto offer = std::make_shared<State::Offer>();
   offer->provider = provider;
   offer->server = server;
-  offer->socket = local_socket(SOCK_SEQPACKET);
   offer->notify = std::move(notify);
   offer->welcome = std::move(welcome);
   state_->offer(std::move(offer));

@@ -24,10 +24,10 @@ namespace skein::same_host {
 class Meeting {
  public:
   struct Rules {
-    /// Who is let in, and whom one connects to.
+    /// Who is let in, and whom one connects to; never users that this namespace does not map.
     std::vector<uid_t> users{geteuid(), 0};
-    /// Connections from others at a time, and from one of their processes. Each takes a descriptor
-    /// and Link::kMemory.
+    /// Connections from others at a time, and from one of their processes. Each takes two
+    /// descriptors and Link::kMemory.
     std::size_t guests = 1024;
     std::size_t guests_of_process = 128;
     /// Of those that have not said yet who they are.

@@ -5,6 +5,12 @@
 #include <cstring>
 
 namespace skein::same_host {
+namespace {
+
+// As many as the kernel lets anybody send (SCM_MAX_FD): it would close the others here.
+constexpr std::size_t kMostDescriptors = 253;
+
+}  // namespace
 
 bool pass(int socket, std::span<const std::byte> packet, int descriptor) {
   iovec content{const_cast<std::byte*>(packet.data()), packet.size()};
@@ -25,9 +31,9 @@ bool pass(int socket, std::span<const std::byte> packet, int descriptor) {
          static_cast<ssize_t>(packet.size());
 }
 
-bool receive_passed(int socket, std::span<std::byte> packet, FileDescriptor& descriptor) {
+bool receive_passed(int socket, std::span<std::byte> packet, HandedOver& descriptor) {
   iovec content{packet.data(), packet.size()};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+  alignas(cmsghdr) char control[CMSG_SPACE(kMostDescriptors * sizeof(int))] = {};
   msghdr message{};
   message.msg_iov = &content;
   message.msg_iovlen = 1;
@@ -37,7 +43,6 @@ bool receive_passed(int socket, std::span<std::byte> packet, FileDescriptor& des
   if (size < 0) return false;
   for (auto* header = CMSG_FIRSTHDR(&message); header; header = CMSG_NXTHDR(&message, header)) {
     if (header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_RIGHTS) continue;
-    // There is room for two: what is filled up to the alignment counts.
     for (std::size_t at = CMSG_LEN(0); at + sizeof(int) <= header->cmsg_len; at += sizeof(int)) {
       int number = -1;
       std::memcpy(&number, reinterpret_cast<const char*>(header) + at, sizeof number);

@@ -53,7 +53,7 @@ SharedMemory SharedMemory::make(std::size_t size) {
   return {std::move(descriptor), size, PROT_READ | PROT_WRITE};
 }
 
-SharedMemory SharedMemory::map(FileDescriptor descriptor, std::size_t size) {
+SharedMemory SharedMemory::map(HandedOver descriptor, std::size_t size) {
   const std::size_t offered = checked_size(descriptor, kSizeSeals);
   if (offered != size) {
     refuse("the other process offers " + std::to_string(offered) + " octets; " +
@@ -62,7 +62,7 @@ SharedMemory SharedMemory::map(FileDescriptor descriptor, std::size_t size) {
   return {std::move(descriptor), size, PROT_READ | PROT_WRITE};
 }
 
-SharedMemory SharedMemory::map_to_read(FileDescriptor descriptor, std::size_t largest) {
+SharedMemory SharedMemory::map_to_read(HandedOver descriptor, std::size_t largest) {
   const std::size_t offered = checked_size(descriptor, kSizeSeals | F_SEAL_FUTURE_WRITE);
   if (offered == 0 || offered > largest) {
     refuse("the other process offers " + std::to_string(offered) + " octets; up to " +

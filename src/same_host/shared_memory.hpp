@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/system/file_descriptor.hpp"
+#include "core/system/close_elsewhere.hpp"
 
 namespace skein::same_host {
 
@@ -16,11 +16,11 @@ class SharedMemory {
   /// New, and zero. Throws Unavailable with the kernel's reason.
   static SharedMemory make(std::size_t size);
   /// What another process has made. Throws Unavailable where it is not of this size, or not sealed.
-  static SharedMemory map(FileDescriptor descriptor, std::size_t size);
+  static SharedMemory map(HandedOver descriptor, std::size_t size);
 
   /// The same, to be read alone, of whatever size up to `largest`; nobody but who has made it can
   /// write to it.
-  static SharedMemory map_to_read(FileDescriptor descriptor, std::size_t largest);
+  static SharedMemory map_to_read(HandedOver descriptor, std::size_t largest);
 
   SharedMemory(SharedMemory&& other) noexcept { swap(other); }
   SharedMemory& operator=(SharedMemory&& other) noexcept {

@@ -20,6 +20,7 @@
 #include "same_host/pass_descriptor.hpp"
 #include "skein/error.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/lingering_connection.hpp"
 #include "test/tools/size_limit.hpp"
 
 using namespace skein;
@@ -172,7 +173,7 @@ TEST_CASE("a provider that was killed reads nothing any more") {
     pause();
   }
   char packet = 0;
-  FileDescriptor handed;
+  HandedOver handed;
   REQUIRE(eventually([&] {
     return receive_passed(mine.get(), std::as_writable_bytes(std::span(&packet, 1)), handed);
   }));
@@ -359,6 +360,29 @@ TEST_CASE("memory that must not be read, or cannot be, is not read, and its call
   const auto next = ends.borrower->borrow(ending_with({0, 2, 4096, 0}));
   REQUIRE(next);
   CHECK(next->value.size() == 4096);
+}
+
+TEST_CASE("who is lent what is no memory does not wait until it is closed") {
+  Ends ends;
+  test::LingeringConnection lingering;
+  const std::uint32_t packet[] = {0, 1};
+  const std::string text(reinterpret_cast<const char*>(packet), sizeof packet);
+  SECTION("alone") { REQUIRE(lingering.hand_over(ends.client->get(), text)); }
+  SECTION("behind others") {
+    const FileDescriptor memory(memfd_create("test", MFD_CLOEXEC));
+    REQUIRE(lingering.hand_over(ends.client->get(), text, std::vector<int>(100, memory.get())));
+  }
+  SECTION("as the packet is none that is expected") {
+    REQUIRE(lingering.hand_over(ends.client->get(), text + "!"));
+    CHECK(test::returns_at_once([&] {
+      CHECK_THROWS_AS(ends.borrower->borrow(ending_with({0, 1, 4096, 0})), BrokenRing);
+    }));
+    return lingering.release();
+  }
+  CHECK(test::returns_at_once([&] {
+    CHECK(cannot_be_read(ends.borrower->borrow(ending_with({0, 1, 4096, 0}))));
+  }));
+  lingering.release();
 }
 
 TEST_CASE("a provider that writes anything into the counts harms itself alone") {

@@ -1,6 +1,7 @@
 #include "same_host/meeting.hpp"
 
 #include <poll.h>
+#include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -14,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -23,6 +25,7 @@
 #include "core/system/abstract_socket.hpp"
 #include "skein/error.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/lingering_connection.hpp"
 #include "test/tools/log.hpp"
 #include "test/tools/threads.hpp"
 
@@ -114,6 +117,7 @@ class Forked {
   Forked(const Forked&) = delete;
   Forked& operator=(const Forked&) = delete;
 
+  pid_t pid() const { return pid_; }
   void start() { REQUIRE(write(go_[1], "x", 1) == 1); }
   /// Starts it; what it exits with.
   int run() {
@@ -135,7 +139,7 @@ class Forked {
   pid_t pid_ = 0;
 };
 
-constexpr uid_t kAnother = 65'534;
+constexpr uid_t kAnother = 12'345;
 template <class Action>
 auto as_another_user(Action action) {
   return [action] { return setresuid(kAnother, kAnother, kAnother) == 0 ? action() : 99; };
@@ -347,7 +351,7 @@ TEST_CASE("another user is turned away whichever side he is on, and told of in t
   CHECK(first.run() == 0);
   CHECK(second.run() == 0);
   CHECK(host.meeting.counters().guests == 0);
-  CHECK(eventually([&] { return log.count("of user 65534 is turned away") == 1; }));
+  CHECK(eventually([&] { return log.count("of user 12345 is turned away") == 1; }));
 
   Meeting meeting;
   offering.start();
@@ -357,6 +361,131 @@ TEST_CASE("another user is turned away whichever side he is on, and told of in t
   close(ready[0]);
   CHECK_THROWS_WITH(meeting.join(claimed, Guid::random(), [] {}),
                     Catch::Contains("another user offers it"));
+}
+
+TEST_CASE("what another user hands over is closed by a thread that nobody waits for") {
+  if (geteuid() != 0) {
+    WARN("not shown: only root can become another user");
+    return;
+  }
+  const Guid provider = Guid::random();
+  int ready[2];
+  REQUIRE(pipe(ready) == 0);
+  Forked another(as_another_user([&] {
+    test::LingeringConnection lingering;
+    const bool done = lingering.hand_over_to_refuser([&] { return stranger(provider); });
+    return write(ready[1], done ? "y" : "n", 1) == 1 ? pause() : 1;
+  }));
+  Host host({}, provider);
+  another.start();
+  char done = 0;
+  REQUIRE(read(ready[0], &done, 1) == 1);
+  CHECK(done == 'y');
+  for (const int each : ready) close(each);
+  Meeting meeting;
+  CHECK_NOTHROW(meeting.join(provider, Guid::random(), [] {}));
+}
+
+TEST_CASE("what a client hands over is closed by a thread that nobody waits for") {
+  Host host;
+  test::LingeringConnection with_hello;
+  test::LingeringConnection unread;
+  const auto hello = hello_of(Guid::random());
+  {
+    const FileDescriptor socket = stranger(host.provider);
+    REQUIRE(with_hello.hand_over(socket.get(), std::string(hello.data(), hello.size())));
+    REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
+    REQUIRE(unread.hand_over(socket.get()));
+  }
+  CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+  CHECK(test::returns_at_once([&] {
+    std::lock_guard lock(host.mutex);
+    host.guests.clear();
+  }));
+  Meeting meeting;
+  CHECK_NOTHROW(meeting.join(host.provider, Guid::random(), [] {}));
+  with_hello.release();
+  unread.release();
+}
+
+TEST_CASE(
+    "a link ends with the process at its other end, though a child has copies of its socket") {
+  int keeps[2];
+  REQUIRE(pipe(keeps) == 0);
+  const auto leave_a_child = [&] {
+    close(keeps[1]);
+    char octet;
+    if (fork() == 0) _exit(static_cast<int>(read(keeps[0], &octet, 1)));
+    return pause();
+  };
+  const Guid here = Guid::random();
+  const Guid there = Guid::random();
+  Forked client([&] {
+    Meeting meeting;
+    const auto link = meeting.join(here, Guid::random(), [] {});
+    return leave_a_child();
+  });
+  Forked provider([&] {
+    Host host({}, there);
+    eventually([&] { return host.guest(0) != nullptr; });
+    return leave_a_child();
+  });
+  const auto has_child = [](pid_t pid) {
+    const std::string number = std::to_string(pid);
+    std::ifstream file("/proc/" + number + "/task/" + number + "/children");
+    return static_cast<bool>(file >> pid);
+  };
+  std::shared_ptr<Link> link;
+  SECTION("the client's") {
+    Host host({}, here);
+    client.start();
+    REQUIRE(eventually([&] { return has_child(client.pid()); }));
+    link = host.guest(0);
+    REQUIRE(link);
+    CHECK_FALSE(link->ended());
+    client.end();
+    CHECK(eventually([&] { return link->ended(); }));
+    CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
+  }
+  SECTION("the provider's") {
+    provider.start();
+    Meeting meeting;
+    REQUIRE(eventually([&] {
+      try {
+        link = meeting.join(there, Guid::random(), [] {});
+      } catch (const Unavailable&) {
+      }
+      return link != nullptr;
+    }));
+    REQUIRE(eventually([&] { return has_child(provider.pid()); }));
+    CHECK_FALSE(link->ended());
+    provider.end();
+    CHECK(eventually([&] { return link->ended(); }));
+  }
+  for (const int each : keeps) close(each);
+}
+
+TEST_CASE("a user that is not mapped is no process's own, though the kernel shows one number") {
+  const Guid provider = Guid::random();
+  int ready[2];
+  REQUIRE(pipe(ready) == 0);
+  Forked inside([&] {
+    const bool made = unshare(CLONE_NEWUSER) == 0;
+    const Host host({}, provider);
+    if (write(ready[1], made ? "y" : "n", 1) != 1) return 1;
+    return pause();
+  });
+  inside.start();
+  char made = 0;
+  REQUIRE(read(ready[0], &made, 1) == 1);
+  for (const int each : ready) close(each);
+  if (made == 'n') {
+    WARN("not shown: this process may not make a user namespace");
+    return;
+  }
+  Meeting meeting;
+  CHECK_THROWS_WITH(meeting.join(provider, Guid::random(), [] {}),
+                    Catch::Contains("the provider turned it away"));
 }
 
 TEST_CASE("who answers under a provider's name as another participant is refused") {

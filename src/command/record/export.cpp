@@ -141,7 +141,7 @@ Counts export_csv(const recording::Reader& reader, const ExportArguments& argume
 }
 
 /// A text of the counts as a terminal may have it.
-std::string shown(const Counts& text) {
+std::string exported_text(const Counts& text) {
   const auto plain = text.get<std::string>();
   return printable(plain, plain.size());
 }
@@ -149,13 +149,13 @@ std::string shown(const Counts& text) {
 void print_exported(const Counts& counts) {
   if (counts.contains("tables")) {
     for (const auto& table : counts["tables"])
-      std::printf("%s/%s: %llu rows\n", shown(counts["folder"]).c_str(),
-                  shown(table["file"]).c_str(), table["rows"].get<unsigned long long>());
+      std::printf("%s/%s: %llu rows\n", exported_text(counts["folder"]).c_str(),
+                  exported_text(table["file"]).c_str(), table["rows"].get<unsigned long long>());
   } else if (counts.contains("values")) {
-    std::printf("%s: %llu values\n", shown(counts["file"]).c_str(),
+    std::printf("%s: %llu values\n", exported_text(counts["file"]).c_str(),
                 counts["values"].get<unsigned long long>());
   } else {
-    std::printf("%s: %llu events of calls, %llu decisions\n", shown(counts["file"]).c_str(),
+    std::printf("%s: %llu events of calls, %llu decisions\n", exported_text(counts["file"]).c_str(),
                 counts["events"].get<unsigned long long>(),
                 counts["decisions"].get<unsigned long long>());
   }

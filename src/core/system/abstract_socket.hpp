@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "close_elsewhere.hpp"
 #include "file_descriptor.hpp"
 
 namespace skein {
@@ -40,6 +41,37 @@ inline bool listen_at(const FileDescriptor& socket, const std::string& name,
          listen(socket.get(), backlog) == 0;
 }
 
+inline FileDescriptor accept_at(int listening) {
+  return FileDescriptor(accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+}
+
+/// A socket that listens. Strangers may wait at it, who are hung up elsewhere when it is closed.
+class ListeningSocket : public FileDescriptor {
+ public:
+  ListeningSocket() = default;
+  explicit ListeningSocket(FileDescriptor socket) : FileDescriptor(std::move(socket)) {}
+  ListeningSocket(ListeningSocket&&) = default;
+  ListeningSocket& operator=(ListeningSocket&& other) noexcept {
+    close();
+    FileDescriptor::operator=(std::move(other));
+    return *this;
+  }
+  ~ListeningSocket() { close(); }
+
+  /// The name is free afterwards, unless too much is left to be closed.
+  void close() noexcept {
+    if (!*this) return;
+    shutdown(get(), SHUT_RDWR);  // nobody else comes
+    while (!closing_is_behind()) {
+      FileDescriptor waiting = accept_at(get());
+      if (!waiting && (errno == EAGAIN || errno == EINVAL)) return reset();
+      if (!waiting) break;
+      hang_up_elsewhere(std::move(waiting));
+    }
+    close_elsewhere(std::move(*this));
+  }
+};
+
 // A client that waits at a listening socket costs nothing. So none is let in for a while after one
 // was turned away, and after the kernel had no descriptor.
 inline constexpr std::chrono::milliseconds kAfterRefusal{10};
@@ -47,19 +79,24 @@ inline constexpr std::chrono::milliseconds kAfterShortage{100};
 /// Others have their turn then.
 inline constexpr std::size_t kAcceptedInARow = 16;
 
-/// Lets in waiting clients, `most` at most. False if the kernel has no descriptor for the next one.
+/// Lets in waiting clients, `most` at most. What `take(FileDescriptor&)` does not move from is
+/// turned away. False if the kernel has no descriptor for the next one, or too many of those that
+/// were turned away are still open.
 template <class Take>
 bool let_in(int listening, std::size_t most, const Take& take) {
   for (; most > 0; --most) {
-    FileDescriptor socket(accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (closing_is_behind()) return false;
+    FileDescriptor socket = accept_at(listening);
     if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
-    take(std::move(socket));
+    take(socket);
+    if (socket) hang_up_elsewhere(std::move(socket));
   }
   return true;
 }
 
-/// Nobody listens, or nothing is known, with the socket not connected.
-enum class Reached { Yes, Nobody, Unknown };
+/// Nobody listens; a user does whom one does not speak to; or nothing is known, as where so many
+/// wait already that there is no room (EAGAIN).
+enum class Reached { Yes, Nobody, Stranger, Unknown };
 
 inline Reached connect_to(const FileDescriptor& socket, const std::string& name) {
   sockaddr_un address;
@@ -77,6 +114,29 @@ inline std::optional<ucred> other_end(const FileDescriptor& socket) {
   socklen_t size = sizeof owner;
   if (getsockopt(socket.get(), SOL_SOCKET, SO_PEERCRED, &owner, &size) != 0) return std::nullopt;
   return owner;
+}
+
+/// The socket is connected to `process` if it was reached; if not, errno says why.
+struct Contact {
+  Reached reached = Reached::Unknown;
+  FileDescriptor socket;
+  pid_t process = 0;
+};
+
+/// Connects to the process that listens at `name`, if `knows(uid_t)` its user. Never waits.
+template <class Knows>
+Contact reach(const std::string& name, const Knows& knows, int type = SOCK_STREAM) {
+  Contact contact{Reached::Unknown, local_socket(type)};
+  contact.reached = connect_to(contact.socket, name);
+  if (contact.reached != Reached::Yes) return contact;
+  const auto owner = other_end(contact.socket);
+  if (owner && knows(owner->uid)) {
+    contact.process = owner->pid;
+    return contact;
+  }
+  hang_up_elsewhere(std::move(contact.socket));
+  contact.reached = Reached::Stranger;
+  return contact;
 }
 
 }  // namespace skein

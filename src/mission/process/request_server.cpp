@@ -6,19 +6,20 @@
 #include <cerrno>
 
 #include "core/system/abstract_socket.hpp"
+#include "core/system/users.hpp"
 
 namespace skein::launch {
 
 void RequestServer::add_to(std::vector<pollfd>& watched) const {
-  watched.push_back({listener_, POLLIN, 0});
+  if (!is_crowded_) watched.push_back({listener_, POLLIN, 0});
   for (const Client& client : clients_) watched.push_back({client.socket.get(), POLLIN, 0});
 }
 
 void RequestServer::take_clients() {
   if (listener_ < 0) return;
-  let_in(listener_, kAcceptedInARow, [&](FileDescriptor socket) {
+  is_crowded_ = !let_in(listener_, kAcceptedInARow, [&](FileDescriptor& socket) {
     const auto owner = other_end(socket);
-    if (!owner || (owner->uid != ::getuid() && owner->uid != 0)) return;
+    if (!owner || (!is_own_user(owner->uid) && owner->uid != 0)) return;
     if (clients_.size() == kMostClients) clients_.pop_front();
     clients_.push_back({std::move(socket), ""});
   });

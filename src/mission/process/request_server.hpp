@@ -25,6 +25,9 @@ class RequestServer {
   RequestServer(int listener, Answer answer) : listener_(listener), answer_(std::move(answer)) {}
 
   void add_to(std::vector<pollfd>& watched) const;
+  /// Whether it lets nobody in, for want of descriptors, and its caller is to call serve() again
+  /// after kAfterShortage.
+  bool is_crowded() const noexcept { return is_crowded_; }
   /// Takes new clients and answers those whose request has come.
   void serve();
 
@@ -40,6 +43,7 @@ class RequestServer {
   int listener_;
   Answer answer_;
   std::deque<Client> clients_;
+  bool is_crowded_ = false;
 };
 
 }  // namespace skein::launch

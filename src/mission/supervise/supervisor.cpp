@@ -12,6 +12,7 @@
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "mission/process/request_server.hpp"
 #include "mission/process/wake_up.hpp"
 #include "mission/supervise/mission_claim.hpp"
@@ -300,7 +301,8 @@ class MissionRun {
     using std::chrono::milliseconds;
     const auto due = state_.next_tick();
     const auto left = due ? std::chrono::ceil<milliseconds>(*due - now()) : milliseconds(-1);
-    const auto limit = due ? std::clamp<std::int64_t>(left.count(), 0, kLongestWaitMs) : -1;
+    const std::int64_t most = requests_.is_crowded() ? kAfterShortage.count() : kLongestWaitMs;
+    const auto limit = due ? std::clamp<std::int64_t>(left.count(), 0, most) : most;
     ::poll(watched.data(), watched.size(), static_cast<int>(limit));
   }
 

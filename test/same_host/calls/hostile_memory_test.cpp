@@ -216,7 +216,7 @@ class HostileClient : Attacker {
     pollfd answered{socket.get(), POLLIN, 0};
     poll(&answered, 1, 20'000);
     std::array<std::byte, 128> answer{};
-    FileDescriptor descriptor;
+    HandedOver descriptor;
     same_host::receive_passed(socket.get(), answer, descriptor);
     return descriptor;
   }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <sys/types.h>
+
+namespace skein {
+
+/// Whether the kernel shows every user by this number whom this process's user namespace does not
+/// map: then nobody can be known by it.
+bool is_unmapped(uid_t user);
+
+/// Whether `user`, as the kernel tells of another process, is certainly this process's.
+bool is_own_user(uid_t user);
+
+}  // namespace skein
