@@ -1,31 +1,34 @@
 #include "brokerless_discovery/kill_process.hpp"
 
 #include <sys/syscall.h>
+#include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 
 #include "brokerless_discovery/process_watch.hpp"
 #include "core/system/abstract_socket.hpp"
+#include "core/system/bound_sockets.hpp"
+#include "core/system/other_process.hpp"
+#include "core/system/users.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
 
-// The system's own header declares neither call for C++.
-FileDescriptor open_process(pid_t pid) {
-  return FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
-}
+// The system's own header does not declare it for C++.
 bool send_kill(const FileDescriptor& process) {
   return syscall(SYS_pidfd_send_signal, process.get(), SIGKILL, nullptr, 0) == 0;
 }
 
-// 0 where nobody listens.
-pid_t listening_at(const std::string& address) {
-  const FileDescriptor socket = local_socket();
-  if (connect_to(socket, address) != Reached::Yes) return 0;
-  const auto owner = other_end(socket);
-  return owner ? owner->pid : 0;
+// The socket may outlive the process that began to listen, in a child of it. The descriptor was
+// opened before: if that process holds the socket, the number is still its own.
+bool still_listens(pid_t number, const std::string& address) {
+  const auto sockets = bound_sockets();
+  const auto socket = sockets.find(address);
+  if (socket == sockets.end()) return false;
+  const auto links = open_in(number);
+  return std::ranges::find(links, socket->second) != links.end();
 }
 
 // The state stands behind the name, which may hold anything.
@@ -39,12 +42,13 @@ bool is_stopped(pid_t pid) {
 
 bool kill_if(const std::string& address, bool (*condition)(pid_t)) {
   if (!ProcessWatch::is_address(address)) return false;
-  const pid_t number = listening_at(address);
-  if (number <= 0 || number == getpid()) return false;
-  // Who listened before and listens still has lived all the while, so the number was his when it
-  // was looked up.
-  const FileDescriptor process = open_process(number);
-  return process && listening_at(address) == number && condition(number) && send_kill(process);
+  const Contact contact = reach(address, is_own_user);
+  if (contact.reached != Reached::Yes || contact.process <= 0 || contact.process == getpid()) {
+    return false;
+  }
+  const OtherProcess process = other_process(contact.socket);
+  return process.descriptor && (process.is_exact || still_listens(contact.process, address)) &&
+         condition(contact.process) && send_kill(process.descriptor);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/log.hpp"
 #include "core/system/abstract_socket.hpp"
 #include "core/system/other_process.hpp"
 #include "core/system/users.hpp"
@@ -35,6 +36,18 @@ constexpr std::uint64_t kTimer = 1;
 
 using Action = std::function<void()>;
 using Actions = std::vector<Action>;
+
+// Two processes of unknown hosts may be on two hosts, where one cannot see the other's end.
+const std::string& unknown_host() {
+  static const std::string own = [] {
+    log(LogLevel::Warning, "discovery",
+        "this host cannot be told from others: /proc/sys/kernel/random/boot_id or "
+        "/proc/self/ns/net cannot be read (systemd's ProcSubset=pid?); every other process counts "
+        "as one of another host");
+    return "unknown/" + Guid::random().hex();
+  }();
+  return own;
+}
 
 }  // namespace
 
@@ -330,7 +343,8 @@ std::string ProcessWatch::host() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);
   struct stat status {};
-  stat("/proc/self/ns/net", &status);
+  const bool network_known = stat("/proc/self/ns/net", &status) == 0;
+  if (boot.empty() || !network_known) return unknown_host();
   return boot + "/" + std::to_string(status.st_ino);
 }
 

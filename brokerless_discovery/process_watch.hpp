@@ -44,7 +44,8 @@ class ProcessWatch {
   /// Whether it is an address at all.
   static bool is_address(std::string_view address);
 
-  /// Equal for processes that can watch each other: same boot, same network namespace.
+  /// Equal for processes that can watch each other: same boot, same network namespace. Each
+  /// process's own, with a line in the log, if either is unknown.
   static std::string host();
 
   /// Calls `ended` once, on the watch's thread, when the process at `address` has ended; at once

@@ -1,7 +1,9 @@
 #include "brokerless_discovery/process_watch.hpp"
 
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +21,8 @@
 #include "brokerless_discovery/kill_process.hpp"
 #include "core/system/abstract_socket.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/lingering_connection.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein::brokerless_discovery;
 using skein::connect_to;
@@ -27,6 +31,7 @@ using skein::listen_at;
 using skein::local_socket;
 using skein::Reached;
 using skein::test::eventually;
+using skein::test::LingeringConnection;
 
 namespace {
 
@@ -121,6 +126,63 @@ struct Doorman {
   }
 };
 
+void end_process(pid_t pid) {
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+}
+
+/// A process that listens at an address, greets the first watcher, if it is to, and ends by itself
+/// or stays. A child of it has copies of its sockets.
+struct Listener {
+  enum class Then { End, Stay };
+  pid_t pid;
+  FileDescriptor keeps;  // the child ends with it
+
+  explicit Listener(const std::string& address, Then then = Then::End) {
+    int alive[2];
+    int ready[2];
+    REQUIRE((pipe(alive) == 0 && pipe(ready) == 0));
+    pid = fork();
+    if (pid == 0) {
+      close(alive[1]);
+      const FileDescriptor listening(socket(AF_UNIX, SOCK_STREAM, 0));
+      if (!listen_at(listening, address) || write(ready[1], "!", 1) != 1) _exit(1);
+      FileDescriptor guest;
+      if (then == Then::Stay) {
+        guest = FileDescriptor(accept(listening.get(), nullptr, nullptr));
+        if (write(guest.get(), "!", 1) != 1) _exit(1);
+      }
+      char octet;
+      if (fork() == 0) _exit(read(alive[0], &octet, 1) == 0 ? 0 : 1);
+      if (then == Then::End) _exit(0);
+      while (true) pause();
+    }
+    close(alive[0]);
+    close(ready[1]);
+    keeps = FileDescriptor(alive[1]);
+    const FileDescriptor is_ready(ready[0]);
+    char octet;
+    REQUIRE(read(is_ready.get(), &octet, 1) == 1);
+  }
+};
+
+/// Whether the process has a child.
+bool has_child(pid_t pid) {
+  const std::string number = std::to_string(pid);
+  std::ifstream file("/proc/" + number + "/task/" + number + "/children");
+  return static_cast<bool>(file >> pid);
+}
+
+bool may_make_a_user_namespace() {
+  const pid_t pid = fork();
+  if (pid == 0) _exit(unshare(CLONE_NEWUSER) == 0 ? 0 : 1);
+  int status = 1;
+  waitpid(pid, &status, 0);
+  return status == 0;
+}
+
+constexpr uid_t kAnother = 12'345;
+
 }  // namespace
 
 TEST_CASE("the kernel tells of the end of a watched process, once") {
@@ -132,6 +194,19 @@ TEST_CASE("the kernel tells of the end of a watched process, once") {
   CHECK(ended == 0);
   child.end();
   CHECK(eventually([&] { return ended == 1; }));
+}
+
+TEST_CASE("a process whose child has copies of its sockets has ended all the same") {
+  const std::string address = "skein/" + skein::Guid::random().hex();
+  const Listener listener(address, Listener::Then::Stay);
+  ProcessWatch watch;
+  std::atomic<int> ended = 0;
+  watch.watch(address, kWatcher, [&] { ++ended; });
+  REQUIRE(eventually([&] { return has_child(listener.pid); }));
+  CHECK(ended == 0);
+  end_process(listener.pid);
+  CHECK(eventually([&] { return ended == 1; }));
+  CHECK(watch.counters().watched == 0);
 }
 
 TEST_CASE("a stopped process has not ended") {
@@ -181,6 +256,75 @@ TEST_CASE("where only a stopped process is to be killed, one that runs is left a
 TEST_CASE("a process does not kill itself") {
   ProcessWatch own;
   CHECK_FALSE(kill_process(own.open(kParticipant)));
+}
+
+TEST_CASE("a process that has the number of one that ended is not killed in its place") {
+  if (geteuid() != 0) {
+    WARN("skipped: only root can choose a process's number");
+    return;
+  }
+  const std::string address = "skein/" + skein::Guid::random().hex();
+  const Listener ended(address);
+  REQUIRE(waitpid(ended.pid, nullptr, 0) == ended.pid);
+  REQUIRE(connections_to(address, 1).size() == 1);  // in a child of it the socket lives on
+  pid_t bystander = 0;
+  for (int i = 0; i < 100 && bystander != ended.pid; ++i) {
+    if (bystander != 0) end_process(bystander);
+    std::ofstream("/proc/sys/kernel/ns_last_pid") << ended.pid - 1;
+    bystander = fork();
+    if (bystander == 0) {
+      while (true) pause();
+    }
+  }
+  if (bystander != ended.pid) WARN("not shown: the number was not given again");
+  CHECK_FALSE(kill_process(address));
+  CHECK(kill(bystander, 0) == 0);
+  CHECK(waitpid(bystander, nullptr, WNOHANG) == 0);
+  end_process(bystander);
+}
+
+TEST_CASE("another user's process is not killed, even by root") {
+  if (geteuid() != 0) {
+    WARN("skipped: only root can become another user");
+    return;
+  }
+  const Child foreign({}, [] { REQUIRE(setuid(kAnother) == 0); });
+  CHECK_FALSE(kill_process(foreign.address));
+  CHECK(waitpid(foreign.pid, nullptr, WNOHANG) == 0);
+}
+
+TEST_CASE("hosts that do not say which they are count as different ones, and the log says so") {
+  const auto host_of_another = [] {
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    const pid_t pid = fork();
+    if (pid == 0) {
+      // As under systemd's ProcSubset=pid.
+      const bool hidden = unshare(CLONE_NEWNS) == 0 &&
+                          mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                          mount("none", "/proc/sys", "tmpfs", 0, nullptr) == 0;
+      const skein::test::Log log;
+      const std::string host = ProcessWatch::host();
+      const bool same =
+          ProcessWatch::host() == host && log.count("cannot be told from others") == 1;
+      const std::string text = !hidden ? "refused" : same ? host : "changed";
+      [[maybe_unused]] const auto size = write(ends[1], text.data(), text.size());
+      _exit(0);
+    }
+    close(ends[1]);
+    char text[256];
+    const auto size = read(ends[0], text, sizeof text);
+    close(ends[0]);
+    waitpid(pid, nullptr, 0);
+    return std::string(text, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  };
+  const std::string one = host_of_another();
+  if (one == "refused") {
+    WARN("skipped: this process may not hide /proc/sys");
+    return;
+  }
+  CHECK(one.size() > 32);
+  CHECK(host_of_another() != one);
 }
 
 TEST_CASE("processes of one network namespace are on one host") {
@@ -361,4 +505,41 @@ TEST_CASE("another user's crowd takes no descriptor, and no room from others", "
   CHECK(own.counters().watchers == 0);
   const Child good(address);
   CHECK(eventually([&] { return own.counters().watchers == 1; }));
+}
+
+TEST_CASE("what another user hands over is closed by a thread that nobody waits for", "[R27]") {
+  if (geteuid() != 0) {
+    WARN("skipped: only root can become another user");
+    return;
+  }
+  ProcessWatch own;
+  const std::string address = own.open(kParticipant);
+  const Child stranger({}, [&] {
+    REQUIRE(setuid(kAnother) == 0);
+    static LingeringConnection lingering;
+    const auto connect = [&] { return std::move(connections_to(address, 1).front()); };
+    REQUIRE(lingering.hand_over_to_refuser(connect));
+  });
+  Child good;
+  std::atomic<int> ended = 0;
+  CHECK(skein::test::returns_at_once([&] { own.watch(good.address, kWatcher, [&] { ++ended; }); }));
+  good.end();
+  CHECK(eventually([&] { return ended == 1; }));
+}
+
+TEST_CASE("who is not mapped into a process's user namespace may not watch it", "[R27]") {
+  if (!may_make_a_user_namespace()) {
+    WARN("skipped: this process may not make a user namespace");
+    return;
+  }
+  // The kernel shows both users by one number there.
+  const Child inside({}, [] { REQUIRE(unshare(CLONE_NEWUSER) == 0); });
+  const auto connections = connections_to(inside.address, 1);
+  char octet;
+  ssize_t size = -1;
+  CHECK(eventually([&] {
+    size = recv(connections.front().get(), &octet, 1, MSG_DONTWAIT);
+    return size >= 0;
+  }));
+  CHECK(size == 0);
 }
