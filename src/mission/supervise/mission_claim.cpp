@@ -1,7 +1,7 @@
 #include "mission/supervise/mission_claim.hpp"
 
+#include <poll.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,11 +14,13 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/log.hpp"
 #include "core/system/abstract_socket.hpp"
+#include "core/system/bound_sockets.hpp"
+#include "core/system/users.hpp"
 #include "mission/process/wake_up.hpp"
 #include "skein/error.hpp"
 
@@ -44,36 +46,6 @@ std::string name_of(const profile::MissionProfile& mission, const std::string& h
          (number == 0 ? "" : "-" + std::to_string(number));
 }
 
-/// The process that listens there, once `client` is connected to it; nothing if none does.
-std::optional<ucred> holder_of(const std::string& name, const FileDescriptor& client) {
-  return connect_to(client, name) == Reached::Yes ? other_end(client) : std::nullopt;
-}
-
-constexpr std::string_view kUnconnected = "01";  // SS_UNCONNECTED of <linux/net.h>
-
-/// Sockets that are bound to a name in the abstract namespace, with the inode of each.
-std::map<std::string, std::string> bound_sockets() {
-  std::map<std::string, std::string> inodes;
-  std::ifstream sockets("/proc/net/unix");
-  for (std::string line; std::getline(sockets, line);) {
-    std::istringstream columns(line);
-    std::string word, state, inode, shown;
-    for (int i = 0; i < 5; ++i) columns >> word;
-    columns >> state >> inode >> shown;
-    // What is connected to it bears its name, too.
-    if (state == kUnconnected && shown.starts_with('@')) inodes.emplace(shown.substr(1), inode);
-  }
-  return inodes;
-}
-
-/// The socket that is bound to that name, as a process's descriptor shows it.
-std::optional<std::string> link_to(const std::string& name) {
-  const auto sockets = bound_sockets();
-  const auto found = sockets.find(name);
-  if (found == sockets.end()) return std::nullopt;
-  return "socket:[" + found->second + "]";
-}
-
 /// Not by the owner of the folder, which is root where a process has changed its user.
 bool is_ours(const std::filesystem::path& process) {
   std::ifstream status(process / "status");
@@ -81,61 +53,108 @@ bool is_ours(const std::filesystem::path& process) {
   uid_t user = 0;
   while (status >> word && word != "Uid:") {
   }
-  return status >> user && user == ::getuid();
+  return status >> user && is_own_user(user);
 }
 
-bool has_open(const std::filesystem::path& process, const std::string& link) {
-  std::error_code error;
-  for (const auto& each : std::filesystem::directory_iterator(process / "fd", error)) {
-    if (std::filesystem::read_symlink(each, error) == link) return true;
+/// Finds the processes of this user whose sockets have names. Strangers can take many such names,
+/// so that all processes are looked at once.
+class OwnHolders {
+ public:
+  /// A process that listens is known by the connection to it, any other by its descriptors.
+  std::optional<pid_t> of(const std::string& name) {
+    const Contact contact = reach(name, is_own_user);
+    if (contact.reached == Reached::Yes) return contact.process;
+    if (contact.reached == Reached::Stranger) return std::nullopt;
+    if (!holders_) look();
+    const auto found = holders_->find(name);
+    return found == holders_->end() ? std::nullopt : std::optional(found->second);
   }
-  return false;
-}
 
-/// The process of this user whose socket has that name. One that listens is known by its
-/// connection, any other by its descriptors.
-std::optional<pid_t> own_holder_of(const std::string& name) {
-  if (const auto holder = holder_of(name, local_socket()))
-    return holder->uid == ::getuid() ? std::optional(holder->pid) : std::nullopt;
-  const auto link = link_to(name);
-  if (!link) return std::nullopt;
-  for (const auto& each : std::filesystem::directory_iterator("/proc")) {
-    const std::string number = each.path().filename();
-    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (is_ours(each) && has_open(each, *link)) return std::stoi(number);
+ private:
+  void look() {
+    holders_.emplace();
+    std::map<std::string, std::string> names;
+    for (const auto& [name, link] : bound_sockets()) {
+      if (name.starts_with(own_prefix())) names.emplace(link, name);
+    }
+    if (names.empty()) return;
+    for (const auto& each : std::filesystem::directory_iterator("/proc")) {
+      const std::string number = each.path().filename();
+      if (number.find_first_not_of("0123456789") != std::string::npos || !is_ours(each)) continue;
+      for (const std::string& link : open_in(std::stoi(number))) {
+        if (const auto found = names.find(link); found != names.end())
+          holders_->emplace(found->second, std::stoi(number));
+      }
+    }
   }
-  return std::nullopt;
-}
 
-constexpr timeval kSocketPatience{10, 0};
+  std::optional<std::map<std::string, pid_t>> holders_;  // by the socket's name
+};
+
+using Clock = std::chrono::steady_clock;
+
+/// For all launchers together.
+constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::milliseconds kUntilRoom{50};
 constexpr std::size_t kLongestAnswer = 1 << 20;
 
-/// All that comes until the other side ends; what has come if all of it takes too long.
-std::string read_all(const FileDescriptor& socket) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kSocketPatience.tv_sec);
-  std::string text;
-  std::array<char, 4096> part;
-  while (text.size() < kLongestAnswer && std::chrono::steady_clock::now() < end) {
-    const auto size = ::read(socket.get(), part.data(), part.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) break;
-    text.append(part.data(), static_cast<std::size_t>(size));
-  }
-  return text;
+/// What one launcher is asked.
+struct Question {
+  std::string name;
+  pid_t launcher = 0;
+  FileDescriptor socket{};  // none while too many others wait for the launcher
+  std::string answer{};
+  bool is_over = false;
+};
+
+void put(Question& question, const std::string& request) {
+  Contact contact = reach(question.name, is_own_user);
+  if (contact.reached == Reached::Unknown && errno == EAGAIN) return;
+  question.is_over = contact.reached != Reached::Yes;
+  if (question.is_over) return;
+  question.socket = std::move(contact.socket);
+  const std::string line = request + "\n";
+  question.is_over = ::send(question.socket.get(), line.data(), line.size(), MSG_NOSIGNAL) !=
+                     static_cast<ssize_t>(line.size());
 }
 
-FileDescriptor patient_socket() {
-  FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (!socket) throw_system_error("a socket");
-  for (const int option : {SO_RCVTIMEO, SO_SNDTIMEO})
-    ::setsockopt(socket.get(), SOL_SOCKET, option, &kSocketPatience, sizeof kSocketPatience);
-  return socket;
+void hear(Question& question) {
+  std::array<char, 4096> part;
+  while (!question.is_over) {
+    const auto size = ::read(question.socket.get(), part.data(), part.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0 && errno == EAGAIN) return;
+    if (size > 0) question.answer.append(part.data(), static_cast<std::size_t>(size));
+    question.is_over = size <= 0 || question.answer.size() >= kLongestAnswer;
+  }
+}
+
+/// Asks all at once, and hears what they answer until the time is over.
+void ask(std::vector<Question>& questions, const std::string& request) {
+  const auto deadline = Clock::now() + kPatience;
+  while (true) {
+    std::vector<pollfd> answers;
+    bool have_room = true;
+    for (Question& each : questions) {
+      if (!each.is_over && !each.socket) put(each, request);
+      if (each.is_over) continue;
+      have_room = have_room && each.socket;
+      answers.push_back({each.socket.get(), POLLIN, 0});  // poll() ignores -1
+    }
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (answers.empty() || left <= left.zero()) return;
+    const auto wait = have_room ? left : std::min(left, kUntilRoom);
+    ::poll(answers.data(), answers.size(), static_cast<int>(wait.count()));
+    for (Question& each : questions) {
+      if (each.socket) hear(each);
+    }
+  }
 }
 
 /// `; missions of this user fly here on domain 42`, where some do.
 std::string flown_instead() {
   std::set<std::uint32_t> domains;
-  for (const auto& [name, inode] : bound_sockets()) {
+  for (const auto& [name, link] : bound_sockets()) {
     if (!name.starts_with(own_prefix())) continue;
     if (const auto domain = claimed_domain("@" + name)) domains.insert(*domain);
   }
@@ -145,51 +164,49 @@ std::string flown_instead() {
   return list.empty() ? "" : "; missions of this user fly here on domain " + list;
 }
 
-/// What the launcher at the other end answers. Throws as ask_launcher().
-std::string ask(const FileDescriptor& socket, pid_t launcher, const std::string& request) {
-  const std::string line = request + "\n";
-  std::string answer;
-  if (::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL) ==
-      static_cast<ssize_t>(line.size()))
-    answer = read_all(socket);
-  const bool accepted = answer.starts_with(kAccepted);
-  if (!accepted && !answer.starts_with(kRefused)) {
-    throw Unavailable("the launcher, process " + std::to_string(launcher) +
-                      ", does not answer; is it stopped?");
-  }
-  answer.erase(0, accepted ? kAccepted.size() : kRefused.size());
-  if (!accepted) throw Unavailable("the launcher refuses: " + answer);
-  return answer;
+/// Throws as ask_launcher().
+std::string checked_answer(const Question& asked) {
+  const std::string& answer = asked.answer;
+  if (answer.starts_with(kAccepted)) return answer.substr(kAccepted.size());
+  if (answer.starts_with(kRefused))
+    throw Unavailable("the launcher refuses: " + answer.substr(kRefused.size()));
+  throw Unavailable("the launcher, process " + std::to_string(asked.launcher) +
+                    ", does not answer; is it stopped?");
 }
 
 }  // namespace
 
 std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
                          const std::string& request) {
-  const FileDescriptor socket = patient_socket();
-  std::optional<ucred> holder;
-  for (int number = 0; number < kNames && !holder; ++number) {
+  std::vector<Question> questions;
+  OwnHolders holders;
+  for (int number = 0; number < kNames && questions.empty(); ++number) {
     const std::string name = name_of(mission, host, number);
-    if (own_holder_of(name)) holder = holder_of(name, socket);
+    if (const auto holder = holders.of(name)) questions.push_back({name, *holder});
   }
-  if (!holder) {
+  if (questions.empty()) {
     throw Unavailable("the mission '" + mission.name + "' is not flown here on domain " +
                       std::to_string(mission.domain) +
                       (host.empty() ? "" : " as host '" + host + "'") +
                       "; start it by skein launch, and ask as the same user" + flown_instead());
   }
-  return ask(socket, holder->pid, request);
+  ask(questions, request);
+  return checked_answer(questions.front());
 }
 
 std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
-  std::vector<LauncherAnswer> answers;
-  for (const auto& [name, inode] : bound_sockets()) {
+  std::vector<Question> questions;
+  OwnHolders holders;
+  for (const auto& [name, link] : bound_sockets()) {
     if (!name.starts_with(own_prefix())) continue;
-    const FileDescriptor socket = patient_socket();
-    const auto holder = holder_of(name, socket);
-    if (!holder || holder->uid != ::getuid()) continue;
+    if (const auto holder = holders.of(name)) questions.push_back({name, *holder});
+  }
+  ask(questions, request);
+  std::vector<LauncherAnswer> answers;
+  for (const Question& asked : questions) {
+    if (asked.is_over && !asked.socket) continue;  // it has ended meanwhile
     try {
-      answers.push_back({ask(socket, holder->pid, request), ""});
+      answers.push_back({checked_answer(asked), ""});
     } catch (const Unavailable& error) {
       answers.push_back({"", error.what()});
     }
@@ -198,10 +215,10 @@ std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
 }
 
 MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::string& host) {
-  FileDescriptor socket = local_socket();
+  ListeningSocket socket(local_socket());
   if (!socket) throw_system_error("a socket");
-  const auto refuse_if_flown = [&](int number) {
-    const auto holder = own_holder_of(name_of(mission, host, number));
+  const auto refuse_if_flown = [&](int number, OwnHolders& holders) {
+    const auto holder = holders.of(name_of(mission, host, number));
     if (!holder) return;
     throw InvalidArgument("the mission '" + mission.name + "' is flown here already, on domain " +
                           std::to_string(mission.domain) + ", by process " +
@@ -209,14 +226,16 @@ MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::st
                           " (skein launch); end that one first, or fly this one on another domain");
   };
   // Another user may have given back a name since a launcher of this user took a later one.
-  for (int number = 0; number < kNames; ++number) refuse_if_flown(number);
+  OwnHolders holders;
+  for (int number = 0; number < kNames; ++number) refuse_if_flown(number, holders);
   for (int number = 0; number < kNames; ++number) {
     if (listen_at(socket, name_of(mission, host, number), 8)) {
       socket_ = std::move(socket);
       return;
     }
     if (errno != EADDRINUSE) throw_system_error("a socket with a name");
-    refuse_if_flown(number);
+    OwnHolders now;
+    refuse_if_flown(number, now);
   }
   log(LogLevel::Warning, "launch",
       "other users' processes have taken all names of the socket for requests (`ss -xlp` shows "

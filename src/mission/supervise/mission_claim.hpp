@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/system/file_descriptor.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "mission/profile/mission_profile.hpp"
 
 namespace skein::launch {
@@ -26,8 +26,8 @@ struct LauncherAnswer {
   std::string failure;  ///< Why there is none: it does not answer, or refuses.
 };
 
-/// Asks all launchers of this user and network namespace; one that does not answer takes some
-/// seconds.
+/// Asks all launchers of this user and network namespace at once; those that do not answer take
+/// some seconds together. Other users' sockets with such names cost no time.
 std::vector<LauncherAnswer> ask_launchers(const std::string& request);
 
 /// Keeps other launchers of this user and network namespace from flying the same mission (name,
@@ -43,7 +43,7 @@ class MissionClaim {
   int requests() const noexcept { return socket_.get(); }
 
  private:
-  FileDescriptor socket_;
+  ListeningSocket socket_;
 };
 
 /// The domain of the mission that the holder of a socket flies, by the socket's name as

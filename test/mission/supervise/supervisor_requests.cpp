@@ -3,17 +3,22 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cerrno>
+#include <chrono>
 #include <future>
+#include <string>
+#include <vector>
 
-#include "core/system/file_descriptor.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "mission/supervise/mission_claim.hpp"
 #include "shell_mission.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 #include "skein/mission_status.idl.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/lingering_connection.hpp"
 
 using namespace skein;
 using namespace skein::launch;
@@ -53,6 +58,42 @@ class RunningMission {
   std::optional<MissionClaim> claim_;
   std::optional<Supervisor> supervisor_;
   std::future<LaunchResult> result_;
+};
+
+/// Another user's process, which did something, and lives as long as this object.
+class Stranger {
+ public:
+  template <class Act>
+  explicit Stranger(const Act& act) {
+    int done[2];
+    int end[2];
+    REQUIRE((::pipe2(done, O_CLOEXEC) == 0 && ::pipe2(end, O_CLOEXEC) == 0));
+    process_ = ::fork();
+    if (process_ == 0) {
+      constexpr uid_t kAnother = 12'345;
+      ::close(end[1]);
+      char byte = ::setuid(kAnother) == 0 && act() ? 1 : 0;
+      if (::write(done[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) >= 0) ::_exit(0);
+      ::_exit(1);
+    }
+    ::close(end[0]);
+    ::close(done[1]);
+    end_ = FileDescriptor(end[1]);
+    const FileDescriptor is_done(done[0]);
+    char byte = 0;
+    REQUIRE(::read(is_done.get(), &byte, 1) == 1);
+    REQUIRE(byte == 1);
+  }
+  ~Stranger() {
+    end_.reset();
+    ::waitpid(process_, nullptr, 0);
+  }
+  Stranger(const Stranger&) = delete;
+  Stranger& operator=(const Stranger&) = delete;
+
+ private:
+  pid_t process_ = -1;
+  FileDescriptor end_;
 };
 
 ChildPlan failing_child() {
@@ -140,6 +181,51 @@ TEST_CASE("Clients that say nothing, too much, or go away do not keep others fro
   CHECK(::read(talkative.get(), &answer, 1) <= 0);  // it was sent away
 }
 
+TEST_CASE(
+    "What another user hands over to a launcher is closed by a thread that nobody waits for") {
+  if (::getuid() != 0) {
+    WARN("not tested: only root can be another user");
+    return;
+  }
+  RunningMission mission({shell_child("a", kWait)});
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(mission.listener(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  Stranger stranger([&] {
+    static test::LingeringConnection lingering;
+    return lingering.hand_over_to_refuser([&] {
+      FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM, 0));
+      ::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size);
+      return client;
+    });
+  });
+  CHECK_THAT(mission.ask("status"), Contains("\"a\""));
+}
+
+TEST_CASE("Other users' full sockets with launchers' names keep nobody waiting") {
+  if (::getuid() != 0) {
+    WARN("not tested: only root can be another user");
+    return;
+  }
+  RunningMission mission({shell_child("a", kWait)});
+  Stranger stranger([] {
+    static std::vector<FileDescriptor> sockets;
+    for (int i = 0; i < 5; ++i) {
+      const std::string name = "skein-launch-0-7-" + std::to_string(i);
+      sockets.push_back(local_socket());
+      if (!listen_at(sockets.back(), name, 0)) return false;
+      do {
+        sockets.push_back(local_socket());
+      } while (connect_to(sockets.back(), name) == Reached::Yes);
+    }
+    return true;
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto answers = ask_launchers("status");
+  CHECK(std::chrono::steady_clock::now() - begin < 10s);
+  CHECK(std::ranges::count(answers, "", &LauncherAnswer::failure) > 0);
+}
+
 TEST_CASE("A launcher that has no room for further clients is known all the same") {
   profile::MissionProfile mission;
   mission.name = "asked too much of process " + std::to_string(::getpid());
@@ -172,34 +258,18 @@ TEST_CASE("Another user's process that takes a launcher's name keeps no mission 
   }();
   const bool listens = GENERATE(false, true);
   CAPTURE(listens);
-  int done[2];
-  int end[2];
-  REQUIRE((::pipe2(done, O_CLOEXEC) == 0 && ::pipe2(end, O_CLOEXEC) == 0));
-  const pid_t stranger = ::fork();
-  if (stranger == 0) {
-    constexpr uid_t kNobody = 65534;
-    ::close(end[1]);
-    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  const Stranger stranger([&] {
+    static const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     const auto* address = reinterpret_cast<const sockaddr*>(name.data());
-    const bool taken = ::setuid(kNobody) == 0 &&
-                       ::bind(socket, address, static_cast<socklen_t>(name.size())) == 0 &&
-                       (!listens || ::listen(socket, 0) == 0);
-    char byte = taken ? 1 : 0;
-    if (::write(done[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) >= 0) ::_exit(0);
-    ::_exit(1);
-  }
-  ::close(end[0]);
-  char taken = 0;
-  REQUIRE(::read(done[0], &taken, 1) == 1);
-  REQUIRE(taken == 1);
+    return ::bind(socket.get(), address, static_cast<socklen_t>(name.size())) == 0 &&
+           (!listens || ::listen(socket.get(), 0) == 0);
+  });
   {
     const MissionClaim claim(mission, "");
     CHECK(claim.requests() >= 0);
     CHECK_THROWS_WITH(MissionClaim(mission, ""),
                       Contains("by process " + std::to_string(::getpid())));
   }
-  for (const int each : {done[0], done[1], end[1]}) ::close(each);
-  ::waitpid(stranger, nullptr, 0);
 }
 
 TEST_CASE("Without a launcher there is nobody to ask, and what to do is said") {
