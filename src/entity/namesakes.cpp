@@ -1,17 +1,17 @@
 #include "namesakes.hpp"
 
-#include <cerrno>
-#include <csignal>
-
+#include "brokerless_discovery/process_watch.hpp"
+#include "core/system/abstract_socket.hpp"
 #include "core/system/interface_name.hpp"
 #include "skein/discovery.idl.hpp"
 
 namespace skein::entity {
 namespace {
 
-/// What a process has left behind is known for a while after its end.
-bool lives(std::uint32_t process) {
-  return ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+/// A process that has ended is known for a while. Its number may be another's by then.
+bool has_left(const discovery::ServiceDescription& service) {
+  return brokerless_discovery::ProcessWatch::is_address(service.process) &&
+         reach(service.process, [](uid_t) { return true; }).reached == Reached::Nobody;
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ std::string Namesakes::look_at(const brokerless_discovery::Change& change) {
                            service.owner.empty() && service.system == system_ &&
                            service.entity == entity_ && !is_built_in_interface(service.service);
   const bool here = service.host == host_;
-  if (!is_namesake || (here && (service.pid == process_ || !lives(service.pid)))) return {};
+  if (!is_namesake || (here && (service.pid == process_ || has_left(service)))) return {};
   if (!told_.insert({service.host, service.pid}).second) return {};
   return "process " + std::to_string(service.pid) + (here ? "" : " on another host") +
          " runs an entity of the same name: callers are served by either of them; end one, or give "

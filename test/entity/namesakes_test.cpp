@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "skein/discovery.idl.hpp"
+#include "skein/guid.hpp"
 
 using namespace skein;
 using brokerless_discovery::Change;
@@ -46,7 +47,9 @@ TEST_CASE("An entity that has another name, is managed, goes or is dead is no na
   SECTION("another name") { service.entity = "chart"; }
   SECTION("a managed service") { service.owner = "boat/tide"; }
   SECTION("a service of Skein's own") { service.service = "skein/launch/ILiveParameters"; }
-  SECTION("dead") { service.pid = 0x7fff'fff0; }
+  SECTION("gone, though another process has its number") {
+    service.process = "skein/" + Guid::random().hex();
+  }
   CHECK(namesakes.look_at(added(service)).empty());
   CHECK(namesakes
             .look_at({Change::Kind::Removed,
