@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/system/held_signal.hpp"
+#include "core/system/users.hpp"
 
 namespace skein::dds::fastdds {
 namespace {
@@ -25,7 +26,7 @@ SegmentsTurn::SegmentsTurn(bool needed) {
   file_ = FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
   struct stat status {};
   // Another user may hold the lock of his own file for ever.
-  if (!file_ || ::fstat(file_.get(), &status) != 0 || status.st_uid != ::getuid()) return;
+  if (!file_ || ::fstat(file_.get(), &status) != 0 || !is_own_user(status.st_uid)) return;
   while (::flock(file_.get(), LOCK_EX) != 0 && errno == EINTR) {
   }
 }
