@@ -36,14 +36,14 @@ struct Decoder {
 void demand(const Reader& recording, const std::vector<std::string>& topics,
             const std::vector<std::string>& readable) {
   if (readable.empty()) {
-    throw InvalidArgument("the recording does not hold the types of its values; only what `skein "
-                          "record` has written does");
+    throw InvalidArgument(
+        "the recording does not hold the types of its values; only what `skein "
+        "record` has written does");
   }
   for (const std::string& wanted : topics) {
     if (std::ranges::count(readable, wanted) > 0) continue;
-    const bool there = std::ranges::any_of(recording.channels(), [&](const auto& each) {
-      return each.second.topic == wanted;
-    });
+    const bool there = std::ranges::any_of(
+        recording.channels(), [&](const auto& each) { return each.second.topic == wanted; });
     throw InvalidArgument(there ? "the recording does not hold the type of '" + wanted + "'"
                                 : "the recording has no topic '" + wanted + "'" +
                                       suggestion(wanted, readable));

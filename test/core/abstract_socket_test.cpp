@@ -42,9 +42,8 @@ TEST_CASE("who turns a client away does not wait for what it handed over") {
   const Contact client = reach(name, kEverybody);
   REQUIRE(lingering.hand_over(client.socket.get()));
   int seen = 0;
-  CHECK(returns_at_once([&] {
-    let_in(listening.get(), kAcceptedInARow, [&](const FileDescriptor&) { ++seen; });
-  }));
+  CHECK(returns_at_once(
+      [&] { let_in(listening.get(), kAcceptedInARow, [&](const FileDescriptor&) { ++seen; }); }));
   CHECK(seen == 1);
   CHECK(hung_up(client.socket));
   lingering.release();

@@ -57,7 +57,8 @@ TEST_CASE("a recording's time goes on as it began, and a set wall clock is told 
   RecordingTime time(ClockTimes{5 * kNanoseconds, 100 * kNanoseconds});
   CHECK(time.at(103 * kNanoseconds) == 8 * kNanoseconds);
   CHECK_FALSE(time.step({8 * kNanoseconds, 103 * kNanoseconds}));
-  CHECK_FALSE(time.step({9 * kNanoseconds + 1000, 104 * kNanoseconds}));  // looked at one after the other
+  CHECK_FALSE(
+      time.step({9 * kNanoseconds + 1000, 104 * kNanoseconds}));  // looked at one after the other
   CHECK(time.step({1000 * kNanoseconds, 105 * kNanoseconds}) == 990 * kNanoseconds);
   CHECK_FALSE(time.step({1001 * kNanoseconds, 106 * kNanoseconds}));
   CHECK(time.step({10 * kNanoseconds, 107 * kNanoseconds}) == -992 * kNanoseconds);
@@ -74,7 +75,8 @@ TEST_CASE("what is recorded while the wall clock is set stays in its order and p
   recording::Recorder recorder(*watcher, folder / "a.mcap", {});
   REQUIRE(eventually([&] { return recorder.look(1s), publisher.subscribers() == 1; }));
   const auto record = [&](double x) {
-    const auto before = written(recorder, "corner"), calls = written(recorder, "skein/call_records");
+    const auto before = written(recorder, "corner"),
+               calls = written(recorder, "skein/call_records");
     publisher.publish({x, 1});
     proxy.greet("you");
     REQUIRE(eventually([&] {
@@ -110,12 +112,13 @@ TEST_CASE("a replay leaves out the years by which a recorder's clock was set, an
   {
     recording::Writer writer(folder / "a.mcap");
     recording::RecordedTypes types(writer);
-    const auto channel = types.add_channel(
-        "corner", "survey::Corner", describe(idl::type_support<survey::Corner>()),
-        {{"type", "survey::Corner"}, {"systems", "uav-1"}});
+    const auto channel =
+        types.add_channel("corner", "survey::Corner", describe(idl::type_support<survey::Corner>()),
+                          {{"type", "survey::Corner"}, {"systems", "uav-1"}});
     const Bytes value = idl::encode_message(survey::Corner{1, 2});
     constexpr std::uint64_t k2026 = 1'780'000'000 * kNanoseconds;
-    for (const std::uint64_t time : {std::uint64_t{5 * kNanoseconds}, k2026, k2026 + 3600 * kNanoseconds})
+    for (const std::uint64_t time :
+         {std::uint64_t{5 * kNanoseconds}, k2026, k2026 + 3600 * kNanoseconds})
       writer.write({channel, 1, time, time, value});
   }
   const recording::Reader reader(folder / "a.mcap");

@@ -62,7 +62,8 @@ class LingeringConnection {
     header->cmsg_type = SCM_RIGHTS;
     header->cmsg_len = CMSG_LEN(octets);
     std::memcpy(CMSG_DATA(header), before.data(), octets);
-    const bool sent = ::sendmsg(socket, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+    const bool sent =
+        ::sendmsg(socket, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
     if (sent) own_.reset();  // it does not wait: the one on its way is another
     return sent;
   }

@@ -32,7 +32,9 @@ std::string quoted_cell(std::string text) {
 }
 
 std::string cell_of(const CellJson& value) {
-  return quoted_cell(value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump());
+  return quoted_cell(value.is_string() ? value.get<std::string>()
+                     : value.is_null() ? ""
+                                       : value.dump());
 }
 
 /// Visits what is one column each; `is_whole` says so of an array.

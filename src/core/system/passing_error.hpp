@@ -7,8 +7,8 @@
 
 namespace skein {
 
-/// Whether a system call that failed with `error` may succeed later, though nobody changes a name or
-/// a file: the machine lacks something for the moment.
+/// Whether a system call that failed with `error` may succeed later, though nobody changes a name
+/// or a file: the machine lacks something for the moment.
 inline bool is_passing(int error) noexcept {
   switch (error) {
     case EAGAIN:

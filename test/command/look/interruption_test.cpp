@@ -1,10 +1,11 @@
 // Ctrl-C ends every command within a second, whatever it waits for.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <fcntl.h>
 #include <memory>
 #include <thread>
-#include <unistd.h>
 
 #include "skein/detail/codec.hpp"
 #include "skein/entity.hpp"
@@ -108,7 +109,8 @@ void interrupt_each(const std::vector<Words>& commands, std::chrono::millisecond
 
 }  // namespace
 
-TEST_CASE("Ctrl-C ends each command that looks at a domain within a second, in each of its phases") {
+TEST_CASE(
+    "Ctrl-C ends each command that looks at a domain within a second, in each of its phases") {
   const std::string vendor = GENERATE(as<std::string>(), "cyclonedds");
   if (!installed(vendor)) return;
   ChildProcess station("station_process", {.arguments = {vendor, kDomain}});
@@ -127,7 +129,8 @@ TEST_CASE("Ctrl-C ends each command that looks at a domain within a second, in e
 TEST_CASE("Ctrl-C ends each command of a mission within a second") {
   const Errand errand;
   const std::string profile =
-      errand.profile("", "<peer name='office' component='office.xml' vendor='cyclonedds'/>"
-                         "<peer name='client' component='client.xml' vendor='cyclonedds'/>");
+      errand.profile("",
+                     "<peer name='office' component='office.xml' vendor='cyclonedds'/>"
+                     "<peer name='client' component='client.xml' vendor='cyclonedds'/>");
   interrupt_each(mission_commands(profile), GENERATE(50ms, 400ms));
 }

@@ -22,10 +22,11 @@ std::string table_of(const std::vector<std::string>& values) {
 }  // namespace
 
 TEST_CASE("a table has a column for each member of any value") {
-  CHECK(table_of({R"({"a": {"b": 1}, "c": [true, 2.5]})", R"({"a": {"b": 2}, "d": null, "e": 3})"}) ==
-        "time,a.b,c[0],c[1],d,e\r\n"
-        "0.000000000,1,true,2.5,,\r\n"
-        "0.000000001,2,,,,3\r\n");
+  CHECK(
+      table_of({R"({"a": {"b": 1}, "c": [true, 2.5]})", R"({"a": {"b": 2}, "d": null, "e": 3})"}) ==
+      "time,a.b,c[0],c[1],d,e\r\n"
+      "0.000000000,1,true,2.5,,\r\n"
+      "0.000000001,2,,,,3\r\n");
 }
 
 TEST_CASE("a table quotes texts that would break it") {
