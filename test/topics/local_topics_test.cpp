@@ -424,4 +424,8 @@ TEST_CASE_METHOD(Sea, "times that no clock counts are waited for, or refused as 
   refused([](TopicQos& qos) { qos.deadline = std::chrono::milliseconds::max(); });
   refused([](TopicQos& qos) { qos.lifespan = std::chrono::milliseconds::max(); });
   refused([](TopicQos& qos) { qos.liveliness_lease = std::chrono::milliseconds::max(); });
+  dds::ParticipantOptions options;
+  options.lease = std::chrono::milliseconds::max();
+  CHECK_THROWS_WITH(network.vendor()->create_participant(options),
+                    Contains("a participant's lease") && Contains("is longer than 50 years"));
 }
