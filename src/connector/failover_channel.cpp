@@ -102,7 +102,7 @@ void FailoverChannel::call_idempotent(const OperationInfo& operation, const void
   std::optional<ProviderConnection> connection;
   for (;;) {
     try {
-      connection = acquire(retries.wanted());
+      connection = acquire(wanted_after(retries.failures(), time.deadline));
     } catch (const NoProvider&) {
       if (!error) throw;
       retries.not_made();

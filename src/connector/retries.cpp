@@ -27,8 +27,8 @@ bool Retries::admit(std::exception_ptr& error, const Asked& failed, Instant now,
   if (!code) return false;
   const bool refused = is_refusal(*code);
   if (!refused && *code != ErrorCode::Disconnected) return false;
-  failed_.push_back({failed, refused});
-  if (failed_.size() >= kMaxFailures || now >= deadline_) return false;
+  failures_.push_back({failed, refused});
+  if (failures_.size() >= kMaxFailures || now >= deadline_) return false;
   if (others_run) return true;
   if (!refused) return admit_loss(error);
   if (repeats_ == 0 && *code != ErrorCode::Overloaded) {
@@ -54,12 +54,12 @@ bool Retries::admit_loss(std::exception_ptr& error) {
   return true;
 }
 
-ProviderQuery Retries::wanted() const {
-  ProviderQuery wanted{deadline_};
-  for (const Failed& failed : failed_) {
-    const auto channel = failed.asked.channel.lock();
+ProviderQuery wanted_after(const Retries::Failures& failures, Instant deadline) {
+  ProviderQuery wanted{deadline};
+  for (const auto& [asked, refused] : failures) {
+    const auto channel = asked.channel.lock();
     const bool stands = channel && channel->connected();
-    (failed.refused || stands ? wanted.excluded : wanted.last).push_back(failed.asked.provider);
+    (refused || stands ? wanted.excluded : wanted.last).push_back(asked.provider);
     if (stands) wanted.wait = false;
   }
   return wanted;

@@ -18,8 +18,8 @@ struct Asked {
   std::weak_ptr<Channel> channel;
 };
 
-/// How often, and by whom, one call to an idempotent operation may still be tried. admit() and
-/// wanted() are called by one thread at a time.
+/// How often, and by whom, one call to an idempotent operation may still be tried. admit() is
+/// called by one thread at a time.
 class Retries {
  public:
   Retries(Instant deadline, std::shared_ptr<RetryBudget> budget)
@@ -44,27 +44,29 @@ class Retries {
     if (refused_ > 0) budget_->give_back(refused_.exchange(0));
   }
 
-  /// Who is to be asked next; before the first failure, anybody who comes. A provider that refused,
-  /// or whose connection stands, so that it answered with the failure itself, is not asked again,
-  /// and as long as one stands nobody is waited for. One that was lost may be asked where nobody
-  /// else is available.
-  ProviderQuery wanted() const;
-
- private:
-  struct Failed {
+  struct Failure {
     Asked asked;
     bool refused;
   };
+  using Failures = std::vector<Failure>;
+  const Failures& failures() const noexcept { return failures_; }
 
+ private:
   bool admit_loss(std::exception_ptr& error);
 
   const Instant deadline_;
   std::shared_ptr<RetryBudget> budget_;
-  std::vector<Failed> failed_;
+  Failures failures_;
   bool lost_ = false;  // and repeated
   int repeats_ = 0;
   std::atomic<int> refused_{0};  // and paid for
 };
+
+/// Who is to be asked next; before the first failure, anybody who comes. A provider that refused,
+/// or whose connection stands, so that it answered with the failure itself, is not asked again, and
+/// as long as one stands nobody is waited for. One that was lost may be asked where nobody else is
+/// available. Not under a lock that a call's end takes: it may be the last to hold a connection.
+ProviderQuery wanted_after(const Retries::Failures& failures, Instant deadline);
 
 /// The same error with more words; what is no Error stays as it is.
 std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words);

@@ -13,7 +13,7 @@ void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                          const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
-  while (const auto connection = channel->ready(moving->retries_.wanted())) {
+  while (const auto connection = channel->ready(moving->wanted())) {
     if (moving->try_at(*channel, *connection)) return;
   }
   moving->seek(nullptr);
@@ -28,8 +28,12 @@ RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
 RetryingCall::~RetryingCall() { clock_.cancel(hedge_timer_); }
 
 ProviderQuery RetryingCall::wanted() {
-  std::lock_guard lock(mutex_);
-  return retries_.wanted();
+  Retries::Failures failures;
+  {
+    std::lock_guard lock(mutex_);
+    failures = retries_.failures();
+  }
+  return wanted_after(failures, call_->deadline());
 }
 
 // A call that is over is not sent.
@@ -92,14 +96,13 @@ void RetryingCall::hedge_later(Duration delay) {
 void RetryingCall::hedge() {
   const auto channel = channel_.lock();
   if (!channel || call_->finished()) return;
-  ProviderQuery wanted;
+  ProviderQuery wanted = this->wanted();
+  wanted.wait = false;
   {
     std::lock_guard lock(mutex_);
     if (!retries_.hedge()) return;
-    wanted = retries_.wanted();
     for (const auto& attempt : attempts_) wanted.excluded.push_back(attempt->asked.provider);
   }
-  wanted.wait = false;
   try {
     if (try_at(*channel, channel->acquire_now(wanted))) return;
   } catch (const Error&) {
