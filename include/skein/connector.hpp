@@ -170,9 +170,9 @@ class Connector {
 
   /// The connection without its type. Each call goes to the current provider; if that is lost or
   /// suspect, the next call connects to another one. A call of an idempotent operation is retried
-  /// at the next available provider, within its deadline, if its provider is lost (Disconnected) or
-  /// refuses it (Unavailable, Overloaded). After 4 attempts, or if no other provider is available,
-  /// it ends with the provider's error.
+  /// within its deadline: once, at the next provider that is or becomes available, if its provider
+  /// is lost (Disconnected); at 3 others that are available if providers refuse it (Unavailable,
+  /// Overloaded). Then it ends with the last provider's error.
   std::shared_ptr<Channel> open(const InterfaceInfo& interface, const ConnectOptions& options);
 
   /// What is connected now.

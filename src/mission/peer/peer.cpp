@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
+#include <future>
 #include <stop_token>
 #include <thread>
 
@@ -35,6 +36,7 @@
 #include "mission/supervise/launch_plan.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
+#include "skein/head.hpp"
 #include "skein/process.hpp"
 #include "used_topics.hpp"
 
@@ -162,6 +164,13 @@ class EndWatch {
   std::thread thread_;
 };
 
+/// Waits in a watch's thread; false where its object goes before `limit`.
+bool lasts(int over, Duration limit) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit);
+  pollfd watched{over, POLLIN, 0};
+  return ::poll(&watched, 1, static_cast<int>(left.count())) == 0;
+}
+
 /// Ends the process when it is told to while a component's code runs that cannot be told, unless
 /// that returns soon: before the launcher sends SIGTERM after SIGINT.
 class MakingWatch {
@@ -170,9 +179,7 @@ class MakingWatch {
   explicit MakingWatch(const Profile& profile)
       : watch_([name = profile.component->name,
                 limit = time_to_terminate(profile.rules.stop_timeout) / 2](int over) {
-          const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit);
-          pollfd watched{over, POLLIN, 0};
-          if (::poll(&watched, 1, static_cast<int>(left.count())) != 0) return;
+          if (!lasts(over, limit)) return;
           log(LogLevel::Warning, "launch",
               "told to end while '" + name + "' is made or tests itself, which does not return");
           const sigset_t signals = ending_signals();
@@ -294,11 +301,37 @@ bool await_dependencies(Entity& entity, const PeerProfile& peer,
   return !told_to_end();
 }
 
-/// Until the process is told to end, and its calls have ended. The rest of the time until it is
-/// killed is for the entity's own end.
+/// What the Head writes at its end, and has then for sure: a process that does not end in time is
+/// killed.
+void save_history(Entity& entity) {
+  const auto& file = entity.options().head.history;
+  if (file.empty()) return;
+  try {
+    entity.head().history().save(file);
+  } catch (const Error& error) {
+    log(LogLevel::Error, entity.id(), error.what());
+  }
+}
+
+/// Of its stop_timeout, for what it has accepted or begun. The rest is for the entity's own end.
+Duration time_to_finish(const profile::ProcessRules& rules) { return rules.stop_timeout / 3; }
+
+/// Runs `tell` when the process is told to end, and ends the entity's own calls soon after: one may
+/// take longer than the process has.
+EndWatch watch_end(Entity& entity, const profile::ProcessRules& rules, std::function<void()> tell) {
+  return EndWatch([&entity, limit = time_to_finish(rules), tell = std::move(tell)](int over) {
+    tell();
+    save_history(entity);
+    if (lasts(over, limit)) entity.connector().close();
+  });
+}
+
+/// Until the process is told to end, and its calls have ended.
 void serve(Entity& entity, const profile::ProcessRules& rules) {
-  wait_for_signal();
-  entity.drain(rules.stop_timeout / 3);
+  std::promise<void> told;
+  const EndWatch watch = watch_end(entity, rules, [&] { told.set_value(); });
+  told.get_future().wait();
+  entity.drain(time_to_finish(rules));
 }
 
 /// What a peer does that provides nothing.
@@ -307,7 +340,7 @@ int run_own_code(Entity& entity, const PeerProfile& peer, const ComponentRegistr
   const auto* activity = registry.find_activity(peer.component->name);
   if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
   std::stop_source told_to_end;
-  const EndWatch watch([&](int) { told_to_end.request_stop(); });
+  const EndWatch watch = watch_end(entity, peer.rules, [&] { told_to_end.request_stop(); });
   return (*activity)(entity, values, told_to_end.get_token());
 }
 

@@ -1,6 +1,6 @@
 // A worker that hangs when it is told to, one that does not, a desk in front of them, a strategy of
-// selection, and two missions: one that tells the first worker to hang and waits until it works
-// again, and one that asks the desk once.
+// selection, and missions: one that tells the first worker to hang and waits until it works again,
+// one that asks the desk once, and two that end while others are in calls.
 
 #include <unistd.h>
 
@@ -9,12 +9,16 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "skein/call_context.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
 #include "skein/head.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "test/tools/eventually.hpp"
 #include "worker.idl.hpp"
@@ -33,6 +37,7 @@ class Worker final : public crew::Worker {
   std::string work(const std::string& task) override {
     if (name_ == "moody" && task.starts_with("stop")) raise(SIGSTOP);
     while (name_ == "moody" && task == "hang") pause();
+    while (task == "wait" && !CallContext::current()->cancelled()) std::this_thread::yield();
     return name_ + " did " + task;
   }
 
@@ -96,6 +101,31 @@ int ask_once(Entity& entity, const ParameterValues&) {
   return 0;
 }
 
+constexpr char kWaits[] = "waits";
+
+/// Ends while `wait_at_desk` is in a call that has much more time.
+int leave_early(Entity& entity, const ParameterValues&) {
+  const auto waits = entity.subscription<introspection::Attempt>(kWaits);
+  return test::eventually([&] { return waits.publishers() > 0; }) ? 0 : 1;
+}
+
+int wait_at_desk(Entity& entity, const ParameterValues&, const std::stop_token&) {
+  auto desk = entity.connect<crew::Desk>().within(60s);
+  const auto waits = entity.publisher<introspection::Attempt>(kWaits);
+  try {
+    desk.ask("wait");
+  } catch (const Error& error) {
+    say(std::string("the visitor goes: ") + error.what());
+  }
+  return 0;
+}
+
+/// Ends with a worker that hangs.
+int leave_hanging(Entity& entity, const ParameterValues&) {
+  say(entity.connect<crew::Desk>().within(1s).ask("hang"));
+  return 0;
+}
+
 ComponentRegistry::CspFactory worker(const std::string& name) {
   return [name](const ParameterValues& values) {
     return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>(name, values));
@@ -115,5 +145,8 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
   });
   registry.add_mission("client", upset_the_moody_one);
   registry.add_mission("caller", ask_once);
+  registry.add_mission("leaver", leave_early);
+  registry.add_activity("visitor", wait_at_desk);
+  registry.add_mission("hanger", leave_hanging);
   registry.add_strategy(std::make_shared<Humblest>());
 }

@@ -13,9 +13,11 @@ namespace skein::test {
 /// runs it. Its folder goes with this object.
 class CrewProfile {
  public:
-  /// `office` and `moody` are attributes of that peer and of that CSP, `mission` a component.
+  /// `office` and `moody` are attributes of that peer and of that CSP, `mission` a component,
+  /// `visitor` a further peer, if any.
   CrewProfile(const std::string& vendor, const std::string& office, const std::string& moody,
-              const std::string& mission) {
+              const std::string& mission, const std::string& visitor = "") {
+    folder_.write("visitor.xml", "<component name='visitor'/>");
     folder_.write("moody.xml", csp_text("moody", "50", "0.9"));
     folder_.write("sound.xml", csp_text("sound", "10", "0.5"));
     folder_.write(
@@ -37,10 +39,12 @@ class CrewProfile {
             "<csp component='moody.xml' " +
             moody +
             "><parameter name='Seed' value='1'/></csp></peer><peer name='client' component='" +
-            mission + ".xml' role='mission'/></mission>");
+            mission + ".xml' role='mission'/>" + visitor + "</mission>");
   }
 
-  std::filesystem::path file() const { return folder_.path() / "mission.xml"; }
+  std::filesystem::path file(const std::string& name = "mission.xml") const {
+    return folder_.path() / name;
+  }
 
  private:
   static std::string csp_text(const std::string& name, const std::string& latency_ms,

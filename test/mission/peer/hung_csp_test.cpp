@@ -57,3 +57,27 @@ TEST_CASE("a CSP that nobody would start again is left alone") {
   CHECK_THAT(run.output(), Contains("sound did hang"));
   CHECK_THAT(run.output(), !Contains("was killed"));
 }
+
+TEST_CASE("a peer that is in a call when the mission ends ends in time") {
+  const std::string vendor = GENERATE(from_range(skein::dds::networked_vendors()));
+  if (!installed(vendor)) return;
+  const CrewProfile profile(vendor, "", "process='in'", "leaver",
+                            "<peer name='visitor' component='visitor.xml'/>");
+  const MissionRun run(profile.file());
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  CHECK_THAT(run.output(), Contains("the visitor goes: "));
+  CHECK_THAT(run.output(), !Contains("kill"));
+}
+
+TEST_CASE("what a Head has learned is written though a CSP hangs at the mission's end") {
+  const std::string vendor = GENERATE(from_range(skein::dds::networked_vendors()));
+  if (!installed(vendor)) return;
+  const CrewProfile profile(vendor, "history='learned.json' stop_timeout='1 s'", "process='in'",
+                            "hanger");
+  const MissionRun run(profile.file());
+  INFO(run.output());
+  CHECK(run.exit_code() == 0);
+  CHECK_THAT(run.output(), Contains("office: did not end within 1.00 s: killed"));
+  CHECK(std::filesystem::exists(run.file("learned.json")));
+}
