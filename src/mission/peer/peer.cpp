@@ -37,7 +37,6 @@
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
-#include "skein/process.hpp"
 #include "used_topics.hpp"
 
 namespace skein::launch {
