@@ -142,21 +142,23 @@ TEST_CASE("an onlooker of a mission sees the services of both hosts, by the miss
 TEST_CASE("what keeps two hosts from meeting is said at once, and nothing is started") {
   const TwoHosts hosts;
   const Errand errand;
-  const auto says = [&](const std::string& command, const std::string& attributes,
-                        const std::string& other_host, const std::string& part) {
+  const std::string command = GENERATE("check", "launch");
+  CAPTURE(command);
+  // What may yet come, as a device does that is plugged in, is tried again.
+  const int passing = command == "check" ? 78 : 71;
+  const auto says = [&](int code, const std::string& attributes, const std::string& other_host,
+                        const std::string& part) {
     const std::string profile =
         errand.profile(attributes, peers_on("10.78.0.1", other_host, "cyclonedds", "cyclonedds"));
     CommandRun run({command, profile}, {.network = hosts.alpha.descriptor()});
-    CHECK(run.wait() == 78);
+    CHECK(run.wait() == code);
     CHECK_THAT(run.output(), Contains(part));
   };
-  const std::string command = GENERATE("check", "launch");
-  CAPTURE(command);
-  says(command, "", "10.78.0.2",
-       "'office' speaks on 127.0.0.1 alone, and the mission has peers on");
-  says(command, "interface='skein0'", "beta.test", "host 'beta.test' has no IPv4 address");
-  says(command, "interface='skein9'", "10.78.0.2", "no such interface");
-  says(command, "interface='skein9'", "10.78.0.2", "it has lo (127.0.0.1), skein0 (10.78.0.1)");
+  says(78, "", "10.78.0.2", "'office' speaks on 127.0.0.1 alone, and the mission has peers on");
+  says(passing, "interface='skein0'", "beta.test", "host 'beta.test' has no IPv4 address");
+  says(passing, "interface='skein9'", "10.78.0.2", "no such interface");
+  says(passing, "interface='skein9'", "10.78.0.2", "it has lo (127.0.0.1), skein0 (10.78.0.1)");
+  says(78, "interface='sklein0'", "10.78.0.2", "did you mean 'skein0'?");
 }
 
 TEST_CASE("a launcher that has nothing to start says where the mission's peers are, and fails") {
