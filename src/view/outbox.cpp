@@ -20,14 +20,23 @@ bool Outbox::push(Frame message) {
   return true;
 }
 
-void Outbox::push_sample(std::uint32_t subscription, Frame sample) {
+void Outbox::push_sample(std::uint32_t subscription, Frame sample, Time now) {
   while (!samples_.empty() && sample_bytes_ + weight(sample) > capacity_) {
-    sample_bytes_ -= weight(samples_.front().frame);
-    samples_.pop_front();
+    take_sample();
     ++dropped_;
   }
   sample_bytes_ += weight(sample);
-  samples_.push_back({subscription, std::move(sample)});
+  ++waiting_[subscription];
+  samples_.push_back({subscription, std::move(sample), now});
+}
+
+Frame Outbox::take_sample() {
+  Sample sample = std::move(samples_.front());
+  samples_.pop_front();
+  sample_bytes_ -= weight(sample.frame);
+  const auto waiting = waiting_.find(sample.subscription);
+  if (--waiting->second == 0) waiting_.erase(waiting);
+  return std::move(sample.frame);
 }
 
 void Outbox::forget(std::uint32_t subscription) {
@@ -36,20 +45,28 @@ void Outbox::forget(std::uint32_t subscription) {
     sample_bytes_ -= weight(sample.frame);
     return true;
   });
+  waiting_.erase(subscription);
 }
 
-std::optional<Frame> Outbox::pop() {
-  std::optional<Frame> next;
-  if (!messages_.empty()) {
-    next = std::move(messages_.front());
-    messages_.pop_front();
-    message_bytes_ -= weight(*next);
-  } else if (!samples_.empty()) {
-    next = std::move(samples_.front().frame);
-    samples_.pop_front();
-    sample_bytes_ -= weight(*next);
+/// The newest of a subscription stays, whatever its age, and is the next that goes.
+void Outbox::drop_old(Time now) {
+  while (!samples_.empty() && now - samples_.front().since > kLongestWait &&
+         waiting_[samples_.front().subscription] > 1) {
+    take_sample();
+    ++dropped_;
   }
-  return next;
+}
+
+std::optional<Frame> Outbox::pop(Time now) {
+  if (!messages_.empty()) {
+    Frame next = std::move(messages_.front());
+    messages_.pop_front();
+    message_bytes_ -= weight(next);
+    return next;
+  }
+  drop_old(now);
+  if (samples_.empty()) return std::nullopt;
+  return take_sample();
 }
 
 }  // namespace skein::view

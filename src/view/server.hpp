@@ -25,14 +25,15 @@ struct Options {
   std::string token;                   ///< See Gate. Whoever looks must know it.
   std::vector<std::string> origins{};  ///< See Gate.
   std::size_t max_clients = 16;        ///< More are refused.
-  /// Of what waits for one client, in bytes. When it is full, the oldest samples are dropped; the
-  /// client is told.
+  /// Of what waits for one client, in bytes. When it is full, or a sample has waited for a second
+  /// and there is a newer one, the oldest samples are dropped; the client is told.
   std::size_t queue = 32 << 20;
   /// Of a client's message, in bytes; who sends a longer one is dropped.
   std::size_t max_message = 1 << 20;
-  std::chrono::milliseconds handshake{5000};  ///< Who has not come in after that is dropped.
-  std::chrono::milliseconds patience{
-      30'000};  ///< So is a client of which nothing is heard for so long.
+  /// Who has not come in after that is dropped, and earlier if many others wait to come in.
+  std::chrono::milliseconds handshake{5000};
+  /// So is a client of which nothing is heard, and that takes nothing, for so long.
+  std::chrono::milliseconds patience{30'000};
 };
 
 /// A token that nobody can guess.

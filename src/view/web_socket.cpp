@@ -1,7 +1,11 @@
 #include "view/web_socket.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <pthread.h>
+#include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -11,6 +15,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cstddef>
+#include <list>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -31,18 +38,35 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr const char* kPlace = "view";
-/// Connections beside the clients': they are on their way in, or out.
+/// Connections that are not clients yet.
 constexpr std::size_t kNewcomers = 32;
+/// What of a message waits in the kernel: more would become old there, where a newer one cannot
+/// take its place.
+constexpr int kUnsentBytes = 64 << 10;
 constexpr std::chrono::milliseconds kAfterFailedAccept{100};
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Octets that the other side's kernel has taken: it takes no more while nobody reads them.
+std::uint64_t acknowledged_by(tcp::socket& socket) {
+  struct {
+    ::tcp_info known;  // the C library's ends before what is needed
+    std::uint64_t pacing_rate, max_pacing_rate, acknowledged;
+  } info{};
+  static_assert(offsetof(decltype(info), acknowledged) == 120);  // as <linux/tcp.h> has it
+  socklen_t size = sizeof info;
+  ::getsockopt(socket.native_handle(), IPPROTO_TCP, TCP_INFO, &info, &size);
+  return info.acknowledged;
+}
+
+class BeastConnection;
 
 /// What the connections share. Only the listener's thread uses it.
 struct House {
   WebSocketOptions options;
   Gate gate;
   WebSocketListener::Open open;
-  std::size_t connections = 0;
+  std::list<BeastConnection*> newcomers;  // in the order in which they came
   std::size_t clients = 0;
 };
 
@@ -50,13 +74,15 @@ class BeastConnection final : public Connection,
                               public std::enable_shared_from_this<BeastConnection> {
  public:
   BeastConnection(tcp::socket socket, std::shared_ptr<House> house)
-      : house_(std::move(house)), stream_(std::move(socket)) {
-    ++house_->connections;
+      : house_(std::move(house)), stream_(std::move(socket)), look_(stream_.get_executor()) {
+    error_code error;
+    address_ = this->socket().socket().remote_endpoint(error).address();
+    house_->newcomers.push_back(this);
   }
 
   ~BeastConnection() override {
     session_.reset();
-    --house_->connections;
+    std::erase(house_->newcomers, this);
     if (admitted_) --house_->clients;
   }
 
@@ -69,6 +95,16 @@ class BeastConnection final : public Connection,
                      [self = shared_from_this()](error_code error, std::size_t) {
                        if (!error) self->judge();
                      });
+  }
+
+  const asio::ip::address& address() const noexcept { return address_; }
+
+  // What still reads or writes ends with the socket, and then lets go of the connection.
+  void end() {
+    session_.reset();
+    std::erase(house_->newcomers, this);
+    look_.cancel();
+    socket().close();
   }
 
   void wake() override {
@@ -104,6 +140,7 @@ class BeastConnection final : public Connection,
     if (refusal) return refuse(*refusal);
     admitted_ = true;
     ++house_->clients;
+    std::erase(house_->newcomers, this);
     accept();
   }
 
@@ -121,8 +158,9 @@ class BeastConnection final : public Connection,
   void accept() {
     buffer_.clear();
     socket().expires_never();
-    stream_.set_option(
-        websocket::stream_base::timeout{house_->options.handshake, house_->options.patience, true});
+    stream_.set_option(websocket::stream_base::timeout{house_->options.handshake,
+                                                       websocket::stream_base::none(), false});
+    stream_.control_callback([this](websocket::frame_type, beast::string_view) { heard_ = true; });
     stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol,
                    beast::string_view(kProtocol.data(), kProtocol.size()));
@@ -138,11 +176,39 @@ class BeastConnection final : public Connection,
     session_ = house_->open(*this);
     read();
     write();
+    look_later();
+  }
+
+  void look_later() {
+    look_.expires_after(house_->options.patience / kLooks);
+    look_.async_wait([weak = weak_from_this()](error_code error) {
+      const auto self = weak.lock();
+      if (self && !error && self->session_) self->look();
+    });
+  }
+
+  /// Ends a client of which nothing was heard for `patience`, though it was asked. A message that
+  /// is on its way to a slow client keeps the question from it: then the client lives if it takes
+  /// more of the message.
+  void look() {
+    const bool was_writing = std::exchange(seen_writing_, writing_);
+    const std::uint64_t before = std::exchange(acknowledged_, acknowledged_by(socket().socket()));
+    const bool takes = was_writing && writing_ && acknowledged_ > before;
+    silent_looks_ = std::exchange(heard_, false) || takes ? 0 : silent_looks_ + 1;
+    if (silent_looks_ >= kLooks) return end();
+    if (silent_looks_ > 0) ask();
+    look_later();
+  }
+
+  void ask() {
+    if (std::exchange(asking_, true)) return;
+    stream_.async_ping({}, [self = shared_from_this()](error_code) { self->asking_ = false; });
   }
 
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->end();
+      self->heard_ = true;
       self->hand_over();
     });
   }
@@ -178,11 +244,8 @@ class BeastConnection final : public Connection,
     });
   }
 
-  // What still reads or writes ends with the socket, and then lets go of the connection.
-  void end() {
-    session_.reset();
-    socket().close();
-  }
+  /// In a client's patience.
+  static constexpr int kLooks = 4;
 
   const std::shared_ptr<House> house_;
   websocket::stream<beast::tcp_stream, false> stream_;
@@ -193,7 +256,26 @@ class BeastConnection final : public Connection,
   Frame frame_;
   std::atomic<bool> waking_{false};
   std::unique_ptr<Session> session_;
+  asio::ip::address address_;
+  asio::steady_timer look_;
+  bool heard_ = false;  // since the last look, as what follows
+  bool seen_writing_ = false;
+  std::uint64_t acknowledged_ = 0;
+  int silent_looks_ = 0;
+  bool asking_ = false;
 };
+
+/// Whoever comes is let in to the gate: of the address that has most connections before it, the one
+/// goes that has waited longest.
+void make_room(const House& house) {
+  if (house.newcomers.size() < kNewcomers) return;
+  std::map<asio::ip::address, std::size_t> counts;
+  for (const BeastConnection* each : house.newcomers) ++counts[each->address()];
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& each) { return each.second; });
+  const auto oldest = std::ranges::find(house.newcomers, most->first, &BeastConnection::address);
+  (*oldest)->end();
+}
 
 tcp::endpoint endpoint_of(const WebSocketOptions& options) {
   error_code error;
@@ -219,17 +301,19 @@ tcp::acceptor listen(asio::io_context& context, const WebSocketOptions& options)
 
 struct WebSocketListener::State {
   State(const WebSocketOptions& options, Gate gate, Open open)
-      : house(std::make_shared<House>(House{options, std::move(gate), std::move(open)})),
+      : house(std::make_shared<House>(House{options, std::move(gate), std::move(open), {}})),
         acceptor(listen(context, options)),
         port(acceptor.local_endpoint().port()) {}
 
   void accept() {
     acceptor.async_accept([this](error_code error, tcp::socket socket) {
       if (error) return accept_later();
-      if (house->connections < house->options.max_clients + kNewcomers) {
-        socket.set_option(tcp::no_delay(true), error);
-        std::make_shared<BeastConnection>(std::move(socket), house)->read_request();
-      }
+      make_room(*house);
+      socket.set_option(tcp::no_delay(true), error);
+      socket.set_option(
+          asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>(kUnsentBytes),
+          error);
+      std::make_shared<BeastConnection>(std::move(socket), house)->read_request();
       accept();
     });
   }

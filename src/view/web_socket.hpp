@@ -45,9 +45,11 @@ struct WebSocketOptions {
   std::uint16_t port = 0;       ///< 0: any that is free.
   std::size_t max_clients = 0;  ///< More are refused.
   std::size_t max_message = 0;  ///< Bytes; a client that sends a longer message is dropped.
-  std::chrono::milliseconds handshake{};  ///< A connection that is not open after that is dropped.
-  std::chrono::milliseconds
-      patience{};  ///< So is a client that sent nothing for so long, asked or not.
+  /// A connection that is not open after that is dropped. So is the one that has waited longest of
+  /// the address that has most of them, if there are many.
+  std::chrono::milliseconds handshake{};
+  /// So is a client that sent nothing for so long, asked or not, and takes no more of a message.
+  std::chrono::milliseconds patience{};
 };
 
 /// Takes connections, those that the gate lets in, on a thread of its own (`skein-view`).

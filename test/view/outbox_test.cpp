@@ -35,6 +35,29 @@ TEST_CASE("Where samples find no room, the oldest go and are counted") {
   CHECK(heads(outbox) == "cde");
 }
 
+TEST_CASE("A sample that has waited too long goes, where its subscription has a newer one") {
+  using namespace std::chrono_literals;
+  const Outbox::Time start{};
+  Outbox outbox(1 << 20);
+  outbox.push_sample(1, frame("a"), start);
+  outbox.push_sample(2, frame("b"), start);
+  outbox.push_sample(1, frame("c"), start + 1s);
+  outbox.push_sample(1, frame("d"), start + 2s);
+  const auto popped = [&](Outbox::Time now) {
+    const auto next = outbox.pop(now);
+    return next ? next->head : "";
+  };
+  CHECK(popped(start + 2500ms) == "b");
+  CHECK(outbox.dropped() == 1);
+  CHECK(popped(start + 2500ms) == "d");
+  CHECK(outbox.dropped() == 2);
+  outbox.push_sample(1, frame("e"), start + 3s);
+  outbox.push_sample(1, frame("f"), start + 3s);
+  CHECK(popped(start + 4s) == "e");
+  CHECK(popped(start + 9s) == "f");
+  CHECK(outbox.dropped() == 2);
+}
+
 TEST_CASE("A sample that is larger than the queue waits alone") {
   Outbox outbox(1000);
   outbox.push_sample(1, frame("small"));

@@ -10,7 +10,7 @@
 
 using namespace skein;
 using namespace skein::view;
-using Catch::Matchers::Contains, Catch::Matchers::StartsWith;
+using Catch::Matchers::Contains, Catch::Matchers::EndsWith, Catch::Matchers::StartsWith;
 using skein::test::eventually, skein::test::WebClient;
 
 namespace {
@@ -265,6 +265,49 @@ TEST_CASE("A client that does not read loses the oldest samples, and is told; ot
   CHECK_THAT(stalled.await(R"("op":"status")"),
              Contains("dropped so far") && Contains(R"("level":1)"));
   CHECK_THAT(stalled.await("#199#"), Contains("#199#"));
+}
+
+TEST_CASE("Little waits in the kernel for a client that does not read: it would become old there") {
+  auto small = options();
+  small.queue = 50'000;  // the newest sample alone
+  Server server(small);
+  WatchedChannel channel(server);
+  WebClient stalled(server.url());
+  REQUIRE(stalled.open());
+  stalled.send_text(subscribe(1, channel.id));
+  REQUIRE(channel.is_watched());
+  constexpr int kSamples = 60;
+  for (int i = 0; i < kSamples; ++i)
+    send(server, channel.id, "#" + std::to_string(i) + '#' + std::string(100'000, '.'));
+  int old = 0;
+  for (auto sample = stalled.receive(); sample && sample->bytes.find("#59#") == std::string::npos;
+       sample = stalled.receive())
+    ++old;
+  CHECK(old < 10);
+}
+
+TEST_CASE("A client that reads a large sample slowly all the time is not dropped") {
+  auto impatient = options();
+  impatient.patience = std::chrono::milliseconds(400);
+  Server server(impatient);
+  WatchedChannel channel(server);
+  WebClient slow(server.url());
+  REQUIRE(slow.open());
+  slow.send_text(subscribe(1, channel.id));
+  REQUIRE(channel.is_watched());
+  send(server, channel.id, std::string(16 << 20, '.') + "end");
+  const auto reads_until_left = [&] { return channel.ended > 0 || !slow.take(20'000); };
+  // At most 10 MB a second, so that the sample lasts longer.
+  CHECK_FALSE(eventually(reads_until_left, 3 * impatient.patience));
+  CHECK_THAT(slow.await("end"), EndsWith("end"));
+}
+
+TEST_CASE("Connections that say nothing do not keep those with the token out") {
+  Server server(options());
+  std::vector<std::unique_ptr<WebClient>> silent;
+  for (int i = 0; i < 200; ++i) silent.push_back(std::make_unique<WebClient>(server.url()));
+  CHECK(WebClient(server.url()).open());
+  CHECK(silent.front()->is_ended());
 }
 
 TEST_CASE("Who has no token, offers no WebSocket or comes too late is refused with a reason") {

@@ -6,6 +6,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -38,6 +39,9 @@ WebClient::WebClient(const std::string& url) {
       htons(static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1, slash - colon - 1))));
   inet_pton(AF_INET, url.substr(host, colon - host).c_str(), &address.sin_addr);
   socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  // So that little lies in the kernel, and a slow reader is seen to read.
+  const int buffer = 64 << 10;
+  setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
   const timeval patience{kPatience.count(), 0};
   setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
@@ -100,6 +104,8 @@ std::optional<WebClient::Message> WebClient::receive() {
   }
 }
 
+bool WebClient::take(std::size_t most) { return fill(most); }
+
 std::string WebClient::await(std::string_view part) {
   while (auto message = receive()) {
     if (message->bytes.find(part) != std::string::npos) return message->bytes;
@@ -123,9 +129,9 @@ std::optional<std::string> WebClient::read(std::size_t size) {
   return taken;
 }
 
-bool WebClient::fill() {
+bool WebClient::fill(std::size_t most) {
   std::array<char, 65536> bytes;
-  const auto got = recv(socket_, bytes.data(), bytes.size(), 0);
+  const auto got = recv(socket_, bytes.data(), std::min(most, bytes.size()), 0);
   if (got <= 0) return false;
   received_.append(bytes.data(), static_cast<std::size_t>(got));
   return true;

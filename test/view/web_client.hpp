@@ -37,6 +37,8 @@ class WebClient {
   std::optional<Message> receive();
   /// The next message that contains `part`; earlier ones are passed over.
   std::string await(std::string_view part);
+  /// Reads a piece of what is coming, for a later message; false where it has ended.
+  bool take(std::size_t most);
   /// Whether the server ends the connection; what it sends before is passed over.
   bool is_ended();
 
@@ -48,7 +50,7 @@ class WebClient {
  private:
   void send_frame(unsigned operation, std::string_view message);
   std::optional<std::string> read(std::size_t size);
-  bool fill();
+  bool fill(std::size_t most = SIZE_MAX);
 
   int socket_ = -1;
   std::string target_;
