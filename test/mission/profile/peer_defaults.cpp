@@ -51,7 +51,8 @@ TEST_CASE("Two peers that write one file are a finding") {
   ProfileFolder folder;
   const auto text = folder.check(
       R"(<peer name="f" component="f.xml" count="2" history="h.json" decision_log="l-${instance}"/>)");
-  CHECK_THAT(text, Catch::Contains("history or decision_log \"h.json\" is there twice"));
+  CHECK_THAT(text, Catch::Contains("history or decision_log \"h.json\" is there twice; each peer "
+                                   "that count makes has it; write ${instance} in it"));
   CHECK_THAT(text, !Catch::Contains("\"l-1\""));
   CHECK_THAT(
       folder.check(R"(<peer name="a" component="f.xml" host="a" interface="lo" history="h.json"/>

@@ -55,12 +55,13 @@ TEST_CASE("A peer has the topics that it does not name from its group, then from
 TEST_CASE(
     "Two names that a person takes for one topic are told once, with the place of the other") {
   ProfileFolder folder;
-  CHECK(folder.check(R"(<topic name="pose" history="1"/><topic name="Pose" history="1"/>
+  CHECK(
+      folder.check(R"(<topic name="pose" history="1"/><topic name="Pose" history="1"/>
 <peer name="f" component="f.xml" count="2"><topic name="/pose" history="2"/></peer>)") ==
-        "m.xml:2:40: warning: \"Pose\" and \"pose\" are two topics; write one name everywhere; the "
-        "other is at m.xml:2:8\n"
-        "m.xml:3:51: warning: \"/pose\" and \"pose\" are two topics; write one name everywhere; "
-        "the other is at m.xml:2:8\n");
+      "m.xml:2:8: warning: \"pose\" and \"/pose\" are two topics; write one name everywhere; the "
+      "other is at m.xml:3:51\n"
+      "m.xml:2:40: warning: \"Pose\" and \"/pose\" are two topics; write one name everywhere; the "
+      "other is at m.xml:3:51\n");
 }
 
 TEST_CASE("A program of one's own has none of the mission's topics, and may name none") {
