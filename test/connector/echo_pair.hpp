@@ -13,10 +13,10 @@ template <class Implementation = EchoService>
 struct EchoPair {
   EchoPair(std::unique_ptr<Entity> server_, std::unique_ptr<Entity> client_,
            const ServiceOptions& options = {})
-      : server(std::move(server_)), client(std::move(client_)) {
-    id = server->provide<::test::LouderEcho>(service, options);
-    echo.emplace(client->connect<::test::Echo>());
-  }
+      : server(std::move(server_)),
+        client(std::move(client_)),
+        id(server->provide<::test::LouderEcho>(service, options)),
+        echo(client->connect<::test::Echo>()) {}
   ~EchoPair() { echo.reset(); }
 
   std::shared_ptr<Implementation> service = std::make_shared<Implementation>();
