@@ -16,14 +16,14 @@ struct EchoPair {
       : server(std::move(server_)),
         client(std::move(client_)),
         id(server->provide<::test::LouderEcho>(service, options)),
-        echo(client->connect<::test::Echo>()) {}
+        echo(std::make_unique<::test::Echo::Proxy>(client->connect<::test::Echo>())) {}
   ~EchoPair() { echo.reset(); }
 
   std::shared_ptr<Implementation> service = std::make_shared<Implementation>();
   std::unique_ptr<Entity> server;
   std::unique_ptr<Entity> client;
   Guid id;
-  std::optional<::test::Echo::Proxy> echo;
+  std::unique_ptr<::test::Echo::Proxy> echo;
 };
 
 }  // namespace skein::test
