@@ -4,6 +4,8 @@
 #include <functional>
 #include <string_view>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
 enum class LogLevel { Debug, Info, Warning, Error };

@@ -27,7 +27,7 @@ TEST_CASE("of threads of an entity that are held up the log tells within seconds
     for (const char* thread : {"skein-control", "skein-continue", "skein-timer"}) {
       CAPTURE(thread, log.text());
       CHECK(eventually(
-          [&] { return log.count("watchdog: the thread '" + std::string(thread) + "' (") == 1; }));
+          [&] { return log.count("watchdog: '" + std::string(thread) + "' has been ") == 1; }));
     }
     may_return = true;
   }

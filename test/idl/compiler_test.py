@@ -663,7 +663,7 @@ class Streams(CompilerTest):
         self.assert_compiles("interface I {\n  @stream long count(in long sink);\n};\n")
         header = self.output("x.idl.hpp")
         self.assertIn("virtual void count(std::int32_t sink, ::skein::StreamSink<std::int32_t>& sink_) = 0;", header)
-        self.assertIn("::skein::Stream<std::int32_t> count(std::int32_t sink);", header)
+        self.assertIn("::skein::Stream<std::int32_t> count(std::int32_t sink) const;", header)
         self.assertIn("// count is a stream", self.output("x.dds.idl"))
 
     STREAM = ("typedef long Number;\nexception No {};\ninterface Base {\n  long plan(in string task);\n  %s\n};\ninterface I : Base {\n"

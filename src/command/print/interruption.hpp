@@ -14,7 +14,6 @@
 
 #include "core/system/ending_signals.hpp"
 #include "core/system/file_descriptor.hpp"
-#include "skein/clock.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command {
@@ -40,8 +39,7 @@ class Interruption {
   /// stdout takes no more.
   bool wait(double seconds) const {
     using namespace std::chrono;
-    const auto end =
-        saturating_sum(steady_clock::now(), saturating_duration(duration<double>(seconds)));
+    const auto end = steady_clock::now() + duration_cast<nanoseconds>(duration<double>(seconds));
     while (!came()) {
       nanoseconds part = kLookAgain;
       if (seconds > 0) part = std::min<nanoseconds>(part, end - steady_clock::now());

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
-#include <future>
+#include <semaphore>
 #include <stop_token>
 #include <thread>
 
@@ -327,9 +327,9 @@ EndWatch watch_end(Entity& entity, const profile::ProcessRules& rules, std::func
 
 /// Until the process is told to end, and its calls have ended.
 void serve(Entity& entity, const profile::ProcessRules& rules) {
-  std::promise<void> told;
-  const EndWatch watch = watch_end(entity, rules, [&] { told.set_value(); });
-  told.get_future().wait();
+  std::binary_semaphore told{0};
+  const EndWatch watch = watch_end(entity, rules, [&] { told.release(); });
+  told.acquire();
   entity.drain(time_to_finish(rules));
 }
 
