@@ -165,8 +165,9 @@ class MissionLines(TreeTest):
     def setUp(self):
         super().setUp()
         self.write("CMakePresets.json", '{"version": 6, "configurePresets": [{"name": "mission", "generator": "Ninja"}]}')
-        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(x LANGUAGES CXX)\nset(CMAKE_EXPORT_COMPILE_COMMANDS ON)\n"
-                                     "add_library(x OBJECT x.cpp)\nadd_custom_target(skein_generated)\n")
+        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.25)\nproject(x LANGUAGES CXX)\n"
+                                     "add_library(x OBJECT x.cpp)\nadd_library(y OBJECT x.cpp)\n"
+                                     "add_custom_target(skein_generated)\nadd_custom_target(skein_flight DEPENDS x)\n")
         self.write("x.cpp", "".join(f"int x{number};\n" for number in range(3000)))
 
     def violations(self, ceiling):

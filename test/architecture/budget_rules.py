@@ -35,12 +35,12 @@ def budget(tree):
 def mission_lines(tree, build):
     """More lines than the ceiling for a compiler to read for `./dev mission`, which is what most of its time goes to.
 
-    Preprocesses each unit of the preset, in the folder `build`: the same number on each machine that has the same headers.
+    Preprocesses each unit that it builds, in the folder `build`: the same number on each machine that has the same headers.
     """
     subprocess.run(["cmake", "--preset", "mission", "-B", build], cwd=tree.root, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", build, "--target", "skein_generated"], check=True, stdout=subprocess.DEVNULL)
-    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as stream:
-        commands = [unit["command"] for unit in json.load(stream) if unit["file"].endswith((".cxx", ".cpp")) and ".hxx." not in unit["file"]]
+    told = subprocess.run(["ninja", "-C", build, "-t", "commands", "skein_flight"], check=True, capture_output=True, text=True).stdout
+    commands = [line for line in told.splitlines() if re.search(r" -c \S+\.(cxx|cpp)$", line) and ".hxx" not in line.split()[-1]]
     lines = 0
     for command in commands:
         preprocess = re.sub(r" -o \S+ -c ", " -E -P -w ", command)

@@ -180,9 +180,8 @@ int with_output_checked(int code) {
   const bool failed_before = std::ferror(stdout) != 0;
   errno = 0;
   std::cout.flush();
-  const bool flushed = std::fflush(stdout) == 0;
-  const int reason = flushed ? 0 : errno;
-  if (flushed && !failed_before && std::cout.good()) return code;
+  if (std::fflush(stdout) == 0 && !failed_before && std::cout.good()) return code;
+  const int reason = failed_before ? 0 : errno;
   if (reader_has_gone()) end_by_sigpipe();
   complain(std::string("the output could not be written: ") +
            (reason == 0 ? "an earlier write failed" : std::strerror(reason)));
