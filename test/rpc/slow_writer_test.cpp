@@ -219,7 +219,8 @@ TEST_CASE_METHOD(Pair, "a call that has ended before it is sent is not sent") {
   std::string out;
   const auto call = std::make_shared<PendingCall>(operation, &out, Instant::max(), false);
   call->cancel();
-  const ::test::Echo_echo_In in{Argument<std::string>::borrow("x")};
+  const std::string text = "x";
+  const ::test::Echo_echo_In in{Argument<std::string>::borrow(text)};
   channel->start(call, &in);
   CHECK(echo().echo("y") == "y");
   CHECK(implementation->calls == 1);

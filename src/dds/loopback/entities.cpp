@@ -74,7 +74,6 @@ std::unique_ptr<Participant> LoopbackVendor::create_participant(const Participan
 
 void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, const Qos& qos,
                                   std::uint8_t kind) {
-  check_qos(topic, qos);
   core_->topics.acquire(topic, [] { return 0; });
   endpoint.participant = core_;
   endpoint.topic = topic;
@@ -90,6 +89,7 @@ void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, co
 
 std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, const Qos& qos,
                                                            WriterListener listener) {
+  check_qos(topic, qos);
   auto core = std::make_shared<WriterCore>(qos, *hub_);
   prepare(*core, topic, qos, kWriterKind);
   core->listener = std::move(listener);
@@ -98,6 +98,7 @@ std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, c
 
 std::unique_ptr<Reader> LoopbackParticipant::create_reader(const Topic& topic, const Qos& qos,
                                                            ReaderListener listener) {
+  check_qos(topic, qos);
   auto core = std::make_shared<ReaderCore>(topic, qos, *hub_);
   prepare(*core, topic, qos, kReaderKind);
   core->listener = std::move(listener);

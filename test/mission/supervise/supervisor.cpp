@@ -308,10 +308,16 @@ TEST_CASE("A mission that lost what degrades it goes on, and its exit code says 
 TEST_CASE("The first fault is told beside what ended the mission, where they differ") {
   auto first = shell_child("a", "ready; exit 4");
   first.rules.on_loss = LossPolicy::Continue;
-  auto second = supervised_mission("exit 5");
+  TemporaryFolder folder;
+  const std::string go = (folder.path() / "go").string();
+  auto second = supervised_mission("while [ ! -e " + go + " ]; do sleep 0.01; done; exit 5");
   second.layer = 1;
   second.after = {{"M/I", {"a"}}};
   RecordedMission both({first, second});
+  both.on_event = [&](const ChildEvent& event) {
+    if (event.child == "a" && event.text.starts_with("ended with exit code 4"))
+      folder.write("go", "");
+  };
   const auto result = both.run();
   CHECK(result.reason == "mission, which runs the mission, ended with exit code 5");
   CHECK_THAT(result.first_fault, Catch::Matches("after [0-9.]+ m?s, a ended with exit code 4"));
