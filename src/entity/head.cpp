@@ -122,8 +122,9 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   record.request = options.request;
   record.execution = to_string(options.execution);
   state_->record(record, begin, wanted, [&] {
-    const auto candidates = state_->await_candidates(
-        interface, options, *strategy, begin + wire_values::duration(record.available));
+    const auto candidates =
+        state_->await_candidates(interface, options, *strategy,
+                                 saturating_sum(begin, wire_values::duration(record.available)));
     if (candidates.empty()) state_->refuse_without(interface, options.only);
     state_->tell_too_few(interface, options, candidates.size());
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
@@ -142,8 +143,9 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
   record.execution = "none";
   std::shared_ptr<Channel> channel;
   state_->record(record, begin, nullptr, [&] {
-    auto candidates = state_->await_candidates(interface, options, *strategy,
-                                               begin + wire_values::duration(record.available));
+    auto candidates =
+        state_->await_candidates(interface, options, *strategy,
+                                 saturating_sum(begin, wire_values::duration(record.available)));
     if (candidates.empty()) state_->refuse_without(interface, {});
     decision_record::list(record, candidates);
     const Situation situation = decision_record::situation_of(record);
