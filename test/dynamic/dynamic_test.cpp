@@ -193,7 +193,7 @@ TEST_CASE_METHOD(Survey, "topics that no vendor could read are not known, whoeve
   auto stranger = make_client("stranger");
   const auto answers = stranger->participant().create_writer(introspection::kAnswers.dds_topic(),
                                                              introspection::kAnswers.qos());
-  const std::string too_long(65'600, 'a');
+  const std::string too_long(256, 'a');
   const auto topic = [](const std::string& name, const std::string& type,
                         const std::string& system) {
     inspection::TopicEndpoint told;
