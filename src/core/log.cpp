@@ -4,14 +4,12 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <deque>
 #include <mutex>
-#include <optional>
-#include <span>
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "core/utc_text.hpp"
 
 namespace skein {
 namespace {
@@ -25,26 +23,15 @@ std::uint64_t nanoseconds_of(std::chrono::system_clock::time_point time) {
   return static_cast<std::uint64_t>(std::chrono::nanoseconds(time.time_since_epoch()).count());
 }
 
-/// `2026-11-24T23:47:14.123Z `, as the launcher's logs have it.
-std::string stamp(std::chrono::system_clock::time_point time) {
-  const std::time_t whole = std::chrono::system_clock::to_time_t(time);
-  std::tm utc{};
-  gmtime_r(&whole, &utc);
-  std::array<char, 32> date{};
-  std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%s.%03uZ ", date.data(),
-                static_cast<unsigned>(nanoseconds_of(time) / 1'000'000 % 1000));
-  return text.data();
-}
-
 void write_to_standard_error(const std::string& before, const LogLine& line) {
   const std::string text = before + in_words(line.level) + ": " + printable(line.place) + ": " +
                            printable(line.text, kLongestText) + "\n";
   std::fputs(text.c_str(), stderr);
 }
 
-void write_with_time(const LogLine& line) { write_to_standard_error(stamp(line.time), line); }
+void write_with_time(const LogLine& line) {
+  write_to_standard_error(utc_text(line.time) + " ", line);
+}
 
 struct Log {
   std::mutex mutex;

@@ -5,10 +5,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <system_error>
 
 #include "core/printable.hpp"
+#include "core/utc_text.hpp"
 #include "skein/error.hpp"
 
 namespace skein::launch {
@@ -29,19 +29,10 @@ std::string file_name(std::string_view text) {
 /// `2026-11-24T23:47:14.123Z 12.345678`.
 std::string both_clocks(Time launched) {
   using namespace std::chrono;
-  const auto since_launch = duration<double>(steady_clock::now() - launched).count();
-  const auto wall = system_clock::now();
-  const auto milliseconds_of =
-      duration_cast<milliseconds>(wall.time_since_epoch()) % milliseconds(1000);
-  const std::time_t whole = system_clock::to_time_t(wall);
-  std::tm utc{};
-  gmtime_r(&whole, &utc);
-  std::array<char, 32> date{};
-  std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%s.%03dZ %.6f", date.data(),
-                static_cast<int>(milliseconds_of.count()), since_launch);
-  return text.data();
+  std::array<char, 32> since_launch{};
+  std::snprintf(since_launch.data(), since_launch.size(), " %.6f",
+                duration<double>(steady_clock::now() - launched).count());
+  return utc_text(system_clock::now()) + since_launch.data();
 }
 
 const std::filesystem::path& made(const std::filesystem::path& folder) {
