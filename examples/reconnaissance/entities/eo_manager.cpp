@@ -154,7 +154,8 @@ void EoManager::prepare(double now_s, const recon::FlightState& state,
   const auto plan = ask_plan(task, element);
   if (!plan) return;
   Seen& seen = seen_[element.name];
-  if (seen.parts.empty()) {
+  if (seen.line != element.line) {
+    seen = {element.line, {}, {}};
     for (const Local& part : parts_of_line(line, kParts_m))
       seen.parts.push_back(on_ground(ground_, part));
     seen.sample_m.assign(seen.parts.size(), kNever);

@@ -36,6 +36,7 @@ class EoManager {
   };
   /// How well each part of an element has been seen; infinite: not at all.
   struct Seen {
+    std::vector<recon::Position> line;  ///< Of the element.
     std::vector<Local> parts;
     std::vector<double> sample_m;
     double achieved_m() const;

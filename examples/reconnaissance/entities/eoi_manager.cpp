@@ -23,6 +23,10 @@ namespace {
 constexpr double kOrderedDeviation_m = 50;
 // What was found so near belongs to the element.
 constexpr double kBelongs_m = 200;
+// A target that is not on the road where it was reported has driven on, so far at most.
+constexpr double kDrivenOn_m = 2500;
+// A search is over when no image has been taken for so long.
+constexpr double kSearchOver_s = 5;
 
 recon::ElementTask task_of(const std::string& text) {
   if (text == "images") return recon::ElementTask::TakeImages;
@@ -48,6 +52,12 @@ std::vector<ElementText> elements_of(const skein::Entity& entity,
         "elements, and {} has to be one of them",
         aircraft.size(), starts.size(), entity.options().system));
   return share_of(elements, starts, static_cast<std::size_t>(own - aircraft.begin()));
+}
+
+std::vector<Eigen::Vector2d> on_map(const std::vector<Local>& line) {
+  std::vector<Eigen::Vector2d> places;
+  for (const Local& each : line) places.emplace_back(each.north_m, each.east_m);
+  return places;
 }
 
 double greatest_deviation_m(const GroundEstimate& estimate) {
@@ -103,8 +113,9 @@ void EoiManager::manage(Tick tick) {
 void EoiManager::see(const recon::Images& images) {
   for (const recon::Image& image : images.images) {
     for (recon::Element& element : elements_) {
-      if (element.name != image.element || image.achieved_ground_sample_m == 0) continue;
-      if (task_ != recon::ElementTask::TakeImages) continue;
+      if (element.name != image.element) continue;
+      imaged_s_[element.name] = seconds_of(images.tick);
+      if (task_ != recon::ElementTask::TakeImages || image.achieved_ground_sample_m == 0) continue;
       element.achieved_ground_sample_m = image.achieved_ground_sample_m;
       element.collected = element.achieved_ground_sample_m <= element.wanted_ground_sample_m;
     }
@@ -129,23 +140,24 @@ void EoiManager::locate(const recon::ObjectTracks& told) {
 }
 
 void EoiManager::follow(double now_s, const recon::ObjectTracks& told) {
-  if (told.tracks.empty() && targets_.empty()) return;
+  if (imaged_s_.empty()) return;
   const LocalFrame frame(geodetic(told.origin));
   const std::vector<Track> all = tracks(told.tracks);
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     recon::Element& element = elements_[i];
-    if (targets_.size() == i) {
-      // Anywhere on a road.
-      const std::vector<Local> line = locals(frame, element.line);
-      const Local reported = middle_of(line);
-      double half_m = 0;
-      for (const Local& each : line) half_m = std::max(half_m, map_distance_m(each, reported));
-      targets_.emplace_back(Eigen::Vector2d(reported.north_m, reported.east_m),
-                            half_m + element.margin_m + kBelongs_m);
-    }
+    if (targets_.size() == i)
+      targets_.emplace_back(on_map(locals(frame, element.line)), element.margin_m + kBelongs_m);
     if (element.collected) continue;
     FollowedTarget& target = targets_[i];
     target.look(now_s, all);
+    const auto imaged = imaged_s_.find(element.name);
+    if (!target.was_ever_found() && imaged != imaged_s_.end() &&
+        now_s - imaged->second > kSearchOver_s) {
+      const auto road = prolonged(locals(frame, ordered_[i].line), kDrivenOn_m);
+      target.expect_along(on_map(road));
+      element.line.clear();
+      for (const Local& corner : road) element.line.push_back(position(frame, corner));
+    }
     element.followed_s = target.followed_s();
     element.collected = element.followed_s >= element.wanted_s;
     const bool was_found = element.found;

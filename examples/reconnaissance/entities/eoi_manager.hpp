@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "flight.idl.hpp"
@@ -38,6 +40,7 @@ class EoiManager {
   std::vector<recon::Element> elements_;
   std::vector<recon::Element> ordered_;  // as they were
   std::vector<FollowedTarget> targets_;
+  std::map<std::string, double> imaged_s_;  // when an image was taken for an element, last
 
   Stream<recon::FlightState> flight_;
   Stream<recon::Images> images_;

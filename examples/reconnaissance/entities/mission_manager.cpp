@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -33,11 +34,18 @@ constexpr double kWayHomeShare = 2.5;
 constexpr double kDrawn_m = 150;
 // At both ends of a flight past an emitter, of the distance from it: its bearings shall cross.
 constexpr double kBaselineShare = 0.5;
-// An element that is missed is passed once more.
+// An element that is missed is passed once more; a target that moves is searched once more again.
 constexpr int kTries = 2;
+constexpr int kSearches = 3;
+
+int tries_for(const recon::Element& element) {
+  return element.task == recon::ElementTask::FollowTarget ? kSearches : kTries;
+}
 // When threats reach over so much more or less ground than those that were planned with, another
 // way is looked for where the present one is dangerous, and another tour where one was refused.
 constexpr double kOtherThreats = 0.2;
+// What the turns and the approach of a landing take, beside the way there.
+constexpr double kLanding_s = 500;
 // Of the route home, from the last: the approach, on which no other tour is looked for.
 constexpr std::size_t kApproachLegs = 3;
 
@@ -165,12 +173,15 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
                                                  const recon::ElementList& elements,
                                                  const Conduct::Situation& now) {
   const MissionPhase phase = conduct_->phase();
+  if (phase != MissionPhase::Egress) waits_ = false;
   if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
   if (phase == MissionPhase::BuiltInTest) {
     if (const auto cause = contradiction(state, elements))
       return conduct_->give_up("the order contradicts itself: " + *cause);
     return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
   }
+  if (conduct_->may_try_again())
+    if (Order order = pursue(state, elements)) return order;
   const bool barred = now.legs > 0 && is_barred(state);
   if (may_look_again(now, state.tick)) {
     look_again_s_ *= 2;
@@ -180,7 +191,8 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
       return order;
   }
   if (phase == MissionPhase::Egress)
-    return barred ? conduct_->go_home_another_way("a threat bars the way home") : Order{};
+    return barred ? conduct_->go_home_another_way("a threat bars the way home")
+                  : wait_or_land(state, elements);
   if (phase != MissionPhase::Ingress && phase != MissionPhase::Collection) return {};
   if (Order order = pursue(state, elements)) return order;
   if (circle_) return {};
@@ -195,11 +207,11 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
   if (elements.elements.size() > planned_for_ && !nothing_new_)
     return tour(state, elements, elements.elements.back().name + " was not reported");
   const bool flown = now.legs > 0 && now.leg >= now.legs;
-  const bool missed = std::ranges::any_of(elements.elements, [&](const recon::Element& each) {
-    return !each.collected && tries_[each.name] < kTries;
-  });
-  return flown && missed && !nothing_new_ ? tour(state, elements, "an element was missed")
-                                          : Order{};
+  const bool missed = std::ranges::any_of(
+      elements.elements, [&](const recon::Element& each) { return is_missed(each); });
+  if (!flown || !missed) return {};
+  return nothing_new_ ? conduct_->refused("an element was missed, and nothing new is begun")
+                      : tour(state, elements, "an element was missed");
 }
 
 MissionManager::Order MissionManager::pursue(const recon::FlightState& state,
@@ -217,8 +229,7 @@ MissionManager::Order MissionManager::pursue(const recon::FlightState& state,
   if (circle_ && !is_due(topic::kElements.period, state.tick)) return {};
   const Local own = local(*frame_, state.position), place = local(*frame_, target->line.front());
   const double height_m = runway_.threshold.height_m + kCollectionHeight_m;
-  const double left_s = endurance_s_ - seconds_of(state.tick - took_off_.value_or(state.tick));
-  if (left_s < kWayHomeShare * std::hypot(own.north_m, own.east_m) / cruise_.speed_m_s)
+  if (left_s(state.tick) < kWayHomeShare * std::hypot(own.north_m, own.east_m) / cruise_.speed_m_s)
     return conduct_->give_up("the endurance suffices for the way home and no more");
   const auto circle =
       ask_circle(entity_, target->name,
@@ -237,6 +248,44 @@ MissionManager::Order MissionManager::pursue(const recon::FlightState& state,
   circle_->centre.height_m = height_m;
   return conduct_->loiter(*circle_,
                           begins ? target->name + " is found, and followed" : conduct_->reason());
+}
+
+/// Not collected, and worth another pass.
+bool MissionManager::is_missed(const recon::Element& element) const {
+  const auto passes = tries_.find(element.name);
+  return !element.collected && (passes == tries_.end() || passes->second < tries_for(element));
+}
+
+MissionManager::Order MissionManager::wait_or_land(const recon::FlightState& state,
+                                                   const recon::ElementList& elements) {
+  if (!conduct_->may_try_again() || !is_due(topic::kElements.period, state.tick)) return {};
+  const bool wanted = std::ranges::any_of(
+      elements.elements, [&](const recon::Element& each) { return is_missed(each); });
+  const bool may = wanted && may_wait(state);
+  if (may) {
+    if (auto circle = waiting_circle(local(*frame_, state.position), threats_)) {
+      waits_ = true;
+      circle->centre.height_m = runway_.threshold.height_m + kCollectionHeight_m;
+      return conduct_->wait(*circle, "waits until a tour may be flown");
+    }
+  }
+  if (!std::exchange(waits_, false)) return {};
+  return may ? conduct_->go_home_another_way("there is no room to wait for a tour")
+             : conduct_->go_home_for_good("there is nothing left to wait for");
+}
+
+/// While there is time and fuel for more than the way home.
+bool MissionManager::may_wait(const recon::FlightState& state) const {
+  const Local own = local(*frame_, state.position);
+  const double home_s =
+      kLanding_s + kWayHomeShare * std::hypot(own.north_m, own.east_m) / cruise_.speed_m_s;
+  return !return_home_ && left_s(state.tick) > home_s &&
+         state.fuel_kg > fuel_reserve_kg_ + home_s * cruise_.fuel_kg_s;
+}
+
+/// Of the time for which it may be in the air.
+double MissionManager::left_s(Tick tick) const {
+  return endurance_s_ - (took_off_ ? seconds_of(tick - *took_off_) : 0);
 }
 
 std::optional<std::string> MissionManager::contradiction(const recon::FlightState& state,
@@ -281,8 +330,8 @@ bool MissionManager::others_threaten() const {
 /// seldom, where it has come meanwhile.
 bool MissionManager::may_look_again(const Conduct::Situation& now, Tick tick) const {
   if (!conduct_->may_try_again() || return_home_ || nothing_new_) return false;
-  const bool waited = seconds_of(tick) - planned_s_ >= look_again_s_;
-  return others_threaten() || (waited && now.leg + kApproachLegs < now.legs);
+  const bool waited = seconds_of(tick) - planned_s_ >= (waits_ ? kLookAgain_s : look_again_s_);
+  return others_threaten() || (waited && (waits_ || now.leg + kApproachLegs < now.legs));
 }
 
 MissionManager::Order MissionManager::tour(const recon::FlightState& state,
@@ -301,22 +350,16 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
   std::vector<ThreatDisc> wide = threats_;
   for (ThreatDisc& each : wide) each.radius_m += cruise_.turn_radius_m;
   for (const recon::Element& each : elements.elements) {
-    if (each.collected || tries_[each.name] >= kTries) continue;
+    if (!is_missed(each)) continue;
     recon::TourTask& task = problem.tasks.emplace_back(each.name, each.priority);
-    PassRules rules;
-    if (each.task == recon::ElementTask::LocateEmitter) {
-      rules.aside_m = aside_m(local(*frame_, each.line.front()), each.stand_off_m, wide);
-      rules.before_m = rules.after_m = kBaselineShare * rules.aside_m;
-    }
-    for (const CollectionPass& pass : passes_by(locals(*frame_, each.line), wide, cruise_, rules))
-      task.passes.push_back(tour_pass(pass));
+    for (const CollectionPass& pass : passes_of(each, wide)) task.passes.push_back(tour_pass(pass));
   }
   for (const ThreatDisc& each : threats_)
     problem.weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
   problem.speed_m_s = cruise_.speed_m_s;
   problem.turn_radius_m = cruise_.turn_radius_m;
   problem.fuel_kg_s = cruise_.fuel_kg_s;
-  problem.endurance_s = endurance_s_ - (took_off_ ? seconds_of(state.tick - *took_off_) : 0);
+  problem.endurance_s = left_s(state.tick);
   problem.fuel_kg = state.fuel_kg - fuel_reserve_kg_;
   problem.least_survival = kLeastSurvival;
 
@@ -335,6 +378,22 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
   return conduct_->fly(
       points, fmt::format("{}: {}", why,
                           tour_.empty() ? "home" : fmt::format("{}", fmt::join(tour_, ", "))));
+}
+
+/// Past what is reconnoitred. A target is searched along its road as far as one can fly there.
+std::vector<CollectionPass> MissionManager::passes_of(const recon::Element& element,
+                                                      const std::vector<ThreatDisc>& wide) const {
+  const auto line = locals(*frame_, element.line);
+  PassRules rules;
+  if (element.task == recon::ElementTask::LocateEmitter) {
+    rules.aside_m = aside_m(line.front(), element.stand_off_m, wide);
+    rules.before_m = rules.after_m = kBaselineShare * rules.aside_m;
+  }
+  if (element.task != recon::ElementTask::FollowTarget)
+    return passes_by(line, wide, cruise_, rules);
+  std::vector<ThreatDisc> beyond = wide;
+  for (ThreatDisc& each : beyond) each.radius_m += rules.after_m;
+  return passes_by(part_out_of_reach(line, beyond), wide, cruise_, rules);
 }
 
 std::optional<recon::Tour> MissionManager::ask_tour(const recon::TourProblem& problem) {

@@ -32,6 +32,7 @@ class MissionManager : public recon::IMissionManager {
   void begin(const recon::MissionOrder& order, std::int64_t tick) override;
 
  private:
+  static constexpr double kLookAgain_s = 20;
   using Order = std::optional<Conduct::Order>;
 
   void manage(Tick tick);
@@ -44,6 +45,13 @@ class MissionManager : public recon::IMissionManager {
              const std::string& why);
   /// What is flown while a target that was found is watched, or when it is no longer.
   Order pursue(const recon::FlightState& state, const recon::ElementList& elements);
+  /// Whether it waits for a tour, in place of landing for want of one.
+  Order wait_or_land(const recon::FlightState& state, const recon::ElementList& elements);
+  bool is_missed(const recon::Element& element) const;
+  bool may_wait(const recon::FlightState& state) const;
+  double left_s(Tick tick) const;
+  std::vector<CollectionPass> passes_of(const recon::Element& element,
+                                        const std::vector<ThreatDisc>& wide) const;
   std::optional<std::string> contradiction(const recon::FlightState& state,
                                            const recon::ElementList& elements) const;
   void loiter(const Circle& circle, Tick tick);
@@ -77,7 +85,8 @@ class MissionManager : public recon::IMissionManager {
   std::vector<ThreatDisc> threats_;         // as last seen
   double planned_area_m2_ = 0;              // that they reached over at the last plan
   double planned_s_ = 0;                    // when that was
-  double look_again_s_ = 20;                // after it, while it flies home for want of a tour
+  double look_again_s_ = kLookAgain_s;      // after it, while it flies home for want of a tour
+  bool waits_ = false;                      // for one
   double barring_hazard_ = 0;               // of the rest of the route, from which on it is barred
   std::vector<std::string> tour_;           // the elements that it passes,
   std::size_t passed_ = 0;                  // of which so many were passed

@@ -69,7 +69,7 @@ std::optional<Conduct::Order> Conduct::fly(std::vector<WayPoint> tour, const std
 }
 
 std::optional<Conduct::Order> Conduct::loiter(const Circle& circle, const std::string& reason) {
-  if (!is_under_way()) return std::nullopt;
+  if (!is_under_way() && !may_try_again()) return std::nullopt;
   enter(MissionPhase::Collection, reason);
   return Loiter{circle};
 }
@@ -78,6 +78,17 @@ std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
   if (is_under_way()) return go_home(reason);
   if (phase_ == MissionPhase::BuiltInTest) enter(MissionPhase::Aborted, reason);
   return std::nullopt;
+}
+
+std::optional<Conduct::Order> Conduct::wait(const Circle& circle, const std::string& reason) {
+  if (!may_try_again()) return std::nullopt;
+  reason_ = reason;
+  return Loiter{circle};
+}
+
+std::optional<Conduct::Order> Conduct::go_home_for_good(const std::string& reason) {
+  sent_home_ = false;
+  return go_home_another_way(reason);
 }
 
 std::optional<Conduct::Order> Conduct::go_home_another_way(const std::string& reason) {

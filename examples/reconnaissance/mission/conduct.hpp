@@ -74,12 +74,18 @@ class Conduct {
   /// leads home.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
 
-  /// A circle is flown until something else is, in place of what is left of the tour, if that is
-  /// under way.
+  /// A circle is flown until something else is, in place of what is left of the tour, or of a way
+  /// home that may yet become another tour.
   std::optional<Order> loiter(const Circle& circle, const std::string& reason);
 
   /// What is left of the tour is given up, if it is under way; before the take-off all is.
   std::optional<Order> give_up(const std::string& reason);
+
+  /// A circle is flown until there is another tour, if it flies home for want of one.
+  std::optional<Order> wait(const Circle& circle, const std::string& reason);
+
+  /// It flies home, if that is under way, and takes no other tour.
+  std::optional<Order> go_home_for_good(const std::string& reason);
 
   /// The way home is to be planned anew, if it is under way and the aircraft does not yet descend.
   std::optional<Order> go_home_another_way(const std::string& reason);

@@ -53,8 +53,10 @@ std::vector<ElementText> parse_elements(const std::string& text) {
     element.size_m = numbers[1];
     element.wanted_sample_m = numbers[2];
     element.margin_m = numbers[3];
-    for (std::size_t i = 4; i < numbers.size(); i += 2)
+    for (std::size_t i = 4; i < numbers.size(); i += 2) {
+      if (std::abs(numbers[i]) > 90 || std::abs(numbers[i + 1]) > 180) refuse(part, kElement);
       element.line.push_back({numbers[i], numbers[i + 1], 0});
+    }
     elements.push_back(std::move(element));
   }
   return elements;
@@ -108,6 +110,19 @@ Local middle_of(const std::vector<Local>& line) {
     left -= length;
   }
   return line.front();
+}
+
+std::vector<Local> prolonged(std::vector<Local> line, double by_m) {
+  const auto move_away = [&](Local& end, const Local& from) {
+    const double course_rad = course_between_rad(from, end);
+    end.north_m += by_m * std::cos(course_rad);
+    end.east_m += by_m * std::sin(course_rad);
+  };
+  if (line.size() < 2) return line;
+  const Local second = line[1];
+  move_away(line.back(), line[line.size() - 2]);
+  move_away(line.front(), second);
+  return line;
 }
 
 std::vector<Local> parts_of_line(const std::vector<Local>& line, double spacing_m) {

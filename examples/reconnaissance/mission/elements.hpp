@@ -53,6 +53,9 @@ bool is_ahead(const Passage& passage);
 /// The middle of a line by its length.
 Local middle_of(const std::vector<Local>& line);
 
+/// A road, and straight on from both of its ends; a single place stays as it is.
+std::vector<Local> prolonged(std::vector<Local> line, double by_m);
+
 /// Places along a line, no further apart than that; its corners are among them.
 std::vector<Local> parts_of_line(const std::vector<Local>& line, double spacing_m);
 

@@ -70,6 +70,19 @@ std::optional<std::string> flaw_of(const Circle& circle, const StandOffTask& tas
   return std::nullopt;
 }
 
+std::optional<Circle> waiting_circle(const Local& aircraft,
+                                     const std::vector<ThreatDisc>& weapons) {
+  constexpr double kRadius_m = 2500, kNear_m = 8500, kAway_m = 500;
+  std::vector<ThreatDisc> wide = weapons;
+  for (ThreatDisc& each : wide) each.radius_m += kRadius_m + kAway_m;
+  const Local runway, centre = out_of_reach(runway, wide);
+  const bool level =
+      map_distance_m(aircraft, runway) < kNear_m && map_distance_m(centre, runway) < kNear_m;
+  if (!level || is_within(centre, wide) || hazard_of_leg(aircraft, centre, weapons, 1) > 0)
+    return std::nullopt;
+  return Circle{centre, kRadius_m, true};
+}
+
 double greatest_distance_m(double ground_sample_m, double pixel_rad, double height_m) {
   // The longer side of a pixel is slant range squared times its angle, over the height.
   const double squared = ground_sample_m * height_m / pixel_rad - height_m * height_m;

@@ -33,6 +33,12 @@ std::optional<Circle> circle_beside(const StandOffTask& task);
 /// Why a circle does not serve the task; nullopt if it does.
 std::optional<std::string> flaw_of(const Circle& circle, const StandOffTask& task);
 
+/// On which an aircraft waits until threats are known better: about the runway at the origin, so
+/// wide that bearings from it cross, and out of reach of all weapons, which it is on the way there,
+/// too. nullopt if there is no room for it on the level ground about the runway, or if the aircraft
+/// is not there.
+std::optional<Circle> waiting_circle(const Local& aircraft, const std::vector<ThreatDisc>& weapons);
+
 /// On the map, from which a pixel is no larger on level ground than that, from a height above it.
 double greatest_distance_m(double ground_sample_m, double pixel_rad, double height_m);
 

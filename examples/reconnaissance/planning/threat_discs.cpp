@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+
+#include "mission/elements.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -112,6 +115,18 @@ Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs) {
     out.east_m = disc->east_m + (disc->radius_m + kBeside_m) * std::sin(away_rad);
   }
   return out;
+}
+
+std::vector<Local> part_out_of_reach(const std::vector<Local>& line,
+                                     std::span<const ThreatDisc> discs) {
+  constexpr double kSpacing_m = 100;
+  const auto places = parts_of_line(line, kSpacing_m);
+  const auto is_in = [&](const Local& place) { return is_within(place, discs); };
+  const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+  const auto first = std::find_if(std::reverse_iterator(middle), places.rend(), is_in).base();
+  const auto last = std::find_if(middle, places.end(), is_in);
+  if (last - first < 2) return line;
+  return {first, last};
 }
 
 double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs) {

@@ -58,6 +58,11 @@ bool is_within(const Local& place, std::span<const ThreatDisc> discs);
 /// of all, or as far from them as a few steps lead.
 Local out_of_reach(const Local& place, std::span<const ThreatDisc> discs);
 
+/// A road from its middle on, in both directions, as far as it is out of reach; all of it if its
+/// middle is not.
+std::vector<Local> part_out_of_reach(const std::vector<Local>& line,
+                                     std::span<const ThreatDisc> discs);
+
 /// How far aside an emitter is passed: as far as was ordered, and out of reach of its own weapon
 /// and of all others that cover it, on whatever course.
 double aside_m(const Local& emitter, double ordered_m, std::span<const ThreatDisc> discs);

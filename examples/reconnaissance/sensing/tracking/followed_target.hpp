@@ -13,30 +13,37 @@ struct FollowRules {
   double patience_s = 15;   ///< Unseen for longer the target is lost.
 };
 
-/// Of the tracks of all that moves about, that of one target: which was reported somewhere, is
-/// found when there is a track near that place, and lost when there has been none for a while.
-/// Then it is looked for where it was last. A pure object.
+/// Of the tracks of all that moves about, that of one target: it was reported somewhere along a
+/// line, is found when there is a track near that line, and lost when there has been none for a
+/// while. Then it is looked for where it was last. A pure object.
 class FollowedTarget {
  public:
-  FollowedTarget(const Eigen::Vector2d& reported_m, double margin_m, const FollowRules& rules = {})
-      : rules_(rules), margin_m_(margin_m) {
-    estimate_.mean.head<2>() = reported_m;
-  }
+  /// `margin_m`: a track so near to the line, or to where the target was lost, is the target's.
+  FollowedTarget(std::vector<Eigen::Vector2d> line_m, double margin_m,
+                 const FollowRules& rules = {});
+
+  /// It may be anywhere along another line, unless it was found.
+  void expect_along(std::vector<Eigen::Vector2d> line_m);
 
   /// All tracks at a time no earlier than that of the last look.
   void look(double now_s, const std::vector<Track>& tracks);
 
   bool found() const { return found_; }
-  /// Where it is, or was reported or lost, at the last look.
+  bool was_ever_found() const { return ever_found_; }
+  /// Where it is, or was lost, at the last look; before, an end of its line.
   const GroundEstimate& estimate() const { return estimate_; }
   /// For how long there was a fresh track of it.
   double followed_s() const { return followed_s_; }
 
  private:
+  double distance_m(const Eigen::Vector2d& place_m, const Eigen::Vector2d& expected_m) const;
+
   FollowRules rules_;
+  std::vector<Eigen::Vector2d> line_m_;  // along which it is looked for
   double margin_m_;
   GroundEstimate estimate_;
   bool found_ = false;
+  bool ever_found_ = false;
   double now_s_ = 0;
   double seen_s_ = 0;
   double followed_s_ = 0;

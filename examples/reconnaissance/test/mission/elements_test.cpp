@@ -22,6 +22,7 @@ TEST_CASE("elements and objects are what a profile names") {
   CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 30 53.4"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 30 north 27.6"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_elements("depot 0 5 0.3 30 53.4 27.6"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_elements("depot 3 5 0.3 30 95 27.6"), skein::InvalidArgument);
 
   const auto objects = parse_objects("53.4 27.6 3 90 2.5");
   REQUIRE(objects.size() == 1);
@@ -59,6 +60,16 @@ TEST_CASE("an element is ahead until it is abeam, however far aside a camera see
   CHECK_FALSE(is_ahead({-1, 700}));
   CHECK_FALSE(is_ahead({5000, 2600}));
   CHECK_FALSE(is_ahead({5000, -2600}));
+}
+
+TEST_CASE("a road goes straight on beyond both of its ends, and a single place does not") {
+  const auto road = prolonged({{0, 0, 0}, {300, 0, 0}, {300, 400, 0}}, 100);
+  REQUIRE(road.size() == 3);
+  CHECK(road[0].north_m == Approx(-100));
+  CHECK(road[1].east_m == 0);
+  CHECK(road[2].north_m == Approx(300));
+  CHECK(road[2].east_m == Approx(500));
+  CHECK(prolonged({{5, 6, 0}}, 100).front().north_m == 5);
 }
 
 TEST_CASE("the middle of a line is half of its length from either end, its parts are all of it") {

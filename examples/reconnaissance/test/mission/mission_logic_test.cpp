@@ -104,6 +104,7 @@ TEST_CASE("a target that is found is circled in place of the tour, and the missi
   const auto home = conduct.fly({}, "followed: home");
   REQUIRE(home);
   CHECK(std::holds_alternative<Conduct::Land>(*home));
+  conduct.go_home_for_good("no fuel");
   CHECK_FALSE(conduct.loiter(circle, "found"));
 }
 
@@ -185,6 +186,35 @@ TEST_CASE("a mission that a refused route has sent home goes on when another tou
   CHECK(conduct.reason() == "tried again");
   conduct.give_up("no fuel");
   CHECK_FALSE(conduct.may_try_again());
+}
+
+TEST_CASE("a mission that was sent home waits for another tour, until there is no time for it") {
+  Conduct conduct(kStrip);
+  const Circle circle{{0, 0, 900}, 2500, true};
+  conduct.fly(kTour, "planned");
+  conduct.decide({.all_fine = true});
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  CHECK_FALSE(conduct.wait(circle, "waits"));
+  conduct.refused("no route to the point");
+  const auto order = conduct.wait(circle, "waits");
+  REQUIRE(order);
+  CHECK(std::get<Conduct::Loiter>(*order).circle.radius_m == 2500);
+  CHECK(conduct.phase() == MissionPhase::Egress);
+  CHECK(conduct.reason() == "waits");
+  CHECK_FALSE(conduct.decide({true, Pilot::Mode::Waiting, 900}));
+  SECTION("a tour") {
+    CHECK(conduct.fly(kTour, "a tour may be left here"));
+    CHECK_FALSE(conduct.wait(circle, "waits"));
+  }
+  SECTION("a target that was found late") {
+    CHECK(conduct.loiter(circle, "found"));
+    CHECK(conduct.phase() == MissionPhase::Collection);
+  }
+  SECTION("the end") {
+    CHECK(std::holds_alternative<Conduct::Land>(*conduct.go_home_for_good("it is late")));
+    CHECK_FALSE(conduct.wait(circle, "waits"));
+    CHECK_FALSE(conduct.fly(kTour, "too late"));
+  }
 }
 
 TEST_CASE("the way down leads along the centre line to the aiming point") {

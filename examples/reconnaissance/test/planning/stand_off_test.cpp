@@ -113,4 +113,20 @@ TEST_CASE("who circles about a target that drives and stops keeps it at a distan
   CHECK(furthest_m < 1500);
 }
 
+TEST_CASE("an aircraft waits about the runway, or as near to it as no weapon reaches") {
+  const auto free = waiting_circle({0, 3000, 0}, {});
+  REQUIRE(free);
+  CHECK(free->centre.north_m == 0);
+  const std::vector<ThreatDisc> weapon{{9000, 0, 8000, 0.02}};
+  const auto beside = waiting_circle({0, 3000, 0}, weapon);
+  REQUIRE(beside);
+  CHECK(beside->centre.north_m < -1900);
+  CHECK(map_distance_m(beside->centre, weapon[0]) > 8000 + beside->radius_m);
+  CHECK_FALSE(waiting_circle({0, 20000, 0}, {}));
+  CHECK_FALSE(waiting_circle({3000, 0, 0}, weapon));  // it is within reach
+  // The weapons leave no level ground.
+  CHECK_FALSE(waiting_circle(
+      {-3000, 0, 0}, {{4000, 0, 9000, 0.02}, {0, -9000, 9000, 0.02}, {0, 9000, 9000, 0.02}}));
+}
+
 }  // namespace stand_off_test

@@ -54,6 +54,16 @@ TEST_CASE("the nearest way out of reach leads away from the site, and out of all
   }
 }
 
+TEST_CASE("a road is flown along from its middle to where a weapon reaches") {
+  const auto part = part_out_of_reach({{0, -9000, 0}, {0, 6000, 0}}, kOne);
+  CHECK(part.front().east_m == -9000);
+  CHECK(part.back().east_m <= 2000);
+  CHECK(part.back().east_m > 1800);
+  // Not where that leaves no road.
+  CHECK(part_out_of_reach({{0, 3000, 0}, {0, 9000, 0}}, kOne).size() == 2);
+  CHECK(part_out_of_reach({{0, 9000, 0}}, kOne).size() == 1);
+}
+
 TEST_CASE("an emitter is passed as far aside as ordered, or out of reach of what covers it") {
   CHECK(aside_m({0, 5000, 0}, 6500, {}) == 6500);
   CHECK(aside_m({0, 9000, 0}, 500, kOne) == 500);  // a weapon that does not reach there

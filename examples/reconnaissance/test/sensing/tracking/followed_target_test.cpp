@@ -20,7 +20,7 @@ Track track(double north_m, double east_m, double seen_s, double east_m_s = 0) {
 }  // namespace
 
 TEST_CASE("a target is found where it was reported, and not where it was not") {
-  FollowedTarget target({1000, 2000}, 300);
+  FollowedTarget target({{1000, 2000}}, 300);
   target.look(1, {});
   CHECK_FALSE(target.found());
   target.look(2, {track(1000, 2400, 2)});
@@ -35,8 +35,28 @@ TEST_CASE("a target is found where it was reported, and not where it was not") {
   CHECK(target.followed_s() == 0);
 }
 
+TEST_CASE("a target is found anywhere along its road, and not as far beside it") {
+  FollowedTarget target({{0, 0}, {0, 1000}}, 200);
+  target.look(1, {track(250, 500, 1), track(0, -250, 1)});
+  CHECK_FALSE(target.found());
+  SECTION("at its very end") {
+    target.look(2, {track(150, 1100, 2)});
+    CHECK(target.found());
+  }
+  SECTION("and on a longer one, once it is expected there") {
+    target.look(2, {track(0, 2000, 2)});
+    CHECK_FALSE(target.found());
+    target.expect_along({{0, -2000}, {0, 3000}});
+    target.look(3, {track(0, 2000, 3)});
+    REQUIRE(target.found());
+    // Then it is where it is.
+    target.expect_along({{0, 0}, {0, 1000}});
+    CHECK(target.estimate().place_m() == Eigen::Vector2d(0, 2000));
+  }
+}
+
 TEST_CASE("of several tracks the one is followed that is where the target must be") {
-  FollowedTarget target({0, 0}, 300);
+  FollowedTarget target({{0, 0}}, 300);
   target.look(0, {track(0, 0, 0, 10)});
   for (int second = 1; second <= 20; ++second) {
     // One that stands beside its way, and one that comes towards it.
@@ -49,7 +69,7 @@ TEST_CASE("of several tracks the one is followed that is where the target must b
 }
 
 TEST_CASE("a target that is not seen is expected further on, and lost after a while") {
-  FollowedTarget target({0, 0}, 300);
+  FollowedTarget target({{0, 0}}, 300);
   target.look(0, {track(0, 0, 0, 10)});
   for (int second = 1; second <= 15; ++second) {
     target.look(second, {});
@@ -67,7 +87,7 @@ TEST_CASE("a target that is not seen is expected further on, and lost after a wh
 }
 
 TEST_CASE("a target may have turned while it was hidden") {
-  FollowedTarget target({0, 0}, 300);
+  FollowedTarget target({{0, 0}}, 300);
   target.look(0, {track(0, 0, 0, 10)});
   target.look(8, {});
   // It stood: 80 m from where it would be, and 230 would be too far at once.
