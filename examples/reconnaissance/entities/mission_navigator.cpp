@@ -26,7 +26,11 @@ namespace {
 
 // Above the ground, as planners are asked for it; and what a way must keep, whoever made it.
 constexpr double kLeastHeight_m = 250;
-constexpr double kLeastClearance_m = 60;
+constexpr double kLeastClearance_m = 200;
+// Of a way home, if none keeps that.
+constexpr double kLeastAnyway_m = 60;
+// The aircraft gains height from an end of a way on which it is lower than that.
+constexpr double kGain = 0.08;
 constexpr double kHighest_m = 4000;
 constexpr double kShareOfClimb = 0.9;
 // Of a site that stands where it is thought to be.
@@ -118,6 +122,18 @@ Navigator::~Navigator() {
 
 recon::Route Navigator::plan(const recon::RouteRequest& request) {
   if (request.through.empty()) throw recon::NoRoute("there is no point to fly over");
+  least_clearance_m_ = kLeastClearance_m;
+  try {
+    return make_route(request);
+  } catch (const recon::NoRoute&) {
+    // An aircraft that flies home needs a way.
+    if (request.least_survival > 0) throw;
+    least_clearance_m_ = kLeastAnyway_m;
+    return make_route(request);
+  }
+}
+
+recon::Route Navigator::make_route(const recon::RouteRequest& request) {
   instead_.clear();
   AE_navigator::Problem problem = problem_of(request);
   recon::Route route;
@@ -180,7 +196,7 @@ std::vector<Local> Navigator::onto_course(const AE_navigator::Problem& problem,
     for (std::size_t i = 1; i + 1 < turned.size(); ++i)
       turned[i].height_m = std::max(turned[i].height_m,
                                     ground_(turned[i].north_m, turned[i].east_m) + kLeastHeight_m);
-    if (clearance_m(turned) < kLeastClearance_m) continue;
+    if (lack_of_height(turned)) continue;
     const double own = hazard_of(problem, way_in_tile(turned));
     if (own <= least + kTurnHazard) return turned;
     if (own >= hazard) continue;
@@ -196,22 +212,34 @@ std::vector<Local> Navigator::way_in_tile(const std::vector<Local>& way) const {
   return result;
 }
 
-/// Above the ground, where it is least.
-double Navigator::clearance_m(const std::vector<Local>& way) const {
+/// Where a way is too low above the ground, in words; nothing if it is not.
+std::optional<std::string> Navigator::lack_of_height(const std::vector<Local>& way) const {
   constexpr double kStep_m = 100;
-  double least_m = std::numeric_limits<double>::infinity();
+  std::vector<Local> places{way.front()};
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Local &from = way[i - 1], &to = way[i];
-    const double length_m = map_distance_m(to, from);
-    const int steps = std::max(1, static_cast<int>(std::ceil(length_m / kStep_m)));
-    for (int step = 0; step <= steps; ++step) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(map_distance_m(to, from) / kStep_m)));
+    for (int step = 1; step <= steps; ++step) {
       const double share = static_cast<double>(step) / steps;
-      const double ground_m = ground_(std::lerp(from.north_m, to.north_m, share),
-                                      std::lerp(from.east_m, to.east_m, share));
-      least_m = std::min(least_m, std::lerp(from.height_m, to.height_m, share) - ground_m);
+      places.push_back({std::lerp(from.north_m, to.north_m, share),
+                        std::lerp(from.east_m, to.east_m, share),
+                        std::lerp(from.height_m, to.height_m, share)});
     }
   }
-  return least_m;
+  const auto above_m = [&](const Local& place) {
+    return place.height_m - ground_(place.north_m, place.east_m);
+  };
+  const auto climbed_m = [&](const Local& end, const Local& place) {
+    return above_m(end) + kGain * map_distance_m(end, place) - 1;
+  };
+  for (const Local& each : places) {
+    const double needed_m =
+        std::min({least_clearance_m_, climbed_m(way.front(), each), climbed_m(way.back(), each)});
+    if (above_m(each) < needed_m)
+      return fmt::format("it is {:.0f} m above the ground at a place where {:.0f} are needed",
+                         above_m(each), needed_m);
+  }
+  return std::nullopt;
 }
 
 /// From end to end: as high as it wants to be there, or as the aircraft can be. It goes on climbing
@@ -283,16 +311,12 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
   task.evaluate.check("can be climbed", [&](const AE_navigator::Route& route) {
     return climbs_too_steeply(problem, route);
   });
-  task.evaluate.check("keeps above the ground",
-                      [&](const AE_navigator::Route& route) -> std::optional<std::string> {
-                        std::vector<Local> way;
-                        for (const AE_navigator::Position& each : route.waypoints)
-                          way.push_back(frame_.to_local(tile_.to_geodetic(place(each))));
-                        const double least_m = clearance_m(way);
-                        if (least_m >= kLeastClearance_m) return std::nullopt;
-                        return fmt::format("it is {:.0f} m above the ground at its lowest place",
-                                           least_m);
-                      });
+  task.evaluate.check("keeps above the ground", [&](const AE_navigator::Route& route) {
+    std::vector<Local> way;
+    for (const AE_navigator::Position& each : route.waypoints)
+      way.push_back(frame_.to_local(tile_.to_geodetic(place(each))));
+    return lack_of_height(way);
+  });
   // That no way leads around is no planner's fault.
   task.evaluate.admitted("survives",
                          [&](const AE_navigator::Route& route) -> std::optional<std::string> {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ class Navigator : public recon::INavigator {
   recon::Route plan(const recon::RouteRequest& request) override;
 
  private:
+  recon::Route make_route(const recon::RouteRequest& request);
   AE_navigator::Problem problem_of(const recon::RouteRequest& request);
   void pose(AE_navigator::Problem& problem, const recon::Position& from,
             const recon::Position& to) const;
@@ -36,7 +38,7 @@ class Navigator : public recon::INavigator {
   AE_navigator::Route ask_planner(const AE_navigator::Problem& problem, double least_survival);
   std::vector<Local> way_in_tile(const std::vector<Local>& way) const;
   void lift(recon::Position& point) const;
-  double clearance_m(const std::vector<Local>& way) const;
+  std::optional<std::string> lack_of_height(const std::vector<Local>& way) const;
   std::vector<Local> onto_course(const AE_navigator::Problem& problem,
                                  const std::vector<Local>& way, double begin_course_rad,
                                  double end_course_rad, double radius_m) const;
@@ -50,6 +52,7 @@ class Navigator : public recon::INavigator {
   std::uint32_t asked_ = 0;  // requests for ways so far
   std::string instead_;      // who is asked for the rest of a route, after one whose planner failed
   std::atomic<std::uint32_t> routes_{0};
+  double least_clearance_m_ = 0;  // of the route that is made
 
   Stream<recon::ThreatPicture> threats_;
   Member member_;

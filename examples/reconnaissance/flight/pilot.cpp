@@ -106,19 +106,30 @@ Demand Pilot::fly_route(const Sight& sight) {
                true};
     return fly_circle(sight);
   }
+  return above_ground(rules_, fly_leg(sight, motion, rules_.cruise_m_s), sight, low_m(motion));
+}
+
+Demand Pilot::fly_leg(const Sight& sight, const Motion& motion, double speed_m_s) const {
   return limited(
       guidance_.along(motion, line(leg_)),
       climb_rad(line(leg_), motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
-      rules_.cruise_m_s);
+      speed_m_s);
+}
+
+/// Beside its leg the aircraft meets ground at which nobody has looked, and climbs in time.
+double Pilot::low_m(const Motion& motion) const {
+  constexpr double kBeside_m = 500;
+  return std::abs(along(line(leg_), motion).right_m) > kBeside_m ? kLowBeside_m : kLow_m;
 }
 
 Demand Pilot::fly_circle(const Sight& sight) {
   const Motion motion = motion_of(sight.measured);
   const Line level{circle_.centre, circle_.centre};
-  return limited(
+  const Demand demand = limited(
       guidance_.around(motion, circle_),
       climb_rad(level, motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
       rules_.cruise_m_s);
+  return above_ground(rules_, demand, sight, kLow_m);
 }
 
 Demand Pilot::fly_landing(const Sight& sight) {
@@ -129,13 +140,12 @@ Demand Pilot::fly_landing(const Sight& sight) {
   }
   const Motion motion = motion_of(sight.measured);
   if (leg_ + 1 < legs()) advance_leg(motion);
-  const double bank = guidance_.along(motion, line(leg_));
   const bool last = leg_ + 1 == legs();
-  if (last && sight.radar_height_m < rules_.flare_height_m) return flare(sight, bank);
-  return limited(
-      bank,
-      climb_rad(line(leg_), motion, sight.measured.position.height_m, sight.measured.airspeed_m_s),
-      last ? rules_.approach_m_s : rules_.cruise_m_s);
+  if (last && sight.radar_height_m < rules_.flare_height_m)
+    return flare(sight, guidance_.along(motion, line(leg_)));
+  const Demand demand = fly_leg(sight, motion, last ? rules_.approach_m_s : rules_.cruise_m_s);
+  const bool straight_down = leg_ + 2 >= legs();
+  return straight_down ? demand : above_ground(rules_, demand, sight, low_m(motion));
 }
 
 Demand Pilot::flare(const Sight& sight, double bank_rad) const {
@@ -174,13 +184,21 @@ double Pilot::route_course_rad(const Local& from) const {
   return course_between_rad(from, to);
 }
 
+Demand above_ground(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
+                    double low_m) {
+  constexpr double kFull_m = 40;
+  Demand instead = demand;
+  const double low = std::clamp((low_m - sight.radar_height_m) / kFull_m, 0.0, 1.0);
+  if (low > 0) instead.climb_rad = std::max(demand.climb_rad, low * rules.greatest_climb_rad);
+  return instead;
+}
+
 Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
                std::optional<double> course_rad, std::optional<double> climb_m_s) {
   // The bank for each radian that the course is off.
   constexpr double kGain = 1.5;
-  // Above ground. Below the first it is not led down; below the second, which is less than routes
-  // have, it climbs, the lower the more.
-  constexpr double kLeastDescent_m = 300, kLow_m = 240, kLowest_m = 200, kGreatestClimb_m_s = 10;
+  // Above ground.
+  constexpr double kLeastDescent_m = 300;
   const Measurement& measured = sight.measured;
   const auto climb_rad = [&](double wanted_m_s) {
     const double rad =
@@ -195,11 +213,7 @@ Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sigh
   }
   if (climb_m_s && (*climb_m_s >= 0 || sight.radar_height_m >= kLeastDescent_m))
     instead.climb_rad = climb_rad(*climb_m_s);
-  if (sight.radar_height_m < kLow_m) {
-    const double low = std::min((kLow_m - sight.radar_height_m) / (kLow_m - kLowest_m), 1.0);
-    instead.climb_rad = std::max(instead.climb_rad, climb_rad(low * kGreatestClimb_m_s));
-  }
-  return instead;
+  return above_ground(rules, instead, sight, kLow_m);
 }
 
 }  // namespace reconnaissance

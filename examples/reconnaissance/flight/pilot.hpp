@@ -87,6 +87,8 @@ class Pilot {
   Demand fly_circle(const Sight& sight);
   Demand fly_landing(const Sight& sight);
   Demand flare(const Sight& sight, double bank_rad) const;
+  Demand fly_leg(const Sight& sight, const Motion& motion, double speed_m_s) const;
+  double low_m(const Motion& motion) const;
   bool advance_leg(const Motion& motion);
   Demand limited(double bank_rad, double climb_rad, double airspeed_m_s) const;
   Line line(std::size_t leg) const { return {route_[leg], route_[leg + 1]}; }
@@ -100,10 +102,20 @@ class Pilot {
   std::size_t leg_ = 0;
 };
 
+/// Above ground, below which an aircraft climbs: on its route, which keeps higher than that, or
+/// while it avoids another aircraft; and on its way back to the route, where hills may rise as
+/// steeply as it climbs.
+inline constexpr double kLow_m = 240, kLowBeside_m = 400;
+
+/// A demand, or, below a height above ground, at least a climb: the more the lower, and all that
+/// the rules allow from 40 m below that height on.
+Demand above_ground(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
+                    double low_m);
+
 /// What it takes to turn onto a course over ground and to climb as an advisory asks, within what
 /// the rules allow, in place of what a route demands. Each part may be missing. Nobody has looked
-/// at the ground beside the route: below 300 m above it no advisory leads down, and below 240 m the
-/// demand is to climb, the more the lower.
+/// at the ground beside the route: below 300 m above it no advisory leads down, and below kLow_m
+/// the demand is to climb.
 Demand advised(const FlightRules& rules, const Demand& demand, const Pilot::Sight& sight,
                std::optional<double> course_rad, std::optional<double> climb_m_s);
 

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "flight/angles.hpp"
 
@@ -32,11 +33,9 @@ struct Flight {
     std::array<std::optional<Measurement>, 3> sets;
     for (std::size_t i = 0; i < sets.size(); ++i)
       sets[i] = models[i].measure(aircraft, kStep_s, random);
-    const Pilot::Sight sight{*voter.vote(sets, kStep_s),
-                             aircraft.position.height_m - strip.threshold.height_m,
-                             aircraft.on_ground};
+    const Pilot::Sight sight{*voter.vote(sets, kStep_s), height_m(), aircraft.on_ground};
     const Demand demand = pilot.fly(sight);
-    aircraft = advance(airframe, aircraft, demand, wind, strip.threshold.height_m, kStep_s);
+    aircraft = advance(airframe, aircraft, demand, wind, ground_m(), kStep_s);
     time_s += kStep_s;
     REQUIRE_FALSE(aircraft.stalled);
   }
@@ -48,7 +47,8 @@ struct Flight {
     return false;
   }
 
-  double height_m() const { return aircraft.position.height_m - strip.threshold.height_m; }
+  double ground_m() const { return strip.threshold.height_m + hill_m(aircraft.position); }
+  double height_m() const { return aircraft.position.height_m - ground_m(); }
 
   Airframe airframe;
   Strip strip{{0, 0, 180}, radians(80), 1500};
@@ -58,6 +58,7 @@ struct Flight {
   Voter voter;
   Random random{11};
   Pilot pilot{FlightRules{}, l1()};
+  std::function<double(const Local&)> hill_m = [](const Local&) { return 0; };
   double time_s = 0;
 };
 
@@ -180,6 +181,31 @@ TEST_CASE("an advisory leads neither into the ground nor into hills beside the r
   CHECK(aircraft.position.north_m > 8000);
 }
 
+TEST_CASE("back to its route the aircraft climbs over hills that the route leads around") {
+  Flight flight;
+  flight.pilot.take_off(flight.strip);
+  REQUIRE(flight.fly_until([&] { return flight.height_m() > 250; }));
+  // On the way back to it hills rise by a tenth, up to 150 m.
+  const Local from = flight.aircraft.position;
+  REQUIRE(flight.pilot
+              .follow({{from.north_m + 6000, from.east_m - 20000, from.height_m},
+                       {from.north_m + 6000, from.east_m + 40000, from.height_m}})
+              .empty());
+  double lowest_m = 1e9;
+  flight.hill_m = [&](const Local& place) {
+    return std::clamp((place.north_m - from.north_m - 1500) / 10, 0., 150.) *
+           std::clamp((from.north_m + 5400 - place.north_m) / 500, 0., 1.);
+  };
+  flight.fly_until(
+      [&] {
+        lowest_m = std::min(lowest_m, flight.height_m());
+        return flight.aircraft.position.north_m > from.north_m + 5900;
+      },
+      300);
+  CHECK(flight.aircraft.position.north_m > from.north_m + 5900);
+  CHECK(lowest_m > 200);
+}
+
 TEST_CASE("an advisory is followed far above the ground") {
   const FlightRules rules;
   const Measurement measured{.north_m_s = 35, .airspeed_m_s = 35};
@@ -188,7 +214,7 @@ TEST_CASE("an advisory is followed far above the ground") {
   };
   CHECK(climb(400, -3.5) == Approx(std::asin(-0.1)));
   CHECK(climb(400, std::nullopt) == 0.01);
-  CHECK(climb(230, std::nullopt) > 0.05);
+  CHECK(climb(220, std::nullopt) > 0.05);
   CHECK(climb(200, -3.5) > climb(230, -3.5));
   CHECK(climb(230, 3) == Approx(std::asin(3 / 35.)));
 }
