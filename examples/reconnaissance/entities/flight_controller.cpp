@@ -134,9 +134,19 @@ void FlightController::fly(Tick tick) {
   obey(tick);
   const auto sensors = sensors_.at(tick);
   if (!sensors) return;
-  if (const auto sight = look(*sensors)) last_sight_ = sight;
+  const auto sight = look(*sensors);
+  if (sight) last_sight_ = sight;
   if (!last_sight_) return;
-  publish(tick, avoid(tick, pilot_.fly(*last_sight_)), *last_sight_, *sensors);
+  const Demand demand = sight ? avoid(tick, pilot_.fly(*sight)) : fly_blind(*sensors);
+  publish(tick, demand, *last_sight_, *sensors);
+}
+
+/// Level and straight on, until a set of sensors measures again. What looks downwards is none of
+/// these sets.
+Demand FlightController::fly_blind(const recon::Sensors& sensors) const {
+  if (sensors.on_ground) return {};
+  const Pilot::Sight below{last_sight_->measured, sensors.radar_height_m, false};
+  return above_ground(rules_, {0, 0, rules_.cruise_m_s}, below, kLowBeside_m);
 }
 
 /// An advisory goes before the route, but not before a take-off or the straight part that leads

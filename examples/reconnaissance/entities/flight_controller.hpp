@@ -46,6 +46,7 @@ class FlightController : public recon::IFlightController {
   const LocalFrame& frame() const { return frame_ ? *frame_ : *stand_; }
   std::optional<Pilot::Sight> look(const recon::Sensors& sensors);
   double ask_guidance(const Motion& motion, const Line& leg, double circle_radius_m);
+  Demand fly_blind(const recon::Sensors& sensors) const;
   Demand avoid(Tick tick, const Demand& demand);
   void publish(Tick tick, const Demand& demand, const Pilot::Sight& sight,
                const recon::Sensors& sensors);

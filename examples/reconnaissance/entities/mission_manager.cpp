@@ -44,6 +44,8 @@ int tries_for(const recon::Element& element) {
 // When threats reach over so much more or less ground than those that were planned with, another
 // way is looked for where the present one is dangerous, and another tour where one was refused.
 constexpr double kOtherThreats = 0.2;
+// Nobody knows where an aircraft is that no sensors were heard of for so long.
+constexpr double kBlind_s = 60;
 // What the turns and the approach of a landing take, beside the way there.
 constexpr double kLanding_s = 500;
 // Of the route home, from the last: the approach, on which no other tour is looked for.
@@ -134,6 +136,11 @@ void MissionManager::manage(Tick tick) {
   const auto state = flight_.at(tick);
   if (!state) return;
   const Conduct::Situation now = situation(tick, *state);
+  if (state->sets_heard > 0) heard_ = tick;
+  if (seconds_of(tick - heard_) > kBlind_s) {
+    conduct_->abort(fmt::format("no set of sensors was heard for {:.0f} s", kBlind_s));
+    return tell(tick);
+  }
   if (const auto elements = elements_.at(tick)) {
     if (const Order order = reconsider(*state, *elements, now)) {
       carry_out(*order, tick, *state);

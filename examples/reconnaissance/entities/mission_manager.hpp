@@ -97,7 +97,8 @@ class MissionManager : public recon::IMissionManager {
   Local told_circle_{};                     // the centre of that which was told last
   bool nothing_new_ = false;                // likewise
   std::optional<Tick> took_off_;
-  int tours_ = 0;  // that were asked for
+  Tick heard_ = 0;  // when a set of sensors was, last
+  int tours_ = 0;   // that were asked for
   std::optional<recon::MissionStatus> told_;
 
   Stream<recon::FlightState> flight_;

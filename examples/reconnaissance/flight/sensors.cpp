@@ -110,7 +110,8 @@ std::optional<Measurement> Voter::vote(
   auto heard = measurements;
   for (std::size_t i = 0; i < sets_.size(); ++i)
     if (sets_[i].out) heard[i].reset();
-  const auto before = mid_measurement(heard);
+  // If no set is heard, all that measure are believed alike.
+  const auto before = mid_measurement(mid_measurement(heard) ? heard : measurements);
   for (std::size_t i = 0; i < sets_.size(); ++i) {
     Set& set = sets_[i];
     const bool fit = before && measurements[i] && agrees(limits_, *measurements[i], *before);
@@ -119,7 +120,8 @@ std::optional<Measurement> Voter::vote(
     set = {.out = !set.out, .for_s = 0};
     heard[i] = set.out ? std::nullopt : measurements[i];
   }
-  return mid_measurement(heard);
+  const auto voted = mid_measurement(heard);
+  return voted ? voted : before;
 }
 
 }  // namespace reconnaissance

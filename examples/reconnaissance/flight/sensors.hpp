@@ -76,8 +76,8 @@ class Voter {
  public:
   explicit Voter(const VotingLimits& limits = {}) : limits_(limits) {}
 
-  /// The measurement that stands, `seconds` after the one before; nothing where no set that is
-  /// heard measures.
+  /// The measurement that stands, `seconds` after the one before: of the sets that are heard, or,
+  /// if none of them measures, of all that do; nothing if none does.
   std::optional<Measurement> vote(const std::array<std::optional<Measurement>, 3>& measurements,
                                   double seconds);
 

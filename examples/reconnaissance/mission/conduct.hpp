@@ -93,6 +93,9 @@ class Conduct {
   /// The order that is to be given now, if any. Its phase begins with it.
   std::optional<Order> decide(const Situation& situation);
 
+  /// The mission ends in flight, whatever is under way.
+  void abort(const std::string& reason) { enter(MissionPhase::Aborted, reason); }
+
   /// What was ordered cannot be done: the mission goes home, where another tour may be given to it,
   /// or, without a way home, is over.
   std::optional<Order> refused(const std::string& reason);

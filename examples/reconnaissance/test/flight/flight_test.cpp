@@ -308,6 +308,18 @@ TEST_CASE("with all sets silent there is no measurement, and with two out the th
   CHECK(voter.vote({std::nullopt, std::nullopt, measured}, 0.1));
 }
 
+TEST_CASE("sets that measure again after all were silent are heard at once") {
+  Random random(1);
+  Voter voter;
+  for (int i = 0; i < 20; ++i) CHECK_FALSE(voter.vote({}, 0.1));
+  REQUIRE((voter.out(0) && voter.out(1) && voter.out(2)));
+  SensorModel model;
+  for (int i = 0; i < 60; ++i)
+    CHECK(voter.vote({std::nullopt, model.measure(flying(), 0.1, random), std::nullopt}, 0.1));
+  CHECK_FALSE(voter.out(1));
+  CHECK(voter.out(0));
+}
+
 TEST_CASE("the error of a position wanders: it is as wide as it says, and near to what it was") {
   Random random(5);
   SensorModel model({.level_m = 3, .wander_time_s = 10});
