@@ -185,7 +185,12 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
   if (phase == MissionPhase::BuiltInTest) {
     if (const auto cause = contradiction(state, elements))
       return conduct_->give_up("the order contradicts itself: " + *cause);
-    return now.all_fine && conduct_->tour().empty() ? tour(state, elements, "planned") : Order{};
+    if (!now.all_fine || !conduct_->tour().empty()) return {};
+    tour(state, elements, "planned");
+    const bool none = conduct_->tour().empty() && !elements.elements.empty();
+    return none ? conduct_->give_up(
+                      "no element can be collected within the time, fuel and risk that are allowed")
+                : Order{};
   }
   if (conduct_->may_try_again())
     if (Order order = pursue(state, elements)) return order;
