@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "skein/error.hpp"
+#include "stepped_time.hpp"
 #include "time_keeper.hpp"
 
 namespace reconnaissance {
@@ -33,6 +34,7 @@ std::uint64_t new_life() {
 
 Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
     : entity_(entity),
+      stepped_(dynamic_cast<SteppedTime*>(&entity.clock())),
       work_(std::move(work)),
       told_{entity.options().name, new_life(), period_of(rate_hz), -1, false},
       time_(entity.subscription<recon::MissionTime>(
@@ -40,6 +42,7 @@ Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
           [this](const recon::MissionTime& time) { hear(time); }, {.executor = &hearing_})) {}
 
 Participant::~Participant() {
+  if (number_ != 0) stepped_->leave(number_);
   if (!thread_.joinable()) return;
   thread_.request_stop();
   thread_.join();
@@ -53,6 +56,14 @@ Participant::~Participant() {
 }
 
 void Participant::start() {
+  if (stepped_) {
+    number_ = stepped_->join(told_.period_ticks, [this](Tick tick) {
+      std::unique_lock lock(mutex_);
+      begun_ = tick;
+      do_work(lock);
+    });
+    return;
+  }
   // Not sooner: the time's keeper counts publishers to know who is there.
   acknowledgments_.emplace(
       entity_.publisher<recon::Acknowledgment>(kAcknowledgments, acknowledgment_qos()));

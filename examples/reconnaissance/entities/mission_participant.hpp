@@ -15,9 +15,12 @@
 
 namespace reconnaissance {
 
+class SteppedTime;
+
 /// Takes part in the mission's time: does its work in each tick at which it is due, on a thread of
 /// its own, and acknowledges the tick when the work is done. Whatever the work has published and
-/// called by then has happened in that tick. Thread-safe.
+/// called by then has happened in that tick. If the entity's clock is a SteppedTime, the work is
+/// done on the thread that makes that time instead. Thread-safe.
 class Participant {
  public:
   using Work = std::function<void(Tick)>;
@@ -43,6 +46,8 @@ class Participant {
   void acknowledge(std::unique_lock<std::mutex>& lock);
 
   skein::Entity& entity_;
+  SteppedTime* const stepped_;  // nullptr: time is told on topics
+  std::size_t number_ = 0;      // in the stepped time, once it has joined
   Work work_;
   recon::Acknowledgment told_;
   std::optional<skein::Publisher<recon::Acknowledgment>> acknowledgments_;
