@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "convert.hpp"
 #include "deciding.hpp"
@@ -41,30 +42,31 @@ Nhp::Nhp(skein::Entity& entity, const skein::ParameterValues& values)
       flight_(entity, topic::kFlightState),
       healths_(entity.subscription<recon::Health>(
           topic::kHealth, skein::TopicQos::state(),
-          [this](const recon::Health& health) { hear(health); })),
+          [this](const recon::Health& health) { hear(health); }, {.executor = &hearing_})),
       mode_(entity.publisher<recon::MissionMode>(topic::kMode.name, skein::TopicQos::state())),
       member_(entity, values, [this](Tick tick) {
         if (is_due(topic::kMode.period, tick)) judge(tick);
       }) {}
 
 void Nhp::hear(const recon::Health& health) {
-  {
-    std::lock_guard lock(mutex_);
+  if (health.tick < judged_)
     health_[health.entity] = health;
-  }
-  heard_.notify_all();
+  else
+    early_.push_back(health);
 }
 
 /// By what everybody has told before this tick: so it is the same in each run.
 void Nhp::judge(Tick tick) {
+  judged_ = tick;
+  for (const recon::Health& each : std::exchange(early_, {})) hear(each);
   recon::MissionMode mode;
   mode.tick = tick;
   mode.mode = recon::Mode::Starting;
   missing_.clear();
-  std::unique_lock lock(mutex_);
   if (tick > 0) {
     const Tick wanted = (tick - 1) / kHealthPeriod * kHealthPeriod;
-    heard_.wait_for(lock, kHeardWithin, [&] { return all_heard(wanted); });
+    hearing_.run_until(std::chrono::steady_clock::now() + kHeardWithin,
+                       [&] { return all_heard(wanted); });
     for (const std::string& name : crew_) {
       const std::string trouble = trouble_of(name, wanted);
       if (trouble.empty()) continue;
@@ -74,7 +76,6 @@ void Nhp::judge(Tick tick) {
     started_ = started_ || mode.reason.empty();
     if (started_) mode.mode = mode.reason.empty() ? recon::Mode::Normal : recon::Mode::Limited;
   }
-  lock.unlock();
   if (mode.mode != recon::Mode::Starting) order_flight(tick, mode);
   mode_.publish(mode);
 }

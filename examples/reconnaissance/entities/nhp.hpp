@@ -1,8 +1,6 @@
 #pragma once
 
-#include <condition_variable>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "member.hpp"
 #include "mission.idl.hpp"
 #include "skein/entity.hpp"
+#include "skein/executor.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
 
@@ -41,12 +40,13 @@ class Nhp {
   double fuel_kg_m_;                // of the way home before it is planned
   std::optional<LocalFrame> home_;  // about the first place of the aircraft
   std::vector<recon::MissingEntity> missing_;
-  mutable std::mutex mutex_;
-  std::condition_variable heard_;
-  std::map<std::string, recon::Health> health_;
+  Tick judged_ = 0;
+  std::map<std::string, recon::Health> health_;  // told before that
+  std::vector<recon::Health> early_;             // told since
   bool started_ = false;
 
   Stream<recon::FlightState> flight_;
+  skein::ManualExecutor hearing_;  // so that what is heard is heard in the mission's time
   skein::Subscription<recon::Health> healths_;
   skein::Publisher<recon::MissionMode> mode_;
   Member member_;
