@@ -38,9 +38,10 @@ std::vector<Local> with_turns(const std::vector<Local>& way, double begin_course
   std::vector<Local> turned{way.front()};
   for (int i = 0; i < std::abs(first_quarters); ++i) {
     const Local corner = ahead(turned.back(), begin_course_rad, radius_m);
-    begin_course_rad += std::copysign(std::numbers::pi / 2, first_quarters);
-    turned.push_back(corner);
-    turned.push_back(ahead(corner, begin_course_rad, radius_m));
+    const double turned_rad =
+        begin_course_rad + std::copysign(std::numbers::pi / 2, first_quarters);
+    turn_onto(ahead(corner, turned_rad, radius_m), begin_course_rad, turned_rad, radius_m, turned);
+    begin_course_rad = turned_rad;
   }
   const double near_m = 4 * radius_m;
   std::vector<Local> kept{turned.back()};
