@@ -63,7 +63,7 @@ GroundStation::GroundStation(const InSystem& system, const skein::ParameterValue
       judge_(judge_of(frame_, order_.runway, values)),
       recorder_(system, frame_),
       scoring_(system, frame_, values) {
-  const auto state = skein::TopicQos::state();
+  const auto state = all_of_state();
   hear<recon::Truth>(topic::kTruth.name);
   hear<recon::MissionStatus>(topic::kStatus, state);
   hear<recon::MissionMode>(topic::kMode.name, state);

@@ -31,7 +31,7 @@ double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanosecond
 
 Recorder::Recorder(const InSystem& system, const LocalFrame& frame)
     : system_(system), frame_(frame) {
-  const auto state = skein::TopicQos::state();
+  const auto state = all_of_state();
   hear<recon::Truth>(topic::kTruth.name);
   hear<recon::FlightState>(topic::kFlightState.name, stream_qos());
   hear<recon::MissionStatus>(topic::kStatus, state);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "convert.hpp"
+#include "stream.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -23,10 +24,10 @@ Scoring::Scoring(const InSystem& system, const LocalFrame& frame,
               values.find<double>("Least in view").value_or(PursuitConditions{}.least_in_view),
               values.find<double>("Greatest track error")
                   .value_or(PursuitConditions{}.greatest_error_m)}) {
-  hear<recon::ElementList>(topic::kElements.name, skein::TopicQos::state());
+  hear<recon::ElementList>(topic::kElements.name, all_of_state());
   hear<recon::ObjectTruths>(topic::kObjects.name);
   hear<recon::ThreatTruth>(topic::kThreatTruth.name);
-  hear<recon::ThreatPicture>(topic::kThreats.name, skein::TopicQos::state());
+  hear<recon::ThreatPicture>(topic::kThreats.name, all_of_state());
 }
 
 std::vector<Check> Scoring::checks() const {

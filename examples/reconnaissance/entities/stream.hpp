@@ -24,6 +24,13 @@ inline skein::TopicQos stream_qos() {
   return qos;
 }
 
+/// To read every value of a state, though the reader is late by some.
+inline skein::TopicQos all_of_state() {
+  skein::TopicQos qos = skein::TopicQos::state();
+  qos.history_depth = 64;
+  return qos;
+}
+
 /// As Skein publishes decisions: outside of any system.
 inline skein::TopicQos decisions_qos() {
   skein::TopicQos qos = stream_qos();
