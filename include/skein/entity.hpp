@@ -84,25 +84,53 @@ struct ServiceOptions {
   std::vector<std::string> subcomponents{};
 };
 
-/// What cannot be provided as an implementation of `Interface`.
+/// What is taken as an implementation of `Interface`, whatever it lacks.
 template <class Given, class Interface>
-concept NoImplementation =
-    !std::is_convertible_v<Given, std::shared_ptr<Interface>> &&
-    !requires(Given && given, void (&take)(std::shared_ptr<typename Interface::Deferred>)) {
+concept Implementation = std::is_convertible_v<Given, std::shared_ptr<Interface>> ||
+    requires(Given&& given, void (&take)(std::shared_ptr<typename Interface::Deferred>)) {
   take(std::forward<Given>(given));
 };
 
-/// Says in words why it cannot.
-template <class Given>
-[[noreturn]] void refuse_implementation() {
-  constexpr bool shared = requires(Given & given) { given.use_count(); };
-  static_assert(shared,
+/// One of a class that nobody can make an object of.
+template <class Given, class Interface>
+concept AbstractImplementation = Implementation<Given, Interface> && requires {
+  typename std::remove_cvref_t<Given>::element_type;
+  requires std::is_abstract_v<typename std::remove_cvref_t<Given>::element_type>;
+  requires !std::is_same_v<typename std::remove_cvref_t<Given>::element_type, Interface>;
+  requires !std::is_same_v<typename std::remove_cvref_t<Given>::element_type,
+                           typename Interface::Deferred>;
+};
+
+/// What cannot be provided as an implementation of `Interface`.
+template <class Given, class Interface>
+concept NoImplementation =
+    !Implementation<Given, Interface> || AbstractImplementation<Given, Interface>;
+
+/// Says in words why it cannot, and which other arguments are wrong. A type, not a function: the
+/// compiler looks at the types of a call before it compiles the functions that the arguments call,
+/// such as a make_shared() of an abstract class, of which it says some fifty lines.
+template <class Given, class Interface, class Name = std::string, class Owner = std::string>
+struct Refused {
+  static constexpr bool kNamed =
+      std::is_convertible_v<Name, std::string> && std::is_convertible_v<Owner, std::string>;
+  static constexpr bool kFits = !kNamed || Implementation<Given, Interface>;
+  static constexpr bool kShared = requires(Given & given) { given.use_count(); };
+  static_assert(kNamed,
+                "provide_csp() takes the CSP's name, its owner's Entity::id(), the "
+                "implementation, and options: "
+                "provide_csp<INTERFACE>(\"AStar\", entity.id(), csp)");
+  static_assert(kFits || kShared,
                 "an implementation is given as a std::shared_ptr: "
                 "provide<INTERFACE>(std::make_shared<YOUR_CLASS>())");
-  static_assert(!shared,
+  static_assert(kFits || !kShared,
                 "this class does not implement the interface: derive it, publicly, from INTERFACE, "
                 "or from INTERFACE::Deferred if it answers later");
-}
+  static_assert(!kNamed || !AbstractImplementation<Given, Interface>,
+                "this class lacks an operation of the interface, or has it with other parameters: "
+                "the compiler lists it below as pure. If it is a base of the class that has all, "
+                "give a std::shared_ptr<INTERFACE>");
+  using type = Guid;
+};
 
 /// An autonomous entity: a peer with one DDS participant, a Head that decides, Bodies that
 /// implement its public services, and CSPs that implement its managed ones; it can also publish and
@@ -145,9 +173,7 @@ class Entity {
   Guid provide(std::shared_ptr<Servant> servant, const ServiceOptions& options);
   /// Refuses in words what implements no `Interface`.
   template <class Interface, NoImplementation<Interface> Given>
-  Guid provide(Given&&, const ServiceOptions& = {}) {
-    refuse_implementation<Given>();
-  }
+  typename Refused<Given, Interface>::type provide(Given&&, const ServiceOptions& = {});
 
   /// Provides a CSP to its owner, `system/name` of an entity, and to nobody else. If the owner is
   /// this entity, the CSP is called without leaving the process. `name` is the CSP's, not the
@@ -169,15 +195,9 @@ class Entity {
   /// Refuses in words what implements no `Interface`, and other arguments than these.
   template <class Interface, class Name, class Owner, class Given>
   requires(NoImplementation<Given, Interface> || !std::is_convertible_v<Name, std::string> ||
-           !std::is_convertible_v<Owner, std::string>) Guid
-      provide_csp(Name&&, Owner&&, Given&&, const ServiceOptions& = {}) {
-    static_assert(
-        std::is_convertible_v<Name, std::string> && std::is_convertible_v<Owner, std::string>,
-        "provide_csp() takes the CSP's name, its owner's Entity::id(), the "
-        "implementation, and options: "
-        "provide_csp<INTERFACE>(\"AStar\", entity.id(), csp)");
-    refuse_implementation<Given>();
-  }
+           !std::is_convertible_v<Owner, std::string>)
+      typename Refused<Given, Interface, Name, Owner>::type
+      provide_csp(Name&&, Owner&&, Given&&, const ServiceOptions& = {});
 
   /// Withdraws one service of this entity. Queued calls are refused; running calls are told to
   /// stop, and awaited for up to 2 s; what those that hang return later goes nowhere. Other

@@ -12,6 +12,13 @@ struct Rows : IPlanner {
   survey::Track plan(const Area&) override { return {}; }
 };
 
+struct Unplanned : IPlanner {};
+struct Misplanned : IPlanner {
+  survey::Track plan(const Area&) const { return {}; }
+};
+struct Later : IPlanner::Deferred {};
+std::shared_ptr<Later> later();
+
 void use(skein::ComponentRegistry& registry, skein::Entity& entity) {
   const auto make_csp = [](const skein::ParameterValues&) { return std::make_shared<Rows>(); };
   registry.add_csp<IPlanner>("Rows", make_csp);  // the factory of a CSP takes .* and returns
@@ -31,8 +38,12 @@ void use(skein::ComponentRegistry& registry, skein::Entity& entity) {
 
   const auto rows = std::make_shared<Rows>();
   const auto number = std::make_shared<int>();
-  entity.provide<IPlanner>(Rows(), {.threads = 2});           // is given as a std::shared_ptr
-  entity.provide<IPlanner>(area);                             // does not implement the interface
+  entity.provide<IPlanner>(Rows(), {.threads = 2});          // is given as a std::shared_ptr
+  entity.provide<IPlanner>(area);                            // does not implement the interface
+  entity.provide<IPlanner>(std::make_shared<Unplanned>());   // lacks an operation
+  entity.provide<IPlanner>(std::make_unique<Misplanned>());  // or has it with other parameters
+  entity.provide<IPlanner>(later());                         // lacks an operation
+  entity.provide_csp<IPlanner>("Rows", entity.id(), std::make_shared<Unplanned>());  // lacks an
   entity.provide_csp<IPlanner>("Rows", entity.id(), Area());  // is given as a std::shared_ptr
   entity.provide_csp<IPlanner>("Rows", entity.id(), number);  // does not implement the interface
   entity.provide_csp<IPlanner>("Rows", entity, rows);         // its owner's Entity::id

@@ -1,4 +1,4 @@
-"""wrong_use_test.py SOURCE COMPILER ARGUMENTS…: the compiler finds each line of SOURCE that ends with a comment, and says what stands there."""
+"""wrong_use_test.py SOURCE COMPILER ARGUMENTS…: the compiler finds each line of SOURCE that ends with a comment, and first says what stands there."""
 
 import collections
 import re
@@ -19,11 +19,13 @@ for row in output.splitlines():
         said[line] += row + "\n"
 with open(source, encoding="utf-8") as stream:
     wanted = {number: found.group(1) for number, text in enumerate(stream, 1) if (found := re.search(r"; *// (.+)$", text))}
-for number, expected in wanted.items():
-    if not re.search(expected, said[number]):
-        print(f"{source}:{number}: the compiler is to say '{expected}', and says:\n{said[number]}")
-for number in set(said) - set(wanted):
+first = {number: next((row for row in text.splitlines() if "error: " in row), "") for number, text in said.items()}
+untold = [number for number, expected in wanted.items() if not re.search(expected, first.get(number, ""))]
+unexpected = set(said) - set(wanted)
+for number in untold:
+    print(f"{source}:{number}: the compiler is to say first '{wanted[number]}', and says:\n{said[number]}")
+for number in unexpected:
     print(f"{source}:{number}: is found, and no comment says so:\n{said[number]}")
-failed = any(not re.search(expected, said[number]) for number, expected in wanted.items()) or set(said) - set(wanted)
+failed = untold or unexpected
 print(output if failed else f"{len(wanted)} mistakes are told as they should be")
 sys.exit(1 if failed else 0)
