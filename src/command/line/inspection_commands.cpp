@@ -55,7 +55,8 @@ void add_decisions(CLI::App& app, int& result) {
       app, "decisions",
       "Show how the Heads on a domain decide, live or from a log\n\n"
       "Live, it prints each decision from now on, and nothing until the next one; those "
-      "before are in a Head's log. Of a log that was cut off, whole lines are read.",
+      "before are in a Head's log. Of a log that was cut off, whole lines are read; at its end, "
+      "features of tasks that never help are told.",
       {{"skein decisions --domain 47", "Why each CSP was chosen, until Ctrl-C"},
        {"skein decisions --domain 47 --entity navigator", "Of one Head"},
        {"skein decisions --log decisions.jsonl", "The same, of a past mission"},

@@ -818,6 +818,23 @@ TEST_CASE("a line of a log that was cut off is told, and the whole ones are read
   CHECK_THAT(again.said(), Contains(log + place));
 }
 
+TEST_CASE("a feature that never helps is told beside the decisions of a log") {
+  const Shelf shelf;
+  const std::string log = shelf / "decisions.jsonl";
+  introspection::Decision record;
+  record.entity = "default/drone";
+  record.service = "survey/IPlanner";
+  record.features = {{"height_m", 120}};
+  const std::string line = idl::to_json(record);
+  std::ofstream file(log);
+  for (int i = 0; i < 20; ++i) file << line << '\n';
+  file.close();
+  Command read({"decisions", "--log", log, "--json"});
+  CHECK(read.code() == 0);
+  CHECK(read.json_lines().size() == 20);
+  CHECK_THAT(read.said(), Contains("the feature 'height_m' is 120 in all 20 decisions"));
+}
+
 TEST_CASE("what is no log of decisions is refused, and why it cannot be read") {
   const Shelf shelf;
   std::ofstream(shelf / "mission.xml") << "<mission name=\"m\"/>\n";

@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "command/commands.hpp"
+#include "command/look/service_names.hpp"
 #include "command/print/interruption.hpp"
 #include "command/print/json_output.hpp"
 #include "command/print/wrapped.hpp"
 #include "core/printable.hpp"
 #include "core/system/passing_error.hpp"
+#include "feature_findings.hpp"
 #include "recording/mcap/reader.hpp"
 #include "rpc/service/introspection_topic.hpp"
-#include "service_names.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/decision.hpp"
 #include "skein/detail/codec.hpp"
@@ -173,14 +174,21 @@ void print_counts(std::size_t count, std::size_t different, bool json) {
   }
 }
 
+void tell_findings(const FeatureFindings& features) {
+  for (const std::string& sentence : features.sentences())
+    std::fprintf(stderr, "skein: %s\n", sentence.c_str());
+}
+
 // 0 where every decision comes out again; 1 otherwise.
 int read_log(const DecisionsArguments& arguments) {
   const StrategyFactory strategies = strategies_of(arguments);
   std::size_t count = 0, different = 0;
+  FeatureFindings features;
   const auto read_one = [&](const introspection::Decision& record, const std::string& place) {
     if (!is_wanted(record, arguments)) return;
     ++count;
     if (!arguments.replays) {
+      features.add(record);
       arguments.json ? print_decision_json(record) : print_decision(record);
     } else if (const std::string what = difference(record, strategies); !what.empty()) {
       ++different;
@@ -194,6 +202,7 @@ int read_log(const DecisionsArguments& arguments) {
     std::fprintf(stderr, "skein: %s holds no decisions%s\n",
                  printable(arguments.log, kLongestPlace).c_str(), whose.c_str());
   }
+  tell_findings(features);
   if (!arguments.replays) return 0;
   print_counts(count, different, arguments.json);
   return different == 0 ? 0 : 1;
