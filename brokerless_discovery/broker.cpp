@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "broker_state.hpp"
+#include "brokerless_discovery/versions.hpp"
 #include "core/clock_wait.hpp"
 #include "core/printable.hpp"
 #include "core/threads/sole_owner.hpp"
@@ -12,10 +13,39 @@
 namespace skein::brokerless_discovery {
 namespace {
 
+constexpr std::chrono::seconds kAskingPatience{1};
+
 void check_name(const std::string& what, const std::string& name) {
   if (is_name(name)) return;
   throw InvalidArgument("'" + printable(name) + "' is no name for " + what +
                         ": use letters, digits, '_', '-' and '.', 255 at most");
+}
+
+using GivesUp = std::function<bool()>;
+
+std::string asked_difference(const Broker& broker, const InterfaceInfo& client,
+                             const ServiceDescription& provider, Instant deadline,
+                             const GivesUp& gives_up) {
+  const auto participant = broker.participant_of({provider.provider});
+  const auto& tell_types = broker.options().tell_types;
+  const auto told =
+      participant && tell_types ? tell_types(provider, *participant, deadline, gives_up) : nullptr;
+  return told ? difference(client, provider, *told) : difference(client, provider);
+}
+
+/// Asks one provider for each difference that shows without its types.
+Query with_differences(const Broker& broker, Query query, Instant deadline,
+                       const GivesUp& gives_up) {
+  if (!query.client) return query;
+  Query of_any_version = query;
+  of_any_version.client = nullptr;
+  for (const auto& provider : broker.find_service(of_any_version)) {
+    std::string plain = difference(*query.client, *provider);
+    if (plain.empty() || query.differences.contains(plain)) continue;
+    query.differences.emplace(
+        std::move(plain), asked_difference(broker, *query.client, *provider, deadline, gives_up));
+  }
+  return query;
 }
 
 // Others would refuse it.
@@ -51,6 +81,16 @@ dds::Qos Broker::State::description_qos(std::vector<std::string> partitions,
 }
 
 std::string Broker::State::owner_partition(const std::string& owner) { return "managed/" + owner; }
+
+Table::Found Broker::State::await(const Query& query, Instant deadline) {
+  std::unique_lock lock(mutex);
+  Table::Found found;
+  wait_until(clock, deadline, lock, changed, [&] {
+    found = table.find(query);
+    return leaving || !found.empty();
+  });
+  return found;
+}
 
 // One task for all changes that wait: a flood of them does not fill the executor, where one that
 // finds no room would be lost.
@@ -161,15 +201,19 @@ Table::Found Broker::find_service(const Query& query) const {
 }
 
 Table::Found Broker::await_service(const Query& query, Instant deadline) const {
-  std::unique_lock lock(state_->mutex);
-  Table::Found found;
-  wait_until(state_->clock, deadline, lock, state_->changed, [&] {
-    found = state_->table.find(query);
-    return state_->leaving || !found.empty();
-  });
+  const Instant now = state_->clock.now();
+  const Duration asking = std::min<Duration>(kAskingPatience, (deadline - now) / 2);
+  Table::Found found = state_->await(query, query.client ? deadline - asking : deadline);
   if (!found.empty()) return found;
+  const Query explained = with_differences(*this, query, deadline, [&] {
+    std::lock_guard lock(state_->mutex);
+    return state_->leaving || !state_->table.find(query).empty();
+  });
+  found = state_->await(explained, deadline);
+  if (!found.empty()) return found;
+  std::lock_guard lock(state_->mutex);
   throw Unavailable(state_->leaving ? "the entity that looked for it has ended"
-                                    : state_->table.explain(query));
+                                    : state_->table.explain(explained));
 }
 
 bool Broker::await_change(std::uint64_t seen, Instant deadline) const {
@@ -192,8 +236,14 @@ void Broker::end_waits() {
 }
 
 std::string Broker::explain(const Query& query) const {
+  const Query explained = with_differences(*this, query, state_->clock.now(), [] { return true; });
   std::lock_guard lock(state_->mutex);
-  return state_->table.explain(query);
+  return state_->table.explain(explained);
+}
+
+std::string Broker::difference(const InterfaceInfo& client,
+                               const ServiceDescription& provider) const {
+  return asked_difference(*this, client, provider, state_->clock.now(), [] { return true; });
 }
 
 bool Broker::knows(const Guid& provider) const {

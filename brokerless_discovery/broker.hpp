@@ -14,6 +14,10 @@
 #include "skein/clock.hpp"
 #include "skein/executor.hpp"
 
+namespace skein::types {
+struct TypeSystem;
+}
+
 namespace skein::brokerless_discovery {
 
 class ProcessWatch;
@@ -30,6 +34,12 @@ class Broker {
     /// How long a peer that is not heard of is trusted.
     std::chrono::milliseconds lease{1000};
     std::string place{};  ///< Query::place of all queries.
+    /// Asks a provider for its types, for a thread that has not found another one: null if it does
+    /// not tell them by `deadline`, or before `gives_up` says so. It may take none of our locks.
+    std::function<std::shared_ptr<const types::TypeSystem>(
+        const ServiceDescription& provider, const Guid& participant, Instant deadline,
+        const std::function<bool()>& gives_up)>
+        tell_types{};
   };
 
   /// A description that stands until this is destroyed or withdrawn.
@@ -83,7 +93,8 @@ class Broker {
   Table::Found find_service(const Query& query) const;
 
   /// As find_service, but waits until there is one. Throws Unavailable with the reason when
-  /// `deadline` passes, and after end_waits(). Not from a listener.
+  /// `deadline` passes, and after end_waits(). Not from a listener. In the last second, at most
+  /// half of the time, it asks providers of other versions in what these differ.
   Table::Found await_service(const Query& query, Instant deadline) const;
 
   /// Waits until generation() is another than `seen`; false where `deadline` comes first. Throws
@@ -99,6 +110,10 @@ class Broker {
 
   /// Why find_service gives nothing.
   std::string explain(const Query& query) const;
+
+  /// What of the provider's interface is another (see versions.hpp), with what can be told of its
+  /// types without waiting.
+  std::string difference(const InterfaceInfo& client, const ServiceDescription& provider) const;
 
   /// Whether a description of that provider stands, suspect or not.
   bool knows(const Guid& provider) const;

@@ -102,6 +102,8 @@ struct Broker::State : std::enable_shared_from_this<State> {
 
   void wake_teller();
   void tell();
+  /// Waits until there is one, until the entity ends, or until `deadline`.
+  Table::Found await(const Query& query, Instant deadline);
 
   // ---- what others tell
   void on_sample(const dds::Sample& sample);

@@ -260,12 +260,14 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
   if (!differing.empty()) {
     const std::string wanted = canonical_interface_name(query.client->name);
     const auto names = names_of(description);
-    const bool known = std::find(names.begin(), names.end(), wanted) != names.end();
-    if (query.name == description.entity && !known) {
+    const bool has_it = std::find(names.begin(), names.end(), wanted) != names.end();
+    if (query.name == description.entity && !has_it) {
       return who + " offers " + scoped_interface_name(description.service) + ", not " +
              scoped_interface_name(wanted);
     }
-    return who + " offers another version of it: " + differing +
+    const auto in_words = query.differences.find(differing);
+    return who + " offers another version of it: " +
+           (in_words == query.differences.end() ? differing : in_words->second) +
            "; build both sides from the same IDL (`skein describe " +
            scoped_interface_name(description.service) + "` prints the provider's)";
   }

@@ -43,6 +43,8 @@ struct Query {
   std::string preferred_host{};
   /// Where the asker looks, for explain(): `domain 0 on 127.0.0.1`; may be empty.
   std::string place{};
+  /// For explain(): what difference() says of a provider, and what to say in its place.
+  std::map<std::string, std::string> differences{};
 };
 
 /// Whether the provider says that it is about to leave (R28).

@@ -4,6 +4,9 @@
 #include <tuple>
 
 #include "core/growth.hpp"
+#include "core/system/interface_name.hpp"
+#include "idl/types/type_difference.hpp"
+#include "skein/describe.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {
@@ -75,6 +78,15 @@ std::string difference(const InterfaceInfo& client, const ServiceDescription& pr
   }
   const auto member = differing_member(client, provider);
   return member ? text(member->here, member->there, client) : "";
+}
+
+std::string difference(const InterfaceInfo& client, const ServiceDescription& provider,
+                       const types::TypeSystem& told) {
+  const std::string plain = difference(client, provider);
+  if (plain.empty() || client.description.empty()) return plain;
+  const auto found = idl::difference_of_interfaces(scoped_interface_name(std::string(client.name)),
+                                                   describe(client), told);
+  return found ? idl::in_words(*found) : plain;
 }
 
 void sort_growing(ServiceDescription& description) {

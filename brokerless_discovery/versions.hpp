@@ -5,6 +5,10 @@
 #include "skein/detail/operation.hpp"
 #include "skein/discovery.idl.hpp"
 
+namespace skein::types {
+struct TypeSystem;
+}
+
 namespace skein::brokerless_discovery {
 
 /// Whether a client of this interface can call `provider`: it has all of the client's operations
@@ -19,6 +23,11 @@ bool has_all_operations(const InterfaceInfo& client, const discovery::ServiceDes
 
 /// What of the provider's interface is another, for people; empty where understands() holds.
 std::string difference(const InterfaceInfo& client, const discovery::ServiceDescription& provider);
+
+/// The same with the place within the operation, if `told`, which the provider says of its own
+/// types, has it.
+std::string difference(const InterfaceInfo& client, const discovery::ServiceDescription& provider,
+                       const types::TypeSystem& told);
 
 /// Puts the members in the order of InterfaceInfo::growing.
 void sort_growing(discovery::ServiceDescription& description);

@@ -20,6 +20,7 @@
 #include "dds/port/options_check.hpp"
 #include "dds/port/port.hpp"
 #include "dds/port/vendor_names.hpp"
+#include "entity/asker.hpp"
 #include "entity/inspection_topic.hpp"
 #include "entity/namesakes.hpp"
 #include "entity/periodic_topic.hpp"
@@ -45,6 +46,9 @@ using brokerless_discovery::ServiceDescription;
 
 // A CSP that does not return within this time of the entity's end is left behind.
 constexpr std::chrono::milliseconds kStopPatience{2000};
+
+// In less the endpoints for a question are hardly made and matched.
+constexpr std::chrono::milliseconds kLeastToAsk{100};
 
 constexpr std::chrono::milliseconds kStatisticsInterval{1000};
 constexpr std::chrono::milliseconds kLogInterval{200};
@@ -192,7 +196,11 @@ struct Entity::State {
         recorder(std::make_shared<rpc::CallRecorder>(*participant, process->clock(), control,
                                                      options.system + "/" + options.name)),
         broker(*participant, process->clock(), control, process->watch(),
-               {options.system, options.name, options.vendor->name(), options.lease, place()}),
+               {options.system, options.name, options.vendor->name(), options.lease, place(),
+                [this](const ServiceDescription& provider, const Guid& who, Instant deadline,
+                       const std::function<bool()>& gives_up) {
+                  return types_told_by(provider, who, deadline, gives_up);
+                }}),
         loads(*participant, process->clock(), control),
         connector({*participant, broker, loads, process->directory(), control, continuations,
                    process->shared_clock(), options.spin, journal,
@@ -311,6 +319,19 @@ struct Entity::State {
     std::lock_guard lock(mutex);
     peer.services = static_cast<std::uint32_t>(provided.size());
     return peer;
+  }
+
+  /// For Broker::Options::tell_types.
+  std::shared_ptr<const types::TypeSystem> types_told_by(const ServiceDescription& provider,
+                                                         const Guid& who, Instant deadline,
+                                                         const std::function<bool()>& gives_up) {
+    if (const auto service = process->directory()->find({provider.provider}))
+      return std::make_shared<types::TypeSystem>(skein::describe(service->interface_info()));
+    const Duration left = deadline - process->clock().now();
+    if (left < kLeastToAsk) return nullptr;
+    introspection::Asker asker(*participant, process->clock(), gives_up);
+    auto told = asker.types(provider.service, who, left);
+    return told ? std::make_shared<types::TypeSystem>(std::move(*told)) : nullptr;
   }
 
   std::optional<types::TypeSystem> types_of(const std::string& name) {

@@ -82,15 +82,15 @@ void Head::State::tell_unusable(brokerless_discovery::Query query, std::size_t u
   const auto all = parts.broker.find_service(query);
   if (all.size() == usable) return;
   for (const auto& description : all) {
-    const std::string differing = brokerless_discovery::difference(interface, *description);
-    if (differing.empty()) continue;
+    if (brokerless_discovery::understands(interface, *description)) continue;
     const Guid provider{description->provider};
     const bool told = told_unusable.erase(provider);
     told_unusable.insert(provider);
     if (told) continue;
     log(LogLevel::Warning, parts.entity,
         "CSP '" + description->entity + "' is never chosen for " + std::string(interface.name) +
-            ", since it holds another version of it: " + differing +
+            ", since it holds another version of it: " +
+            parts.broker.difference(interface, *description) +
             "; build both sides from the same IDL");
   }
 }

@@ -61,9 +61,11 @@ struct Writer {
 
 /// A peer's Broker; callbacks wait in `control` until run.
 struct Peer {
-  Peer(World& world, const std::string& entity, const std::string& system = "uav-1")
+  Peer(World& world, const std::string& entity, const std::string& system = "uav-1",
+       decltype(Broker::Options::tell_types) tell_types = {})
       : participant(world.network.vendor()->create_participant({})),
-        broker(*participant, world.clock, control, watch, {system, entity, "loopback", 1000ms}) {}
+        broker(*participant, world.clock, control, watch,
+               {system, entity, "loopback", 1000ms, "", std::move(tell_types)}) {}
 
   /// A description of one of its services.
   discovery::ServiceDescription describe(std::uint8_t number, const std::string& service,
@@ -508,6 +510,65 @@ TEST_CASE("waiting for a service that does not appear ends at the deadline with 
   CHECK_THROWS_WITH(
       ground.broker.await_service(ground.broker.query("navigator"), world.clock.now()),
       Catch::Contains("nothing of that name"));
+}
+
+TEST_CASE("a provider of another version is asked for its types before a wait ends in vain",
+          "[R9]") {
+  World world;
+  Peer navigator(world, "navigator");
+  const auto provide = [&](std::uint8_t number, std::uint64_t version) {
+    auto described = navigator.describe(number, "A/INavigator", "navigator");
+    described.operations = {{"plan", 11, version}};
+    return navigator.broker.add_service(described);
+  };
+  const auto other = provide(1, 1001);
+  int asked = 0;
+  std::function<void()> meanwhile;
+  bool gave_up = false;
+  Peer ground(world, "ground", "uav-1",
+              [&](const ServiceDescription& provider, const Guid& participant, Instant,
+                  const std::function<bool()>& gives_up) {
+                ++asked;
+                CHECK(provider.entity == "navigator");
+                CHECK(participant == navigator.participant->guid().participant());
+                CHECK_FALSE(gives_up());
+                if (meanwhile) meanwhile();
+                gave_up = gives_up();
+                return std::shared_ptr<const types::TypeSystem>();
+              });
+  const OperationInfo wanted[] = {
+      {"plan", 11, 1000, false, false, false, nullptr, nullptr, {}, ""}};
+  const InterfaceInfo client{"A/INavigator", {}, wanted, ""};
+  Query query = ground.broker.query("A/INavigator");
+  query.client = &client;
+  const auto await = [&] { return ground.broker.await_service(query, world.clock.now()).size(); };
+
+  SECTION("if it tells nothing, the error says what the descriptions do") {
+    CHECK_THROWS_WITH(await(), Catch::Contains("operation 'plan' has another signature there ("));
+    CHECK(asked == 1);
+    CHECK_FALSE(gave_up);
+  }
+  SECTION("those of one version are asked once") {
+    const auto same = provide(2, 1001);
+    CHECK_THROWS_AS(await(), Unavailable);
+    CHECK(asked == 1);
+  }
+  SECTION("the right one that comes meanwhile is found") {
+    Broker::Registration right;
+    meanwhile = [&] { right = provide(3, 1000); };
+    CHECK(await() == 1);
+    CHECK(gave_up);
+  }
+  SECTION("nobody is asked if there is one") {
+    const auto right = provide(4, 1000);
+    CHECK(await() == 1);
+    CHECK(asked == 0);
+  }
+  SECTION("nor by those who take any version") {
+    query.client = nullptr;
+    CHECK(await() == 1);
+    CHECK(asked == 0);
+  }
 }
 
 TEST_CASE("a malformed description is dropped and the others stand", "[R4]") {

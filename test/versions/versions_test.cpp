@@ -248,6 +248,27 @@ TEST_CASE("any other change is refused when connecting, with the operation or me
   CHECK_THAT(refusal<grown::Light>(std::make_shared<OldLight>()), Catch::Contains(of_colour));
 }
 
+TEST_CASE("the error of connect() says what differs, as the provider describes it") {
+  const std::string told =
+      "server (uav-1) offers another version of it: operation 'paint': parameter 'layers' is "
+      "missing here; build both sides from the same IDL (`skein describe sea::Mast` prints";
+  Sea sea;
+  sea.server->provide<grown::Mast>(std::make_shared<PaintedMast>());
+  const auto error = [](Entity& client, std::chrono::milliseconds timeout) {
+    try {
+      client.connect<old::Mast>({.timeout = timeout});
+      return std::string("it was connected");
+    } catch (const Unavailable& refused) {
+      return std::string(refused.what());
+    }
+  };
+  CHECK(eventually(
+      [&] { return error(*sea.client, std::chrono::seconds(2)).find(told) != std::string::npos; }));
+  SECTION("at once where it is in the same process") {
+    CHECK_THAT(error(*sea.server, std::chrono::milliseconds(1)), Catch::Contains(told));
+  }
+}
+
 TEST_CASE("a reader takes nothing from a writer of a version that it would misread") {
   const auto ship = make_server("ship");
   const auto shore = make_client("shore");

@@ -7,65 +7,16 @@
 
 #include "core/suggestion.hpp"
 #include "dds/port/compatibility.hpp"
-#include "idl/types/flags.hpp"
+#include "idl/types/type_difference.hpp"
 
 namespace skein::command {
 namespace {
 
-using types::Declaration;
-using types::Extensibility;
-using types::Member;
 using Endpoint = KnownTopic::Endpoint;
 
 bool share_system(const inspection::TopicEndpoint& a, const inspection::TopicEndpoint& b) {
   return a.systems == b.systems ||
          std::ranges::find_first_of(a.systems, b.systems) != a.systems.end();
-}
-
-std::map<std::uint32_t, const Member*> members_of(const Declaration& declaration) {
-  std::map<std::uint32_t, const Member*> members;
-  for (const Member& member : declaration.members) {
-    const auto key = declaration.extensibility == Extensibility::Mutable
-                         ? member.id
-                         : static_cast<std::uint32_t>(members.size());
-    members.emplace(key, &member);
-  }
-  return members;
-}
-
-bool must_be_understood(const Member& member) {
-  return idl::has(member.flags, types::MemberFlags::key) ||
-         idl::has(member.flags, types::MemberFlags::must_understand);
-}
-
-/// Of two that are there under one key, null where one side has none.
-bool differ(const Member* one, const Member* other, Extensibility extensibility) {
-  if (one && other) return one->name != other->name || one->type != other->type;
-  return extensibility == Extensibility::Final || must_be_understood(one ? *one : *other);
-}
-
-std::optional<std::string> difference_of(const Declaration& one, const Declaration& other) {
-  if (one.kind != other.kind || one.extensibility != other.extensibility ||
-      one.bits != other.bits || one.discriminator != other.discriminator ||
-      one.values != other.values || one.fields != other.fields) {
-    return one.name;
-  }
-  const auto here = members_of(one);
-  const auto there = members_of(other);
-  std::set<std::uint32_t> keys;
-  for (const auto* members : {&here, &there}) {
-    for (const auto& [key, member] : *members) keys.insert(key);
-  }
-  const auto find = [](const auto& members, std::uint32_t key) {
-    const auto found = members.find(key);
-    return found == members.end() ? nullptr : found->second;
-  };
-  for (const std::uint32_t key : keys) {
-    const Member* mine = find(here, key);
-    const Member* yours = find(there, key);
-    if (differ(mine, yours, one.extensibility)) return one.name + "." + (mine ? mine : yours)->name;
-  }
-  return std::nullopt;
 }
 
 std::optional<std::chrono::milliseconds> time_of(const std::vector<std::uint64_t>& told) {
@@ -85,10 +36,10 @@ dds::Qos qos_of(const inspection::TopicEndpoint& told) {
 }
 
 std::string others_versions(const Endpoint& publisher, const Endpoint& subscription,
-                            const std::optional<std::string>& difference) {
+                            const std::optional<idl::TypeDifference>& difference) {
   return publisher.entity + ", which publishes, and " + subscription.entity +
          ", which subscribes, have different versions of " + publisher.told.type +
-         (difference ? ", which differ in " + *difference : std::string()) +
+         (difference ? ", which differ in " + difference->place : std::string()) +
          ", and do not hear each other: build both from the same IDL" +
          (difference ? "" : "; their logs say how the versions differ");
 }
@@ -98,10 +49,10 @@ class Versions {
  public:
   explicit Versions(const TellTypes& tell) : tell_(tell) {}
 
-  std::optional<std::string> difference(const Endpoint& one, const Endpoint& other) {
+  std::optional<idl::TypeDifference> difference(const Endpoint& one, const Endpoint& other) {
     const auto& here = types_of(one);
     const auto& there = types_of(other);
-    return here && there ? command::difference_of(*here, *there) : std::nullopt;
+    return here && there ? idl::difference_of_types(*here, *there) : std::nullopt;
   }
 
  private:
@@ -144,16 +95,6 @@ std::string conflict(const Endpoint& publisher, const Endpoint& subscription, Ve
 bool is_own(const std::string& topic) { return topic.starts_with("skein/"); }
 
 }  // namespace
-
-std::optional<std::string> difference_of(const types::TypeSystem& one,
-                                         const types::TypeSystem& other) {
-  for (const Declaration& here : one.declarations) {
-    const auto there = std::ranges::find(other.declarations, here.name, &Declaration::name);
-    if (there == other.declarations.end()) continue;
-    if (auto difference = difference_of(here, *there)) return difference;
-  }
-  return std::nullopt;
-}
 
 std::vector<std::string> topic_conflicts(const std::vector<Endpoint>& endpoints,
                                          const TellTypes& tell_types) {

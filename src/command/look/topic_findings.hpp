@@ -14,12 +14,6 @@ namespace skein::command {
 /// What an endpoint's entity tells of the endpoint's type; nothing where it does not answer.
 using TellTypes = std::function<std::optional<types::TypeSystem>(const KnownTopic::Endpoint&)>;
 
-/// The first part of a type in which two versions of it differ and do not understand each other, as
-/// `lift::Load.kg`; nothing where there is none: a member that only one of them has is none in a
-/// type that may grow, unless it must be understood.
-std::optional<std::string> difference_of(const types::TypeSystem& one,
-                                         const types::TypeSystem& other);
-
 /// Publishers and subscriptions of a topic that share a system and do not match, in their QoS or in
 /// the type's name or version: a sentence for each two entities. `tell_types` is asked about those
 /// of one type that have not met although nothing else keeps them apart.

@@ -11,6 +11,7 @@
 #include "scoped_name.hpp"
 #include "skein/describe.hpp"
 #include "skein/error.hpp"
+#include "type_words.hpp"
 
 namespace skein {
 namespace {
@@ -18,21 +19,6 @@ namespace {
 using namespace types;
 using idl::escaped, idl::escaped_parts, idl::first_parts, idl::has, idl::inside, idl::last_part,
     idl::scope_of;
-
-constexpr std::array<std::string_view, 14> kPrimitives{"boolean",
-                                                       "char",
-                                                       "wchar",
-                                                       "int8",
-                                                       "octet",
-                                                       "short",
-                                                       "unsigned short",
-                                                       "long",
-                                                       "unsigned long",
-                                                       "long long",
-                                                       "unsigned long long",
-                                                       "float",
-                                                       "double",
-                                                       "long double"};
 
 /// How a declaration names a type: as what must be defined before it; within a sequence or a map,
 /// where an announcement does; or as an external member, of which the definition comes later.
@@ -375,7 +361,7 @@ class Writer {
     std::string text = "bitset " + escaped(last_part(declaration.name)) + " {\n";
     for (const BitField& field : declaration.fields) {
       text += "  bitfield<" + std::to_string(field.width) + ", " +
-              std::string(kPrimitives.at(static_cast<std::size_t>(field.kind))) + ">";
+              std::string(idl::primitive_name(field.kind)) + ">";
       text += (field.name.empty() ? "" : " " + escaped(field.name)) + ";\n";
     }
     return text + "}";
@@ -494,7 +480,7 @@ class Writer {
         }
         return relative(type.name);
       default:
-        return std::string(kPrimitives.at(static_cast<std::size_t>(type.kind)));
+        return std::string(idl::primitive_name(type.kind));
     }
   }
 

@@ -48,10 +48,6 @@ std::string type_text(const TypeSupport& type) {
   return without_indentation(to_idl(describe(type)));
 }
 
-std::string type_text(const InterfaceInfo& interface) {
-  return without_indentation(to_idl(describe(interface)));
-}
-
 std::optional<std::pair<std::string, std::string>> difference_of_texts(std::string_view first,
                                                                        std::string_view second) {
   std::vector<std::string> scopes{""};

@@ -13,9 +13,6 @@ namespace skein::idl {
 /// type that does not describe itself.
 std::string type_text(const TypeSupport& type);
 
-/// The same of an interface.
-std::string type_text(const InterfaceInfo& interface);
-
 /// What the first line in which two such texts differ says on either side; nothing where what is
 /// known of both is the same.
 std::optional<std::pair<std::string, std::string>> difference_of_texts(std::string_view first,

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
-#include <string_view>
-#include <utility>
 
 #include "brokerless_discovery/versions.hpp"
-#include "idl/types/type_text.hpp"
+#include "core/system/interface_name.hpp"
+#include "idl/types/type_difference.hpp"
+#include "skein/describe.hpp"
 
 namespace skein::launch {
 namespace {
@@ -19,24 +18,14 @@ bool fit(const InterfaceInfo& one, const InterfaceInfo& other) {
          brokerless_discovery::understands(other, one);
 }
 
-/// In the interface itself; where that is the same on both sides, in the types that it names.
-std::optional<std::pair<std::string, std::string>> difference(const InterfaceInfo& one,
-                                                              const InterfaceInfo& other) {
-  const std::string first = idl::type_text(one);
-  const std::string second = idl::type_text(other);
-  const std::string opening = "interface " + std::string(one.name.substr(one.name.rfind('/') + 1));
-  const auto interface_in = [&](const std::string& text) {
-    return std::string_view(text).substr(std::min(text.find(opening), text.size()));
-  };
-  const auto found = idl::difference_of_texts(interface_in(first), interface_in(second));
-  return found ? found : idl::difference_of_texts(first, second);
-}
-
 std::string told(const Held& one, const Held& other) {
-  const auto differing = difference(*one.interface, *other.interface);
+  const std::string name(one.interface->name);
+  const auto differing = idl::difference_of_interfaces(
+      scoped_interface_name(name), describe(*one.interface), describe(*other.interface));
+  const auto in = [](const Held& held) { return "in '" + held.plugin + "'"; };
   return "the plugins '" + one.plugin + "' and '" + other.plugin + "' hold two versions of " +
-         std::string(one.interface->name) + ", and neither calls what the other implements" +
-         (differing ? ": " + differing->first + ", and " + differing->second : "");
+         name + ", and neither calls what the other implements" +
+         (differing ? ": " + idl::in_words(*differing, in(one), in(other)) : "");
 }
 
 }  // namespace

@@ -230,34 +230,6 @@ types::TypeSystem pose_of(types::Kind kind, types::Extensibility extensibility) 
 
 }  // namespace
 
-TEST_CASE("versions of a type that grows are told apart by the member in which they differ") {
-  using types::Extensibility;
-  const auto doubles = pose_of(types::Kind::Double, Extensibility::Appendable);
-  auto longer = doubles;
-  longer.declarations[0].members.resize(3);
-  longer.declarations[0].members[2].name = "speed";
-  CHECK_FALSE(difference_of(doubles, doubles));
-  CHECK_FALSE(difference_of(doubles, longer));
-  CHECK(difference_of(doubles, pose_of(types::Kind::Long, Extensibility::Appendable)) ==
-        "geo::Pose.height");
-  SECTION("a member that only one side has matters where it must be understood") {
-    longer.declarations[0].members[2].flags = types::MemberFlags::must_understand;
-    CHECK(difference_of(doubles, longer) == "geo::Pose.speed");
-  }
-  SECTION("and where the type does not grow") {
-    longer.declarations[0].extensibility = Extensibility::Final;
-    CHECK(difference_of(pose_of(types::Kind::Double, Extensibility::Final), longer) ==
-          "geo::Pose.speed");
-  }
-  SECTION("members of a mutable type are known by their numbers") {
-    auto mutable_one = pose_of(types::Kind::Double, Extensibility::Mutable);
-    mutable_one.declarations[0].members[1].id = 7;
-    auto turned = mutable_one;
-    std::swap(turned.declarations[0].members[0], turned.declarations[0].members[1]);
-    CHECK_FALSE(difference_of(mutable_one, turned));
-  }
-}
-
 TEST_CASE("the doctor asks peers that have not met in what their versions of a type differ") {
   using namespace command::doctor;
   DomainPicture picture = mission();
