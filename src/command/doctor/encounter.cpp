@@ -10,6 +10,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "command/look/topic_survey.hpp"
 #include "dds/port/vendor_names.hpp"
+#include "service_versions.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -223,6 +224,10 @@ Symptoms diagnose_peers(const DomainPicture& picture, const TellTypes& tell_type
     symptoms.push_back({Severity::Warning, "topics", conflict, "skein topics",
                         "give both sides the same QoS profile and type, and end those that are "
                         "old"});
+  }
+  for (const std::string& conflict : service_conflicts(picture, tell_types)) {
+    symptoms.push_back({Severity::Warning, "services", conflict, "skein services",
+                        "build both from the same IDL, and end those that are old"});
   }
   for (const UnpublishedTopic& topic : unpublished_topics(endpoints)) {
     symptoms.push_back(

@@ -21,7 +21,8 @@ Symptoms encounter(const Onlooker& place, const std::vector<std::string>& vendor
 
 /// What is odd about peers that are there: those that do not answer, or do not work, or are of
 /// another version of Skein, or do not hear each other since types, QoS or names of their topics
-/// differ. `tell_types` is asked as topic_conflicts() does.
+/// differ, or provide a service in different versions. `tell_types` is asked as topic_conflicts()
+/// does.
 Symptoms diagnose_peers(const DomainPicture& picture, const TellTypes& tell_types = {});
 
 }  // namespace skein::command::doctor

@@ -251,6 +251,56 @@ TEST_CASE("the doctor asks peers that have not met in what their versions of a t
   }
 }
 
+TEST_CASE("the doctor tells in what two providers of a service have different versions of it") {
+  using namespace command::doctor;
+  DomainPicture picture{peer("uav-1/new", 1), peer("uav-1/old", 2)};
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    picture[i].process->version = SKEIN_VERSION;
+    discovery::ServiceDescription description;
+    description.service = "AE/INavigator";
+    description.system = "uav-1";
+    description.entity = picture[i].name.substr(6);
+    description.operations = {{"plan", 11, 1000u + i}};
+    if (i == 0) description.operations.push_back({"land", 12, 5});
+    picture[i].services = {std::make_shared<const discovery::ServiceDescription>(description)};
+  }
+  const TellTypes tell = [](const KnownTopic::Endpoint& asked) {
+    CHECK(asked.told.type == "AE/INavigator");
+    types::Parameter from;
+    from.name = "from";
+    from.type.kind = asked.entity == "uav-1/new" ? types::Kind::Double : types::Kind::String;
+    types::Operation plan;
+    plan.name = "plan";
+    plan.parameters = {from};
+    types::Interface navigator;
+    navigator.name = "AE::INavigator";
+    navigator.operations = {plan};
+    return types::TypeSystem{{}, {navigator}};
+  };
+  const std::string told =
+      "service 'AE::INavigator': the providers at uav-1/new and at uav-1/old have different "
+      "versions of it, and a client of one does not call the other";
+  CHECK(diagnose_peers(picture, tell).at(0).cause ==
+        told +
+            ": operation 'plan': parameter 'from' is a double at uav-1/new and a string at "
+            "uav-1/old");
+  SECTION("also if one of them does not answer") {
+    CHECK(diagnose_peers(picture, [](const auto&) { return std::nullopt; }).at(0).cause == told);
+  }
+  SECTION("more operations are no other version") {
+    auto same = *picture[1].services[0];
+    same.operations[0].signature = 1000;
+    picture[1].services = {std::make_shared<const discovery::ServiceDescription>(same)};
+    CHECK(diagnose_peers(picture, tell).empty());
+  }
+  SECTION("nor do those of two systems meet") {
+    auto distant = *picture[1].services[0];
+    distant.system = "uav-2";
+    picture[1].services = {std::make_shared<const discovery::ServiceDescription>(distant)};
+    CHECK(diagnose_peers(picture, tell).empty());
+  }
+}
+
 TEST_CASE("QoS that keeps a publisher and a subscription apart is told with both values") {
   using namespace command::doctor;
   DomainPicture picture = mission();
