@@ -150,8 +150,8 @@ void add_onlooker(CLI::App& command, Onlooker& onlooker) {
 CLI::Option* add_variables(CLI::App& command, std::vector<std::string>& variables) {
   return command
       .add_option("--variable", variables,
-                  "A value for a variable of the profile; may be given several times; default: as "
-                  "the profile says")
+                  "A value for a variable of the profile, or @FILE for the text of a file; may be "
+                  "given several times; default: as the profile says")
       ->type_name("NAME=VALUE")
       ->check(of_form([](const std::string& text) { profile::parse_variables({text}); }))
       ->allow_extra_args(false);

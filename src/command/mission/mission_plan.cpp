@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mission/check/profile_check.hpp"
+#include "mission/profile/value_file.hpp"
 
 namespace skein::command {
 namespace {
@@ -104,6 +105,9 @@ void add_other_hosts(launch::LaunchPlan& plan, const profile::MissionProfile& mi
     if (launch::is_here(host, arguments.host)) continue;
     PlanArguments for_host = arguments;
     for_host.host = host;
+    for (auto* assignments : {&for_host.settings, &for_host.variables})
+      std::ranges::transform(*assignments, assignments->begin(),
+                             profile::assignment_with_whole_path);
     const auto there = plan_of(mission, for_host);
     if (there.children.empty()) continue;
     plan.children.push_back(other_host(there, for_host, arguments.verbose));

@@ -141,7 +141,7 @@ void check_settings(const std::string& owner, const std::vector<Setting>& settin
                      in_quotes(component.name) + " has no parameter " + in_quotes(setting.name),
                      remedy_for(setting.name, known));
     } else if (const auto* entry = dictionary.find(EntryKind::Parameter, setting.name)) {
-      if (!setting.value.empty()) check_value(*entry, setting.value, setting.where, findings);
+      if (!setting.value.empty()) check_value(*entry, setting.value, setting.value_where, findings);
     } else if (takes_any) {
       refuse_unknown_parameter(setting.name, setting.where, dictionary, findings);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mission/xml/words.hpp"
+#include "value_file.hpp"
 
 namespace skein::profile {
 namespace {
@@ -68,11 +69,17 @@ void set_parameter(Owner& owner, const Dictionary& dictionary, const std::string
     throw InvalidArgument("the dictionary has no parameter " + in_quotes(name) + "; " +
                           dictionary.suggestion(EntryKind::Parameter, name));
   }
-  parse_value(*entry, value);
+  const SourcePosition where{"the command line", 0, 0};
+  Setting given{name, with_whole_path(value, ""), where, where, ""};
+  FindingList findings;
+  read_value_file(given, findings);
+  findings.throw_if_errors();
+  parse_value(*entry, given.value);
   if (auto* setting = find_item(owner.parameters, name)) {
-    setting->value = value;
+    given.where = setting->where;
+    *setting = std::move(given);
   } else {
-    owner.parameters.push_back({name, value, {"the command line", 0, 0}});
+    owner.parameters.push_back(std::move(given));
   }
 }
 

@@ -24,6 +24,9 @@ struct Setting {
   std::string name;
   std::string value;
   SourcePosition where;
+  /// Of the value: the variable that gives it, the file from which it is read, or `where`.
+  SourcePosition value_where;
+  std::string file;  ///< From which the value is read; empty for a value that stands here.
 };
 
 enum class CspProcess {

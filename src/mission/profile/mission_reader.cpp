@@ -20,6 +20,7 @@
 #include "skein/error.hpp"
 #include "thread_rules_reader.hpp"
 #include "topic_rules_reader.hpp"
+#include "value_file.hpp"
 #include "value_readers.hpp"
 
 namespace skein::profile {
@@ -45,6 +46,7 @@ class MissionReader {
     if (mission.peers.empty()) findings_.error(root.where(), "the mission has no <peer>");
     mission.files.insert(file_);
     mission.files.merge(components_.files());
+    mission.files.merge(value_files_);
     return mission;
   }
 
@@ -154,11 +156,21 @@ class MissionReader {
     return hosts;
   }
 
+  /// What a file's name at that place is relative to: for one of the command line, here.
+  static std::filesystem::path folder_of(const SourcePosition& place) {
+    return place.line == 0 ? "" : std::filesystem::path(place.file).parent_path();
+  }
+
   std::vector<Setting> parameters_of(const XmlElement& element) {
     std::vector<Setting> settings;
     for (const auto& child : element.children("parameter")) {
-      settings.push_back(
-          {child.attribute("name").value, child.attribute("value").value, child.where()});
+      const XmlAttribute value = child.attribute("value");
+      const SourcePosition place = value.given_by.value_or(child.where());
+      Setting& setting = settings.emplace_back();
+      setting = {child.attribute("name").value, with_whole_path(value.value, folder_of(place)),
+                 child.where(), place, ""};
+      read_value_file(setting, findings_);
+      if (!setting.file.empty()) value_files_.insert(setting.file);
     }
     return settings;
   }
@@ -298,6 +310,7 @@ class MissionReader {
   std::filesystem::path file_;
   FindingList& findings_;
   ComponentCache components_;
+  std::set<std::filesystem::path> value_files_;
 };
 
 MissionProfile read_mission(const std::filesystem::path& file, const VariableValues& values,

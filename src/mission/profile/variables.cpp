@@ -26,11 +26,13 @@ void Variables::define(const XmlElement& variable) {
                    "the first is at " + to_text(known->second.where));
     return;
   }
-  Variable entry{variable.where(), "", false};
+  Variable entry{variable.where(), variable.where(), "", false};
   if (const auto given = given_.find(name.value); given != given_.end()) {
+    entry.value_where = {"--variable " + shortened(name.value), 0, 0};
     entry.value = given->second;
   } else if (auto value = variable.maybe_attribute("default")) {
     expand(*value, std::nullopt, findings);
+    entry.value_where = value->given_by.value_or(variable.where());
     entry.value = value->value;
     entry.unreadable = value->unreadable;
   } else {
@@ -84,11 +86,13 @@ void Variables::expand(XmlAttribute& attribute, const std::optional<std::string>
       return;
     } else {
       text += found->second.value;
+      if (text.size() == found->second.value.size() && rest.empty())
+        attribute.given_by = found->second.value_where;
     }
     if (text.size() > kLongestValue) {
       return refuse("with its variables, the value is longer than " +
                         std::to_string(kLongestValue) + " characters",
-                    "shorten it");
+                    "shorten it, or let a parameter's value be @FILE, which names a file of it");
     }
   }
   attribute.value = trimmed(text);

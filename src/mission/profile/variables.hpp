@@ -20,8 +20,9 @@ class Variables {
   /// finding.
   void define(const XmlElement& variable);
 
-  /// Puts values in place of the names, and `$` in place of `$$`. What is wrong is a finding, and
-  /// makes the attribute unreadable. `instance`: what `${instance}` stands for, if there is one.
+  /// Puts values in place of the names, and `$` in place of `$$`. If the attribute is one name, its
+  /// `given_by` becomes the variable's place. What is wrong is a finding, and makes the attribute
+  /// unreadable. `instance`: what `${instance}` stands for, if there is one.
   void expand(XmlAttribute& attribute, const std::optional<std::string>& instance,
               FindingList& findings) const;
 
@@ -31,6 +32,7 @@ class Variables {
  private:
   struct Variable {
     SourcePosition where;
+    SourcePosition value_where;
     std::string value;
     bool unreadable = false;
   };

@@ -42,7 +42,8 @@ std::string command_line() {
 void add_parameters(std::vector<std::string>& record, const std::string& owner,
                     const std::vector<profile::Setting>& parameters) {
   for (const profile::Setting& setting : parameters)
-    record.push_back("parameter: " + owner + "." + setting.name + " = " + setting.value);
+    record.push_back("parameter: " + owner + "." + setting.name + " = " +
+                     (setting.file.empty() ? setting.value : "@" + setting.file));
 }
 
 /// Logs are passed on to others.

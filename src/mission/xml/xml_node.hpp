@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ struct XmlAttribute {
   SourcePosition where;
   bool inherited = false;   ///< Stands at an element around this one.
   bool unreadable = false;  ///< There is a finding of it already: nothing more is to be said.
+  /// The place of the variable that is its whole value.
+  std::optional<SourcePosition> given_by{};
 };
 
 /// An element as it stands in a file. A plain value.

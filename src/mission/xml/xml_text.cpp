@@ -21,8 +21,7 @@ class Scanner {
     for (std::size_t at = 0; at < text_.size();) {
       const auto byte = static_cast<unsigned char>(text_[at]);
       if (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') {
-        refuse(at, byte == 0 ? "a NUL byte" : "a control character",
-               "XML text has none; remove it");
+        refuse(at, byte == 0 ? "a NUL byte" : "a control character", "text has none; remove it");
       }
       const std::size_t length = sequence_length(at);
       if (length == 0) refuse(at, "bytes that are no UTF-8", std::string(kConvert));
@@ -161,6 +160,10 @@ SourcePosition position_at(std::string_view text, std::size_t offset, const std:
   };
   return {file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
           1 + static_cast<int>(characters(before.substr(line_start)))};
+}
+
+void demand_utf8_text(std::string_view text, const std::string& file) {
+  Scanner(text, file).demand_utf8();
 }
 
 void demand_plain_xml_text(std::string_view text, const std::string& file) {
