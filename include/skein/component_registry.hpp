@@ -48,6 +48,13 @@ class ComponentRegistry {
   /// with exit code 76.
   using Activity =
       std::function<int(Entity&, const ParameterValues&, const std::stop_token& told_to_end)>;
+  /// Makes an activity before the peer reports that it is ready, on the same thread. What it throws
+  /// ends the peer with that reason, as what a BodyFactory throws: InvalidArgument ends the
+  /// mission.
+  using ActivityFactory = std::function<std::function<int(const std::stop_token& told_to_end)>(
+      Entity&, const ParameterValues&)>;
+  /// Throws if no component can use that value, with the reason.
+  using ValueCheck = std::function<void(const ParameterValue&)>;
 
   ComponentRegistry() = default;
   /// `arguments`: what its process was given for its components to read.
@@ -106,6 +113,19 @@ class ComponentRegistry {
   }
   void add_mission(const std::string& component, Mission mission);
   void add_activity(const std::string& component, Activity activity);
+  void add_activity(const std::string& component, ActivityFactory factory);
+  /// Adds to what the dictionary says of a parameter: `skein check` and `skein launch` call `check`
+  /// with each value that a profile gives to it in a process that loads this plugin, and tell what
+  /// it throws at the value's place; the process itself does so when it begins. A parameter may
+  /// have several checks. T is an alternative of ParameterValue; values of other types pass:
+  ///
+  ///     registry.add_check<std::string>("Sites", parse_sites);
+  template <class T>
+  void add_check(const std::string& parameter, std::function<void(const T&)> check) {
+    add_value_check(parameter, [check = std::move(check)](const ParameterValue& value) {
+      if (const T* known = std::get_if<T>(&value)) check(*known);
+    });
+  }
   /// Makes a strategy selectable by its name, for example as a profile's `strategy`. Throws
   /// InvalidArgument if the name is taken, also by a strategy of Skein's own.
   void add_strategy(std::shared_ptr<const SelectionStrategy> strategy);
@@ -114,9 +134,12 @@ class ComponentRegistry {
   const BodyFactory* find_body(const std::string& component) const;
   const CspFactory* find_csp(const std::string& component) const;
   const Mission* find_mission(const std::string& component) const;
-  const Activity* find_activity(const std::string& component) const;
+  const ActivityFactory* find_activity(const std::string& component) const;
   /// What a Body or a CSP implements; nullptr if its registration does not say it.
   const InterfaceInfo* find_interface(const std::string& component) const;
+
+  /// Throws what the first check of the parameter throws that refuses the value.
+  void check_value(const std::string& parameter, const ParameterValue& value) const;
 
   /// The `<argument>` elements of the process in its mission profile: what follows `--` on the
   /// command line of `skein peer`.
@@ -140,14 +163,16 @@ class ComponentRegistry {
 
  private:
   void refuse_duplicate(const std::string& component) const;
+  void add_value_check(const std::string& parameter, ValueCheck check);
 
   std::vector<std::string> arguments_;
   std::map<std::string, BodyFactory> bodies_;
   std::map<std::string, CspFactory> csps_;
   std::map<std::string, Mission> missions_;
-  std::map<std::string, Activity> activities_;
+  std::map<std::string, ActivityFactory> activities_;
   std::map<std::string, const InterfaceInfo*> implemented_;
   std::vector<std::shared_ptr<const SelectionStrategy>> strategies_;
+  std::multimap<std::string, ValueCheck> checks_;
 };
 
 /// Waits until an activity is told to end, and no longer than `at_most` by the entity's clock.

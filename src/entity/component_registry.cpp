@@ -49,8 +49,21 @@ void ComponentRegistry::add_mission(const std::string& component, Mission missio
 }
 
 void ComponentRegistry::add_activity(const std::string& component, Activity activity) {
+  add_activity(component, ActivityFactory([activity = std::move(activity)](
+                                              Entity& entity, const ParameterValues& values) {
+                 return [activity, &entity, values](const std::stop_token& told_to_end) {
+                   return activity(entity, values, told_to_end);
+                 };
+               }));
+}
+
+void ComponentRegistry::add_activity(const std::string& component, ActivityFactory factory) {
   refuse_duplicate(component);
-  activities_[component] = std::move(activity);
+  activities_[component] = std::move(factory);
+}
+
+void ComponentRegistry::add_value_check(const std::string& parameter, ValueCheck check) {
+  checks_.emplace(parameter, std::move(check));
 }
 
 void ComponentRegistry::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
@@ -82,9 +95,15 @@ const ComponentRegistry::Mission* ComponentRegistry::find_mission(
   return find_in(missions_, component);
 }
 
-const ComponentRegistry::Activity* ComponentRegistry::find_activity(
+const ComponentRegistry::ActivityFactory* ComponentRegistry::find_activity(
     const std::string& component) const {
   return find_in(activities_, component);
+}
+
+void ComponentRegistry::check_value(const std::string& parameter,
+                                    const ParameterValue& value) const {
+  const auto [first, last] = checks_.equal_range(parameter);
+  std::for_each(first, last, [&](const auto& check) { check.second(value); });
 }
 
 const InterfaceInfo* ComponentRegistry::find_interface(const std::string& component) const {

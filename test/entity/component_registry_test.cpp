@@ -62,6 +62,43 @@ TEST_CASE("the name of an activity is a component's, too") {
                   InvalidArgument);
 }
 
+TEST_CASE("an activity is made before it runs, or is one function that does both") {
+  const auto clock = std::make_shared<ManualClock>();
+  dds::LoopbackNetwork network(*clock);
+  Entity entity(
+      {.name = "a", .vendor = network.vendor(), .process = std::make_shared<Process>(clock)});
+  ComponentRegistry registry;
+  std::string told;
+  registry.add_activity("two steps", [&](Entity&, const ParameterValues&) {
+    told += "made ";
+    return [&](const std::stop_token&) { return told += "run ", 1; };
+  });
+  registry.add_activity("one step", [&](Entity&, const ParameterValues&, const std::stop_token&) {
+    return told += "both ", 2;
+  });
+  const auto first = (*registry.find_activity("two steps"))(entity, {});
+  const auto second = (*registry.find_activity("one step"))(entity, {});
+  CHECK(told == "made ");
+  CHECK(first({}) == 1);
+  CHECK(second({}) == 2);
+  CHECK(told == "made run both ");
+}
+
+TEST_CASE("all checks of a parameter must take its value, if it is of their type") {
+  ComponentRegistry registry;
+  registry.add_check<std::int64_t>("Rate", [](std::int64_t rate) {
+    if (rate % 2 != 0) throw InvalidArgument("it is odd");
+  });
+  registry.add_check<std::int64_t>("Rate", [](std::int64_t rate) {
+    if (rate > 10) throw InvalidArgument("it is high");
+  });
+  CHECK_NOTHROW(registry.check_value("Rate", std::int64_t{10}));
+  CHECK_THROWS_WITH(registry.check_value("Rate", std::int64_t{9}), "it is odd");
+  CHECK_THROWS_WITH(registry.check_value("Rate", std::int64_t{12}), "it is high");
+  CHECK_NOTHROW(registry.check_value("Rate", std::string("11")));
+  CHECK_NOTHROW(registry.check_value("Height", std::int64_t{11}));
+}
+
 TEST_CASE("an activity waits by the clock of its entity, until it is told to end") {
   const auto clock = std::make_shared<ManualClock>();
   dds::LoopbackNetwork network(*clock);

@@ -15,6 +15,7 @@
 #include "mission/process/address_space.hpp"
 #include "mission/process/crash_report.hpp"
 #include "mission/process/exit_codes.hpp"
+#include "mission/process/ready.hpp"
 #include "mission/supervise/environment_record.hpp"
 #include "mission/supervise/mission_claim.hpp"
 #include "mission/supervise/mission_log.hpp"
@@ -173,8 +174,13 @@ int launch(const LaunchArguments& arguments) {
 }
 
 int run_peer(const PeerArguments& arguments) {
-  ComponentRegistry registry(arguments.words);
-  return launch::run_process(read_mission(arguments), arguments.process, registry);
+  try {
+    ComponentRegistry registry(arguments.words);
+    return launch::run_process(read_mission(arguments), arguments.process, registry);
+  } catch (const std::exception& error) {
+    launch::report_waiting(error.what());
+    throw;
+  }
 }
 
 }  // namespace skein::command

@@ -195,10 +195,11 @@ bool looks_elsewhere(const profile::ProcessStart& start) {
 
 class PluginCheck {
  public:
-  explicit PluginCheck(const TellStep& tell_step) : tell_step_(tell_step) {}
+  PluginCheck(const MissionProfile& mission, const TellStep& tell_step)
+      : mission_(mission), tell_step_(tell_step) {}
 
-  std::vector<Finding> run(const MissionProfile& mission, const std::string& host) {
-    for (const PeerProfile& peer : mission.peers) {
+  std::vector<Finding> run(const std::string& host) {
+    for (const PeerProfile& peer : mission_.peers) {
       if (!is_here(peer.host, host) || !peer.start.program.empty()) continue;
       if (can_check(peer, peer.name)) check_process(peer);
       for (const CspProfile& csp : peer.csps) {
@@ -274,9 +275,9 @@ class PluginCheck {
     }
     check_strategy(peer, registry);
     for (const CspProfile& csp : peer.csps) {
-      if (csp.process == CspProcess::InOwner && csp.component) demand_code(csp, plugins);
+      if (csp.process == CspProcess::InOwner && csp.component) check_owner(csp, plugins);
     }
-    if (peer.component) demand_code(peer, plugins);
+    if (peer.component) check_owner(peer, plugins);
   }
 
   void check_strategy(const PeerProfile& peer, const ComponentRegistry& registry) {
@@ -292,7 +293,7 @@ class PluginCheck {
   void check_own(const CspProfile& csp) {
     ComponentRegistry registry;
     LoadedPlugins plugins(registry);
-    if (load(plugins, csp.plugin, csp.where)) demand_code(csp, plugins);
+    if (load(plugins, csp.plugin, csp.where)) check_owner(csp, plugins);
   }
 
   /// What is wrong with a description is a finding of its reader, and no other one follows from it.
@@ -301,7 +302,17 @@ class PluginCheck {
     return !csp.component->complete || csp.component->interfaces.empty();
   }
 
-  /// Of a peer or a CSP.
+  /// Of a peer or a CSP, whose component has been read.
+  template <class Profile>
+  void check_owner(const Profile& profile, const LoadedPlugins& plugins) {
+    demand_code(profile, plugins);
+    tell_step_({Severity::Error, profile.where, "checking the values of '" + profile.name + "'",
+                "look at the checks that its plugin adds by add_check"});
+    for (Finding& finding :
+         find_wrong_values(profile.parameters, mission_.dictionary, plugins.registry()))
+      add(finding.where, std::move(finding.problem), std::move(finding.remedy));
+  }
+
   template <class Profile>
   void demand_code(const Profile& profile, const LoadedPlugins& plugins) {
     if (is_told_already(profile)) return;
@@ -328,6 +339,7 @@ class PluginCheck {
       add(finding.where, std::move(finding.problem), std::move(finding.remedy));
   }
 
+  const MissionProfile& mission_;
   const TellStep& tell_step_;
   std::vector<LoadedPlugins::Held> held_;  // by the plugins of the whole mission
   std::vector<Finding> findings_;
@@ -363,7 +375,7 @@ std::vector<Finding> check_hosts(const MissionProfile& mission, const std::strin
 
 std::vector<Finding> check_plugins(const MissionProfile& mission, const std::string& host) {
   return findings_apart(
-      [&](const TellStep& tell_step) { return PluginCheck(tell_step).run(mission, host); },
+      [&](const TellStep& tell_step) { return PluginCheck(mission, tell_step).run(host); },
       mission.file);
 }
 

@@ -126,6 +126,8 @@ judge() {
     if [ -e "$folder/$1/ready" ]; then finish 70 "$why"; else finish 71 "$why"; fi
   elif [ "$2" -eq 0 ]; then
     return 0
+  elif [ "$2" -eq 78 ] && [ "$role" = degrading ] && [ ! -e "$folder/$1/ready" ]; then
+    finish 78 "$why"
   fi
   lost=${lost:-$why}
   [ -z "$result" ] || return 0

@@ -5,10 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/printable.hpp"
 #include "core/suggestion.hpp"
 
 namespace skein::launch {
 namespace {
+
+constexpr std::size_t kLongestObjection = 1024;
 
 /// How a plugin registers a component.
 enum class Role { Body, Csp, Mission, Activity };
@@ -89,6 +92,34 @@ std::vector<Role> wanted_of(const profile::PeerProfile& peer) {
   return {Role::Activity};
 }
 
+/// Why a check refuses the value; nothing if it passes, or is none by the dictionary.
+std::optional<std::string> objection(const profile::DictionaryEntry& entry, std::string_view text,
+                                     const ComponentRegistry& registry) {
+  ParameterValue value;
+  try {
+    value = profile::parse_value(entry, text);
+  } catch (const InvalidArgument&) {
+    return std::nullopt;
+  }
+  try {
+    registry.check_value(entry.name, value);
+  } catch (const std::exception& error) {
+    return printable(error.what(), kLongestObjection);
+  }
+  return std::nullopt;
+}
+
+/// The line of a file that is refused for that reason by itself, from 1; 0 if none is.
+int find_line(const profile::DictionaryEntry& entry, std::string_view text,
+              const std::string& reason, const ComponentRegistry& registry) {
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    if (objection(entry, text.substr(0, length), registry) == reason) return line;
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::optional<CodeLack> find_lack(const profile::PeerProfile& peer, const LoadedPlugins& plugins) {
@@ -117,6 +148,25 @@ std::vector<profile::Finding> compare(const profile::ComponentDescription& compo
                         "'" + component.name + "' does not declare " + provided.front() +
                             ", which its code implements",
                         "write <implements>IDL:" + provided.front() + "</implements>"});
+  }
+  return findings;
+}
+
+std::vector<profile::Finding> find_wrong_values(const std::vector<profile::Setting>& settings,
+                                                const profile::Dictionary& dictionary,
+                                                const ComponentRegistry& registry) {
+  std::vector<profile::Finding> findings;
+  for (const profile::Setting& setting : settings) {
+    const auto* entry = dictionary.find(profile::EntryKind::Parameter, setting.name);
+    const auto reason = entry ? objection(*entry, setting.value, registry) : std::nullopt;
+    if (!reason) continue;
+    profile::SourcePosition place = setting.value_where;
+    if (!setting.file.empty()) {
+      place.line = find_line(*entry, setting.value, *reason, registry);
+      place.column = place.line > 0 ? 1 : 0;
+    }
+    findings.push_back({profile::Severity::Error, place, "\"" + setting.name + "\": " + *reason,
+                        "it is defined at " + to_text(entry->where)});
   }
   return findings;
 }

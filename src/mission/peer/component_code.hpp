@@ -29,4 +29,10 @@ std::optional<CodeLack> find_lack(const profile::CspProfile& csp, const LoadedPl
 std::vector<profile::Finding> compare(const profile::ComponentDescription& component,
                                       const InterfaceInfo& code);
 
+/// An error for each value of a component's parameters that a check of its process's plugins
+/// refuses, at the value's place. A value that the dictionary refuses is passed over.
+std::vector<profile::Finding> find_wrong_values(const std::vector<profile::Setting>& settings,
+                                                const profile::Dictionary& dictionary,
+                                                const ComponentRegistry& registry);
+
 }  // namespace skein::launch

@@ -120,10 +120,12 @@ ServiceOptions service_options(const profile::ComponentDescription& component,
   return options;
 }
 
-const std::shared_ptr<Servant>& servant_of(const std::shared_ptr<Servant>& csp) { return csp; }
-const std::shared_ptr<Servant>& servant_of(const ComponentRegistry::Body& body) {
-  return body.servant;
-}
+using MadeActivity = std::function<int(const std::stop_token& told_to_end)>;
+
+/// The name of what a factory owes and has not made; null if it has.
+const char* missing_part(const std::shared_ptr<Servant>& csp) { return csp ? nullptr : "servant"; }
+const char* missing_part(const ComponentRegistry::Body& body) { return missing_part(body.servant); }
+const char* missing_part(const MadeActivity& made) { return made ? nullptr : "activity"; }
 
 /// Throws InvalidArgument where no code would run for a peer or a CSP.
 template <class Profile>
@@ -199,9 +201,18 @@ auto make_component(const Profile& profile, const Factory& factory, Arguments&&.
   const StartStep step("makes '" + name + "'");
   auto made = run_user_code(place + "while making '" + name + "': ",
                             [&] { return factory(std::forward<Arguments>(arguments)...); });
-  if (servant_of(made)) return made;
-  throw InvalidArgument(place + "the factory of '" + name +
-                        "' returned no servant; return one, or throw what keeps it from that");
+  const char* const missing = missing_part(made);
+  if (!missing) return made;
+  throw InvalidArgument(place + "the factory of '" + name + "' returned no " + missing +
+                        "; return one, or throw what keeps it from that");
+}
+
+/// Throws DescriptionError where a check of a plugin refuses a value.
+template <class Profile>
+void demand_values(const MissionProfile& mission, const Profile& profile,
+                   const LoadedPlugins& plugins) {
+  const auto wrong = find_wrong_values(profile.parameters, mission.dictionary, plugins.registry());
+  if (!wrong.empty()) throw profile::DescriptionError(wrong);
 }
 
 void provide_csp(Entity& entity, const std::string& owner, const MissionProfile& mission,
@@ -244,16 +255,14 @@ SelfTest provide_body(Entity& entity, const MissionProfile& mission, const PeerP
   return body.self_test;
 }
 
-void pass(const SelfTest& self_test, const Entity& entity, const PeerProfile& peer) {
+void pass(const SelfTest& self_test, const PeerProfile& peer) {
   if (!self_test) return;
   report_waiting("tests itself");
   const MakingWatch watch(peer);
   try {
     run_user_code("", self_test);
   } catch (const std::exception& error) {
-    const std::string reason = std::string("its self-test has failed: ") + error.what();
-    report_waiting(reason);
-    throw Unavailable(entity.id() + ": " + reason);
+    throw Unavailable("the self-test of '" + peer.name + "' has failed: " + error.what());
   }
 }
 
@@ -333,14 +342,19 @@ void serve(Entity& entity, const profile::ProcessRules& rules) {
   entity.drain(time_to_finish(rules));
 }
 
-/// What a peer does that provides nothing.
-int run_own_code(Entity& entity, const PeerProfile& peer, const ComponentRegistry& registry,
-                 const ParameterValues& values) {
-  const auto* activity = registry.find_activity(peer.component->name);
-  if (!activity) return (*registry.find_mission(peer.component->name))(entity, values);
-  std::stop_source told_to_end;
-  const EndWatch watch = watch_end(entity, peer.rules, [&] { told_to_end.request_stop(); });
-  return (*activity)(entity, values, told_to_end.get_token());
+/// What a peer does that provides nothing. An activity is made now. The arguments outlive it.
+std::function<int()> prepare_own_code(Entity& entity, const PeerProfile& peer,
+                                      const ComponentRegistry& registry,
+                                      const ParameterValues& values) {
+  const std::string& name = peer.component->name;
+  const auto* factory = registry.find_activity(name);
+  if (!factory)
+    return [&, mission = registry.find_mission(name)] { return (*mission)(entity, values); };
+  return [&, activity = make_component(peer, *factory, entity, values)] {
+    std::stop_source told_to_end;
+    const EndWatch watch = watch_end(entity, peer.rules, [&] { told_to_end.request_stop(); });
+    return activity(told_to_end.get_token());
+  };
 }
 
 void load(LoadedPlugins& plugins, const std::string& plugin) {
@@ -349,7 +363,6 @@ void load(LoadedPlugins& plugins, const std::string& plugin) {
   plugins.load(plugin);
 }
 
-/// At the end: code may ask at any time.
 void tell_unread_parameters(const Entity& entity, const std::string& component,
                             const std::vector<profile::Setting>& settings) {
   for (const profile::Setting& setting : settings) {
@@ -364,6 +377,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
             ComponentRegistry& registry) {
   LoadedPlugins plugins(registry);
   load(plugins, csp.plugin);
+  demand_values(mission, csp, plugins);
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
@@ -377,7 +391,6 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   return 0;
 }
 
-/// At the end: code may use a topic at any time.
 void tell_unneeded_rules(const Entity& entity, const PeerProfile& peer, const UsedTopics& topics) {
   // The rules are those of CSPs, too.
   const bool complete = std::ranges::none_of(
@@ -385,6 +398,32 @@ void tell_unneeded_rules(const Entity& entity, const PeerProfile& peer, const Us
   if (!complete) return;
   for (const std::string& text : topics.unneeded(peer.topics))
     log(LogLevel::Warning, entity.id(), text);
+}
+
+/// Of the peer and its CSPs in this process.
+void demand_all_values(const MissionProfile& mission, const PeerProfile& peer,
+                       const LoadedPlugins& plugins) {
+  demand_values(mission, peer, plugins);
+  for (const CspProfile& csp : peer.csps) {
+    if (csp.process == profile::CspProcess::InOwner) demand_values(mission, csp, plugins);
+  }
+}
+
+/// At the end: code may have asked at any time.
+void tell_unused(const Entity& entity, const PeerProfile& peer, const UsedTopics& topics) {
+  tell_unneeded_rules(entity, peer, topics);
+  tell_unread_parameters(entity, peer.component->name, peer.parameters);
+  for (const CspProfile& csp : peer.csps) {
+    if (csp.process == profile::CspProcess::InOwner)
+      tell_unread_parameters(entity, csp.component->name, csp.parameters);
+  }
+}
+
+void tell_exception(const PeerProfile& peer, const std::exception& error) {
+  const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
+                           " ended by an exception: " + error.what();
+  report_waiting(text);
+  std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
 }
 
 /// The peer's plugin and those of its CSPs in this process.
@@ -404,6 +443,7 @@ LoadedPlugins load_plugins(ComponentRegistry& registry, const PeerProfile& peer)
 int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRegistry& registry,
              std::chrono::steady_clock::time_point begun) {
   const LoadedPlugins plugins = load_plugins(registry, peer);
+  demand_all_values(mission, peer, plugins);
   // An activity is told, also one that runs the mission.
   if (registry.find_activity(peer.component->name)) block_ending_signals();
   Entity* self = nullptr;
@@ -432,27 +472,23 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   if (!peer.component->interfaces.empty())
     self_test = provide_body(entity, mission, peer, registry, values);
   if (!await_dependencies(entity, peer, begun)) return 0;
-  pass(self_test, entity, peer);
+  pass(self_test, peer);
+  std::function<int()> own_code;
+  if (peer.component->interfaces.empty())
+    own_code = prepare_own_code(entity, peer, registry, values);
   report_ready();
   const ProgressReport progress(entity, peer.rules.progress_timeout);
   try {
     int code = 0;
-    if (peer.component->interfaces.empty()) {
-      code = run_user_code("", [&] { return run_own_code(entity, peer, registry, values); });
+    if (own_code) {
+      code = run_user_code("", [&] { return std::exchange(own_code, nullptr)(); });
     } else {
       serve(entity, peer.rules);
     }
-    tell_unneeded_rules(entity, peer, topics);
-    tell_unread_parameters(entity, peer.component->name, peer.parameters);
-    for (const CspProfile& csp : peer.csps) {
-      if (csp.process == profile::CspProcess::InOwner)
-        tell_unread_parameters(entity, csp.component->name, csp.parameters);
-    }
+    tell_unused(entity, peer, topics);
     return code;
   } catch (const std::exception& error) {
-    const std::string text = peer.name + (peer.runs_mission ? ", which runs the mission," : "") +
-                             " ended by an exception: " + error.what();
-    std::fprintf(stderr, "skein: %s\n", printable(text, kLongestError).c_str());
+    tell_exception(peer, error);
     return kMissionFailed;
   }
 }

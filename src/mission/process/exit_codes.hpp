@@ -41,7 +41,7 @@ inline constexpr std::array kExitCodes{
     ExitCode{"78",
              "the profile, a file or a name is wrong, there was nothing to start here, or the "
              "mission is running here already; nothing was started. Or a process with "
-             "on_loss=abort ended with this code"},
+             "on_loss=abort, or on_loss=degrade before it was ready, ended with this code"},
     ExitCode{"128 + N", "the launcher was interrupted by signal N"},
 };
 

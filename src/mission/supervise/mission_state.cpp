@@ -65,10 +65,13 @@ void MissionState::end(Verdict verdict, Time now, Steps& steps) {
   for (std::size_t i = 0; i < machines_.size(); ++i) steps.push_back({i, machines_[i].stop(now)});
 }
 
-void MissionState::judge_loss(std::size_t child, Time now, Steps& steps) {
+void MissionState::judge_loss(std::size_t child, Time now, Steps& steps, bool misconfigured) {
   if (verdict_ || machines_[child].state() != ChildState::Lost) return;
   const Role& role = roles_[child];
-  if (role.runs_mission || role.on_loss == profile::LossPolicy::Abort)
+  // It was never there: a profile that is wrong is told, and not flown without it.
+  const bool never_began = misconfigured && !machines_[child].was_ready() &&
+                           role.on_loss != profile::LossPolicy::Continue;
+  if (role.runs_mission || role.on_loss == profile::LossPolicy::Abort || never_began)
     end({End::Lost, child}, now, steps);
   degraded_ = degraded_ || role.on_loss == profile::LossPolicy::Degrade;
 }
@@ -105,7 +108,7 @@ MissionState::Steps MissionState::exited(std::size_t child, bool failed, Time no
   Steps steps{{child, machines_[child].exited(failed, now, misconfigured)}};
   if (!verdict_ && roles_[child].runs_mission && machine.is_final() && machine.hang() == Hang::None)
     end({End::MissionEnded, child}, now, steps);
-  judge_loss(child, now, steps);
+  judge_loss(child, now, steps, misconfigured);
   follow(now, steps);
   return steps;
 }

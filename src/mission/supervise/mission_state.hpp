@@ -18,7 +18,8 @@ namespace skein::launch {
 /// child waits for one that has ended, and none for itself.
 ///
 /// The first of these ends the mission, and stops all that still runs: the peer that runs the
-/// mission ended; a child was lost that must not be (LossPolicy::Abort); stop() was called; all
+/// mission ended; a child was lost that must not be (LossPolicy::Abort, or one but
+/// LossPolicy::Continue that ended misconfigured and was never ready); stop() was called; all
 /// children have ended.
 class MissionState {
  public:
@@ -76,7 +77,7 @@ class MissionState {
   bool is_settled(const std::vector<std::size_t>& peer) const;
   bool may_start(std::size_t child) const;
   void start_what_may(Time now, Steps& steps);
-  void judge_loss(std::size_t child, Time now, Steps& steps);
+  void judge_loss(std::size_t child, Time now, Steps& steps, bool misconfigured = false);
   void end(Verdict verdict, Time now, Steps& steps);
   void follow(Time now, Steps& steps);
 

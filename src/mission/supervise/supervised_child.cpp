@@ -154,7 +154,7 @@ void SupervisedChild::tell_end() {
   if (machine_.state() == ChildState::Lost)
     loss_ = plan_.name + " " + end_text() + last_reason() + (given_up().empty() ? "" : ", ") +
             given_up();
-  report("ended " + to_text(*last_status_) + next_step());
+  report("ended " + to_text(*last_status_) + last_reason() + next_step());
 }
 
 std::string SupervisedChild::last_reason() const {

@@ -148,7 +148,7 @@ class MissionRun {
 
   void tell_loss(std::size_t i) const {
     const ChildPlan& plan = children_[i].plan();
-    if (child_of(i).state() == ChildState::Lost && !plan.runs_mission &&
+    if (child_of(i).state() == ChildState::Lost && !plan.runs_mission && !state_.verdict() &&
         plan.rules.on_loss == profile::LossPolicy::Degrade)
       report("goes on degraded, without " + plan.name);
   }

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -34,6 +35,16 @@ std::shared_ptr<Servant> worker() {
   return std::make_shared<crew::Worker::Skeleton>(std::make_shared<Worker>());
 }
 
+/// A route is a list of roads, one a line.
+void check_route(const std::string& text) {
+  std::istringstream roads(text);
+  for (std::string road; std::getline(roads, road);) {
+    if (road == "abyss") std::abort();
+    if (!road.ends_with(" street"))
+      throw std::invalid_argument("'" + road + "' is no road; write NAME street");
+  }
+}
+
 void break_down(ComponentRegistry& registry, const std::string& how) {
   if (how == "aborts") std::abort();
   if (how == "exits") _exit(0);
@@ -60,5 +71,6 @@ extern "C" void skein_register_components(ComponentRegistry& registry) {
   registry.add_activity("herald",
                         [](Entity&, const ParameterValues&, const std::stop_token&) { return 0; });
   registry.add_csp<crew::Worker>("worker", [](const ParameterValues&) { return worker(); });
+  registry.add_check<std::string>("Route", check_route);
   if (how) break_down(registry, how);
 }

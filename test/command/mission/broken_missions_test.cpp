@@ -29,6 +29,7 @@ class Town {
 <attribute name="isolated" type="boolean">Whether it needs a process of its own.</attribute>
 <parameter name="Speed" type="real" unit="m/s" min="1" max="100">How fast.</parameter>
 <parameter name="Patience" type="duration" unit="ms" min="1">How long to wait.</parameter>
+<parameter name="Route" type="text">The way through the town.</parameter>
 </dictionary>)");
     component("office", "<type>crew/Desk</type>");
     component("quiet", "<type>crew/Desk</type>");
@@ -91,6 +92,12 @@ const std::string kManager =
 std::string csp(const std::string& name) {
   return "<component name=\"" + name +
          "\"><interfaces><implements>crew/Worker</implements></interfaces></component>";
+}
+
+/// A peer that takes a route.
+std::string with_route(const std::string& value) {
+  return "<peer name=\"h\" component=\"herald.xml\">\n<parameter name=\"Route\" value=\"" + value +
+         "\"/></peer>\n";
 }
 
 std::vector<Broken> broken_missions() {
@@ -219,6 +226,33 @@ std::vector<Broken> broken_missions() {
        "the plugin 'skein_changed_components' has no implementation of the CSP 'missing'; it "
        "implements stranger\n",
        {{"office.xml", kManager}, {"clerk.xml", csp("stranger")}, {"missing.xml", csp("missing")}}},
+      // values that only the plugin can judge
+      {"a value of a peer", with_route("the sea"),
+       "town.xml:3:1: error: \"Route\": 'the sea' is no road; write NAME street; it is defined "
+       "at "},
+      {"a value of a CSP with a process of its own",
+       R"(<peer name="o" component="office.xml"><csp component="clerk.xml" process="own">
+<parameter name="Route" value="the sea"/></csp></peer>)",
+       "town.xml:3:1: error: \"Route\": 'the sea' is no road",
+       {{"office.xml", kManager},
+        {"clerk.xml",
+         "<component name=\"worker\"><interfaces><implements><type>crew/Worker</type><optional>"
+         "<parameter name=\"Route\"/></optional></implements></interfaces></component>"}}},
+      {"a variable's value",
+       "<variable name=\"way\" default=\"the sea\"/>\n" + with_route("${way}"),
+       "town.xml:2:1: error: \"Route\": 'the sea' is no road"},
+      {"a value from a file",
+       with_route("@roads.txt"),
+       "roads.txt:2:1: error: \"Route\": 'the sea' is no road",
+       {{"roads.txt", "High street\nthe sea\nLow street\n"}}},
+      {"a value from a file that is not there",
+       with_route("@road.txt"),
+       "road.txt: error: cannot be opened: No such file or directory; check the path (did you mean "
+       "'roads.txt'?)",
+       {{"roads.txt", "High street\n"}}},
+      {"a value that crashes what checks it", with_route("abyss"),
+       "town.xml:2:1: error: checking the values of 'h' ends its process by signal 6 (Aborted); "
+       "look at the checks that its plugin adds by add_check"},
       // names and files
       {"a system with a blank", R"(<peer name="h" component="herald.xml" system="uav 1"/>)",
        "town.xml:2:39: error: \"uav 1\" is no name of a system; use letters, digits, '_', '-' and "
@@ -396,6 +430,38 @@ TEST_CASE("A value from the command line counts as the profile's") {
   if (!installed("fastdds")) return;
   CommandRun launch({"launch", profile, "--set", "h.Patience=1 s"});
   CHECK(launch.wait() == 0);
+}
+
+TEST_CASE("A wrong value from the command line is told to be from there") {
+  const Town town;
+  const std::string profile =
+      town.profile("<variable name=\"way\" default=\"High street\"/>\n" + with_route("${way}"));
+  town.write("roads.txt", "High street\nthe sea\n");
+  const std::string file = (town.path() / "roads.txt").string();
+  const auto [option, value, place] = GENERATE_COPY(table<std::string, std::string, std::string>(
+      {{"--variable", "way=the sea", "--variable way"},
+       {"--variable", "way=@" + file, "roads.txt:2:1"},
+       {"--set", "h.Route=the sea", "the command line"},
+       {"--set", "h.Route=@" + file, "roads.txt:2:1"}}));
+  for (const std::string command : {"check", "launch", "peer"}) {
+    CAPTURE(command, option, value);
+    std::vector<std::string> words{command, profile, option, value};
+    if (command == "peer") words.insert(words.begin() + 2, "h");
+    CommandRun run(words);
+    CHECK(run.wait() == 78);
+    CHECK_THAT(run.output(), Contains(place + ": error: \"Route\": 'the sea' is no road"));
+  }
+}
+
+TEST_CASE("A list that is longer than a command line is taken from a file") {
+  if (!installed("fastdds")) return;
+  const Town town;
+  std::string roads;
+  for (int i = 0; i < 20'000; ++i) roads += "Long and winding street\n";
+  town.write("roads.txt", roads);
+  CommandRun run({"launch", town.profile("<variable name=\"way\"/>\n" + with_route("${way}")),
+                  "--variable", "way=@" + (town.path() / "roads.txt").string()});
+  CHECK(run.wait() == 0);
 }
 
 TEST_CASE("A process that ends with a wrong configuration is not started again") {

@@ -189,8 +189,10 @@ TEST_CASE("a missing dependency is told at once, and is the reason when the peer
   CHECK(run.writes("waits for its dependency: no provider of 'crew/Desk'"));
   CHECK(run.wait() == 71);
   CHECK_THAT(run.output(), Contains("uav-1/client has waited in vain for its dependency"));
-  CHECK_THAT(run.output(), Contains("client, which runs the mission, ended with exit code 71 (last "
-                                    "it said: waits for its dependency: no provider of"));
+  CHECK_THAT(
+      run.output(),
+      Contains("client, which runs the mission, ended with exit code 71 (last "
+               "it said: uav-1/client has waited in vain for its dependency: no provider of"));
 }
 
 TEST_CASE("too little address space is told at once with its limit") {
@@ -229,6 +231,37 @@ TEST_CASE("an activity that throws what is no std::exception ends as one that th
   CHECK(run.wait() == 76);
   CHECK_THAT(run.output(),
              Contains("t ended by an exception: it threw something that is no std::exception"));
+}
+
+TEST_CASE("a peer that cannot begin ends its mission at once, with its reason") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  const std::string herald = "<peer name='herald' component='herald.xml' role='mission'/>";
+  const auto [name, reason] = GENERATE(table<std::string, std::string>({
+      {"lost", "while making 'lost': there is no such way"},
+      {"idle", "the factory of 'idle' returned no activity"},
+  }));
+  const std::string peer =
+      "<peer name='l' restart='always' on_loss='degrade' component='" + name + ".xml'/>";
+  CommandRun run({"launch", errand.profile("", peer + herald)});
+  CHECK(run.wait() == 78);
+  const std::string output = run.output();
+  CHECK_THAT(output, Contains("skein: l ended with exit code 78 (last it said: ") &&
+                         Contains(reason) && !Contains("restart number 1"));
+  CHECK_THAT(output.substr(output.rfind("skein: l ended")), Contains(reason));
+}
+
+TEST_CASE("a mission goes on without a peer that may be missing, and says why it is") {
+  if (!installed("fastdds")) return;
+  const Errand errand;
+  CommandRun run(
+      {"launch", errand.profile("",
+                                "<peer name='l' on_loss='continue' component='lost.xml'/>"
+                                "<peer name='page' component='page.xml' role='mission'/>"
+                                "<peer name='herald' component='herald.xml'/>")});
+  CHECK(run.wait() == 3);
+  CHECK_THAT(run.output(), Contains("* l: ended with exit code 78 (last it said: ") &&
+                               Contains("there is no such way"));
 }
 
 TEST_CASE("a component that could not be made is named, with its place in the profile") {

@@ -13,7 +13,8 @@ namespace skein::test {
 /// are not made: their argument says what their factory returns or throws. `client` asks and ends,
 /// `vexer` makes the office spin first, `clumsy` ends by an exception and `thrower` by what is
 /// none, `herald` calls out until it is told to end, `page` does so three times, `thinker` never
-/// comes to an end with a new value of its parameter Rate.
+/// comes to an end with a new value of its parameter Rate. `lost` and `idle` are activities that
+/// are not made: by an exception, and by nothing.
 class Errand {
  public:
   Errand() {
@@ -27,7 +28,8 @@ class Errand {
                                 "'><dependencies><depends>IDL:crew/Desk</depends>"
                                 "</dependencies></component>");
     }
-    for (const std::string lone : {"clumsy", "herald", "page", "thinker", "thrower"})
+    for (const std::string lone :
+         {"clumsy", "herald", "idle", "lost", "page", "thinker", "thrower"})
       write(lone + ".xml", "<component name='" + lone + "'/>");
   }
 

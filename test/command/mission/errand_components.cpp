@@ -91,6 +91,8 @@ int ponder(Entity& entity, const ParameterValues& values, const std::stop_token&
   return 0;
 }
 
+using Made = std::function<int(const std::stop_token&)>;
+
 int stumble(Entity&, const ParameterValues&) { throw std::runtime_error("the client stumbled"); }
 
 /// What becomes of a component whose process was given `how` as its argument.
@@ -136,6 +138,11 @@ extern "C" void skein_register_components(skein::ComponentRegistry& registry) {
       "thrower", [](skein::Entity&, const skein::ParameterValues&, const std::stop_token&) -> int {
         throw 7;
       });
+  registry.add_activity("lost", [](skein::Entity&, const skein::ParameterValues&) -> Made {
+    throw skein::InvalidArgument("there is no such way");
+  });
+  registry.add_activity("idle",
+                        [](skein::Entity&, const skein::ParameterValues&) { return Made(); });
   registry.add_mission("vexer", vex);
   registry.add_mission("clumsy", stumble);
   registry.add_activity("herald", call_out);

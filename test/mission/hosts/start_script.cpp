@@ -127,6 +127,13 @@ TEST_CASE("A start script without a mission's peer ends when all processes have 
   CHECK_THAT(marred.output(), Contains("b ended with exit code 1"));
 }
 
+TEST_CASE("A start script ends with a wrong configuration of what would degrade it") {
+  auto wrong = shell_child("a", "exit 78");
+  wrong.rules.on_loss = skein::profile::LossPolicy::Degrade;
+  ScriptRun run({wrong, mission_child(kWait)});
+  CHECK(run.wait() == kConfigurationError);
+}
+
 TEST_CASE("A start script goes on without what is not required") {
   auto failing = shell_child("b", "ready; exit 1");
   failing.rules.on_loss = skein::profile::LossPolicy::Continue;

@@ -334,6 +334,22 @@ TEST_CASE("What the loss of a child means is its policy's to say") {
   }
 }
 
+TEST_CASE("A wrong configuration ends the mission, unless it goes on without that child anyway") {
+  const auto policy = GENERATE(LossPolicy::Abort, LossPolicy::Degrade, LossPolicy::Continue);
+  const bool was_ready = GENERATE(false, true);
+  CAPTURE(policy, was_ready);
+  auto a = child("a");
+  a.rules.on_loss = policy;
+  const LaunchPlan plan = plan_of({a, child("b")});
+  MissionState mission(plan);
+  mission.start(Time{});
+  if (was_ready) mission.ready(0, Time{});
+  mission.exited(0, true, Time{}, true);
+  const bool ends = policy == LossPolicy::Abort || (policy == LossPolicy::Degrade && !was_ready);
+  REQUIRE(mission.verdict().has_value() == ends);
+  if (ends) CHECK(mission.verdict()->end == MissionState::End::Lost);
+}
+
 TEST_CASE("The first cause is the verdict, whatever follows from it") {
   auto a = child("a");
   a.rules.on_loss = LossPolicy::Abort;

@@ -187,8 +187,8 @@ TEST_CASE("a peer that fails its self-test is never ready, and the reason is the
   CommandRun launcher({"launch", errand.profile("", "<peer name='sick' component='sick.xml'/>")});
   CHECK(launcher.wait() == 71);
   CHECK_THAT(launcher.output(),
-             Contains("skein: sick ended with exit code 71 (last it said: its self-test has "
-                      "failed: no compass)"));
+             Contains("skein: sick ended with exit code 71 (last it said: the self-test of "
+                      "'sick' has failed: no compass)"));
 }
 
 TEST_CASE("who was given up is shown, is started anew on request, and marks the mission") {

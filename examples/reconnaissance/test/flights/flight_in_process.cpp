@@ -134,10 +134,10 @@ class Peer {
   void start(const SteppedTime& time) {
     const std::size_t before = time.participants();
     if (body_.self_test) return body_.self_test();
-    const auto* activity = registry(profile_.plugin).find_activity(profile_.component->name);
-    thread_ = std::jthread([this, activity](const std::stop_token& stop) {
+    const auto* make = registry(profile_.plugin).find_activity(profile_.component->name);
+    thread_ = std::jthread([this, make](const std::stop_token& stop) {
       try {
-        code_ = (*activity)(*entity_, values_, stop);
+        code_ = (*make)(*entity_, values_)(stop);
       } catch (const std::exception& error) {
         fmt::print(stderr, "{}: {}\n", profile_.name, error.what());
       }
